@@ -1,0 +1,1 @@
+"""Shape of the cam: lift, pitch curve, contour. Knows no other package of the project."""

@@ -1,0 +1,62 @@
+"""Read-only arrays and guards for values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geometry.errors import InputError
+
+Array = NDArray[np.float64]
+
+FULL_TURN = 2.0 * np.pi
+
+
+def readonly(values: ArrayLike) -> Array:
+    """A float copy of `values` that cannot be written to."""
+    array = np.array(values, dtype=float)
+    array.setflags(write=False)
+    return array
+
+
+def finite(field: str, values: ArrayLike) -> Array:
+    """`values` as a read-only array of finite floats.
+
+    Raises
+    ------
+    InputError
+        If a value is NaN or infinite.
+    """
+    array = readonly(values)
+    bad = ~np.isfinite(array)
+    if bad.any():
+        raise InputError(field, float(array[bad].flat[0]), "finite")
+    return array
+
+
+def positive(field: str, values: ArrayLike, unit: str = "") -> Array:
+    """`values` as a read-only array of finite floats above zero.
+
+    Raises
+    ------
+    InputError
+        If a value is not positive; NaN included.
+    """
+    array = finite(field, values)
+    bad = ~(array > 0)
+    if bad.any():
+        raise InputError(field, float(array[bad].flat[0]), f"> 0 {unit}".rstrip())
+    return array
+
+
+def uniform_turn(count: int) -> Array:
+    """`count` equally spaced angles of one turn, from 0, the end left out (rad)."""
+    return readonly(np.arange(count) * (FULL_TURN / count))
+
+
+def freeze(instance: Any, **arrays: ArrayLike) -> None:
+    """Set read-only array fields of a frozen dataclass from its ``__post_init__``."""
+    for name, values in arrays.items():
+        object.__setattr__(instance, name, readonly(values))

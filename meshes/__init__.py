@@ -1,0 +1,1 @@
+"""Finite-element meshes of the bodies and of the contact patch."""

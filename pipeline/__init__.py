@@ -1,0 +1,1 @@
+"""The road from a case file to a verdict."""

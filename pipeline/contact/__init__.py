@@ -1,0 +1,1 @@
+"""Cam-roller contact: closed form and finite elements."""

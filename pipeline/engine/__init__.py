@@ -1,0 +1,1 @@
+"""Engine torque over the cycle."""

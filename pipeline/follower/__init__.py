@@ -1,0 +1,1 @@
+"""Follower, guides, roller and spring: the loads on the cam."""

@@ -1,0 +1,1 @@
+"""Gentler torques for the lift."""

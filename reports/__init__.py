@@ -1,0 +1,1 @@
+"""Page, figures and fields from a finished run; never solves."""
