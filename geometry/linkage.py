@@ -1,0 +1,91 @@
+"""Linkages: the slider-crank, with or without an offset of its pin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geometry.errors import InputError
+
+
+@dataclass(frozen=True)
+class SliderCrank:
+    """A crank, a rod and a slider; lengths in m.
+
+    Crank angle 0 has the crank along the slider's line. With an offset the dead centres lie a
+    little beside 0 and pi, and the stroke is a little longer than two crank radii.
+
+    Parameters
+    ----------
+    crank_radius : float    r, m, > 0
+    rod_length : float      l, m, > r + |offset|
+    offset : float          e, m: the slider's line passes the crank axis at this distance, on
+                            the side the crank pin first moves to
+
+    Raises
+    ------
+    InputError
+        If the linkage cannot turn over.
+    """
+
+    crank_radius: float
+    rod_length: float
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0 < self.crank_radius < np.inf:
+            raise InputError("crank_radius", self.crank_radius, "> 0 m")
+        if not abs(self.offset) < np.inf:
+            raise InputError("pin_offset", self.offset, "finite")
+        least = self.crank_radius + abs(self.offset)
+        if not least < self.rod_length < np.inf:
+            raise InputError("rod_length", self.rod_length, f"> {least:g} m to turn over")
+
+    @property
+    def top(self) -> float:
+        """Greatest distance of the slider from the crank axis, m."""
+        return float(np.sqrt((self.rod_length + self.crank_radius) ** 2 - self.offset**2))
+
+    @property
+    def bottom(self) -> float:
+        """Least distance of the slider from the crank axis, m."""
+        return float(np.sqrt((self.rod_length - self.crank_radius) ** 2 - self.offset**2))
+
+    @property
+    def stroke(self) -> float:
+        return self.top - self.bottom
+
+    @property
+    def top_angle(self) -> float:
+        """Crank angle of the top dead centre, rad: 0 without offset."""
+        return float(np.arcsin(self.offset / (self.rod_length + self.crank_radius)))
+
+    def travel(self, theta: ArrayLike) -> NDArray[Any]:
+        """Way of the slider from its top dead centre (m), at crank angles (rad), any shape.
+
+        Complex angles are taken too, for derivatives by a complex step.
+        """
+        theta = np.asarray(theta)
+        across = self.crank_radius * np.sin(theta) - self.offset
+        along = np.sqrt(self.rod_length**2 - across**2)
+        return np.asarray(self.top - self.crank_radius * np.cos(theta) - along)
+
+    def travel_rate(self, theta: ArrayLike) -> NDArray[Any]:
+        """First derivative of the travel, m/rad."""
+        theta = np.asarray(theta)
+        r, sin, cos = self.crank_radius, np.sin(theta), np.cos(theta)
+        across = r * sin - self.offset
+        along = np.sqrt(self.rod_length**2 - across**2)
+        return np.asarray(r * sin + across * r * cos / along)
+
+    def travel_acceleration(self, theta: ArrayLike) -> NDArray[Any]:
+        """Second derivative of the travel, m/rad^2."""
+        theta = np.asarray(theta)
+        r, sin, cos = self.crank_radius, np.sin(theta), np.cos(theta)
+        across = r * sin - self.offset
+        along = np.sqrt(self.rod_length**2 - across**2)
+        bend = ((r * cos) ** 2 - across * r * sin) / along + (across * r * cos) ** 2 / along**3
+        return np.asarray(r * cos + bend)
