@@ -1,0 +1,249 @@
+"""Forces on a translating roller follower whose guides rub."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geometry.arrays import FULL_TURN, Array, finite, freeze
+from geometry.errors import InputError
+from geometry.pitch_curve import PitchCurve
+
+JAM_FLOOR = 0.01  # least share of the cam's push that friction is let to leave over
+
+
+@dataclass(frozen=True)
+class FollowerSystem:
+    """Spring, mass and rubbing guides of a follower.
+
+    Parameters
+    ----------
+    mass : float                    moving mass, kg, >= 0
+    spring_rate : float             k, N/m, > 0
+    preload : float                 P, spring force at zero lift, N, >= 0
+    guide_spacing : float           b, between the centres of guides A and B, m, > 0
+    overhang_at_max_lift : float    a, roller centre to centre of A at the largest lift, m, >= 0
+    friction_a, friction_b : float  Coulomb coefficients, >= 0
+    gravity_along_axis : float      the part of g that presses the follower on the cam, m/s2
+
+    Raises
+    ------
+    InputError
+        If a value is out of these bounds; NaN included.
+    """
+
+    mass: float
+    spring_rate: float
+    preload: float
+    guide_spacing: float
+    overhang_at_max_lift: float
+    friction_a: float
+    friction_b: float
+    gravity_along_axis: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, unit in (("spring_rate", "N/m"), ("guide_spacing", "m")):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise InputError(f"follower.{name}", getattr(self, name), f"> 0 {unit}")
+        for name, unit in (
+            ("mass", "kg"),
+            ("preload", "N"),
+            ("overhang_at_max_lift", "m"),
+            ("friction_a", ""),
+            ("friction_b", ""),
+        ):
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise InputError(f"follower.{name}", getattr(self, name), f">= 0 {unit}".rstrip())
+        finite("follower.gravity_along_axis", self.gravity_along_axis)
+
+    @classmethod
+    def from_case(cls, case: Any) -> FollowerSystem:
+        """The system described by the follower, spring and guides tables of a case."""
+        return cls(
+            mass=case.follower.mass,
+            spring_rate=case.spring.rate,
+            preload=case.spring.preload,
+            guide_spacing=case.guides.spacing,
+            overhang_at_max_lift=case.follower.overhang_at_max_lift,
+            friction_a=case.guides.a.friction,
+            friction_b=case.guides.b.friction,
+        )
+
+    def guide_factors(self, overhang: ArrayLike) -> tuple[Array, Array]:
+        """|A|/F_t = (a+b)/b and |B|/F_t = a/b of a stem on two point supports.
+
+        References
+        ----------
+        Cardoso et al., Energies 18 (2025) 3256, eqs 11-14.
+        """
+        ratio = np.asarray(overhang, dtype=float) / self.guide_spacing
+        return 1.0 + ratio, ratio
+
+    def friction_factor(self, overhang: ArrayLike) -> Array:
+        """c = [mu_A (a+b) + mu_B a]/b, guide friction per unit of side force."""
+        factor_a, factor_b = self.guide_factors(overhang)
+        return self.friction_a * factor_a + self.friction_b * factor_b
+
+
+@dataclass(frozen=True, eq=False)
+class Loads:
+    """Everything that acts on the follower at each cam angle; arrays (n,), SI.
+
+    `tangential_force` is the side force on the stem, signed like the pressure angle; the
+    reactions carry its sign although A pushes against it and B with it. The friction forces are
+    magnitudes and oppose `velocity`. `jam_index` is c |tan alpha|; where the follower moves
+    outward it must stay below 1, elsewhere it tells of a cam that is turned backwards.
+    """
+
+    theta: Array
+    lift: Array
+    pressure_angle: Array
+    overhang: Array
+    velocity: Array
+    acceleration: Array
+    spring_force: Array
+    inertia_force: Array
+    axial_force: Array
+    normal_force: Array
+    tangential_force: Array
+    friction_force_a: Array
+    friction_force_b: Array
+    reaction_a: Array
+    reaction_b: Array
+    cam_torque: Array
+    jam_index: Array
+    friction_power: Array
+    lift_slope: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+
+    @property
+    def separated(self) -> Array:
+        """Where nothing presses the roller on the cam (bool): its forces there are zero."""
+        return np.asarray(self.normal_force <= 0.0)
+
+    @property
+    def jammed(self) -> Array:
+        """Where the follower moves outward and no finite force could push it (bool)."""
+        return np.asarray((self.jam_index >= 1.0) & (self.lift_slope > 0.0))
+
+    @property
+    def friction_force(self) -> Array:
+        """Axial friction of both guides, N, >= 0."""
+        return np.asarray(self.friction_force_a + self.friction_force_b)
+
+    @property
+    def friction_loss(self) -> float:
+        """Heat of both guides over one cam turn, J."""
+        return turn_integral(self.theta, self.friction_force * np.abs(self.lift_slope))
+
+    @property
+    def cam_work(self) -> float:
+        """Work the cam gives to the follower over one turn, J; the friction loss, nothing else."""
+        return turn_integral(self.theta, self.cam_torque)
+
+
+def turn_integral(theta: Array, values: Array) -> float:
+    """Integral of a periodic quantity over one turn, by the trapezoidal rule.
+
+    Spectrally accurate for smooth values on uniform angles.
+
+    Raises
+    ------
+    InputError
+        If the angles do not rise strictly within one turn.
+    """
+    steps = np.diff(theta, append=theta[0] + FULL_TURN)
+    if not (steps > 0.0).all():
+        raise InputError("theta", float(theta[np.argmin(steps)]), "rising within one turn")
+    return float(np.sum(0.5 * (steps + np.roll(steps, 1)) * values))
+
+
+def follower_loads(
+    pitch: PitchCurve,
+    system: FollowerSystem,
+    cam_speed: ArrayLike,
+    theta: ArrayLike,
+    cam_acceleration: ArrayLike = 0.0,
+) -> Loads:
+    r"""Forces on the follower, guide friction included, at given cam angles.
+
+    The cam's push has the axial part F_a and the side part F_t = F_a tan(alpha). The side part
+    loads the guides with c |F_t| of friction against the motion, which F_a must overcome on the
+    way out and is spared on the way back:
+
+        F_a = F + sign(v) c |F_t|    hence    F_a = F / (1 - sign(v) c |tan(alpha)|)
+
+    with F = P + k s + m (a + g). With an offset the side force and the motion have independent
+    signs; in a dwell friction is taken as zero. F <= 0 means that the roller has left the cam:
+    every cam and guide force is then zero, and the spring and inertia forces tell of the motion
+    the cam asks for. Close to jamming the denominator is held at `JAM_FLOOR`, so that the
+    forces stay finite and `jam_index` alone tells of the jam. Small terms left out: the couple
+    of the friction forces about the stem's axis, rolling friction.
+
+    Parameters
+    ----------
+    pitch : PitchCurve
+    system : FollowerSystem
+    cam_speed : float or array (n,)         d theta/dt, rad/s, >= 0; 0 is quasi-static
+    theta : array (n,)                      cam angles, rad
+    cam_acceleration : float or array (n,)  rad/s2
+
+    Returns
+    -------
+    Loads
+
+    Raises
+    ------
+    InputError
+        If an angle or speed is not finite, or a speed is negative.
+
+    References
+    ----------
+    Cardoso et al., Energies 18 (2025) 3256, eqs 11-14, with friction made implicit;
+    Rothbart, Cam Design Handbook (2004), ch. 6.
+    """
+    theta = finite("theta", theta)
+    speed = np.broadcast_to(finite("cam_speed", cam_speed), theta.shape)
+    if (speed < 0.0).any():
+        raise InputError("cam_speed", float(speed.min()), ">= 0 rad/s")
+    lift, slope, bend = pitch.lift.derivatives(theta, 2)
+    acceleration = bend * speed**2 + slope * finite("cam_acceleration", cam_acceleration)
+    spring_force = system.preload + system.spring_rate * lift
+    inertia_force = system.mass * acceleration
+    demand = spring_force + inertia_force + system.mass * system.gravity_along_axis
+
+    pressure_angle = pitch.pressure_angle(theta)
+    overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
+    factor_a, factor_b = system.guide_factors(overhang)
+    jam_index = system.friction_factor(overhang) * np.abs(np.tan(pressure_angle))
+    share = np.maximum(1.0 - np.sign(slope) * jam_index, JAM_FLOOR)
+    axial_force = np.maximum(demand, 0.0) / share
+    side_force = axial_force * np.tan(pressure_angle)
+    friction_a = system.friction_a * factor_a * np.abs(side_force)
+    friction_b = system.friction_b * factor_b * np.abs(side_force)
+    return Loads(
+        theta=theta,
+        lift=lift,
+        lift_slope=slope,
+        pressure_angle=pressure_angle,
+        overhang=overhang,
+        velocity=slope * speed,
+        acceleration=acceleration,
+        spring_force=spring_force,
+        inertia_force=inertia_force,
+        axial_force=axial_force,
+        normal_force=axial_force / np.cos(pressure_angle),
+        tangential_force=side_force,
+        friction_force_a=friction_a,
+        friction_force_b=friction_b,
+        reaction_a=side_force * factor_a,
+        reaction_b=side_force * factor_b,
+        cam_torque=axial_force * slope,
+        jam_index=jam_index,
+        friction_power=(friction_a + friction_b) * np.abs(slope) * speed,
+    )
