@@ -20,8 +20,10 @@ _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*", re.IGNORECASE | re.DOTALL)
 _TERM = r"[A-Za-zµμ°Å%]+(?:\s*(?:\^|\*\*)?\s*-?[1-9]|[²³])?"
 _UNIT = re.compile(rf"(?:1\s*/\s*)?{_TERM}(?:\s*[*·/ ]\s*{_TERM})*")
 _IMPLIED_POWER = re.compile(r"(?<=[A-Za-zµμ])(-?[1-9])")
-_ANGLES = ("radian", "degree", "turn", "arcminute", "arcsecond", "grade")
-_ANGLES += ("revolutions_per_minute", "revolutions_per_second")
+_ANGLES = (  # endings, since prefixes go before them
+    *("radian", "degree", "turn", "arcminute", "arcsecond", "grade"),
+    *("revolutions_per_minute", "revolutions_per_second"),
+)
 _LONGEST = 80
 
 
@@ -42,7 +44,7 @@ def _unit(text: str) -> Any:
     spelled = _IMPLIED_POWER.sub(r"**\1", text.replace("^", "**")).replace("****", "**")
     try:
         return _registry().Unit(spelled)
-    except Exception as error:  # noqa: BLE001 - pint's parser lets tokenizer errors through
+    except Exception as error:  # pint's parser lets tokenizer errors through
         raise ValueError(text) from error
 
 
@@ -68,8 +70,8 @@ def _angle(unit: Any) -> int:
     """Power of the plane angle in a unit, which pint takes for a number."""
     from pint.util import to_units_container
 
-    powers = to_units_container(unit).items()
-    return int(sum(power for name, power in powers if name.endswith(_ANGLES)))
+    powers: Any = to_units_container(unit)
+    return int(sum(power for name, power in powers.items() if name.endswith(_ANGLES)))
 
 
 def parse(text: object, unit: str, field: str) -> float:
@@ -142,9 +144,10 @@ def _plain(number: Decimal) -> str:
 
 
 def column(name: str, unit: str) -> str:
-    """Name of a table column that carries its unit: ``("line_load", "N/mm") -> line_load_N_per_mm``.
+    """Name of a table column that carries its unit.
 
-    Products are written together (``Nm``), powers as digits (``mm_per_rad2``).
+    ``("line_load", "N/mm")`` gives ``line_load_N_per_mm``. Products are written together (``Nm``),
+    powers as digits (``mm_per_rad2``).
     """
     if not unit:
         return name

@@ -1,0 +1,349 @@
+"""Case file to `Case`: everything a run needs, resolved, in SI units."""
+
+from __future__ import annotations
+
+import hashlib
+import tomllib
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
+
+from geometry.errors import InputError
+from pipeline.case_fields import (
+    Cam,
+    Engine,
+    Follower,
+    Guides,
+    LiftTable,
+    Limits,
+    LoadCase,
+    Material,
+    Mechanism,
+    Name,
+    Roller,
+    Section,
+    Smoothing,
+    Solver,
+    Spring,
+    Text,
+    TorqueTable,
+    Waiver,
+)
+from pipeline.case_text import to_toml
+
+CASE_BYTES = 256 * 1024
+INCLUDE_BYTES = 16 * 1024 * 1024
+INPUTS = "inputs"
+SCHEMA_VERSION = 1
+
+
+class Case(Section):
+    """One design and the states it has to bear."""
+
+    schema_version: Literal[1]
+    name: Name
+    title: Text = ""
+    notes: Text = ""
+    engine: Engine | None = None
+    lift: LiftTable | None = None
+    mechanism: Mechanism = Mechanism()
+    spring: Spring
+    cam: Cam
+    roller: Roller
+    follower: Follower
+    guides: Guides
+    materials: Annotated[dict[Name, Material], Field(min_length=1, max_length=64)]
+    smoothing: Smoothing = Smoothing()
+    limits: Limits = Limits()
+    solver: Solver = Solver()
+    waivers: Annotated[tuple[Waiver, ...], Field(strict=False, max_length=64)] = ()
+    load_cases: Annotated[
+        tuple[LoadCase, ...], Field(alias="load_case", strict=False, min_length=1, max_length=64)
+    ]
+
+    _included: Mapping[str, bytes] = PrivateAttr(default_factory=dict)
+    _folder: Path | None = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        _check_road(self)
+        _check_geometry(self)
+        _check_names(self)
+        return self
+
+    def to_toml(self) -> str:
+        """The case with every default written out; reads back bit for bit.
+
+        Included files are named as they are kept in a run folder, ``inputs/NAME``.
+        """
+        return to_toml(self, {name: kept_as(name) for _, name in includes(self)})
+
+    @property
+    def included(self) -> Mapping[str, bytes]:
+        """Bytes of each included file, by its name in a run folder."""
+        return self._included
+
+    @cached_property
+    def sha256(self) -> str:
+        """Hash of all that decides the result: the resolved case and the included files."""
+        digest = hashlib.sha256(self.to_toml().encode())
+        for name, content in sorted(self._included.items()):
+            digest.update(f"\0{name}\0{len(content)}\0".encode())
+            digest.update(content)
+        return digest.hexdigest()
+
+    def path(self, name: str) -> Path:
+        """Where an included file lies; `name` as the case file has it."""
+        if self._folder is None:
+            raise InputError("case", name, "read from a file to include others")
+        return self._folder / name
+
+    def material(self, name: str) -> Material:
+        """The card of a material that the case names."""
+        return self.materials[name]
+
+
+def load_case_file(path: str | Path) -> Case:
+    """Read and check a case file.
+
+    Raises
+    ------
+    InputError
+        For the first thing that is wrong, by its dotted name.
+    """
+    path = Path(path)
+    return parse_case(_read(path, "case", CASE_BYTES), path.resolve().parent)
+
+
+def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
+    """A case from its text; included files are looked for in `folder`."""
+    data = _parse_toml(content)
+    version = data.get("schema_version")
+    if version is not None and version != SCHEMA_VERSION:
+        raise InputError("schema_version", version, f"{SCHEMA_VERSION}, the one known here")
+    try:
+        case = Case.model_validate(data)
+    except ValidationError as error:
+        raise _first_error(error) from None
+    case._folder = folder
+    case._included = MappingProxyType(_read_includes(case, folder))
+    return case
+
+
+def includes(case: Case) -> Iterator[tuple[str, str]]:
+    """Dotted field and file name of every file a case draws in."""
+    if isinstance(case.engine, TorqueTable):
+        yield "engine.file", case.engine.file
+    if case.lift is not None:
+        yield "lift.file", case.lift.file
+    for k, load_case in enumerate(case.load_cases):
+        if load_case.torque is not None:
+            yield f"load_case[{k}].torque", load_case.torque
+
+
+def kept_as(name: str) -> str:
+    """Where a run folder keeps an included file."""
+    return f"{INPUTS}/{Path(name).name}"
+
+
+def _parse_toml(content: str | bytes) -> dict[str, Any]:
+    try:
+        text = content if isinstance(content, str) else content.decode("utf-8-sig")
+        return tomllib.loads(text)
+    except RecursionError:
+        raise InputError("case", "nested too deeply", "at most a few tables deep") from None
+    except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError alike
+        raise InputError("case", " ".join(str(error).split()), "UTF-8 text in TOML") from None
+
+
+def _read(path: Path, field: str, limit: int) -> bytes:
+    try:
+        if not path.is_file():
+            raise InputError(field, str(path), "an existing file")
+        with path.open("rb") as file:
+            content = file.read(limit + 1)
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(field, f"{path} ({reason})", "a readable file") from None
+    if len(content) > limit:
+        raise InputError(field, f"{path} is larger", f"at most {limit // 1024} KiB")
+    return content
+
+
+def _read_includes(case: Case, folder: Path | None) -> dict[str, bytes]:
+    read: dict[str, bytes] = {}
+    origin: dict[str, str] = {}
+    for field, name in includes(case):
+        if folder is None:
+            raise InputError(field, name, "left out where a case has no folder")
+        content = _read(_inside(folder, name, field), field, INCLUDE_BYTES)
+        kept = kept_as(name)
+        if origin.setdefault(kept, name) != name:
+            raise InputError(field, name, f"another file name than that of {origin[kept]}")
+        read[kept] = content
+    return read
+
+
+def _inside(folder: Path, name: str, field: str) -> Path:
+    """The file `name` under `folder`; refuses every way out of it, links too."""
+    limit = "a relative path that stays in the case file's folder"
+    path = Path(name)
+    if path.is_absolute() or ".." in path.parts or "\\" in name or ":" in name:
+        raise InputError(field, name, limit)
+    try:
+        resolved = (folder / path).resolve()
+    except (OSError, ValueError, RuntimeError):
+        raise InputError(field, name, "a readable file") from None
+    if not resolved.is_relative_to(folder.resolve()):
+        raise InputError(field, name, limit)
+    return resolved
+
+
+def _check_road(case: Case) -> None:
+    """The case enters the road at the torque or at the lift, never at both."""
+    if (case.engine is None) == (case.lift is None):
+        found = "neither" if case.engine is None else "both"
+        raise InputError("engine, lift", found, "exactly one of the two")
+    ratio = case.mechanism.gear_ratio
+    if case.engine is not None and ratio != 2.0:
+        raise InputError("mechanism.gear_ratio", ratio, "2 with an engine: a cam turn is 720 deg")
+    engine = case.engine
+    if engine is not None and not isinstance(engine, TorqueTable):
+        throw = engine.crank_radius + abs(engine.pin_offset)
+        _require(
+            "engine.rod_length",
+            engine.rod_length,
+            engine.rod_length > throw,
+            "longer than the crank radius and the pin offset",
+        )
+    for k, load_case in enumerate(case.load_cases):
+        if case.engine is None and load_case.torque is not None:
+            raise InputError(f"load_case[{k}].torque", load_case.torque, "left out with a lift")
+
+
+def _check_geometry(case: Case) -> None:
+    cam, roller = case.cam, case.roller
+    surface = cam.pitch_base_radius - roller.radius
+    _require("roller.radius", roller.radius, surface > 0, "< cam.pitch_base_radius")
+    _require(
+        "cam.offset",
+        cam.offset,
+        abs(cam.offset) < cam.pitch_base_radius,
+        "smaller than cam.pitch_base_radius",
+    )
+    _require(
+        "cam.bore_radius",
+        cam.bore_radius,
+        cam.bore_radius < surface,
+        f"< {surface:.6g} m, the base circle of the surface",
+    )
+    if cam.keyway is not None:
+        reach = cam.bore_radius + cam.keyway.depth
+        _require(
+            "cam.keyway.depth",
+            cam.keyway.depth,
+            reach < surface,
+            f"< {surface - cam.bore_radius:.6g} m, the ring of steel around the bore",
+        )
+        _require(
+            "cam.keyway.width",
+            cam.keyway.width,
+            cam.keyway.width < 2 * cam.bore_radius,
+            "< the bore's diameter",
+        )
+    _require(
+        "roller.hub_radius", roller.hub_radius, roller.hub_radius < roller.radius, "< roller.radius"
+    )
+    _require(
+        "roller.chamfer",
+        roller.chamfer,
+        2 * roller.chamfer < roller.width,
+        "< half of roller.width",
+    )
+    for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
+        _require(
+            f"guides.{side}.diameter",
+            guide.diameter,
+            guide.diameter >= case.follower.stem_diameter,
+            ">= follower.stem_diameter",
+        )
+
+
+def _require(field: str, value: float, holds: bool, limit: str) -> None:
+    if not holds:
+        raise InputError(field, f"{value:.6g} m", limit)
+
+
+def _check_names(case: Case) -> None:
+    known = ", ".join(sorted(case.materials))
+    for field, name in (
+        ("cam.material", case.cam.material),
+        ("roller.material", case.roller.material),
+        ("follower.stem_material", case.follower.stem_material),
+        ("guides.a.material", case.guides.a.material),
+        ("guides.b.material", case.guides.b.material),
+    ):
+        if name not in case.materials:
+            raise InputError(field, name, f"one of the materials: {known}")
+    seen: set[str] = set()
+    for k, load_case in enumerate(case.load_cases):
+        if load_case.name.casefold() in seen:
+            raise InputError(f"load_case[{k}].name", load_case.name, "unlike every other")
+        seen.add(load_case.name.casefold())
+
+
+_WORDS = {
+    "missing": "given",
+    "string_type": "text in quotes",
+    "int_type": "a whole number",
+    "model_type": "a table",
+    "dict_type": "a table",
+    "model_attributes_type": "a table",
+    "tuple_type": "an array of tables",
+    "date_type": "a date such as 2025-06-30",
+    "union_tag_not_found": 'a table with kind = "cylinder" or "table"',
+    "too_short": "at least {min_length} long",
+    "too_long": "at most {max_length} long",
+    "string_too_short": "at least {min_length} characters",
+    "string_too_long": "at most {max_length} characters",
+    "greater_than_equal": ">= {ge}",
+    "less_than_equal": "<= {le}",
+    "literal_error": "{expected}",
+    "union_tag_invalid": "{expected_tags}",
+    "limit": "{limit}",
+}
+
+
+def _first_error(error: ValidationError) -> InputError:
+    """The first refusal as one line; unknown keys go before what is missing for them."""
+    found = error.errors(include_url=False)
+    found.sort(key=lambda entry: "unknown_key" not in entry.get("ctx", {}))
+    first, others = found[0], len(found) - 1
+    context = dict(first.get("ctx", {}))
+    field, value = _dotted(first["loc"]), first["input"]
+    if "unknown_key" in context:
+        field = f"{field}.{context['unknown_key']}".lstrip(".")
+        value = "unknown key"
+    elif first["type"] == "missing":
+        value = "missing"
+    elif first["type"] == "union_tag_invalid":
+        field, value = f"{field}.kind", context["tag"]
+    elif isinstance(value, (dict, list)):
+        value = "a table" if isinstance(value, dict) else "an array"
+    limit = _WORDS.get(first["type"], first["msg"]).format_map(context)
+    more = f" (and {others} more)" if others else ""
+    return InputError(field or "case", value, f"{limit}{more}")
+
+
+def _dotted(location: tuple[int | str, ...]) -> str:
+    """``("load_case", 0, "speed")`` as ``load_case[0].speed``; the tag of a union is left out."""
+    text = ""
+    for position, part in enumerate(location):
+        if position == 1 and location[0] == "engine" and part in ("cylinder", "table"):
+            continue
+        text += f"[{part}]" if isinstance(part, int) else f".{part}"
+    return text.lstrip(".")

@@ -1,0 +1,405 @@
+"""The sections of a case file: pydantic models of SI floats, read from unit strings."""
+
+from __future__ import annotations
+
+import datetime as dt
+import difflib
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import inf, isfinite, radians
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    field_validator,
+    model_validator,
+)
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from geometry.errors import InputError
+from pipeline import units
+
+if TYPE_CHECKING:
+    from pipeline.engine.cylinder import CylinderEngine
+
+SAFE_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9_-])?")
+
+
+def refusal(limit: str, **context: str) -> PydanticCustomError:
+    """A validation error that says what would be accepted."""
+    return PydanticCustomError("limit", "must be {limit}", {"limit": limit, **context})
+
+
+@dataclass(frozen=True)
+class In:
+    """Marks a float field: read from a unit string into SI, bounds in the unit shown.
+
+    With no unit it is a pure number, written bare.
+    """
+
+    unit: str = ""
+    above: float = -inf
+    at_least: float = -inf
+    below: float = inf
+    at_most: float = inf
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def read(self, given: object) -> float:
+        value = self._number(given)
+        shown = [f"> {self.above:g}"] if self.above > -inf else []
+        shown += [f">= {self.at_least:g}"] if self.at_least > -inf else []
+        shown += [f"< {self.below:g}"] if self.below < inf else []
+        shown += [f"<= {self.at_most:g}"] if self.at_most < inf else []
+        inside = self._si(self.above) < value < self._si(self.below) and self._si(
+            self.at_least
+        ) <= value <= self._si(self.at_most)
+        if not inside:
+            raise refusal(f"{' and '.join(shown)} {self.unit}".rstrip())
+        return value
+
+    def _number(self, given: object) -> float:
+        if self.unit:
+            try:
+                return units.parse(given, self.unit, "")
+            except InputError as error:
+                raise refusal(error.limit) from None
+        if isinstance(given, bool) or not isinstance(given, (int, float)):
+            raise refusal("a number without a unit")
+        value = float(given) if abs(given) < 1e308 else inf
+        if not isfinite(value):
+            raise refusal("finite")
+        return value
+
+    def _si(self, bound: float) -> float:
+        if not isfinite(bound) or not self.unit:
+            return bound
+        return units.parse(f"{bound!r} {self.unit}", self.unit, "")
+
+
+def _printable(text: str) -> str:
+    if not all(character.isprintable() or character in "\n\t" for character in text):
+        raise refusal("printable text")
+    return text
+
+
+def _safe_name(name: str) -> str:
+    if not SAFE_NAME.fullmatch(name):
+        raise refusal("1 to 40 letters, digits, '_', '-' or '.', starting with a letter or digit")
+    return name
+
+
+Name = Annotated[str, AfterValidator(_safe_name)]
+Text = Annotated[str, Field(max_length=10_000), AfterValidator(_printable)]
+FileName = Annotated[str, Field(min_length=1, max_length=200), AfterValidator(_printable)]
+
+Length = Annotated[float, In("mm", above=0, at_most=10_000)]
+Angle = Annotated[float, In("deg")]
+Duration = Annotated[float, In("deg", above=0, at_most=720)]
+Mass = Annotated[float, In("g", above=0, at_most=1e6)]
+Pressure = Annotated[float, In("MPa", above=0, at_most=1e6)]
+GasPressure = Annotated[float, In("kPa", above=0, at_most=1e5)]
+Temperature = Annotated[float, In("K", above=0, at_most=5000)]
+Force = Annotated[float, In("N", at_least=0, at_most=1e9)]
+Share = Annotated[float, In(at_least=0, at_most=1)]
+Positive = Annotated[float, In(above=0, at_most=1e6)]
+Fraction = Annotated[float, In(above=0, at_most=1)]
+
+
+class Section(BaseModel):
+    """Base of all sections: frozen, unknown keys refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _know_every_key(cls, given: Any) -> Any:
+        """Refuse unknown keys before missing ones: a slip of the pen is both."""
+        known = [field.alias or name for name, field in cls.model_fields.items()]
+        for key in given if isinstance(given, dict) else ():
+            if key not in known:
+                raise refusal(f"a known key{_suggestion(key, known)}", unknown_key=str(key))
+        return given
+
+
+def _suggestion(word: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(word, list(known), n=1)
+    return f"; did you mean {close[0]}?" if close else f": {', '.join(known)}"
+
+
+class TorqueTable(Section):
+    """Engine torque over one cycle, from a file: crank angle column, torque column."""
+
+    kind: Literal["table"] = "table"
+    file: FileName
+
+
+class Cylinder(Section):
+    """Lumped single-cylinder model; crank angle 0 is the top dead centre where intake starts."""
+
+    kind: Literal["cylinder"] = "cylinder"
+    bore: Length
+    crank_radius: Length
+    rod_length: Length
+    compression_ratio: Annotated[float, In(above=1, at_most=40)]
+    piston_mass: Mass
+    rod_mass: Mass
+    pin_offset: Annotated[float, In("mm", above=-1000, below=1000)] = 0.0
+    rod_big_end_share: Share = 2.0 / 3.0
+
+    intake_valve_open: Angle = 0.0
+    intake_valve_close: Angle = radians(220.0)
+    exhaust_valve_open: Angle = radians(470.0)
+    exhaust_valve_close: Angle = radians(720.0)
+    valve_lift: Length = 0.0055
+    intake_valve_diameter: Length = 0.025
+    exhaust_valve_diameter: Length = 0.022
+    valve_discharge_coefficient: Fraction = 0.6
+    valve_spring_rate: Annotated[float, In("N/m", at_least=0, at_most=1e9)] = 5884.0
+    valve_spring_preload: Force = 47.0
+    rocker_ratio: Positive = 1.0
+
+    intake_pressure: GasPressure = 28.0e3
+    exhaust_pressure: GasPressure = 101.3e3
+    crankcase_pressure: GasPressure = 101.3e3
+    intake_temperature: Temperature = 305.0
+    exhaust_temperature: Temperature = 700.0
+    wall_temperature: Temperature = 400.0
+
+    ignition: Literal["spark", "compression"] = "spark"
+    spark: Angle = radians(335.0)
+    ignition_delay: Annotated[float, In("deg", at_least=0, at_most=180)] = radians(8.0)
+    burn_duration: Duration = radians(80.0)
+    wiebe_a: Positive = 5.0
+    wiebe_m: Positive = 2.0
+    premixed_share: Share = 0.0
+    premixed_duration: Duration = radians(8.0)
+    premixed_m: Positive = 1.5
+    combustion_efficiency: Fraction = 0.9
+    air_fuel_ratio: Annotated[float, In(above=1, at_most=1000)] = 13.5
+    lower_heating_value: Annotated[float, In("MJ/kg", above=0, at_most=1000)] = 43.5e6
+
+    heat_loss: Literal["hohenberg", "woschni"] = "hohenberg"
+    heat_loss_factor: Annotated[float, In(at_least=0, at_most=100)] = 1.0
+    friction_pressure: Annotated[float, In("kPa", at_least=0, at_most=1e4)] | None = None
+    dipper_area: Annotated[float, In("mm^2", at_least=0, at_most=1e6)] = 0.0
+    dipper_radius: Length = 0.035
+    dipper_drag_coefficient: Positive = 1.2
+    dipper_immersion: Annotated[float, In("deg", above=0, at_most=180)] = radians(40.0)
+    oil_density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)] = 870.0
+
+    def build(self) -> CylinderEngine:
+        """The engine as the cycle model takes it; no friction pressure means the closing one."""
+        from pipeline.engine.cylinder import CylinderEngine
+
+        values = self.model_dump(exclude={"kind", "friction_pressure"})
+        pressure = self.friction_pressure
+        return CylinderEngine(**values, friction="closing" if pressure is None else pressure)
+
+
+Engine = Annotated[TorqueTable | Cylinder, Field(discriminator="kind")]
+
+
+class LiftTable(Section):
+    """Lift over one cam turn, from a file: cam angle column, lift column."""
+
+    file: FileName
+
+
+class Mechanism(Section):
+    """The drive between crank and cam: crank turns per cam turn."""
+
+    gear_ratio: Annotated[float, In(above=0, at_most=100)] = 2.0
+
+
+class Spring(Section):
+    """The spring that stores the engine's excess energy."""
+
+    rate: Annotated[float, In("kN/m", above=0, at_most=1e6)]
+    preload: Annotated[float, In("N", above=0, at_most=1e9)]
+    travel_max: Length | None = None
+    rate_tolerance: Annotated[float, In(at_least=0, below=1)] = 0.0
+    source: Text = ""
+
+
+class Keyway(Section):
+    """A keyway in the bore; the angle is that of its middle, in the cam frame."""
+
+    width: Length
+    depth: Length
+    angle: Angle = 0.0
+
+
+class Cam(Section):
+    """The cam disc; the pitch base radius is the smallest radius of the roller's centre."""
+
+    pitch_base_radius: Length
+    offset: Annotated[float, In("mm", above=-10_000, below=10_000)] = 0.0
+    width: Length
+    bore_radius: Length
+    material: Name
+    keyway: Keyway | None = None
+    source: Text = ""
+
+
+class Bearing(Section):
+    """The roller's bearing as its maker rates it."""
+
+    name: Text
+    C: Force | None = None
+    C0: Force | None = None
+    speed_limit: Annotated[float, In("rpm", above=0, at_most=1e6)] | None = None
+    source: Text = ""
+
+
+class Roller(Section):
+    """The roller on the follower; the hub radius is that of its pin or inner ring."""
+
+    radius: Length
+    width: Length
+    chamfer: Annotated[float, In("mm", at_least=0, at_most=1000)] = 0.0
+    hub_radius: Length
+    inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
+    material: Name
+    bearing: Bearing
+
+
+class Follower(Section):
+    """The translating follower; the overhang is from guide A to the roller's centre."""
+
+    mass: Mass
+    stem_diameter: Length
+    stem_material: Name
+    overhang_at_max_lift: Length
+    source: Text = ""
+
+
+class Guide(Section):
+    """One guide of the stem; its limits hold for dry running unless the source says more."""
+
+    length: Length
+    diameter: Length
+    friction: Annotated[float, In(at_least=0, below=2)]
+    clearance: Annotated[float, In("mm", at_least=0, at_most=100)] = 0.0
+    material: Name
+    pressure_limit: Pressure | None = None
+    pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e6)] | None = None
+    stiffness: Annotated[float, In("N/mm", above=0, at_most=1e9)] | None = None
+    source: Text = ""
+
+
+class Guides(Section):
+    """Guide A stands next to the cam, guide B beyond it; the spacing is middle to middle."""
+
+    spacing: Length
+    a: Guide
+    b: Guide
+
+
+class Material(Section):
+    """A material card: elastic constants, strengths and where they come from."""
+
+    E: Annotated[float, In("GPa", above=0, at_most=1e5)]
+    nu: Annotated[float, In(at_least=0, below=0.5)]
+    yield_strength: Pressure
+    tensile_strength: Pressure | None = None
+    hardness: Annotated[float, In(above=0, at_most=10_000)] | None = None
+    endurance_pressure: Pressure | None = None
+    density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
+    condition: Text = ""
+    source: Text
+
+
+class Smoothing(Section):
+    """What is done to the torque before the lift is drawn from it; angles are crank angles."""
+
+    kind: Literal["none", "moving_average", "gaussian", "harmonic"] = "none"
+    points: Annotated[int, Field(ge=1, le=720)] = 1
+    spacing: Annotated[float, In("deg", above=0, at_most=120)] = radians(5.0)
+    width: Duration | None = None
+    harmonics: Annotated[int, Field(ge=1, le=360)] | None = None
+    source: Text = ""
+
+
+class Limits(Section):
+    """What the checks compare with; a margin above 1 is a demand beyond the bare limit."""
+
+    closure: Annotated[float, In("mm", above=0, at_most=1)] = 1e-9
+    pressure_angle: Annotated[float, In("deg", above=0, below=90)] = radians(30.0)
+    curvature_ratio: Annotated[float, In(at_least=1, at_most=100)] = 1.5
+    undercut_factor: Annotated[float, In(above=0, below=1)] = 0.3
+    contact_safety: Annotated[float, In(above=0, at_most=100)] = 1.0
+    yield_safety: Annotated[float, In(above=0, at_most=100)] = 1.0
+    shakedown_safety: Annotated[float, In(above=0, at_most=100)] = 1.0
+    contact_force_margin: Annotated[float, In(above=0, below=1)] = 0.2
+    jam_index: Annotated[float, In(above=0, below=1)] = 0.5
+    roller_static_safety: Annotated[float, In(above=0, at_most=100)] = 1.0
+    roller_speed_share: Fraction = 0.7
+    torque_reduction: Annotated[float, In(above=0, below=1)] = 0.4
+    equilibrium: Annotated[float, In(above=0, at_most=1e-3)] = 1e-9
+    complementarity: Annotated[float, In(above=0, at_most=1e-3)] = 1e-9
+    mesh_uncertainty: Annotated[float, In(above=0, at_most=1)] = 0.03
+    sources: Annotated[dict[str, Text], Field(validate_default=True)] = Field(default_factory=dict)
+
+    @field_validator("sources")
+    @classmethod
+    def _every_limit_has_a_source(cls, given: dict[str, str]) -> dict[str, str]:
+        for key in given:
+            if key not in LIMIT_SOURCES:
+                limit = f"a known limit{_suggestion(key, LIMIT_SOURCES)}"
+                raise refusal(limit, unknown_key=key)
+        return LIMIT_SOURCES | given
+
+
+LIMIT_SOURCES = {
+    "closure": "a step of 1 nm is below any measurement",
+    "pressure_angle": "Rothbart, Cam Design Handbook (2004), ch. 6: 30 deg, translating follower",
+    "curvature_ratio": "Norton, Cam Design and Manufacturing Handbook: 1.5 to 3 roller radii",
+    "undercut_factor": "assumed; 0 is a cusp (Rothbart, Cam Design Handbook, sec. 6.4.2)",
+    "contact_safety": "1 is the endurance pressure of the material card",
+    "yield_safety": "1 is first yield below the surface, Johnson, Contact Mechanics (1985), 4.2",
+    "shakedown_safety": "1 is p0 = 4 k, Johnson, Contact Mechanics (1985), sec. 9.2",
+    "contact_force_margin": "Norton: least contact force 0.2 to 0.3 of the preload",
+    "jam_index": "assumed; 1 is self-locking (Rothbart, eq. 6.8)",
+    "roller_static_safety": "bearing makers, after ISO 76: 1 for normal running",
+    "roller_speed_share": "assumed share of the catalogue's limiting speed",
+    "torque_reduction": "assumed; the least that makes the cam worth building",
+    "equilibrium": "round-off of a direct solve",
+    "complementarity": "round-off of a direct solve",
+    "mesh_uncertainty": "assumed; grid convergence index of ASME V&V 20, 3 to 5 % in common use",
+}
+
+
+class Solver(Section):
+    """How finely and how long to compute."""
+
+    positions: Annotated[int, Field(ge=36, le=7200)] = 720
+    max_trials: Annotated[int, Field(ge=1, le=20)] = 6
+    certificate_positions: Annotated[int, Field(ge=1, le=64)] = 8
+    certificate_meshes: Annotated[int, Field(ge=3, le=5)] = 3
+
+
+class Waiver(Section):
+    """A failed check that a named person has accepted, and why."""
+
+    check: Name
+    name: Annotated[str, Field(min_length=1, max_length=200), AfterValidator(_printable)]
+    reason: Annotated[str, Field(min_length=1, max_length=2000), AfterValidator(_printable)]
+    date: dt.date
+
+
+class LoadCase(Section):
+    """One state the cam has to bear: crank speed and, where it differs, the torque."""
+
+    name: Name
+    speed: Annotated[float, In("rpm", above=0, below=20_000)]
+    torque: FileName | None = None
+    source: Text = ""
