@@ -1,0 +1,269 @@
+"""Contour of the cam: the pitch curve offset inwards by the roller radius."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geometry.arrays import Array, positive, readonly, uniform_turn
+from geometry.errors import GeometryError, InputError
+from geometry.extrema import Extremum, greatest, least
+from geometry.interference import SecondContact, crossings, second_contact
+from geometry.pitch_curve import PitchCurve, cam_axes, reciprocal
+
+_OFFSET_TOLERANCE = 1e-14
+"""Of the base radius: the round-off in the coordinates of a contour point."""
+
+_OFFSET_STEPS_MAX = 20
+
+
+class Undercut(NamedTuple):
+    """The least of 1 - roller radius x pitch curvature over the turn, and its cam angle.
+
+    At zero the contour comes to a sharp edge, below it the roller cuts its own track away.
+    """
+
+    found: bool
+    theta: float
+    factor: float
+
+
+class Frame(NamedTuple):
+    """Contact point (m), outward unit normal, counter-clockwise unit tangent, each (2, ...)."""
+
+    point: Array
+    normal: Array
+    tangent: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Contour:
+    """Cam surface, at every cam angle the point that touches the roller then.
+
+    Parameters
+    ----------
+    pitch : PitchCurve        path of the roller centre
+    roller_radius : float     m, > 0, below the base radius
+
+    Raises
+    ------
+    InputError
+        If the roller does not fit; NaN included. An undercut is a result, not an error.
+
+    References
+    ----------
+    Rothbart, Cam Design Handbook (2004), sec. 6.4.
+    """
+
+    pitch: PitchCurve
+    roller_radius: float
+
+    def __post_init__(self) -> None:
+        positive("roller.radius", self.roller_radius, "m")
+        if not self.roller_radius < self.pitch.base_radius:
+            limit = f"below the pitch base radius of {self.pitch.base_radius:g} m"
+            raise InputError("roller.radius", self.roller_radius, limit)
+
+    def points(self, theta: ArrayLike) -> Array:
+        """Contour point, (2, ...), m."""
+        return self.local_frame(theta).point
+
+    def normal(self, theta: ArrayLike) -> Array:
+        """Outward unit normal, (2, ...)."""
+        return self.pitch.normal(theta)
+
+    def tangent(self, theta: ArrayLike) -> Array:
+        """Unit tangent, (2, ...), that of the pitch curve; the contour's own if not undercut."""
+        return self.pitch.tangent(theta)
+
+    def local_frame(self, theta: ArrayLike) -> Frame:
+        """Contact point with its outward normal and its tangent."""
+        s, s1 = self.pitch.lift.derivatives(theta, 1)
+        along, across = s1 - self.pitch.offset, self.pitch.height_base + s
+        speed = np.hypot(along, across)
+        along, across, height = along / speed, across / speed, across
+        inset = self.roller_radius
+        point = cam_axes(theta, height - inset * across, self.pitch.offset + inset * along)
+        return Frame(point, cam_axes(theta, across, -along), cam_axes(theta, along, across))
+
+    def velocity(self, theta: ArrayLike) -> Array:
+        """Derivative of the contour point by the angle, (2, ...), m/rad."""
+        return self.speed(theta) * self.tangent(theta)
+
+    def speed(self, theta: ArrayLike) -> Array:
+        """Way of the contact point along the tangent, m/rad; negative where undercut."""
+        speed, curvature = self.pitch.speed_and_curvature(theta)
+        return speed * (1.0 - self.roller_radius * curvature)
+
+    def factor(self, theta: ArrayLike) -> Array:
+        """1 - roller radius x pitch curvature; zero at a cusp, 1 where straight."""
+        return 1.0 - self.roller_radius * self.pitch.curvature(theta)
+
+    def radius(self, theta: ArrayLike) -> Array:
+        """Distance of the contour point from the cam axis, m."""
+        x, y = self.points(theta)
+        return np.hypot(x, y)
+
+    def curvature(self, theta: ArrayLike) -> Array:
+        """Signed curvature, 1/m, positive where convex; infinite at a cusp."""
+        curvature = self.pitch.curvature(theta)
+        return curvature * reciprocal(1.0 - self.roller_radius * curvature)
+
+    def radius_of_curvature(self, theta: ArrayLike) -> Array:
+        """Signed radius of curvature, m, positive where convex; infinite at an inflection.
+
+        Negative both on a hollow flank and where a convex one is undercut.
+        """
+        return self.pitch.radius_of_curvature(theta) - self.roller_radius
+
+    def surface_offset(self, theta: ArrayLike, xi: ArrayLike) -> Array:
+        """Height of the contour over its tangent line at the contact, m, outward positive.
+
+        Exact: the contour point whose tangential distance from the contact is `xi` is found by
+        Newton's method on its angle.
+
+        Parameters
+        ----------
+        theta : array (...)     cam angle of the contact, rad
+        xi : array (..., k)     way from the contact along the tangent, counter-clockwise, m;
+                                (k,) serves every angle
+
+        Returns
+        -------
+        array (..., k)    negative where the contour bends away from the roller
+
+        Raises
+        ------
+        GeometryError
+            If the contour has no such point near the contact: undercut, or `xi` too great.
+        """
+        theta = np.asarray(theta, dtype=float)[..., None]
+        xi = np.asarray(xi, dtype=float)
+        contact = self.local_frame(theta)
+        tolerance = _OFFSET_TOLERANCE * self.pitch.base_radius
+        speed = self.speed(theta)
+        angle = theta + np.divide(
+            xi, speed, out=np.zeros(np.broadcast(xi, theta).shape), where=speed != 0
+        )
+        for _ in range(_OFFSET_STEPS_MAX):
+            point, tangent, rate = self._track(angle)
+            away = point - contact.point
+            miss = np.sum(away * contact.tangent, axis=0) - xi
+            if np.all(np.abs(miss) <= tolerance):
+                return np.sum(away * contact.normal, axis=0)
+            rate = rate * np.sum(tangent * contact.tangent, axis=0)
+            angle = angle - np.divide(miss, rate, out=np.full_like(miss, np.nan), where=rate != 0)
+        where = float(np.broadcast_to(theta, miss.shape)[~(np.abs(miss) <= tolerance)][0])
+        raise GeometryError(
+            f"the contour near cam angle {where:.6g} rad does not reach the gap asked"
+        )
+
+    def _track(self, theta: Array) -> tuple[Array, Array, Array]:
+        """Contour point, unit tangent and way per radian, sharing one look-up of the lift."""
+        pitch = self.pitch
+        s, s1, s2 = pitch.lift.derivatives(theta, 2)
+        along, across = s1 - pitch.offset, pitch.height_base + s
+        square = along**2 + across**2
+        speed = np.sqrt(square)
+        inset = self.roller_radius / speed
+        turning = (along * (along + s1) - across * (s2 - across)) / square
+        cos, sin = np.cos(theta), np.sin(theta)
+        d, e = across * (1 - inset), pitch.offset + inset * along
+        point = np.stack([d * cos - e * sin, d * sin + e * cos])
+        tangent = np.stack([along * cos - across * sin, along * sin + across * cos]) / speed
+        return point, tangent, speed - self.roller_radius * turning
+
+    def undercut(self) -> Undercut:
+        """Whether the roller cuts its own track, looked for on the continuous turn."""
+        curvature, theta = self.pitch.curvature_max()
+        factor = 1.0 - self.roller_radius * curvature
+        return Undercut(not factor > 0, theta, factor)
+
+    def self_intersections(self) -> tuple[tuple[float, float], ...]:
+        """Pairs of cam angles, rad, at which the contour passes through the same point.
+
+        The turn is cut into chords, finer about every undercut however short, so that its
+        swallow-tail is seen; crossings are polished to round-off.
+        """
+        return self._crossings
+
+    def second_contact(self) -> SecondContact:
+        """Where the roller comes nearest to a part of the contour it is not rolling on."""
+        return self._second_contact
+
+    def clearance(self) -> Extremum:
+        """Least gap between the roller and the contour away from the contact, m, and cam angle.
+
+        Negative when the roller cuts in; infinite when no other part faces the roller at all.
+        """
+        return Extremum(self._second_contact.clearance, self._second_contact.theta)
+
+    @cached_property
+    def _crossings(self) -> tuple[tuple[float, float], ...]:
+        return crossings(self.points, self.velocity, self.factor, self.pitch.lift.search_count)
+
+    @cached_property
+    def _second_contact(self) -> SecondContact:
+        return second_contact(
+            self.pitch.points, self.points, self.roller_radius, len(self.pitch.lift.theta)
+        )
+
+    def concave_radius_min(self) -> Extremum:
+        """Least radius of the hollow parts of the contour, m > 0, and its cam angle.
+
+        Infinite, at the flattest place, if the cam is convex. A grinding wheel must be smaller.
+        """
+        curvature, theta = self.pitch.curvature_min()
+        if curvature >= 0:
+            return Extremum(np.inf, theta)
+        return Extremum(self.roller_radius - 1.0 / curvature, theta)
+
+    def least_convex_pitch_radius(self) -> Extremum:
+        """Least radius of curvature of the convex parts of the pitch curve, m."""
+        return self.pitch.least_convex_radius()
+
+    def pressure_angle_max(self) -> Extremum:
+        """Greatest pressure angle of either sign, rad >= 0, and its cam angle."""
+        return self.pitch.pressure_angle_max()
+
+    def radius_max(self) -> Extremum:
+        """Greatest distance of the contour from the cam axis, m, and its cam angle."""
+        return greatest(self.radius, self.pitch.lift.search_count)
+
+    def radius_min(self) -> Extremum:
+        """Least distance of the contour from the cam axis, m, and its cam angle."""
+        return least(self.radius, self.pitch.lift.search_count)
+
+    def polygon(self, count: int) -> Array:
+        """`count` contour points at equal steps of the cam angle, (2, count), m."""
+        return readonly(self.points(uniform_turn(count)))
+
+    def area(self) -> float:
+        """Area within the contour, m^2, bore and keyway not taken off."""
+        x, y = self._ring
+        dx, dy = self._ring_step
+        return float(0.5 * np.sum(x * dy - y * dx))
+
+    def centroid(self) -> Array:
+        """Centre of the area within the contour, (2,), m."""
+        x, y = self._ring
+        dx, dy = self._ring_step
+        return readonly([np.sum(x**2 * dy), -np.sum(y**2 * dx)]) / (2 * self.area())
+
+    def perimeter(self) -> float:
+        """Length of the contour, m."""
+        return float(np.sum(np.hypot(*self._ring_step)))
+
+    @cached_property
+    def _ring(self) -> Array:
+        return self.points(uniform_turn(self.pitch.lift.search_count))
+
+    @cached_property
+    def _ring_step(self) -> Array:
+        # the trapezoidal rule, which on a smooth periodic function is of spectral accuracy
+        angle = uniform_turn(self.pitch.lift.search_count)
+        return self.velocity(angle) * (angle[1] - angle[0])

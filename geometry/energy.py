@@ -1,0 +1,160 @@
+"""Cam torque to stored energy to lift: the spring keeps what the engine has in excess."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geometry.arrays import Array, finite, positive, readonly
+from geometry.errors import InputError
+from geometry.extrema import least
+from geometry.lift import Lift, require_uniform_turn
+from geometry.periodic import PeriodicPolynomial, periodic_quintic
+
+MEAN_TOLERANCE = 1e-12
+"""Of the greatest torque: a mean below this is the round-off of its removal."""
+
+
+def without_mean(torque: ArrayLike) -> tuple[Array, float]:
+    """Torque over equal steps of one turn, less its mean, and the mean.
+
+    Only torque of zero mean can be stored and given back within a turn.
+
+    Parameters
+    ----------
+    torque : array (n,)    N m
+
+    Returns
+    -------
+    torque : array (n,)    N m, of zero mean
+    mean : float           N m
+    """
+    values = finite("torque", torque)
+    mean = float(values.mean())
+    return readonly(values - mean), mean
+
+
+def stored_energy(theta: ArrayLike, cam_torque: ArrayLike) -> tuple[Array, float]:
+    """Energy in the spring above its least value in the turn.
+
+    The integral of the periodic quintic through the torque samples, without quadrature error;
+    the least value is that of the continuous curve, so it may lie between samples.
+
+    Parameters
+    ----------
+    theta : array (n,)         cam angle, rad, equally spaced over [0, 2 pi)
+    cam_torque : array (n,)    N m, positive when it loads the spring, of zero mean
+
+    Returns
+    -------
+    energy : array (n,)    E - min E, J, >= 0
+    closure : float        E(2 pi) - E(0), J: round-off for torque of zero mean
+
+    Raises
+    ------
+    InputError
+        If the torque has a mean; NaN included.
+    """
+    angle = finite("theta", theta)
+    curve, gain = _energy_curve(angle, finite("cam_torque", cam_torque))
+    lowest = least(curve, 4 * len(angle)).value
+    energy = curve(angle)
+    return readonly(energy - min(lowest, float(energy.min()))), gain
+
+
+def lift_from_torque(
+    theta: ArrayLike,
+    cam_torque: ArrayLike,
+    spring_rate: float,
+    preload: float,
+    initial_energy: float = 0.0,
+) -> Lift:
+    """Lift that makes the spring follow the torque: E0 + (E - min E) = P s + k s^2 / 2.
+
+    The lift keeps the phase of the torque: it is least where the stored energy is.
+    At the samples the spline gives back the torque, F_s s', within its interpolation error,
+    of order h^6 for samples h apart: below 1e-6 of the greatest torque at 720 samples of a
+    torque with 30 harmonics.
+
+    Parameters
+    ----------
+    theta : array (n,)         cam angle, rad, equally spaced over [0, 2 pi)
+    cam_torque : array (n,)    N m, positive when it loads the spring, of zero mean
+    spring_rate : float        k, N/m, > 0
+    preload : float            P, spring force at zero lift, N, >= 0
+    initial_energy : float     E0, J, >= 0: stored above the preload at the least lift, so that
+                               the least lift is above zero
+
+    Returns
+    -------
+    Lift    whose `closure` is the difference between the ends of the integral, m
+
+    Raises
+    ------
+    InputError
+        If the torque has a mean, or the spring is slack at the least lift.
+
+    References
+    ----------
+    Cardoso et al., Energies 18 (2025) 3256, sec. 2, there marched, here in closed form.
+    """
+    if not 0 <= initial_energy < np.inf:
+        raise InputError("spring.initial_energy", initial_energy, ">= 0 J and finite")
+    energy, gain = stored_energy(theta, cam_torque)
+    stored = initial_energy + energy
+    values = spring_deflection(stored, spring_rate, preload)
+    if not preload**2 + 2 * spring_rate * initial_energy > 0:
+        raise InputError("spring.preload", preload, "> 0 N, else the lift has a corner at rest")
+    ends = spring_deflection(np.maximum([stored[0], stored[0] + gain], 0), spring_rate, preload)
+    return Lift(readonly(theta), values, closure=float(abs(ends[1] - ends[0])))
+
+
+def spring_deflection(energy: ArrayLike, spring_rate: float, preload: float) -> Array:
+    """Deflection beyond the preload at which a spring holds the energy, m.
+
+    Parameters
+    ----------
+    energy : array (...)    J, >= 0, beyond that of the preload
+    spring_rate : float     k, N/m, > 0
+    preload : float         P, N, >= 0
+    """
+    _require_spring(spring_rate, preload)
+    stored = finite("spring.energy", energy)
+    if not (stored >= 0).all():
+        raise InputError("spring.energy", float(stored.min()), ">= 0 J")
+    force = np.sqrt(preload**2 + 2 * spring_rate * stored)
+    # 2 E / (F + P) is (F - P) / k without its cancellation at small energies
+    return readonly(
+        np.divide(2 * stored, force + preload, out=np.zeros_like(stored), where=force > 0)
+    )
+
+
+def spring_energy(lift: ArrayLike, spring_rate: float, preload: float) -> Array:
+    """Energy P s + k s^2 / 2 a spring holds beyond that of its preload, J.
+
+    Parameters
+    ----------
+    lift : array (...)     s, m
+    spring_rate : float    k, N/m, > 0
+    preload : float        P, N, >= 0
+    """
+    _require_spring(spring_rate, preload)
+    s = finite("lift", lift)
+    return readonly(s * (preload + 0.5 * spring_rate * s))
+
+
+def _energy_curve(theta: Array, cam_torque: Array) -> tuple[PeriodicPolynomial, float]:
+    """The integral of the torque from angle 0, J, and its gain over the turn."""
+    require_uniform_turn("theta", theta)
+    if cam_torque.shape != theta.shape:
+        raise InputError("cam_torque", len(cam_torque), f"{len(theta)} values, one an angle")
+    mean = float(cam_torque.mean())
+    if not abs(mean) <= MEAN_TOLERANCE * float(np.abs(cam_torque).max()):
+        raise InputError("cam_torque.mean", mean, "0 N m, or the cam does not close")
+    return periodic_quintic(cam_torque).antiderivative()
+
+
+def _require_spring(spring_rate: float, preload: float) -> None:
+    positive("spring.rate", spring_rate, "N/m")
+    if not 0 <= preload < np.inf:
+        raise InputError("spring.preload", preload, ">= 0 N and finite")

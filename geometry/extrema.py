@@ -1,0 +1,69 @@
+"""Extreme values of periodic functions, found between samples too."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.arrays import FULL_TURN, Array, uniform_turn
+
+Function = Callable[[Array], Array]
+
+_ZOOM_POINTS = np.linspace(-1.0, 1.0, 9)
+_ZOOMS = 14
+"""Each zoom keeps a quarter of the bracket; 14 leave 4e-9 of it, so its square is round-off."""
+
+_VALLEYS_MAX = 256
+
+
+class Extremum(NamedTuple):
+    """A least or greatest value and the angle (rad) where it is reached."""
+
+    value: float
+    theta: float
+
+
+def valleys(function: Function, count: int) -> tuple[Array, Array]:
+    """Local minima of a smooth periodic function over the continuous turn.
+
+    Every sample that is no higher than its neighbours brackets a local minimum, and all
+    brackets are refined at once.
+
+    Parameters
+    ----------
+    function : callable    array of angles (rad) of any shape -> array of the same shape
+    count : int            samples of the turn; no two minima may share a sample interval
+
+    Returns
+    -------
+    values, theta : array (m,)    m >= 1; of more than 256 minima the 256 of lowest sample
+    """
+    theta = uniform_turn(count)
+    values = function(theta)
+    low = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
+    # a flat function brackets everywhere; its lowest samples say all there is to say
+    low = low[np.argsort(values[low], kind="stable")[:_VALLEYS_MAX]]
+    centre, best, half = theta[low], values[low], FULL_TURN / count
+    for _ in range(_ZOOMS):
+        trial = centre[:, None] + half * _ZOOM_POINTS
+        found = function(trial)
+        pick = np.argmin(found, axis=1)[:, None]
+        centre = np.take_along_axis(trial, pick, axis=1)[:, 0]
+        best = np.take_along_axis(found, pick, axis=1)[:, 0]
+        half /= 4.0
+    return best, np.mod(centre, FULL_TURN)
+
+
+def least(function: Function, count: int) -> Extremum:
+    """Least value of a smooth periodic function over the continuous turn; see `valleys`."""
+    values, theta = valleys(function, count)
+    lowest = int(np.argmin(values))
+    return Extremum(float(values[lowest]), float(theta[lowest]))
+
+
+def greatest(function: Function, count: int) -> Extremum:
+    """Greatest value of a smooth periodic function over the continuous turn; see `valleys`."""
+    value, theta = least(lambda angle: -function(angle), count)
+    return Extremum(-value, theta)

@@ -1,0 +1,181 @@
+"""Where a closed curve meets itself, and where the roller meets it twice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.arrays import FULL_TURN, Array, uniform_turn
+from geometry.extrema import Function, valleys
+
+Curve = Callable[[Array], Array]
+"""Angles (...) -> coordinates (2, ...)."""
+
+_LOOP_CHORDS = 64
+_LOOP_REACH = 3.0
+"""A small swallow-tail closes at sqrt(3) times its cusps, so within this many."""
+
+_POLISH_STEPS = 30
+_SAME_ANGLE = 1e-8
+
+_POSITIONS_MAX = 720
+_CANDIDATES_MAX = 32
+_ZOOM_POINTS = np.linspace(-1.0, 1.0, 9)
+_ZOOMS = 20
+
+
+class SecondContact(NamedTuple):
+    """Least gap (m) between the roller at cam angle `theta` and the contour point of `other`.
+
+    Infinite, with angles that are not numbers, when no other part of the contour faces the roller.
+    """
+
+    clearance: float
+    theta: float
+    other: float
+
+    @property
+    def touches(self) -> bool:
+        """Whether the roller touches the contour in two places at once, or cuts in."""
+        return not self.clearance > 0
+
+
+def crossings(
+    points: Curve, velocity: Curve, factor: Function, count: int
+) -> tuple[tuple[float, float], ...]:
+    """Pairs of angles at which an offset curve passes through the same point.
+
+    Parameters
+    ----------
+    points, velocity : callable    angles (n,) -> (2, n), m and m/rad
+    factor : callable              angles -> speed relative to the parent curve; where it is
+                                   negative the offset runs backwards, between two cusps
+    count : int                    chords of the turn
+
+    Returns
+    -------
+    tuple of (theta1, theta2)    rad, theta1 < theta2, ascending
+    """
+    theta = _knots(factor, count)
+    start = points(theta)
+    chord = np.roll(start, -1, axis=1) - start
+    one, two = _overlapping(start, chord)
+    angle = np.diff(theta, append=theta[0] + FULL_TURN)
+    across = _cross(chord[:, one], chord[:, two])
+    between = start[:, two] - start[:, one]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part_one = _cross(between, chord[:, two]) / across
+        part_two = _cross(between, chord[:, one]) / across
+    hit = (part_one >= 0) & (part_one <= 1) & (part_two >= 0) & (part_two <= 1)
+    first = (theta[one] + part_one * angle[one])[hit]
+    second = (theta[two] + part_two * angle[two])[hit]
+    return _distinct(*_polished(points, velocity, first, second))
+
+
+def second_contact(
+    centres: Curve, points: Curve, roller_radius: float, count: int
+) -> SecondContact:
+    """Least gap between roller and contour away from where the roller rolls.
+
+    At each position every local minimum along the contour of the distance from the roller
+    counts, but the contact itself; the closest few are refined in both angles.
+
+    Parameters
+    ----------
+    centres, points : callable    roller centre and contact at cam angles (...), (2, ...) m
+    roller_radius : float         m
+    count : int                   positions of the roller, of which at most 720 are used, against
+                                  twice as many contour points
+    """
+
+    def gap(contact: Array, other: Array) -> Array:
+        away = points(other) - centres(contact)
+        return np.hypot(away[0], away[1]) - roller_radius
+
+    count = min(count, _POSITIONS_MAX)
+    position, along = uniform_turn(count), uniform_turn(2 * count)
+    away = points(along)[:, None, :] - centres(position)[:, :, None]
+    distance = np.hypot(away[0], away[1]) - roller_radius
+    valley = (distance <= np.roll(distance, 1, axis=1)) & (distance < np.roll(distance, -1, axis=1))
+    valley[np.arange(count), 2 * np.arange(count)] = False
+    row, column = np.nonzero(valley)
+    if len(row) == 0:
+        return SecondContact(np.inf, np.nan, np.nan)
+    near = np.argsort(distance[row, column], kind="stable")[:_CANDIDATES_MAX]
+    contact, other, half = position[row[near]], along[column[near]], 0.5 * FULL_TURN / count
+    for _ in range(_ZOOMS):
+        step = half * _ZOOM_POINTS
+        contacts = contact[:, None] + np.repeat(step, len(step))
+        others = other[:, None] + np.tile(step, len(step))
+        pick = np.argmin(gap(contacts, others), axis=1)[:, None]
+        contact = np.take_along_axis(contacts, pick, axis=1)[:, 0]
+        other = np.take_along_axis(others, pick, axis=1)[:, 0]
+        half *= 0.5
+    final = gap(contact, other)
+    best = int(np.argmin(final))
+    angles = np.mod([contact[best], other[best]], FULL_TURN)
+    return SecondContact(float(final[best]), float(angles[0]), float(angles[1]))
+
+
+def _knots(factor: Function, count: int) -> Array:
+    """Equal angles, and finer ones about each stretch that runs backwards."""
+    step = FULL_TURN / count
+    values, bottoms = valleys(factor, count)
+    bottoms, values = bottoms[values < 0], values[values < 0]
+    probe = 0.1 * step
+    bend = (factor(bottoms + probe) + factor(bottoms - probe) - 2 * values) / probe**2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cusp = np.sqrt(-2 * values / bend)
+    # a stretch many steps long shows on the equal angles
+    short = cusp < _LOOP_CHORDS / 4 * step
+    window = _LOOP_REACH * cusp[short, None] * np.linspace(-1, 1, _LOOP_CHORDS)
+    finer = np.mod(bottoms[short, None] + window, FULL_TURN)
+    return np.unique(np.concatenate([uniform_turn(count), finer.ravel()]))
+
+
+def _overlapping(start: Array, chord: Array) -> tuple[Array, Array]:
+    """Indices of chords that are no neighbours and whose boxes overlap, swept along x."""
+    low, high = np.minimum(start, start + chord), np.maximum(start, start + chord)
+    order = np.argsort(low[0], kind="stable")
+    count = len(order)
+    partners = np.searchsorted(low[0][order], high[0][order], side="right") - np.arange(count) - 1
+    left = np.repeat(np.arange(count), partners)
+    right = left + 1 + np.arange(len(left)) - np.repeat(np.cumsum(partners) - partners, partners)
+    one = np.minimum(order[left], order[right])
+    two = np.maximum(order[left], order[right])
+    keep = (low[1][one] <= high[1][two]) & (low[1][two] <= high[1][one])
+    keep &= (two - one > 1) & (two - one < count - 1)
+    return one[keep], two[keep]
+
+
+def _polished(points: Curve, velocity: Curve, first: Array, second: Array) -> tuple[Array, Array]:
+    """Crossings by Newton's method; those that fall together into one angle are none."""
+    apart = np.abs(second - first)
+    one, two, moved = first, second, np.full_like(first, np.inf)
+    for _ in range(_POLISH_STEPS):
+        miss, along, other = points(two) - points(one), velocity(one), velocity(two)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            across = _cross(along, other)
+            step_one, step_two = _cross(miss, other) / across, _cross(miss, along) / across
+        one, two = one + step_one, two + step_two
+        moved = np.maximum(np.abs(step_one), np.abs(step_two))
+        if not (moved > _SAME_ANGLE).any():
+            break
+    true = (moved <= _SAME_ANGLE) & (np.abs(two - one) > 0.25 * apart)
+    return one[true], two[true]
+
+
+def _distinct(first: Array, second: Array) -> tuple[tuple[float, float], ...]:
+    """Pairs in order, each once."""
+    pairs = np.sort(np.mod([first, second], FULL_TURN), axis=0)
+    kept: list[tuple[float, float]] = []
+    for one, two in sorted(zip(*pairs.tolist(), strict=True)):
+        if all(max(abs(one - a), abs(two - b)) > _SAME_ANGLE for a, b in kept):
+            kept.append((one, two))
+    return tuple(kept)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    return a[0] * b[1] - a[1] * b[0]
