@@ -1,0 +1,258 @@
+"""Outline of a cam: contour, bore and keyway, and the wall between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq, minimize_scalar
+
+from geometry.arrays import FULL_TURN, Array, positive
+from geometry.errors import GeometryError, InputError
+from meshes.outline import Piece, Zone, arc, line
+from meshes.sizing import EDGES_PER_TURN, SizeField, Sizing
+
+_SAMPLES = 7200  # of the contour; half a tenth of a degree
+_WALL_LEAST = 0.01  # of the bore radius
+
+
+class ContourLike(Protocol):
+    """What the mesh asks of a contour; see ``geometry.contour.Contour``."""
+
+    def points(self, theta: Array) -> Array: ...
+    def normal(self, theta: Array) -> Array: ...
+    def curvature(self, theta: Array) -> Array: ...
+
+
+class KeywayLike(Protocol):
+    """A slot into the bore: `width` across, `depth` beyond the bore radius (m), at `angle` (rad).
+
+    An attribute `fillet` (m) rounds its two inner corners; without it they are sharp.
+    """
+
+    @property
+    def width(self) -> float: ...
+    @property
+    def depth(self) -> float: ...
+    @property
+    def angle(self) -> float: ...
+
+
+@dataclass(frozen=True)
+class Keyway:
+    """A plain keyway; see `KeywayLike`."""
+
+    width: float
+    depth: float
+    angle: float = 0.0
+    fillet: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """A contour sampled finely around one turn, and its arc length (m)."""
+
+    contour: ContourLike
+    theta: Array
+    points: Array
+    arc_length: Array
+
+    @property
+    def length(self) -> float:
+        """Length of the contour, m."""
+        return float(self.arc_length[-1])
+
+
+def trace(contour: ContourLike) -> Trace:
+    """The contour followed once around.
+
+    Raises
+    ------
+    GeometryError
+        If the contour runs backwards somewhere: it is undercut.
+    """
+    theta = np.linspace(0.0, FULL_TURN, _SAMPLES + 1)
+    points = contour.points(theta)
+    chord = np.diff(points, axis=1)
+    normal = contour.normal(0.5 * (theta[1:] + theta[:-1]))
+    forward = normal[0] * chord[1] - normal[1] * chord[0]
+    if not (forward > 0).all():
+        worst = np.degrees(theta[int(np.argmin(forward))])
+        raise GeometryError(f"contour is undercut at cam angle {worst:.2f} deg, cannot be meshed")
+    return Trace(contour, theta, points, np.r_[0.0, np.cumsum(np.hypot(*chord))])
+
+
+def contour_piece(path: Trace, sizing: Sizing) -> Piece:
+    """The contour by arc length, with equal facets about the contact.
+
+    Raises
+    ------
+    InputError
+        If the contact point does not lie on the contour.
+    """
+    theta_of = PchipInterpolator(path.arc_length, path.theta)
+
+    def at(s: Array) -> Array:
+        return path.contour.points(theta_of(np.mod(s, path.length)))
+
+    zone = None
+    if sizing.contact_size is not None and sizing.contact_point is not None:
+        theta = _foot(path, sizing.contact_point, sizing.contact_extent + sizing.contact_size)
+        inverse = PchipInterpolator(path.theta, path.arc_length)
+        centre = float(inverse(theta)) + sizing.phase * sizing.contact_size
+        zone = Zone(centre, sizing.contact_size, sizing.steps)
+    return Piece("contour", at, path.length, zone, closed=True)
+
+
+def _foot(path: Trace, point: Array, tolerance: float) -> float:
+    """Angle (rad) of the contour point nearest to `point`, which must be within `tolerance`."""
+    squared = ((path.points - point[:, None]) ** 2).sum(axis=0)
+    near = path.theta[int(np.argmin(squared))]
+    step = 2.0 * FULL_TURN / _SAMPLES
+
+    def behind(theta: float) -> float:
+        here = np.array([theta])
+        normal = path.contour.normal(here)[:, 0]
+        apart = path.contour.points(here)[:, 0] - point
+        return float(normal[0] * apart[1] - normal[1] * apart[0])
+
+    theta = float(brentq(behind, near - step, near + step, xtol=1e-15))
+    distance = float(np.hypot(*(path.contour.points(np.array([theta]))[:, 0] - point)))
+    if not distance <= tolerance:
+        raise InputError(
+            "sizing.contact_point", f"{distance:.3g} m off the contour", f"<= {tolerance:.3g} m"
+        )
+    return theta % FULL_TURN
+
+
+def cam_size(
+    path: Trace, bore_radius: float, keyway: KeywayLike | None, sizing: Sizing
+) -> SizeField:
+    """Element size in the cam: the sizing, and no coarser than its smallest features ask.
+
+    Raises
+    ------
+    GeometryError
+        If the bore or the keyway reaches the contour.
+    """
+    wall, place = least_wall(path, bore_radius, keyway)
+    if not wall > _WALL_LEAST * bore_radius:
+        raise GeometryError(
+            f"least wall between bore or keyway and contour = {wall * 1e3:.3f} mm "
+            f"(bore_radius = {bore_radius * 1e3:g} mm), "
+            f"must be > {_WALL_LEAST * bore_radius * 1e3:.3f} mm"
+        )
+    size = sizing.field()
+    size = size.with_spot((0.0, 0.0), FULL_TURN * bore_radius / EDGES_PER_TURN, bore_radius)
+    if keyway is not None:
+        centre = _keyway_frame(keyway) @ np.array([bore_radius + 0.5 * keyway.depth, 0.0])
+        extent = 0.5 * float(np.hypot(keyway.width, keyway.depth))
+        size = size.with_spot(centre, min(keyway.width, keyway.depth) / 3.0, extent)
+        size = _finer_at_fillets(size, bore_radius, keyway)
+    if wall / 2 < float(size(place[:, None])[0]):
+        size = size.with_spot(place, wall / 2, wall)
+    floor = sizing.contact_size or sizing.far_size / 200.0
+    kappa = np.maximum(np.abs(path.contour.curvature(path.theta)), 1e-12)
+    limits = np.maximum(FULL_TURN / EDGES_PER_TURN / kappa, floor)
+    return size.below(path.points, limits)
+
+
+def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -> SizeField:
+    fillet = _fillet(keyway)
+    if fillet > 0:
+        outer, half = bore_radius + keyway.depth, 0.5 * keyway.width
+        for side in (-1.0, 1.0):
+            corner = _keyway_frame(keyway) @ np.array([outer - fillet, side * (half - fillet)])
+            size = size.with_spot(corner, 0.5 * np.pi * fillet / 4.0, fillet)
+    return size
+
+
+def least_wall(path: Trace, bore_radius: float, keyway: KeywayLike | None) -> tuple[float, Array]:
+    """Least distance (m) from bore and keyway to the contour, and the contour point (2,) there.
+
+    Negative where the bore or the keyway crosses the contour.
+    """
+
+    def outside(points: Array) -> Array:
+        wall = np.hypot(*points) - bore_radius
+        if keyway is not None:
+            local = _keyway_frame(keyway).T @ points
+            beyond = np.array(
+                [local[0] - bore_radius - keyway.depth, np.abs(local[1]) - 0.5 * keyway.width]
+            )
+            beyond[0] = np.where(local[0] > 0, beyond[0], -local[0])
+            apart = np.hypot(*np.maximum(beyond, 0.0)) + np.minimum(beyond.max(axis=0), 0.0)
+            wall = np.minimum(wall, apart)
+        return wall
+
+    worst = int(np.argmin(outside(path.points)))
+    step = FULL_TURN / _SAMPLES
+    found = minimize_scalar(
+        lambda theta: outside(path.contour.points(np.array([theta])))[0],
+        bounds=(path.theta[worst] - step, path.theta[worst] + step),
+        method="bounded",
+        options={"xatol": 1e-12},
+    )
+    wall = float(found.fun)
+    if not _winds_around_origin(path.points):
+        wall = -bore_radius
+    return wall, path.contour.points(np.array([found.x]))[:, 0]
+
+
+def _winds_around_origin(points: Array) -> bool:
+    turning = np.diff(np.unwrap(np.arctan2(points[1], points[0])))
+    return bool(np.isclose(turning.sum(), FULL_TURN, atol=1e-6))
+
+
+def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
+    """The bore, with its keyway, as a clockwise loop.
+
+    Raises
+    ------
+    InputError
+        If a dimension of bore or keyway is out of bounds.
+    """
+    positive("cam.bore_radius", bore_radius, "m")
+    if keyway is None:
+        return [arc("bore", bore_radius, FULL_TURN, 0.0)]
+    positive("cam.keyway.width", keyway.width, "m")
+    positive("cam.keyway.depth", keyway.depth, "m")
+    if not keyway.width < 1.8 * bore_radius:
+        raise InputError("cam.keyway.width", keyway.width, f"< {1.8 * bore_radius:g} m")
+    half, outer = 0.5 * keyway.width, bore_radius + keyway.depth
+    mouth = float(np.arcsin(half / bore_radius))
+    fillet = _fillet(keyway)
+    least = min(half, outer - bore_radius * np.cos(mouth))
+    if not 0 <= fillet < least:
+        raise InputError("cam.keyway.fillet", fillet, f"in 0..{least:g} m")
+    frame, x = _keyway_frame(keyway), bore_radius * np.cos(mouth)
+    # Clockwise: along the bore from the lower edge of the mouth round to the upper one ...
+    pieces = [arc("bore", bore_radius, keyway.angle + FULL_TURN - mouth, keyway.angle + mouth)]
+    # ... then into the slot along its upper side, down its floor, and back.
+    path = [(x, half), (outer - fillet, half), (outer, half - fillet)]
+    path += [(outer, fillet - half), (outer - fillet, -half), (x, -half)]
+    corners = [frame @ np.array(corner) for corner in path]
+    pieces.append(line("keyway", corners[0], corners[1]))
+    if fillet > 0:
+        centre = tuple(frame @ np.array([outer - fillet, half - fillet]))
+        top = keyway.angle + 0.5 * np.pi
+        pieces.append(arc("keyway", fillet, top, keyway.angle, centre))
+    if half - fillet > 1e-12:
+        pieces.append(line("keyway", corners[2], corners[3]))
+    if fillet > 0:
+        centre = tuple(frame @ np.array([outer - fillet, fillet - half]))
+        pieces.append(arc("keyway", fillet, keyway.angle, keyway.angle - 0.5 * np.pi, centre))
+    pieces.append(line("keyway", corners[4], corners[5]))
+    return pieces
+
+
+def _keyway_frame(keyway: KeywayLike) -> Array:
+    cosine, sine = np.cos(keyway.angle), np.sin(keyway.angle)
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
+def _fillet(keyway: KeywayLike) -> float:
+    fillet: Any = getattr(keyway, "fillet", 0.0)
+    return float(fillet or 0.0)

@@ -1,0 +1,129 @@
+"""Outlines of bodies, and the element edges along them.
+
+Edge ends are put on the curve itself, spaced by arc length after the size field. No CAD spline
+stands between the contour and the mesh, and the facets under the contact are equal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.arrays import Array, freeze
+from geometry.errors import MeshError
+from meshes.sizing import SizeField
+
+_SAMPLES = 4001  # of the size along a piece of outline; clusters at its ends come on top
+
+
+@dataclass(frozen=True, eq=False)
+class Zone:
+    """Facets of equal length around an arc length: `steps` of length `step` on either side."""
+
+    centre: float
+    step: float
+    steps: int
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A named piece of outline, body on its left.
+
+    `at` maps arc length (n,), m, 0..`length`, to points (2, n), m. A piece that is a loop by
+    itself is `closed`, and `at` then takes any arc length.
+    """
+
+    name: str
+    at: Callable[[Array], Array]
+    length: float
+    zone: Zone | None = None
+    closed: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Facets:
+    """Element edges along a piece: ends (2, k + 1) and middles (2, k), all on the curve, m."""
+
+    name: str
+    ends: Array
+    middles: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, ends=self.ends, middles=self.middles)
+
+
+def facets(piece: Piece, size: SizeField) -> Facets:
+    """The element edges along `piece`, as long as `size` asks there.
+
+    Raises
+    ------
+    MeshError
+        If the contact zone is longer than the piece.
+    """
+    at, zone, length = piece.at, piece.zone, piece.length
+    if zone is None:
+        ends = _graded(at, 0.0, length, size, least=3 if piece.closed else 1)
+    elif 2 * zone.steps * zone.step > 0.9 * length:
+        raise MeshError(
+            f"contact zone on '{piece.name}' = {2 * zone.steps * zone.step:.3g} m, "
+            f"must be <= 0.9 of its length {length:.3g} m"
+        )
+    elif piece.closed:
+        first = zone.centre - zone.steps * zone.step
+        equal = first + zone.step * np.arange(2 * zone.steps + 1)
+        ends = np.r_[equal[:-1], _graded(at, equal[-1], first + length, size)]
+    else:
+        before = min(zone.steps, int(zone.centre / zone.step + 1e-9))
+        after = min(zone.steps, int((length - zone.centre) / zone.step + 1e-9))
+        equal = zone.centre + zone.step * np.arange(-before, after + 1)
+        ends = np.r_[
+            _graded(at, 0.0, equal[0], size)[:-1], equal, _graded(at, equal[-1], length, size)[1:]
+        ]
+    points = at(ends)
+    if piece.closed:
+        points[:, -1] = points[:, 0]
+    return Facets(piece.name, points, at(0.5 * (ends[1:] + ends[:-1])))
+
+
+def _graded(
+    at: Callable[[Array], Array], start: float, stop: float, size: SizeField, least: int = 1
+) -> Array:
+    """Arc lengths from `start` to `stop`, both included, as far apart as `size` asks."""
+    span = stop - start
+    if not span > 1e-3 * float(size(at(np.array([start])))[0]):
+        return np.array([stop])
+    # Sizes are smallest at the ends of a piece, next to the contact: the samples gather there.
+    near = np.geomspace(1e-8, 0.5, 1500)
+    u = np.unique(np.r_[np.linspace(0.0, 1.0, _SAMPLES), near, 1.0 - near])
+    density = span / size(at(start + span * u))
+    count = np.r_[0.0, np.cumsum(np.diff(u) * 0.5 * (density[1:] + density[:-1]))]
+    edges = max(least, int(np.ceil(count[-1] - 1e-6)))
+    return start + span * np.interp(np.linspace(0.0, count[-1], edges + 1), count, u)
+
+
+def line(name: str, start: Array, stop: Array, zone: Zone | None = None) -> Piece:
+    """A straight piece."""
+    length = float(np.hypot(*(stop - start)))
+    along = (stop - start) / length
+    return Piece(name, lambda s: start[:, None] + along[:, None] * s, length, zone)
+
+
+def arc(
+    name: str,
+    radius: float,
+    start: float,
+    stop: float,
+    centre: tuple[float, float] = (0.0, 0.0),
+    zone: Zone | None = None,
+) -> Piece:
+    """A circular piece between two angles (rad), clockwise when `stop` is below `start`."""
+    sense = 1.0 if stop > start else -1.0
+
+    def at(s: Array) -> Array:
+        angle = start + sense * s / radius
+        return np.array([centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle)])
+
+    turn = abs(stop - start)
+    return Piece(name, at, radius * turn, zone, closed=bool(np.isclose(turn, 2 * np.pi)))
