@@ -19,6 +19,8 @@ _OFFSET_TOLERANCE = 1e-14
 """Of the base radius: the round-off in the coordinates of a contour point."""
 
 _OFFSET_STEPS_MAX = 20
+_OFFSET_STEP_MAX = 0.5
+"""rad: a longer step of Newton's method has left the neighbourhood of the contact."""
 
 
 class Undercut(NamedTuple):
@@ -142,25 +144,22 @@ class Contour:
             If the contour has no such point near the contact: undercut, or `xi` too great.
         """
         theta = np.asarray(theta, dtype=float)[..., None]
+        contact, speed = self.local_frame(theta), self.speed(theta)
         xi = np.asarray(xi, dtype=float)
-        contact = self.local_frame(theta)
-        tolerance = _OFFSET_TOLERANCE * self.pitch.base_radius
-        speed = self.speed(theta)
-        angle = theta + np.divide(
-            xi, speed, out=np.zeros(np.broadcast(xi, theta).shape), where=speed != 0
-        )
+        miss = np.zeros(np.broadcast(theta, xi).shape) - xi
+        angle, rate, tolerance = theta, speed, _OFFSET_TOLERANCE * self.pitch.base_radius
         for _ in range(_OFFSET_STEPS_MAX):
+            step = np.divide(miss, rate, out=np.full_like(miss, np.nan), where=rate != 0)
+            angle = angle - np.clip(step, -_OFFSET_STEP_MAX, _OFFSET_STEP_MAX)
             point, tangent, rate = self._track(angle)
             away = point - contact.point
             miss = np.sum(away * contact.tangent, axis=0) - xi
             if np.all(np.abs(miss) <= tolerance):
                 return np.sum(away * contact.normal, axis=0)
             rate = rate * np.sum(tangent * contact.tangent, axis=0)
-            angle = angle - np.divide(miss, rate, out=np.full_like(miss, np.nan), where=rate != 0)
-        where = float(np.broadcast_to(theta, miss.shape)[~(np.abs(miss) <= tolerance)][0])
-        raise GeometryError(
-            f"the contour near cam angle {where:.6g} rad does not reach the gap asked"
-        )
+        lost = ~np.all(np.abs(miss) <= tolerance, axis=-1)
+        where = float(np.broadcast_to(theta[..., 0], lost.shape)[lost][0])
+        raise GeometryError(f"contour at cam angle {where:.6g} rad: no surface as far as asked")
 
     def _track(self, theta: Array) -> tuple[Array, Array, Array]:
         """Contour point, unit tangent and way per radian, sharing one look-up of the lift."""

@@ -156,11 +156,12 @@ def _polished(points: Curve, velocity: Curve, first: Array, second: Array) -> tu
     one, two, moved = first, second, np.full_like(first, np.inf)
     for _ in range(_POLISH_STEPS):
         miss, along, other = points(two) - points(one), velocity(one), velocity(two)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            across = _cross(along, other)
-            step_one, step_two = _cross(miss, other) / across, _cross(miss, along) / across
-        one, two = one + step_one, two + step_two
-        moved = np.maximum(np.abs(step_one), np.abs(step_two))
+        # parallel tracks meet nowhere, or touch, which the second contact of the roller tells
+        across = _cross(along, other)
+        across = np.where(across == 0, np.nan, across)
+        step = np.clip([_cross(miss, other), _cross(miss, along)] / across, -1.0, 1.0)
+        one, two = one + step[0], two + step[1]
+        moved = np.abs(step).max(axis=0)
         if not (moved > _SAME_ANGLE).any():
             break
     true = (moved <= _SAME_ANGLE) & (np.abs(two - one) > 0.25 * apart)
