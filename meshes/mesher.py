@@ -22,6 +22,9 @@ Index = NDArray[np.int64]
 _OPTIONS = {
     "General.Terminal": 0,
     "General.NumThreads": 1,
+    "Mesh.Binary": 0,
+    "Mesh.MshFileVersion": 4.1,
+    "Mesh.SaveAll": 0,
     "Mesh.Algorithm": 6,  # frontal-Delaunay: the best angles of those tried
     "Mesh.AlgorithmSwitchOnFailure": 0,
     "Mesh.ElementOrder": 1,

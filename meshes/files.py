@@ -1,0 +1,198 @@
+"""Mesh and field files: gmsh's MSH, VTK's VTU and PVD. Lengths in them are millimetres."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geometry.arrays import Array
+from geometry.errors import MeshError, ResultError
+from meshes.body import BodyMesh
+from meshes.mesher import Index, session
+from meshes.sizing import MILLIMETRE
+
+_LINE3, _TRIANGLE6 = 8, 9  # gmsh's element types
+
+Fields = Mapping[str, ArrayLike]
+
+
+def write_msh(path: str | Path, meshes: Mapping[str, BodyMesh]) -> None:
+    """Write bodies to one gmsh file, format 4.1, second order.
+
+    Physical names are the body's for its triangles and ``body_boundary`` for its facets, such
+    as ``cam`` and ``cam_contour``.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be written; one already there is left as it was.
+    """
+    with _replacing(path) as temporary, session() as gmsh:
+        first = 1
+        for name, mesh in meshes.items():
+            _add_body(gmsh, name, mesh, first)
+            first += mesh.points.shape[1]
+        gmsh.write(str(temporary))
+        if not temporary.read_bytes().endswith(b"$EndElements\n"):  # gmsh ignores a full disk
+            raise OSError("file was cut short")
+
+
+def _add_body(gmsh: ModuleType, name: str, mesh: BodyMesh, first: int) -> None:
+    """Add `mesh` to the current model, its nodes numbered from `first`."""
+    model = gmsh.model
+    coordinates = np.vstack([mesh.points / MILLIMETRE, np.zeros(mesh.points.shape[1])])
+    free = np.ones(mesh.points.shape[1], dtype=bool)
+
+    def classify(dimension: int, entity: int, nodes: Index) -> None:
+        model.mesh.addNodes(dimension, entity, nodes + first, coordinates[:, nodes].T.ravel())
+
+    curves = []
+    for boundary, facets in mesh.boundaries.items():
+        curve = model.addDiscreteEntity(1)
+        nodes = np.unique(facets)
+        classify(1, curve, nodes[free[nodes]])
+        free[nodes] = False
+        model.mesh.addElementsByType(curve, _LINE3, [], (facets + first).T.ravel())
+        model.addPhysicalGroup(1, [curve], name=f"{name}_{boundary}")
+        curves.append(curve)
+    surface = model.addDiscreteEntity(2, -1, curves)
+    classify(2, surface, np.flatnonzero(free))
+    model.mesh.addElementsByType(surface, _TRIANGLE6, [], (mesh.triangles + first).T.ravel())
+    model.addPhysicalGroup(2, [surface], name=name)
+
+
+def write_vtu(
+    path: str | Path,
+    meshes: BodyMesh | Mapping[str, BodyMesh],
+    point_data: Fields | Mapping[str, Fields] | None = None,
+    field_data: Mapping[str, float | str] | None = None,
+) -> None:
+    """Write bodies with fields as quadratic triangles for ParaView.
+
+    Parameters
+    ----------
+    path
+    meshes : BodyMesh or mapping    one body, or bodies by name
+    point_data : mapping            field name, unit included -> (n,) or (c, n) at the nodes; for
+                                    several bodies one such mapping per body name, same fields
+                                    in each. A vector (2, n) gets a third component 0.
+    field_data : mapping            numbers and texts that belong to the file as a whole
+
+    With several bodies, cell and point data ``body`` number them from 0.
+
+    Raises
+    ------
+    MeshError
+        If a field does not fit its mesh.
+    ResultError
+        If the file cannot be written; one already there is left as it was.
+    """
+    import meshio
+
+    bodies: Mapping[str, BodyMesh]
+    data: Mapping[str, Any]
+    if isinstance(meshes, BodyMesh):
+        bodies, data = {"": meshes}, {"": point_data or {}}
+    else:
+        bodies, data = meshes, point_data or {name: {} for name in meshes}
+    if data.keys() != bodies.keys():
+        raise MeshError(f"fields of bodies {sorted(data)}, must be of {sorted(bodies)}")
+    starts = np.cumsum([0, *(mesh.points.shape[1] for mesh in bodies.values())])
+    points = np.hstack([mesh.points for mesh in bodies.values()]) / MILLIMETRE
+    shifted = [m.triangles.T + s for m, s in zip(bodies.values(), starts, strict=False)]
+    fields = _joined(bodies, data)
+    cell_data = {}
+    if len(bodies) > 1:
+        fields["body"] = np.repeat(np.arange(len(bodies)), np.diff(starts))
+        cell_data["body"] = [np.repeat(np.arange(len(bodies)), [len(s) for s in shifted])]
+    grid = meshio.Mesh(
+        np.column_stack([points.T, np.zeros(points.shape[1])]),
+        [("triangle6", np.vstack(shifted))],
+        point_data=fields,
+        cell_data=cell_data,
+    )
+    with _replacing(path) as temporary:
+        grid.write(temporary, file_format="vtu")
+        _insert_field_data(temporary, {"length_unit": "mm", **(field_data or {})})
+
+
+def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Any]) -> dict[str, Any]:
+    """Fields of all bodies one after the other, points first as the file wants them."""
+    names = list(next(iter(data.values())))
+    parts: dict[str, list[Array]] = {name: [] for name in names}
+    for body, mesh in bodies.items():
+        if set(data[body]) != set(names):
+            raise MeshError(f"fields of '{body}' = {sorted(data[body])}, must be {sorted(names)}")
+        for name in names:
+            values = np.asarray(data[body][name], dtype=float)
+            if values.ndim not in (1, 2) or values.shape[-1] != mesh.points.shape[1]:
+                raise MeshError(
+                    f"field '{name}' = {values.shape}, "
+                    f"must be (n,) or (c, n) with n = {mesh.points.shape[1]} nodes"
+                )
+            if values.shape[0] == 2 and values.ndim == 2:
+                values = np.vstack([values, np.zeros(values.shape[1])])
+            parts[name].append(values.T)
+    return {name: np.concatenate(values) for name, values in parts.items()}
+
+
+def _insert_field_data(path: Path, values: Mapping[str, float | str]) -> None:
+    """Add numbers and texts to a VTU file; meshio leaves its field data out."""
+    rows = []
+    for name, value in values.items():
+        if isinstance(value, str):
+            kind, text = "String", " ".join(str(byte) for byte in (*value.encode(), 0))
+        else:
+            kind, text = "Float64", repr(float(value))
+        rows.append(
+            f'<DataArray type="{kind}" Name={quoteattr(name)} NumberOfTuples="1" '
+            f'format="ascii">{text}</DataArray>'
+        )
+    mark = b"<UnstructuredGrid>"
+    block = f"<FieldData>{''.join(rows)}</FieldData>".encode()
+    path.write_bytes(path.read_bytes().replace(mark, mark + block, 1))
+
+
+def write_pvd(path: str | Path, entries: Iterable[tuple[float, str | Path]]) -> None:
+    """Write a ParaView collection: `entries` are (time, file relative to the collection).
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be written; one already there is left as it was.
+    """
+    rows = "".join(
+        f'    <DataSet timestep="{float(time)!r}" part="0" '
+        f"file={quoteattr(Path(file).as_posix())}/>\n"
+        for time, file in entries
+    )
+    with _replacing(path) as temporary:
+        temporary.write_text(
+            '<?xml version="1.0"?>\n'
+            '<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
+            f"  <Collection>\n{rows}  </Collection>\n</VTKFile>\n",
+            encoding="utf-8",
+        )
+
+
+@contextmanager
+def _replacing(path: str | Path) -> Iterator[Path]:
+    """A name beside `path` to write to, which takes its place when all went well."""
+    path = Path(path)
+    temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    try:
+        temporary.touch()
+        yield temporary
+        temporary.replace(path)
+    except OSError as error:
+        raise ResultError(f"cannot write {path}: {error.strerror or error}") from error
+    finally:
+        temporary.unlink(missing_ok=True)
