@@ -1,0 +1,121 @@
+"""Valves: their lift, the gas that passes them, the torque that opens them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import PchipInterpolator
+
+from geometry.arrays import Array
+from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, LiftTable
+
+# Near equal pressures the nozzle flow rises with an infinite slope; below this relative
+# difference it is bent into a straight line, worth some 10 Pa in a cylinder that breathes.
+NEARLY_EQUAL = 1e-3
+
+
+@dataclass(frozen=True)
+class Valve:
+    """One poppet valve: when it opens (crank angle, rad), how far, and how wide (m).
+
+    The lift is (1 - cos)/2 between its timings, or a monotone curve through a table.
+    """
+
+    opens: float
+    closes: float
+    lift_max: float
+    diameter: float
+    discharge_coefficient: float
+    table: LiftTable | None = None
+
+    def lift(self, theta: ArrayLike, derivative: int = 0) -> Array:
+        """Lift (m), or its derivative by the crank angle (m/rad), at crank angles, any shape."""
+        past = np.mod(np.asarray(theta, dtype=float) - self.opens, CYCLE_ANGLE)
+        duration = self.closes - self.opens
+        is_open = past < duration
+        if self.table is not None:
+            angle, lift = np.array(self.table).T
+            curve = PchipInterpolator(angle - self.opens, lift)
+            return np.where(is_open, curve(np.minimum(past, duration), nu=derivative), 0.0)
+        phase = 2.0 * pi * past / duration
+        if derivative == 0:
+            return np.where(is_open, 0.5 * self.lift_max * (1.0 - np.cos(phase)), 0.0)
+        return np.where(is_open, pi * self.lift_max / duration * np.sin(phase), 0.0)
+
+    def flow_area(self, theta: ArrayLike) -> Array:
+        """Curtain area under the valve, at most that of its port, times discharge (m2)."""
+        curtain = pi * self.diameter * self.lift(theta)
+        port = 0.25 * pi * (0.85 * self.diameter) ** 2
+        return np.asarray(self.discharge_coefficient * np.minimum(curtain, port))
+
+
+def intake_valve(engine: CylinderEngine) -> Valve:
+    return Valve(
+        *engine.intake_window,
+        engine.valve_lift,
+        engine.intake_valve_diameter,
+        engine.valve_discharge_coefficient,
+        engine.intake_lift_table,
+    )
+
+
+def exhaust_valve(engine: CylinderEngine) -> Valve:
+    return Valve(
+        *engine.exhaust_window,
+        engine.valve_lift,
+        engine.exhaust_valve_diameter,
+        engine.valve_discharge_coefficient,
+        engine.exhaust_lift_table,
+    )
+
+
+def nozzle_flow(
+    pressure_up: float,
+    temperature_up: float,
+    pressure_down: float,
+    gas_constant: float,
+    gamma: float,
+) -> float:
+    """Mass flow through an area of 1 m2, isentropic to the throat, choked or not: kg/(s m2).
+
+    Parameters
+    ----------
+    pressure_up, temperature_up : float    of the still gas upstream, Pa and K
+    pressure_down : float                  Pa, at most `pressure_up`
+    gas_constant, gamma : float            J/(kg K) and 1, of the gas upstream
+
+    References
+    ----------
+    Heywood (1988), appendix C, eqs C.8 and C.9.
+    """
+    ratio = pressure_down / pressure_up
+    throat = (2.0 / (gamma + 1.0)) ** (gamma / (gamma - 1.0))
+    ratio = max(ratio, throat)
+    opened: float = ratio ** (1.0 / gamma)
+    speed = 2.0 * gamma / (gamma - 1.0) * max(1.0 - ratio / opened, 0.0)
+    difference = 1.0 - ratio
+    straight = difference / (difference + NEARLY_EQUAL)
+    return pressure_up / sqrt(gas_constant * temperature_up) * opened * sqrt(speed * straight)
+
+
+def tappet_force(engine: CylinderEngine, valve: Valve, theta: ArrayLike) -> Array:
+    """Force of the rocker on the cam of a valve that is open, else zero (N)."""
+    lift = valve.lift(theta)
+    spring = engine.valve_spring_rate * lift + engine.valve_spring_preload
+    return np.where(lift > 0.0, engine.rocker_ratio * spring, 0.0)
+
+
+def valve_train_torque(engine: CylinderEngine, theta: ArrayLike) -> Array:
+    """Torque of both valve springs on the crank, positive when they drive it (N m).
+
+    The power goes from crank to cam, to rocker, to spring without loss, so the rocker ratio
+    cancels: force on the cam up, way of the cam down.
+    """
+    total = np.zeros(np.shape(theta))
+    for valve in (intake_valve(engine), exhaust_valve(engine)):
+        cam_travel_rate = valve.lift(theta, 1) / engine.rocker_ratio
+        total = total - tappet_force(engine, valve, theta) * cam_travel_rate
+    return total
