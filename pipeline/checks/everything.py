@@ -1,0 +1,59 @@
+"""Every check of a trial, waivers applied."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from pipeline.checks import contact, evidence, forces, function, geometry, guides, roller
+from pipeline.checks.check import Check
+from pipeline.checks.trial import TrialEvidence
+from pipeline.checks.verdict import in_order
+
+if TYPE_CHECKING:
+    from pipeline.case_fields import Waiver
+
+CheckFunction = Callable[[TrialEvidence], Check | None]
+
+DESIGN: tuple[CheckFunction, ...] = (
+    *function.CHECKS,
+    *geometry.CHECKS,
+    *forces.CHECKS,
+    *contact.CHECKS,
+    *roller.CHECKS,
+    *guides.CHECKS,
+)
+"""Limits on the design itself; closed forms can foresee them."""
+
+ALL: tuple[CheckFunction, ...] = (*DESIGN, *evidence.CHECKS)
+
+
+def all_checks(trial: TrialEvidence) -> tuple[Check, ...]:
+    """Every check of a trial: not evaluated first, then by falling utilisation.
+
+    A check that does not apply, such as the torque reduction of a cam without an engine, is
+    left out.
+    """
+    return _checked(trial, ALL)
+
+
+def design_checks(trial: TrialEvidence) -> tuple[Check, ...]:
+    """The checks of the design alone, for evidence from closed forms.
+
+    Of each cycle it takes ``load_case, crank_speed, theta, torque_before, residual_torque``,
+    the ``loads``, and by whichever way they were found ``contact.p0``, ``contact.von_mises``,
+    ``guides.reaction_a`` and ``guides.reaction_b``.
+    """
+    return _checked(trial, DESIGN)
+
+
+def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, ...]:
+    """The checks, each with the waiver the case has for it."""
+    texts = {w.check: f"{w.name}, {w.date}: {w.reason}" for w in waivers}
+    return tuple(replace(check, waiver=texts.get(check.id)) for check in checks)
+
+
+def _checked(trial: TrialEvidence, functions: Iterable[CheckFunction]) -> tuple[Check, ...]:
+    found = [check for check in (function(trial) for function in functions) if check is not None]
+    return in_order(waived(found, trial.case.waivers))

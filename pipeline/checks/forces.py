@@ -1,0 +1,72 @@
+"""Limits on the forces that keep the follower on the cam and free in its guides."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pipeline.checks.check import Check
+from pipeline.checks.trial import TrialEvidence, greatest, least
+
+
+def contact_force_margin(evidence: TrialEvidence) -> Check:
+    """Least contact force beside the preload."""
+    preload = evidence.case.spring.preload
+    worst = least(evidence, lambda cycle: cycle.loads.normal_force / preload)
+    return Check(
+        id="contact_force_margin",
+        title="Least contact force over preload",
+        demand=worst.value,
+        limit=evidence.limit("contact_force_margin", 0.2),
+        unit="-",
+        sense="at_least",
+        source=evidence.source(
+            "contact_force_margin", "0.2 to 0.3 of the preload at the highest speed, Norton (2009)"
+        ),
+        method="least normal force over the turn, guide friction and inertia included",
+        lift_can_help=True,
+        **worst.place,
+    )
+
+
+def jump(evidence: TrialEvidence) -> Check:
+    """Share of the spring force that the follower's inertia takes away from the contact."""
+    worst = greatest(
+        evidence,
+        lambda cycle: np.maximum(-cycle.loads.inertia_force, 0.0) / cycle.loads.spring_force,
+    )
+    return Check(
+        id="jump",
+        title="Unloading inertia over spring force",
+        demand=worst.value,
+        limit=evidence.limit("jump", 1.0),
+        unit="-",
+        source=evidence.source(
+            "jump", "F_s + m w^2 s'' > 0, follower jump, Norton (2009) and Rothbart (2004)"
+        ),
+        method="greatest -m w^2 s'' / F_s over the turn; the jump speed is w / sqrt of it",
+        lift_can_help=True,
+        **worst.place,
+    )
+
+
+def jam_index(evidence: TrialEvidence) -> Check:
+    """How near the guides are to locking on the rise."""
+    # Where the follower comes back, friction holds the cam and cannot lock it.
+    worst = greatest(
+        evidence,
+        lambda cycle: np.where(cycle.loads.lift_slope > 0, cycle.loads.jam_index, 0.0),
+    )
+    return Check(
+        id="jam_index",
+        title="Jam index",
+        demand=worst.value,
+        limit=evidence.limit("jam_index", 0.5),
+        unit="-",
+        source=evidence.source("jam_index", "locks at 1, Rothbart (2004) eq. 6.8; half of it held"),
+        method="greatest c |tan alpha| on the way out, c = (mu_A (a + b) + mu_B a) / b",
+        lift_can_help=True,
+        **worst.place,
+    )
+
+
+CHECKS = (contact_force_margin, jump, jam_index)

@@ -1,0 +1,108 @@
+"""What the cam is for: the ripple it takes away, the energy it gives back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geometry.arrays import FULL_TURN
+from pipeline.checks.check import Check
+from pipeline.checks.trial import TrialEvidence, worst_case
+
+if TYPE_CHECKING:
+    from pipeline.cycle import Cycle
+
+TORQUE_REDUCTION = "torque_reduction"
+
+# Exact for the degree 9 of lift times slope on a quintic piece.
+GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
+
+
+def torque_reduction(evidence: TrialEvidence) -> Check | None:
+    """Share of the torque ripple the cam takes away; None when there is no engine."""
+    if any(cycle.torque_before is None for cycle in evidence.cycles):
+        return None
+
+    def reduction(cycle: Cycle) -> float:
+        before = float(np.std(cycle.torque_before))
+        return 1.0 - float(np.std(cycle.residual_torque)) / before if before > 0 else np.nan
+
+    worst = worst_case(evidence, reduction, at_least=True)
+    return Check(
+        id=TORQUE_REDUCTION,
+        title="Torque ripple taken away",
+        demand=worst.value,
+        limit=evidence.limit("torque_reduction", 0.4),
+        unit="-",
+        sense="at_least",
+        source=evidence.source("torque_reduction", "least value asked for by the case"),
+        method="1 - std of the crank torque with the cam, as delivered, over that without it",
+        # A gentler lift only takes less ripple away: this one is never traded.
+        lift_can_help=False,
+        **worst.place,
+    )
+
+
+def energy_closure(evidence: TrialEvidence) -> Check:
+    """Free of friction, the cam gives back what it takes."""
+    worst = worst_case(evidence, lambda cycle: _imbalance(evidence, cycle))
+    return Check(
+        id="energy_closure",
+        title="Energy not given back by the friction-free cam",
+        demand=worst.value,
+        limit=evidence.limit("energy_closure", 1e-9),
+        unit="-",
+        source=evidence.source("energy_closure", "conservation of energy over one turn"),
+        method="integral of (F_s + m w^2 s'') s' over the lift's spline, over the energy stored",
+        **worst.place,
+    )
+
+
+def friction_balance(evidence: TrialEvidence) -> Check:
+    """The torque spent on friction heats the guides, no more and no less."""
+    worst = worst_case(evidence, lambda cycle: _heat_mismatch(evidence, cycle))
+    return Check(
+        id="friction_balance",
+        title="Friction loss against heat in the guides",
+        demand=worst.value,
+        limit=evidence.limit("friction_balance", 1e-6),
+        unit="-",
+        source=evidence.source("friction_balance", "conservation of energy over one turn"),
+        method="cam work less that of spring and inertia, against friction times way, relative",
+        **worst.place,
+    )
+
+
+def _stored(evidence: TrialEvidence) -> float:
+    spring, lift = evidence.case.spring, evidence.contour.pitch.lift.highest.value
+    return float(spring.preload * lift + 0.5 * spring.rate * lift**2)
+
+
+def _imbalance(evidence: TrialEvidence, cycle: Cycle) -> float:
+    lift, spring = evidence.contour.pitch.lift, evidence.case.spring
+    step = FULL_TURN / len(lift.theta)
+    theta = lift.theta[:, None] + 0.5 * step * (1.0 + GAUSS_POINTS)
+    s, slope, bend = (lift(theta, order) for order in (0, 1, 2))
+    mass_rate = evidence.case.follower.mass * evidence.cam_speed(cycle) ** 2
+    force = spring.preload + spring.rate * s + mass_rate * bend
+    work = 0.5 * step * float(np.sum((force * slope) @ GAUSS_WEIGHTS))
+    return _relative(work, _stored(evidence))
+
+
+def _heat_mismatch(evidence: TrialEvidence, cycle: Cycle) -> float:
+    loads = cycle.loads
+    slope = np.where(loads.normal_force > 0, loads.lift_slope, 0.0)  # apart, nothing rubs
+    friction = np.abs(loads.friction_force_a) + np.abs(loads.friction_force_b)
+    spent = loads.cam_torque - (loads.spring_force + loads.inertia_force) * slope
+    step = FULL_TURN / len(slope)
+    loss, heat = step * float(np.sum(spent)), step * float(np.sum(friction * np.abs(slope)))
+    return _relative(loss - heat, max(heat, 1e-9 * _stored(evidence)))
+
+
+def _relative(part: float, whole: float) -> float:
+    """Share of the whole; a cam that stores nothing and owes nothing owes no share."""
+    return 0.0 if part == 0.0 else float(np.divide(abs(part), whole)) if whole > 0 else np.inf
+
+
+CHECKS = (torque_reduction, energy_closure, friction_balance)

@@ -1,0 +1,199 @@
+"""Limits on the shape of the cam, held over the continuous turn and not at samples only."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry.arrays import FULL_TURN
+from pipeline.checks.check import Check
+from pipeline.checks.trial import TrialEvidence
+
+TOOL_ALLOWANCE = 1.1  # a hollow is ground by a wheel at least a tenth smaller
+HUB_RATIO = 1.75  # outside over inside radius of the ring about the bore
+
+
+def closure(evidence: TrialEvidence) -> Check:
+    """The lift ends its turn where it began."""
+    return Check(
+        id="closure",
+        title="Lift closes after one turn",
+        demand=float(evidence.contour.pitch.lift.closure),
+        limit=evidence.limit("closure", 1e-9),
+        unit="m",
+        source=evidence.source("closure", "fundamental law of cam design, Norton (2009) ch. 2"),
+        method="difference of the lift at the two ends of the turn, as its source gave it",
+    )
+
+
+def pressure_angle(evidence: TrialEvidence) -> Check:
+    """Greatest angle between the contact normal and the follower's axis."""
+    value, theta = evidence.contour.pitch.pressure_angle_max()
+    limit = evidence.limit("pressure_angle", float(np.deg2rad(30.0)))
+    return Check(
+        id="pressure_angle",
+        title="Pressure angle",
+        demand=float(np.rad2deg(abs(value))),
+        limit=None if limit is None else float(np.rad2deg(limit)),
+        unit="deg",
+        cam_angle_deg=_degrees(theta),
+        source=evidence.source(
+            "pressure_angle", "30 deg for a translating follower, Rothbart (2004) ch. 6"
+        ),
+        method="greatest |atan((s' - e)/d)| of the pitch curve, refined between samples",
+        lift_can_help=True,
+    )
+
+
+def curvature_ratio(evidence: TrialEvidence) -> Check:
+    """Least convex radius of the pitch curve beside that of the roller."""
+    value, theta = evidence.contour.pitch.least_convex_radius()
+    return Check(
+        id="curvature_ratio",
+        title="Least convex pitch radius over roller radius",
+        demand=float(value / evidence.contour.roller_radius),
+        limit=evidence.limit("curvature_ratio", 1.5),
+        unit="-",
+        sense="at_least",
+        cam_angle_deg=_degrees(theta),
+        source=evidence.source("curvature_ratio", "1.5 to 3 roller radii, Norton (2009) ch. 7"),
+        method="least radius of curvature of the convex pitch curve, refined between samples",
+        lift_can_help=True,
+    )
+
+
+def undercut(evidence: TrialEvidence) -> Check:
+    """What the offset by the roller leaves of the pitch curve's arc."""
+    found = evidence.contour.undercut()
+    return Check(
+        id="undercut",
+        title="Undercut factor 1 - r kappa",
+        demand=float(found.factor),
+        limit=evidence.limit("undercut_factor", 0.3),
+        unit="-",
+        sense="at_least",
+        cam_angle_deg=_degrees(found.theta),
+        source=evidence.source(
+            "undercut_factor", "1 - r kappa > 0, a cusp at zero, Rothbart (2004) ch. 6"
+        ),
+        method="least 1 - roller radius x pitch curvature, refined between samples",
+        lift_can_help=True,
+    )
+
+
+def self_intersection(evidence: TrialEvidence) -> Check:
+    """The contour crosses itself nowhere."""
+    crossings = evidence.contour.self_intersections()
+    return Check(
+        id="self_intersection",
+        title="Contour crosses itself",
+        demand=float(len(crossings)),
+        limit=0.0,
+        unit="crossings",
+        cam_angle_deg=_degrees(crossings[0][0]) if crossings else None,
+        source=evidence.source("self_intersection", "a contour that crosses itself is cut away"),
+        method="crossings of the contour with itself, found between samples too",
+        lift_can_help=True,
+    )
+
+
+def second_contact(evidence: TrialEvidence) -> Check:
+    """The roller touches the cam in one place only."""
+    value, theta = evidence.contour.clearance()
+    return Check(
+        id="second_contact",
+        title="Roller cuts into another part of the cam",
+        demand=1e3 * max(0.0, -float(value)) if np.isfinite(value) else _missing(value),
+        limit=1e3 * (evidence.limit("second_contact_depth", 1e-6) or 0.0),
+        unit="mm",
+        cam_angle_deg=_degrees(theta),
+        source=evidence.source("second_contact", "one contact at a time, Rothbart (2004) ch. 6"),
+        method="depth of the roller's circle in contour parts away from its contact",
+        lift_can_help=True,
+    )
+
+
+def concave_radius(evidence: TrialEvidence) -> Check | None:
+    """Room for the tool in the hollow flanks; a cam without a hollow asks for none."""
+    value, theta = evidence.contour.pitch.curvature_min()
+    if value >= 0:
+        return None
+    tool = evidence.limit("tool_radius")
+    return Check(
+        id="concave_radius",
+        title="Least hollow radius of the contour",
+        demand=1e3 * float(evidence.contour.roller_radius - 1.0 / value),
+        limit=None if tool is None else 1e3 * TOOL_ALLOWANCE * tool,
+        unit="mm",
+        sense="at_least",
+        cam_angle_deg=_degrees(theta),
+        source=evidence.source(
+            "tool_radius", "hollow at least a tenth above the tool radius, Rothbart (2004) ch. 6"
+        ),
+        method="least concave pitch radius plus the roller radius, refined between samples",
+        must_have=tool is not None,
+        lift_can_help=True,
+        note="" if tool is not None else "no tool radius is given",
+    )
+
+
+def minimum_wall(evidence: TrialEvidence) -> Check:
+    """The ring of steel about the bore and its keyway."""
+    cam = evidence.case.cam
+    contour = evidence.contour
+    keyway = getattr(cam, "keyway", None)
+    # The key's far edge may point at the lowest place of the contour; assume it does.
+    inside = cam.bore_radius + (keyway.depth if keyway is not None else 0.0)
+    outside, theta = contour.radius_min()
+    return Check(
+        id="minimum_wall",
+        title="Least contour radius over bore radius with keyway",
+        demand=float(outside / inside),
+        limit=evidence.limit("minimum_wall", HUB_RATIO),
+        unit="-",
+        sense="at_least",
+        cam_angle_deg=_degrees(theta),
+        source=evidence.source("minimum_wall", "hub of 1.75 shaft diameters, common practice"),
+        method="least contour radius over bore radius plus keyway depth",
+        must_have=False,
+    )
+
+
+def spring_travel(evidence: TrialEvidence) -> Check:
+    """The spring is not driven solid."""
+    travel = evidence.case.spring.travel_max
+    lift = evidence.contour.pitch.lift
+    return Check(
+        id="spring_travel",
+        title="Lift against spring travel",
+        demand=1e3 * float(lift.highest.value),
+        limit=None if travel is None else 1e3 * float(travel),
+        unit="mm",
+        cam_angle_deg=_degrees(lift.highest.theta),
+        source=evidence.source("spring_travel", "travel of the spring as given in the case"),
+        method="greatest lift, between samples too",
+        must_have=travel is not None,
+        lift_can_help=True,
+        note="" if travel is not None else "no spring travel is given",
+    )
+
+
+CHECKS = (
+    closure,
+    pressure_angle,
+    curvature_ratio,
+    undercut,
+    self_intersection,
+    second_contact,
+    concave_radius,
+    minimum_wall,
+    spring_travel,
+)
+
+
+def _degrees(theta: float) -> float:
+    return float(np.rad2deg(np.mod(theta, FULL_TURN)))
+
+
+def _missing(value: float) -> float:
+    """No other part near (infinite clearance) is no depth; NaN stays missing."""
+    return 0.0 if value > 0 else float("nan")

@@ -1,0 +1,83 @@
+"""Limits of the two bushes that guide the stem."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geometry.arrays import Array
+from pipeline.checks.check import Check
+from pipeline.checks.trial import TrialEvidence, greatest, worst_case
+
+if TYPE_CHECKING:
+    from pipeline.case_fields import Guide
+    from pipeline.cycle import Cycle
+
+
+def bush_pressure_a(evidence: TrialEvidence) -> Check:
+    """Greatest mean pressure in guide A."""
+    return _pressure(evidence, "A", evidence.case.guides.a)
+
+
+def bush_pressure_b(evidence: TrialEvidence) -> Check:
+    """Greatest mean pressure in guide B."""
+    return _pressure(evidence, "B", evidence.case.guides.b)
+
+
+def bush_pv_a(evidence: TrialEvidence) -> Check:
+    """Pressure times sliding speed in guide A, mean over the turn."""
+    return _pv(evidence, "A", evidence.case.guides.a)
+
+
+def bush_pv_b(evidence: TrialEvidence) -> Check:
+    """Pressure times sliding speed in guide B, mean over the turn."""
+    return _pv(evidence, "B", evidence.case.guides.b)
+
+
+def _pressure(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
+    worst = greatest(evidence, lambda cycle: np.abs(_reaction(cycle, side)) / _area(guide))
+    limit = guide.pressure_limit
+    return Check(
+        id=f"bush_pressure_{side}",
+        title=f"Bearing pressure in guide {side}",
+        demand=1e-6 * worst.value,
+        limit=None if limit is None else 1e-6 * limit,
+        unit="MPa",
+        source=evidence.source(f"bush_pressure_{side}", guide.source or f"{guide.material} bush"),
+        method="greatest reaction by finite elements over diameter x length",
+        lift_can_help=True,
+        note="" if limit is not None else f"no pressure limit is given for guide {side}",
+        **worst.place,
+    )
+
+
+def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
+    def mean(cycle: Cycle) -> float:
+        return float(np.mean(np.abs(_reaction(cycle, side) * cycle.loads.velocity)) / _area(guide))
+
+    worst = worst_case(evidence, mean)
+    limit = guide.pv_limit
+    return Check(
+        id=f"bush_pv_{side}",
+        title=f"Pressure times speed in guide {side}",
+        demand=1e-6 * worst.value,
+        limit=None if limit is None else 1e-6 * limit,
+        unit="MPa m/s",
+        source=evidence.source(f"bush_pv_{side}", guide.source or f"{guide.material} bush"),
+        method="mean |R v| over the turn by finite elements over diameter x length",
+        lift_can_help=True,
+        note="" if limit is not None else f"no PV limit is given for guide {side}",
+        **worst.place,
+    )
+
+
+def _reaction(cycle: Cycle, side: str) -> Array:
+    return cycle.guides.reaction_a if side == "A" else cycle.guides.reaction_b
+
+
+def _area(guide: Guide) -> float:
+    return guide.diameter * guide.length
+
+
+CHECKS = (bush_pressure_a, bush_pressure_b, bush_pv_a, bush_pv_b)

@@ -1,0 +1,124 @@
+"""Limits of the roller's bearing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geometry.arrays import Array
+from pipeline.checks.check import Check
+from pipeline.checks.trial import TrialEvidence, greatest, worst_case
+
+if TYPE_CHECKING:
+    from pipeline.cycle import Cycle
+
+RPM = 30.0 / np.pi
+
+
+def roller_speed_of(evidence: TrialEvidence, cycle: Cycle) -> Array:
+    """Speed of the roller on its pin, rad/s, rolling without slip, (n,).
+
+    In the cam's frame the roller's centre runs along the pitch curve while the follower turns
+    about the cam, which the bearing does not feel.
+
+    References
+    ----------
+    Mech. Based Des. Struct. Mach. (2024), slider-crank and eccentric cam, eqs 35-36.
+    """
+    radius = evidence.contour.roller_radius
+    path = evidence.contour.pitch.speed(cycle.theta)
+    return evidence.cam_speed(cycle) * (path - radius) / radius
+
+
+def equivalent_load(force: Array, speed: Array) -> float:
+    """Constant load of the same fatigue life, N.
+
+    References
+    ----------
+    ISO 281:2007, variable load: cube mean, weighted by revolutions.
+    """
+    return float(np.cbrt(np.sum(force**3 * speed) / np.sum(speed)))
+
+
+def roller_static(evidence: TrialEvidence) -> Check:
+    """Static safety s0 of the bearing."""
+    bearing = evidence.case.roller.bearing
+    rating = bearing.C0
+    worst = greatest(evidence, lambda cycle: cycle.loads.normal_force)
+    loaded = rating is not None and (worst.value > 0 or np.isnan(worst.value))
+    return Check(
+        id="roller_static",
+        title="Static safety of the roller bearing",
+        demand=float(rating / worst.value) if loaded and rating is not None else None,
+        limit=evidence.limit("roller_static_safety", 1.0),
+        unit="-",
+        sense="at_least",
+        source=evidence.source(
+            "roller_static_safety", f"s0 = C0/P0, ISO 76; {bearing.name}: {bearing.source}"
+        ),
+        method="static rating over the greatest normal force",
+        lift_can_help=True,
+        note="" if rating is not None else f"no static rating is given for {bearing.name}",
+        **worst.place,
+    )
+
+
+def roller_life(evidence: TrialEvidence) -> Check:
+    """Rating life of the bearing over the turn."""
+    bearing = evidence.case.roller.bearing
+    rating, target = bearing.C, evidence.limit("roller_life")
+
+    def hours(cycle: Cycle) -> float:
+        speed = roller_speed_of(evidence, cycle)
+        load = equivalent_load(cycle.loads.normal_force, speed)
+        revolutions = 1e6 * (rating / load) ** 3 if rating is not None else np.nan
+        return float(revolutions / (3600.0 * np.mean(speed) / (2.0 * np.pi)))
+
+    worst = worst_case(evidence, hours, at_least=True)
+    missing = [
+        text
+        for value, text in ((rating, "no dynamic rating"), (target, "no life is asked for"))
+        if value is None
+    ]
+    return Check(
+        id="roller_life",
+        title="Rating life L10 of the roller bearing",
+        demand=worst.value,
+        limit=None if target is None else target / 3600.0,
+        unit="h",
+        sense="at_least",
+        source=evidence.source(
+            "roller_life", f"ISO 281; {bearing.name}: {bearing.source}".rstrip(": ")
+        ),
+        method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force",
+        must_have=target is not None,
+        lift_can_help=True,
+        note="; ".join(missing),
+        **worst.place,
+    )
+
+
+def roller_speed(evidence: TrialEvidence) -> Check:
+    """Roller speed against the share of the bearing's limiting speed."""
+    bearing = evidence.case.roller.bearing
+    share, ceiling = evidence.limit("roller_speed_share", 0.7), bearing.speed_limit
+    limit = None if share is None or ceiling is None else RPM * share * ceiling
+    worst = greatest(evidence, lambda cycle: np.abs(roller_speed_of(evidence, cycle)))
+    return Check(
+        id="roller_speed",
+        title="Speed of the roller",
+        demand=RPM * worst.value,
+        limit=limit,
+        unit="rpm",
+        source=evidence.source(
+            "roller_speed_share", f"share of the maker's limit; {bearing.source}".rstrip("; ")
+        ),
+        method="rolling without slip: w (|dP/dtheta| - r) / r",
+        lift_can_help=True,
+        note="" if limit is not None else f"no limiting speed is given for {bearing.name}",
+        **worst.place,
+    )
+
+
+CHECKS = (roller_static, roller_life, roller_speed)

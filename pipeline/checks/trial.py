@@ -1,0 +1,102 @@
+"""What a trial lays before the checks, and where in it a demand is worst."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.contour import Contour
+
+if TYPE_CHECKING:
+    from meshes.quality import Quality
+    from pipeline.case import Case
+    from pipeline.contact.history import CertificatePoint
+    from pipeline.cycle import Cycle
+
+
+@dataclass(frozen=True, eq=False)
+class TrialEvidence:
+    """All a verdict may lean on.
+
+    Parameters
+    ----------
+    case : Case
+    contour : Contour
+    cycles : tuple of Cycle                   one a load case
+    mesh_quality : Quality                    None when the trial made no mesh
+    certificate : tuple of CertificatePoint   empty when none was asked for
+    """
+
+    case: Case
+    contour: Contour
+    cycles: tuple[Cycle, ...]
+    mesh_quality: Quality | None = None
+    certificate: tuple[CertificatePoint, ...] = ()
+
+    def cam_speed(self, cycle: Cycle) -> float:
+        """Cam speed of a load case, rad/s."""
+        return float(cycle.crank_speed / self.case.mechanism.gear_ratio)
+
+    def limit(self, name: str, default: float | None = None) -> float | None:
+        """A limit of the case in SI; the default when the case has no such limit."""
+        value = getattr(self.case.limits, name, default)
+        return None if value is None else float(value)
+
+    def source(self, name: str, default: str) -> str:
+        """The clause behind a limit: the case's own words where it has some."""
+        return str(self.case.limits.sources.get(name) or default)
+
+
+class Worst(NamedTuple):
+    """The value that decides, and where: `place` fills the fields of a Check."""
+
+    value: float
+    load_case: str
+    cam_angle_deg: float | None
+
+    @property
+    def place(self) -> dict[str, Any]:
+        return {"load_case": self.load_case, "cam_angle_deg": self.cam_angle_deg}
+
+
+def greatest(evidence: TrialEvidence, measure: Callable[[Cycle], Array]) -> Worst:
+    """The greatest of a measure over all load cases and angles; a NaN wins.
+
+    Parameters
+    ----------
+    measure : callable   cycle -> array (n,), one value an angle
+    """
+    return _extreme(evidence, measure, 1.0)
+
+
+def least(evidence: TrialEvidence, measure: Callable[[Cycle], Array]) -> Worst:
+    """The least of a measure over all load cases and angles; a NaN wins."""
+    return _extreme(evidence, measure, -1.0)
+
+
+def worst_case(
+    evidence: TrialEvidence, measure: Callable[[Cycle], float], at_least: bool = False
+) -> Worst:
+    """The load case with the greatest (or least) value of a measure of the whole turn."""
+    return _extreme(evidence, lambda c: np.array([measure(c)]), -1.0 if at_least else 1.0, False)
+
+
+def _extreme(
+    evidence: TrialEvidence, measure: Callable[[Cycle], Array], sign: float, angle: bool = True
+) -> Worst:
+    found = Worst(np.nan, "", None)
+    for cycle in evidence.cycles:
+        values = np.asarray(measure(cycle), dtype=float)
+        worst = int(np.argmax(sign * values))  # the first NaN, where there is one
+        value = float(values[worst])
+        if found.load_case and not (np.isnan(value) or sign * value > sign * found.value):
+            continue
+        degrees = float(np.rad2deg(cycle.theta[worst])) if angle else None
+        found = Worst(value, cycle.load_case, degrees)
+        if np.isnan(value):
+            break
+    return found
