@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import tomllib
 from collections.abc import Iterator, Mapping
-from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, Literal, Self
@@ -34,6 +32,7 @@ from pipeline.case_fields import (
     Waiver,
 )
 from pipeline.case_text import to_toml
+from pipeline.results import hash_inputs
 
 CASE_BYTES = 256 * 1024
 INCLUDE_BYTES = 16 * 1024 * 1024
@@ -87,14 +86,19 @@ class Case(Section):
         """Bytes of each included file, by its name in a run folder."""
         return self._included
 
-    @cached_property
+    @property
     def sha256(self) -> str:
         """Hash of all that decides the result: the resolved case and the included files."""
-        digest = hashlib.sha256(self.to_toml().encode())
-        for name, content in sorted(self._included.items()):
-            digest.update(f"\0{name}\0{len(content)}\0".encode())
-            digest.update(content)
-        return digest.hexdigest()
+        return hash_inputs(self.to_toml(), self._included)
+
+    def with_positions(self, positions: int) -> Case:
+        """The same case at another number of positions per cam turn."""
+        given = self.solver.model_dump() | {"positions": positions}
+        try:
+            solver = Solver.model_validate(given)
+        except ValidationError as error:
+            raise _first_error(error, "solver") from None
+        return self.model_copy(update={"solver": solver})
 
     def path(self, name: str) -> Path:
         """Where an included file lies; `name` as the case file has it."""
@@ -318,13 +322,13 @@ _WORDS = {
 }
 
 
-def _first_error(error: ValidationError) -> InputError:
+def _first_error(error: ValidationError, section: str = "") -> InputError:
     """The first refusal as one line; unknown keys go before what is missing for them."""
     found = error.errors(include_url=False)
     found.sort(key=lambda entry: "unknown_key" not in entry.get("ctx", {}))
     first, others = found[0], len(found) - 1
     context = dict(first.get("ctx", {}))
-    field, value = _dotted(first["loc"]), first["input"]
+    field, value = f"{section}.{_dotted(first['loc'])}".strip("."), first["input"]
     if "unknown_key" in context:
         field = f"{field}.{context['unknown_key']}".lstrip(".")
         value = "unknown key"

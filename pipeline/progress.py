@@ -1,0 +1,117 @@
+"""What a long computation says while it runs: bars on a terminal, lines elsewhere."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Protocol, Self
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.progress import (
+    Progress as RichProgress,
+)
+
+LINE_EVERY_S = 10.0
+
+
+class Progress(Protocol):
+    """Told by the run where it stands."""
+
+    def stage(self, name: str) -> None:
+        """A new stage has begun."""
+
+    def advance(self, k: int, total: int) -> None:
+        """`k` of `total` pieces of the stage are done."""
+
+    def note(self, text: str) -> None:
+        """Something a reader should know."""
+
+
+class Silent:
+    """Says nothing."""
+
+    def stage(self, name: str) -> None: ...
+
+    def advance(self, k: int, total: int) -> None: ...
+
+    def note(self, text: str) -> None: ...
+
+
+class Lines:
+    """Plain lines, one a stage and one every ten seconds with the time that remains."""
+
+    def __init__(
+        self, say: Callable[[str], None], clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._say, self._clock = say, clock
+        self._name, self._began, self._spoke = "", clock(), clock()
+
+    def stage(self, name: str) -> None:
+        self._name, self._began = name, self._clock()
+        self._spoke = self._began
+        self._say(name)
+
+    def advance(self, k: int, total: int) -> None:
+        now = self._clock()
+        if now - self._spoke < LINE_EVERY_S or k <= 0:
+            return
+        self._spoke = now
+        remaining = (now - self._began) * (total - k) / k
+        self._say(f"{self._name}: {k} of {total}, {remaining:.0f} s remain")
+
+    def note(self, text: str) -> None:
+        self._say(text)
+
+
+class Bars:
+    """A bar with the remaining time for each stage; a context manager."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._bars = RichProgress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("remaining"),
+            TimeRemainingColumn(),
+            console=console,
+            transient=True,
+        )
+        self._task: TaskID | None = None
+        self._name = ""
+
+    def __enter__(self) -> Self:
+        self._bars.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._bars.stop()
+
+    def stage(self, name: str) -> None:
+        if self._task is not None:
+            self._bars.remove_task(self._task)
+            self._console.print(f"{self._name} done", highlight=False, markup=False)
+        self._name = name
+        self._task = self._bars.add_task(name, total=None)
+
+    def advance(self, k: int, total: int) -> None:
+        if self._task is not None:
+            self._bars.update(self._task, completed=k, total=total)
+
+    def note(self, text: str) -> None:
+        self._console.print(text, highlight=False, markup=False)

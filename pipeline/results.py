@@ -1,0 +1,405 @@
+"""A finished run as it lies on disk: tables, checks, summary. `run_folder` writes it.
+
+Reading needs no solver and no case parser, so that a run of long ago can be reported again.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geometry.errors import ResultError
+from pipeline import units
+
+SCHEMA = 1
+HEADLINE = (
+    *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),
+    *("lift_max_mm", "pressure_angle_max_deg", "pitch_radius_min_mm"),
+    *("normal_force_min_N", "normal_force_max_N"),
+    *("p0_max_MPa", "p0_hertz_max_MPa", "half_width_max_mm", "von_mises_max_MPa"),
+    *("reaction_A_max_N", "reaction_B_max_N", "friction_loss_J_per_cam_turn"),
+    *("fe_vs_hertz_p0_max_percent", "residual_equilibrium_max"),
+)
+STATUSES = ("pass", "fail", "not_evaluated", "waived")
+_REQUIRED = ("schema", "case", "input_sha256", "versions", "timings_s", "trials", "verdict",
+             "binding", "headline")  # fmt: skip
+_CHECK_KEYS = ("id", "title", "demand", "limit", "unit", "utilisation", "status", "load_case",
+               "cam_angle_deg", "source", "method")  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Column:
+    """A table column: its name without unit, the unit it is written in."""
+
+    name: str
+    unit: str = ""
+    optional: bool = False
+
+    @property
+    def header(self) -> str:
+        return units.column(self.name, self.unit)
+
+
+def _columns(text: str) -> tuple[Column, ...]:
+    """Columns from ``name [unit]`` lines; ``?`` marks one that may be left out."""
+    found = []
+    for line in text.split(";"):
+        name, _, unit = line.strip().partition(" ")
+        found.append(Column(name.rstrip("?"), unit.strip(" []"), name.endswith("?")))
+    return tuple(found)
+
+
+CRANK = (Column("crank_angle", "deg"),)
+LIFT = _columns(
+    "cam_angle [deg]; crank_angle [deg]; lift [mm]; lift_d1 [mm/rad]; lift_d2 [mm/rad^2];"
+    "lift_d3 [mm/rad^3]"
+)
+CONTOUR = _columns(
+    "cam_angle [deg]; pitch_x [mm]; pitch_y [mm]; contour_x [mm]; contour_y [mm]; normal_x;"
+    "normal_y; pressure_angle [deg]; pitch_radius [mm]; contour_radius_of_curvature [mm]"
+)
+CYCLE = _columns(
+    "load_case; cam_angle [deg]; crank_angle [deg]; lift [mm]; pressure_angle [deg];"
+    "pitch_radius [mm]; contour_radius_of_curvature [mm]; normal_force [N]; line_load [N/mm];"
+    "p0_hertz [MPa]; p0_fe [MPa]; p0_difference [percent]; half_width_hertz [mm];"
+    "half_width_fe [mm]; tau_max [MPa]; tau_depth [mm]; von_mises [MPa]; von_mises_depth [mm];"
+    "reaction_A [N]; reaction_B [N]; reaction_A_statics [N]; reaction_B_statics [N];"
+    "spring_force [N]; inertia_force [N]; axial_force [N]; tangential_force [N];"
+    "friction_A [N]; friction_B [N]; jam_index; velocity [m/s]; cam_torque [N m];"
+    "torque_before? [N m]; torque_after? [N m]; residual_equilibrium; residual_complementarity;"
+    "residual_guide_force; residual_guide_moment"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Columns of one length by header; numbers as written, in the unit their name carries."""
+
+    columns: Mapping[str, NDArray[Any]]
+
+    def __getitem__(self, header: str) -> Any:
+        if header not in self.columns:
+            raise ResultError(f"column {header} is missing; there is {', '.join(self.columns)}")
+        return self.columns[header]
+
+    def __contains__(self, header: object) -> bool:
+        return header in self.columns
+
+    def __len__(self) -> int:
+        return len(next(iter(self.columns.values()), ()))
+
+    def where(self, header: str, value: object) -> Table:
+        """The rows in which a column has a value."""
+        rows = self[header] == value
+        return Table(MappingProxyType({name: _fixed(c[rows]) for name, c in self.columns.items()}))
+
+    def to_csv(self) -> str:
+        """CSV text; every float reads back bit for bit."""
+        buffer = io.StringIO()
+        writer = csv.writer(buffer, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows(zip(*(_texts(column) for column in self.columns.values()), strict=True))
+        return buffer.getvalue()
+
+
+def table(columns: Iterable[Column], values: Mapping[str, ArrayLike]) -> Table:
+    """A table from SI values by bare column name, turned into the unit of each column.
+
+    Raises
+    ------
+    ResultError
+        If a column is missing, unknown, of another length, or holds a NaN.
+    """
+    columns = tuple(columns)
+    unknown = set(values) - {column.name for column in columns}
+    if unknown:
+        raise ResultError(f"no such column: {', '.join(sorted(unknown))}")
+    made: dict[str, NDArray[Any]] = {}
+    for column in columns:
+        if column.name not in values:
+            if column.optional:
+                continue
+            raise ResultError(f"column {column.header} was not given")
+        made[column.header] = _in_unit(column, np.asarray(values[column.name]))
+    if len({len(given) for given in made.values()}) > 1:
+        lengths = ", ".join(f"{name} {len(given)}" for name, given in made.items())
+        raise ResultError(f"columns of different length: {lengths}")
+    return Table(MappingProxyType(made))
+
+
+def read_table(path: Path) -> Table:
+    """A CSV table; a column is of floats unless it is ``load_case``."""
+    rows = list(csv.reader(io.StringIO(read_text(path))))
+    if not rows or len(set(rows[0])) != len(rows[0]):
+        raise ResultError(f"{path}: no header, or a column twice")
+    for line, row in enumerate(rows, start=1):
+        if len(row) != len(rows[0]):
+            raise ResultError(f"{path}, line {line}: {len(row)} cells, must be {len(rows[0])}")
+    cells = list(zip(*rows[1:], strict=True)) or [()] * len(rows[0])
+    return Table(
+        MappingProxyType(
+            {name: _parsed(path, name, cells[k]) for k, name in enumerate(rows[0])},
+        )
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class TrialRecord:
+    """One trip down the road: a lift, everything that follows from it, and what was checked."""
+
+    number: int
+    path: Path
+    lift: Table
+    contour: Table
+    cycle: Table
+    checks: tuple[Mapping[str, Any], ...]
+    record: Mapping[str, Any]
+
+    @property
+    def verdict(self) -> str:
+        """`pass` when every must-have passes or is waived; no checks, no pass."""
+        return "fail" if not self.checks or self.binding else "pass"
+
+    @property
+    def binding(self) -> tuple[str, ...]:
+        """Must-have checks that fail or are not evaluated."""
+        return tuple(
+            check["id"]
+            for check in self.checks
+            if check.get("must_have", True) and check["status"] not in ("pass", "waived")
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A run folder read back; the last trial is the answer."""
+
+    path: Path
+    case_text: str
+    summary: Mapping[str, Any]
+    torque: Table | None
+    trials: tuple[TrialRecord, ...]
+
+    @property
+    def final(self) -> TrialRecord:
+        return self.trials[-1]
+
+    @property
+    def verdict(self) -> str:
+        """Drawn from the checks of the final trial, not from the summary."""
+        return self.final.verdict
+
+
+def load_run(path: str | Path) -> Run:
+    """Read a run folder.
+
+    Raises
+    ------
+    ResultError
+        If something is missing or unreadable, or if two records disagree.
+    """
+    path = Path(path)
+    summary = read_summary(path)
+    torque = path / "1_torque.csv"
+    run = Run(
+        path=path,
+        case_text=read_text(path / "case.toml"),
+        summary=summary,
+        torque=read_table(torque) if torque.exists() else None,
+        trials=tuple(_read_trial(path, k + 1) for k in range(summary["trials"])),
+    )
+    if run.verdict != summary["verdict"]:
+        said, found = summary["verdict"], run.verdict
+        raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {found}")
+    return run
+
+
+def verify_run(path: Path) -> None:
+    """Compare the files of a run with the hashes taken when it was finished."""
+    summary = read_summary(path)
+    if input_sha256(path) != summary["input_sha256"]:
+        raise ResultError(f"{path}: case.toml or inputs/ are not those of the run")
+    for name, digest in summary.get("files", {}).items():
+        file = path / name
+        if not file.is_file() or _sha256(file) != digest:
+            state = "was changed" if file.is_file() else "is missing"
+            raise ResultError(f"{file}: {state} since the run")
+
+
+def read_summary(path: Path) -> dict[str, Any]:
+    """The contents of ``run.json``."""
+    if not path.is_dir():
+        raise ResultError(f"{path}: no such folder")
+    file = path / "run.json"
+    if not file.is_file():
+        raise ResultError(f"{path}: holds no finished run (run.json is missing)")
+    summary = read_json(file)
+    missing = [key for key in _REQUIRED if not isinstance(summary, dict) or key not in summary]
+    if missing:
+        raise ResultError(f"{file}: lacks {', '.join(missing)}")
+    if summary["schema"] != SCHEMA:
+        raise ResultError(f"{file}: schema {summary['schema']}, must be {SCHEMA}")
+    if not isinstance(summary["trials"], int) or summary["trials"] < 1:
+        raise ResultError(f"{file}: trials = {summary['trials']}, must be a count >= 1")
+    return summary
+
+
+def input_sha256(path: Path) -> str:
+    """Hash of the resolved case and its included files, as `Case.sha256` has it."""
+    inputs = path / "inputs"
+    kept = {
+        file.relative_to(path).as_posix(): file.read_bytes()
+        for file in (sorted(inputs.iterdir()) if inputs.is_dir() else ())
+    }
+    return hash_inputs(read_text(path / "case.toml"), kept)
+
+
+def hash_inputs(case_text: str, included: Mapping[str, bytes]) -> str:
+    """Hash of the resolved case text and the bytes of its included files."""
+    digest = hashlib.sha256(case_text.encode())
+    for name, content in sorted(included.items()):
+        digest.update(f"\0{name}\0{len(content)}\0".encode())
+        digest.update(content)
+    return digest.hexdigest()
+
+
+def file_hashes(path: Path) -> dict[str, str]:
+    """SHA-256 of the tables, checks and meshes of a run; pictures and pages can be redrawn."""
+    kept = (".csv", ".json", ".msh")
+    return {
+        file.relative_to(path).as_posix(): _sha256(file)
+        for file in sorted(path.rglob("*"))
+        if file.suffix in kept and file.name != "run.json" and not _hidden(file, path)
+    }
+
+
+def read_text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
+        raise ResultError(f"{path}: {reason}") from None
+
+
+def read_json(path: Path) -> Any:
+    try:
+        return json.loads(read_text(path), parse_constant=_no_constant)
+    except (ValueError, RecursionError) as error:
+        raise ResultError(f"{path}: not JSON ({' '.join(str(error).split())})") from None
+
+
+def json_text(value: object) -> str:
+    """JSON with numpy numbers taken in; NaN and infinity are refused, null says missing."""
+    try:
+        return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=_plain)
+    except (TypeError, ValueError) as error:
+        raise ResultError(f"a record cannot be written: {error}") from None
+
+
+def _read_trial(run: Path, number: int) -> TrialRecord:
+    path = run / f"trial_{number}"
+    record = read_json(path / "trial.json")
+    if not isinstance(record, dict):
+        raise ResultError(f"{path / 'trial.json'}: must be an object")
+    return TrialRecord(
+        number=number,
+        path=path,
+        lift=read_table(path / "2_lift.csv"),
+        contour=read_table(path / "3_contour.csv"),
+        cycle=read_table(path / "5_cycle.csv"),
+        checks=tuple(_read_checks(path / "6_checks.json")),
+        record=MappingProxyType(record),
+    )
+
+
+def _read_checks(path: Path) -> Iterator[Mapping[str, Any]]:
+    records = read_json(path)
+    if not isinstance(records, list):
+        raise ResultError(f"{path}: must be a list of checks")
+    for record in records:
+        missing = [key for key in _CHECK_KEYS if not isinstance(record, dict) or key not in record]
+        if missing:
+            raise ResultError(f"{path}: a check lacks {', '.join(missing)}")
+        if record["status"] not in STATUSES:
+            raise ResultError(f"{path}: {record['id']}: status {record['status']} is unknown")
+        if record["status"] == "pass" and not _holds(record):
+            raise ResultError(f"{path}: {record['id']} is marked pass, its numbers say otherwise")
+        yield MappingProxyType(record)
+
+
+def _holds(record: Mapping[str, Any]) -> bool:
+    """Whether the numbers of a record bear out a pass; a missing one never does."""
+    demand, limit = record["demand"], record["limit"]
+    if not all(isinstance(number, (int, float)) for number in (demand, limit)):
+        return False
+    return bool(demand >= limit if record.get("sense") == "at_least" else demand <= limit)
+
+
+def _in_unit(column: Column, given: NDArray[Any]) -> NDArray[Any]:
+    if given.dtype.kind in "US":
+        return _fixed(given.astype(str))
+    values = given.astype(float)
+    if values.ndim != 1 or np.isnan(values).any():
+        what = "NaN" if values.ndim == 1 else f"{values.ndim} dimensions"
+        raise ResultError(f"column {column.header} holds {what}")
+    if column.unit:
+        values = values / units.factor(column.unit)
+    if column.name in ("cam_angle", "crank_angle"):
+        values = np.round(values, 10)  # 0.5, not 0.49999999999999994
+    return _fixed(values)
+
+
+def _parsed(path: Path, name: str, cells: Iterable[str]) -> NDArray[Any]:
+    if name == "load_case":
+        return _fixed(np.array(list(cells), dtype=str))
+    values: list[float] = []
+    for line, cell in enumerate(cells, start=2):
+        try:
+            value = float(cell)
+        except ValueError:
+            value = math.nan
+        if math.isnan(value):
+            raise ResultError(f"{path}, line {line}: {name} = {cell[:40]!r}, must be a number")
+        values.append(value)
+    return _fixed(np.array(values))
+
+
+def _fixed(values: NDArray[Any]) -> NDArray[Any]:
+    values.setflags(write=False)
+    return values
+
+
+def _texts(column: NDArray[Any]) -> Iterable[str]:
+    return column.tolist() if column.dtype.kind == "U" else map(repr, column.tolist())
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return dict(value)
+    raise TypeError(f"{type(value).__name__} has no place in JSON")
+
+
+def _no_constant(name: str) -> float:
+    raise ValueError(f"{name} is not a number")
+
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _hidden(file: Path, folder: Path) -> bool:
+    return any(re.match(r"\.", part) for part in file.relative_to(folder).parts)
