@@ -45,8 +45,7 @@ class PeriodicPolynomial:
         part = FULL_TURN / count
         angle = np.mod(np.asarray(theta, dtype=float), FULL_TURN)
         # an angle that is not a number belongs to no part: part 0 hands the NaN on
-        index = np.nan_to_num(angle / part).astype(np.intp)
-        np.minimum(index, count - 1, out=index)
+        index = np.minimum(np.nan_to_num(angle / part).astype(np.intp), count - 1)
         step = angle - index * part
         local = self.coefficients.take(index, axis=1)
         values = np.empty((last - first + 1, *angle.shape))
