@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from geometry.arrays import FULL_TURN, Array, finite, freeze
 from geometry.errors import InputError
@@ -122,12 +122,12 @@ class Loads:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
 
     @property
-    def separated(self) -> Array:
+    def separated(self) -> NDArray[np.bool_]:
         """Where nothing presses the roller on the cam (bool): its forces there are zero."""
         return np.asarray(self.normal_force <= 0.0)
 
     @property
-    def jammed(self) -> Array:
+    def jammed(self) -> NDArray[np.bool_]:
         """Where the follower moves outward and no finite force could push it (bool)."""
         return np.asarray((self.jam_index >= 1.0) & (self.lift_slope > 0.0))
 

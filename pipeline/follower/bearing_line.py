@@ -1,0 +1,218 @@
+"""A beam in bores that only push: equilibrium at every position by an active set."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.arrays import Array, freeze
+from geometry.errors import ContactError
+
+MAX_STEPS = 60
+TOLERANCE = 1e-10  # of the contact law, over the largest depth in the bore
+_ROUND_OFF = 1e-14
+_LEAST_DENT = 1e-12  # of the play: smaller loads are solved enlarged, their pushes divided
+_BISECTIONS = 50
+_TOUCH = 1e-9  # of the play: how far a rigid beam may be into the bore
+
+
+@dataclass(frozen=True, eq=False)
+class BearingLine:
+    """A beam along a bore with play, both known at knots; arrays (knots,), SI.
+
+    Parameters
+    ----------
+    positions : array (k,)        along the beam from its loaded end, m
+    weights : array (k,)          length each knot stands for, m
+    foundation : array (k,)       stiffness of the bore per length, N/m2
+    play : array (k,)             way to the bore on either side, m, >= 0
+    compliance : array (k, k)     deflection under unit pushes, beam clamped at the loaded end, m/N
+    edges : array (e,) of int     knots at the ends of the guides, where a rigid beam would touch
+    """
+
+    positions: Array
+    weights: Array
+    foundation: Array
+    play: Array
+    compliance: Array
+    edges: Array
+
+    def __post_init__(self) -> None:
+        names = ("positions", "weights", "foundation", "play", "compliance")
+        freeze(self, **{name: getattr(self, name) for name in names})
+
+    @property
+    def stiffness(self) -> Array:
+        """Of the bore at each knot, N/m."""
+        return self.foundation * self.weights
+
+    @property
+    def rigid_modes(self) -> Array:
+        """Deflection at each knot under unit shift and unit tilt of the loaded end, (k, 2)."""
+        return np.stack([np.ones_like(self.positions), self.positions], axis=1)
+
+    def deflection(self, push: Array, rigid: Array) -> Array:
+        """Deflection at the knots, (k, n), m, under the bores' pushes and the end's motion."""
+        return self.rigid_modes @ rigid - self.compliance @ push
+
+    def law(self, deflection: Array) -> Array:
+        """Push of the bore at a deflection, (k, n), N: none within the play, linear beyond."""
+        depth = np.abs(deflection) - self.play[:, None]
+        return self.stiffness[:, None] * np.sign(deflection) * np.maximum(depth, 0.0)
+
+    def law_miss(self, deflection: Array, push: Array) -> Array:
+        """Miss of the contact law at the worst knot, (n,), as a depth in the bore, m."""
+        miss = np.abs(push - self.law(deflection)) / self.stiffness[:, None]
+        return np.asarray(miss.max(axis=0))
+
+    def law_residual(self, push: Array, rigid: Array) -> Array:
+        """Miss of the contact law at the worst knot over the largest deflection, (n,)."""
+        deflection = self.deflection(push, rigid)
+        scale = np.abs(deflection).max(axis=0)
+        miss = self.law_miss(deflection, push)
+        return np.divide(miss, scale, out=np.zeros_like(scale), where=scale > 0.0)
+
+    def settled(self, push: Array, rigid: Array) -> NDArray[np.bool_]:
+        """Where the contact law holds, (n,) bool, to `TOLERANCE` of the depth in the bore.
+
+        No closer than round-off of the deflection, which counts where a load hardly dents it.
+        """
+        deflection = self.deflection(push, rigid)
+        depth = (np.abs(push) / self.stiffness[:, None]).max(axis=0)
+        allowed = TOLERANCE * depth + _ROUND_OFF * np.abs(deflection).max(axis=0)
+        return np.asarray(self.law_miss(deflection, push) <= allowed)
+
+    def enlargement(self, load: Array) -> Array:
+        """Factor that lets a load dent the bore by more than the round-off of its play, (n,)."""
+        size = np.abs(load[0]) + np.abs(load[1]) / self.positions[-1]
+        least = _LEAST_DENT * self.stiffness.sum() * self.play.max()
+        return np.where((size > 0.0) & (size < least), least / np.where(size > 0.0, size, 1.0), 1.0)
+
+    def slack_corners(self) -> Array:
+        """End motions at which a rigid beam takes up the play, (2, corners).
+
+        They are the corners of the motions the play allows, each with the beam a
+        shade into two edges of the guides.
+        """
+        modes, play = self.rigid_modes[self.edges], self.play[self.edges]
+        corners = []
+        for pair in combinations(range(len(play)), 2):
+            for sign in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
+                corner = np.linalg.solve(modes[list(pair)], np.array(sign) * play[list(pair)])
+                if (np.abs(modes @ corner) <= play * (1.0 + _TOUCH) + _TOUCH * play.max()).all():
+                    corners.append(corner * (1.0 + _TOUCH))
+        return np.array(corners).T
+
+
+def settle(line: BearingLine, force: Array, moment: Array) -> tuple[Array, Array]:
+    """Pushes of the bores in equilibrium with a force and a moment on the beam's end.
+
+    The beam and the bores store energy that is convex and piecewise quadratic in the pushes p
+    that bend the beam and the end motion r:  p G p/2 + sum K depth^2/2 - load r. Each step of
+    the active set solves the linear problem of the knots that touch, exactly, and goes the
+    length that lowers the energy most, so that it cannot cycle; it ends when the knots that
+    touch are those it assumed. The first guess is the rigid beam with its play taken up.
+
+    Parameters
+    ----------
+    line : BearingLine
+    force, moment : array (n,)   N and N m, on the loaded end; positive with shift and tilt
+
+    Returns
+    -------
+    push : array (k, n)    N, against positive deflection
+    rigid : array (2, n)   shift, m, and tilt, rad, of the loaded end
+
+    Raises
+    ------
+    ContactError
+        If a position has not settled after 60 steps.
+    """
+    load = np.stack([force, moment])
+    enlargement = line.enlargement(load)
+    load = load * enlargement
+    push = np.zeros((len(line.positions), load.shape[1]))
+    corners = line.slack_corners()
+    rigid = corners[:, np.argmax(corners.T @ load, axis=0)]
+    open_ = np.flatnonzero(np.abs(load).max(axis=0) > 0.0)
+    rigid[:, np.setdiff1d(np.arange(load.shape[1]), open_)] = 0.0
+    for _ in range(MAX_STEPS):
+        if not len(open_):
+            return push / enlargement, rigid
+        now, at, on = push[:, open_], rigid[:, open_], load[:, open_]
+        next_push, next_rigid = _linear_step(line, now, at, on)
+        settled = line.settled(next_push, next_rigid)
+        length = _best_length(line, now, at, next_push - now, next_rigid - at, on)
+        length[settled] = 1.0
+        push[:, open_] = now + length * (next_push - now)
+        rigid[:, open_] = at + length * (next_rigid - at)
+        open_ = open_[~settled]
+    raise ContactError(f"guides: {len(open_)} positions not settled in {MAX_STEPS} steps")
+
+
+def _linear_step(line: BearingLine, push: Array, rigid: Array, load: Array) -> tuple[Array, Array]:
+    """Equilibrium if the knots that touch now are bound to the bore and the others free.
+
+    Positions with the same knots in touch share one factorisation. The end's motion is found as
+    a change of the present one, so that small loads do not drown in the play.
+    """
+    deflection = line.deflection(push, rigid)
+    touch = np.abs(deflection) >= line.play[:, None]
+    offset = np.sign(deflection) * line.play[:, None] - line.rigid_modes @ rigid
+    push, rigid = np.zeros_like(push), rigid.copy()
+    patterns, group = np.unique(touch.T, axis=0, return_inverse=True)
+    for index, active in enumerate(patterns):
+        here = np.flatnonzero(group.ravel() == index)
+        knots = np.flatnonzero(active)
+        solution = _bound(line, knots, offset[np.ix_(knots, here)], load[:, here])
+        push[np.ix_(knots, here)] = solution[:-2]
+        rigid[:, here] += solution[-2:]
+    return push, rigid
+
+
+def _bound(line: BearingLine, knots: NDArray[np.intp], offset: Array, load: Array) -> Array:
+    """Pushes and change of end motion with some knots bound to the bore, (active + 2, n).
+
+    Rows and columns are scaled to the bore's compliance and the line's length, so that stiff
+    bores, stiff beams and short guides all solve to round-off.
+    """
+    modes = line.rigid_modes[knots] / np.array([1.0, line.positions[-1]])
+    softness = line.compliance[np.ix_(knots, knots)] + np.diag(1.0 / line.stiffness[knots])
+    scale = float(softness.diagonal().max())
+    system = np.block([[softness / scale, -modes], [modes.T, np.zeros((2, 2))]])
+    if len(knots) < 2:  # the beam could still swing: hold it back a little
+        system[-2:, -2:] = 1e-6 * np.eye(2)
+    right = np.vstack([-offset / scale, load / np.array([[1.0], [line.positions[-1]]])])
+    solution = np.linalg.solve(system, right)
+    solution[-2:] *= scale
+    solution[-1] /= line.positions[-1]
+    return solution
+
+
+def _best_length(
+    line: BearingLine, push: Array, rigid: Array, push_step: Array, rigid_step: Array, load: Array
+) -> Array:
+    """Step length in (0, 1] that lowers the energy most, (n,).
+
+    The energy's slope along the step rises, so its zero is found by bisection; a slope still
+    falling at the whole step asks for all of it.
+    """
+    before, change = line.deflection(push, rigid), line.deflection(push_step, rigid_step)
+    bent = line.compliance @ push_step
+
+    def slope(length: Array) -> Array:
+        pushed = push + length * push_step
+        stored = (pushed * bent).sum(axis=0)
+        return stored + (line.law(before + length * change) * change).sum(axis=0) - fixed
+
+    fixed = (load * rigid_step).sum(axis=0)
+    low, high = np.zeros(load.shape[1]), np.ones(load.shape[1])
+    too_far = slope(high) > TOLERANCE * np.abs(slope(low))
+    for _ in range(_BISECTIONS if too_far.any() else 0):
+        middle = 0.5 * (low + high)
+        beyond = slope(middle) > 0.0
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    return np.where(too_far, low, 1.0)
