@@ -1,0 +1,156 @@
+"""Engine torque over one cycle: modelled or measured, as the sum of its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from geometry.arrays import Array, finite, freeze
+from geometry.errors import InputError
+from pipeline.engine.cycle_solver import working_cycle
+from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from pipeline.engine.trace import read_trace
+from pipeline.engine.working_cycle import CylinderCycle
+
+SAMPLES = 720
+
+
+@dataclass(frozen=True, eq=False)
+class Torque:
+    """Torque of the engine on its crank over one cycle, positive when the gas drives.
+
+    Parameters
+    ----------
+    theta_crank : array (n,)               rad, uniform over [0, 4 pi), 0 the TDC of intake
+    components : mapping to array (n,)     N m, of each part by its name; the total is their sum
+
+    Raises
+    ------
+    InputError
+        If the angles are not those of a uniform cycle, or a component is of another length or
+        not finite.
+    """
+
+    theta_crank: Array
+    components: Mapping[str, Array]
+
+    def __post_init__(self) -> None:
+        theta = finite("torque.theta_crank", self.theta_crank)
+        if theta.ndim != 1 or theta.size < 12:
+            raise InputError("torque.theta_crank", f"{theta.shape} angles", "(12 or more,)")
+        if not np.allclose(theta, _uniform_cycle(theta.size), rtol=0.0, atol=1e-9):
+            raise InputError("torque.theta_crank", "angles", "uniform over [0, 4 pi) rad")
+        if not self.components:
+            raise InputError("torque.components", "nothing", "one component or more")
+        parts = {name: finite(f"torque.{name}", part) for name, part in self.components.items()}
+        for name, part in parts.items():
+            if part.shape != theta.shape:
+                raise InputError(f"torque.{name}", f"{part.shape} values", f"{theta.shape}")
+        freeze(self, theta_crank=theta)
+        object.__setattr__(self, "components", MappingProxyType(parts))
+
+    @property
+    def total(self) -> Array:
+        """Sum of the components, N m."""
+        return np.asarray(sum(self.components.values()))
+
+    @property
+    def mean(self) -> float:
+        return float(self.total.mean())
+
+    @property
+    def std(self) -> float:
+        """Standard deviation about the mean, N m."""
+        return float(self.total.std())
+
+    @property
+    def peak(self) -> float:
+        return float(self.total.max())
+
+    @property
+    def peak_to_peak(self) -> float:
+        return float(np.ptp(self.total))
+
+    @property
+    def work(self) -> float:
+        """Work on the crank over one cycle, J."""
+        return self.mean * CYCLE_ANGLE
+
+    def without_mean(self) -> Torque:
+        """The same torque with the steady load that brings its mean to zero, as `load`."""
+        load = np.full_like(self.theta_crank, -self.mean)
+        known = self.components.get("load", np.zeros_like(load))
+        return replace(self, components={**self.components, "load": known + load})
+
+    def resampled(self, n: int) -> Torque:
+        """The same torque at `n` angles, by a periodic cubic spline through each component."""
+        if n == self.theta_crank.size:
+            return self
+        theta = _uniform_cycle(n)
+        parts = {name: _periodic(part, theta) for name, part in self.components.items()}
+        return Torque(theta, parts)
+
+
+def _uniform_cycle(count: int) -> Array:
+    return np.arange(float(count)) * (CYCLE_ANGLE / count)
+
+
+def _periodic(values: Array, theta: Array) -> Array:
+    """Values on a uniform cycle, at other crank angles (rad)."""
+    knots = np.arange(values.size + 1) * (CYCLE_ANGLE / values.size)
+    spline = CubicSpline(knots, np.append(values, values[0]), bc_type="periodic")
+    return np.asarray(spline(np.mod(theta, CYCLE_ANGLE)))
+
+
+def torque_from_cycle(cycle: CylinderCycle) -> Torque:
+    """Torque of an engine whose cylinders all run one cycle, each at its firing offset."""
+    parts = {
+        "gas": cycle.gas_torque,
+        "inertia": cycle.inertia_torque,
+        "valve_train": cycle.valve_train_torque,
+        "friction": cycle.friction_torque,
+        "dipper": cycle.dipper_torque,
+    }
+    if cycle.engine.dipper_area == 0.0:
+        del parts["dipper"]
+    offsets = cycle.engine.firing_offsets
+    if offsets != (0.0,):
+        shifted = [cycle.theta - offset for offset in offsets]
+        parts = {
+            name: np.asarray(sum(_periodic(part, theta) for theta in shifted))
+            for name, part in parts.items()
+        }
+    return Torque(cycle.theta, parts)
+
+
+def torque_from_cylinder(engine: CylinderEngine, crank_speed: float) -> Torque:
+    """Torque of an engine model at a steady crank speed (rad/s).
+
+    With `engine.friction` "closing" the mean is zero; with a friction pressure it is the brake
+    torque, which `without_mean` loads away.
+
+    Raises
+    ------
+    InputError
+        If the speed is out of range.
+    CamError
+        If the working cycle does not repeat itself.
+    """
+    return torque_from_cycle(working_cycle(engine, crank_speed))
+
+
+def torque_from_csv(path: str | Path, column: str | None = None) -> Torque:
+    """Torque measured over one cycle, on whole crank degrees, its one component `measured`.
+
+    Raises
+    ------
+    InputError
+        If the file is not one clean cycle; see `read_trace`.
+    """
+    trace = read_trace(path, "torque", column=column)
+    return Torque(_uniform_cycle(SAMPLES), {"measured": trace.uniform(SAMPLES)})

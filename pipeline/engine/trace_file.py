@@ -1,0 +1,209 @@
+"""The text of a trace file: its lines, the units in its header, its cells as numbers."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Mapping, Sequence
+from math import pi
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.errors import InputError
+
+SIZE_MAX = 64 * 2**20  # bytes; looked up before the file is opened
+ROWS_MAX = 1_000_000
+
+ANGLE_UNITS: Mapping[str, float] = MappingProxyType(
+    {
+        "deg": pi / 180.0,
+        "degree": pi / 180.0,
+        "degrees": pi / 180.0,
+        "°": pi / 180.0,
+        "grad": pi / 180.0,
+        "gradkw": pi / 180.0,
+        "°kw": pi / 180.0,
+        "degca": pi / 180.0,
+        "°ca": pi / 180.0,
+        "cad": pi / 180.0,
+        "rad": 1.0,
+        "radian": 1.0,
+        "radians": 1.0,
+        "rev": 2.0 * pi,
+    }
+)
+
+# Written without blanks, dots, stars, dashes and carets; exact case is tried first (mPa, MPa).
+QUANTITY_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
+    {
+        "torque": {
+            "Nm": 1.0,
+            "kNm": 1e3,
+            "mNm": 1e-3,
+            "MNm": 1e6,
+            "Ncm": 1e-2,
+            "Nmm": 1e-3,
+            "J/rad": 1.0,
+            "kgfm": 9.80665,
+            "lbfft": 1.3558179483314,
+            "ftlbf": 1.3558179483314,
+            "lbft": 1.3558179483314,
+            "ftlb": 1.3558179483314,
+        },
+        "pressure": {
+            "Pa": 1.0,
+            "hPa": 1e2,
+            "kPa": 1e3,
+            "mPa": 1e-3,
+            "MPa": 1e6,
+            "mbar": 1e2,
+            "bar": 1e5,
+            "psi": 6894.757293168,
+            "atm": 101325.0,
+        },
+        "speed": {
+            "rad/s": 1.0,
+            "rads1": 1.0,
+            "rpm": pi / 30.0,
+            "r/min": pi / 30.0,
+            "1/min": pi / 30.0,
+            "min1": pi / 30.0,
+            "deg/s": pi / 180.0,
+            "°/s": pi / 180.0,
+        },
+    }
+)
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_UNIT_SPELLING = str.maketrans(dict.fromkeys(" ·⋅*.-^_⁻−", "") | {"¹": "1", "º": "°"})
+
+
+def text_lines(path: Path) -> list[tuple[int, str]]:
+    """The lines of a text file that hold something, with their numbers from 1."""
+    raw = _bytes(path)
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raw = raw.decode("utf-16", errors="replace").encode()
+    if b"\0" in raw:
+        raise InputError(path.name, "a binary file", "text of columns")
+    count = raw.count(b"\n")
+    if count > ROWS_MAX:
+        raise InputError(path.name, f"{count} lines", f"{ROWS_MAX} lines or fewer")
+    lines = []
+    for number, coded in enumerate(raw.removeprefix(b"\xef\xbb\xbf").splitlines(), start=1):
+        line = _decoded(coded).strip(" ")
+        if line.strip() and not line.lstrip('"').startswith(("#", "sep=")):
+            lines.append((number, line))
+    if not lines:
+        raise InputError(path.name, "an empty file", "a header and rows")
+    return lines
+
+
+def _bytes(path: Path) -> bytes:
+    """The bytes of a file, refused unread where it is no file or too large."""
+    try:
+        if path.is_dir():
+            raise InputError(path.name, "a folder", "a file")
+        if not path.exists():
+            raise InputError(path.name, "no such file", "an existing file")
+        if not path.is_file():
+            raise InputError(path.name, "no regular file", "a regular file")
+        size = path.stat().st_size
+        if size <= SIZE_MAX:
+            with path.open("rb") as stream:
+                raw = stream.read(SIZE_MAX + 1)
+            size = max(size, len(raw))
+    except OSError as error:
+        raise InputError(path.name, error.strerror or "unreadable", "a readable file") from error
+    if size > SIZE_MAX:
+        limit = f"{SIZE_MAX / 2**20:.0f} MiB or less"
+        raise InputError(path.name, f"{size / 2**20:.1f} MiB", limit)
+    return raw
+
+
+def _decoded(coded: bytes) -> str:
+    """One line, as UTF-8 or else Latin-1: files pasted together mix the two."""
+    try:
+        return coded.decode("utf-8")
+    except UnicodeDecodeError:
+        return coded.decode("latin-1")
+
+
+def split_cells(line: str, delimiter: str) -> list[str]:
+    return next(csv.reader([line], delimiter=delimiter)) if '"' in line else line.split(delimiter)
+
+
+def _unit(header: str, units: Mapping[str, float]) -> float | None:
+    """The factor to SI of the unit a header ends with, the longest that is known."""
+    bare = re.sub(r"[\[\](){}]", " ", header).strip()
+    starts = [0, *(match.end() for match in re.finditer(r"[\s_/:]+", bare))]
+    for start in starts:
+        unit = bare[start:].translate(_UNIT_SPELLING)
+        if unit in units:
+            return units[unit]
+        alike = {factor for known, factor in units.items() if known.lower() == unit.lower()}
+        if len(alike) == 1:
+            return alike.pop()
+    return None
+
+
+def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, float]:
+    """Columns whose header ends with one of the units, and the factor to SI."""
+    factors = {at: _unit(text, units) for at, text in enumerate(header)}
+    return {at: factor for at, factor in factors.items() if factor is not None}
+
+
+def angle_column(name: str, header: Sequence[str]) -> tuple[int, float]:
+    """Where the crank angle stands and its factor to rad."""
+    factors = _with_unit(header, ANGLE_UNITS)
+    found = list(factors)
+    if len(found) > 1:
+        found = [at for at in found if "crank" in header[at].lower()] or found
+    if len(found) != 1:
+        limit = "one column of crank angle with its unit (deg, rad or rev)"
+        raise InputError(f"{name} header", ", ".join(header), limit)
+    return found[0], factors[found[0]]
+
+
+def value_column(
+    name: str, header: Sequence[str], quantity: str, column: str | None
+) -> tuple[int, float]:
+    """Where the quantity stands and its factor to SI."""
+    factors = _with_unit(header, QUANTITY_UNITS[quantity])
+    found = list(factors)
+    if column is not None:
+        found = [at for at in found if header[at].lower().startswith(column.lower())]
+        found = [at for at in found if header[at] == column] or found
+    for word in (quantity, "total"):
+        if len(found) > 1:
+            found = [at for at in found if word in header[at].lower()] or found
+    if len(found) != 1:
+        wanted = f"one column of {column or quantity}"
+        limit = f"{wanted} with its unit ({', '.join(QUANTITY_UNITS[quantity])})"
+        raise InputError(f"{name} header", ", ".join(header), limit)
+    return found[0], factors[found[0]]
+
+
+def number_table(
+    name: str,
+    lines: Sequence[tuple[int, str]],
+    header: Sequence[str],
+    delimiter: str,
+    columns: tuple[int, int],
+) -> Array:
+    """The cells of two columns as numbers, (rows, 2)."""
+    table = np.empty((len(lines), len(columns)))
+    for row, (number, line) in enumerate(lines):
+        cells = [cell.strip() for cell in split_cells(line, delimiter)]
+        if len(cells) < len(header) or any(cells[len(header) :]):
+            limit = f"{len(header)} as in the header"
+            raise InputError(f"{name} line {number}", f"{len(cells)} cells", limit)
+        for place, at in enumerate(columns):
+            cell = cells[at] if delimiter == "," else cells[at].replace(",", ".")
+            if not _NUMBER.fullmatch(cell) or not abs(float(cell)) < np.inf:
+                field = f"{name} line {number}, {header[at]}"
+                raise InputError(field, cells[at] or "nothing", "a finite number")
+            table[row, place] = float(cell)
+    return table
