@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from scipy.signal import savgol_coeffs
+from numpy.typing import ArrayLike
+from scipy.special import eval_legendre, spherical_jn
 
 from geometry.arrays import Array, finite, readonly
 from geometry.errors import InputError
@@ -24,13 +24,14 @@ class Smoother:
 
     `strength` stretches the filter along the crank angle: at 2 a moving average of 60 deg
     becomes one of 120 deg, a cut at harmonic 24 one at harmonic 12. It moves continuously,
-    because the filter is applied to the harmonics of the cycle and not to samples.
+    because the filter is applied to the harmonics of the cycle and not to samples; a moving
+    average of an odd count alone steps, by 1/points in a harmonic at its points' resolution.
 
     Parameters
     ----------
     kind : str          one of `KINDS`
-    points : int        moving average, Savitzky-Golay: intervals in the window
-    spacing : float     moving average, Savitzky-Golay: crank angle between points, rad
+    points : int        moving average, Savitzky-Golay: values averaged
+    spacing : float     moving average, Savitzky-Golay: crank angle between values, rad
     width : float       gaussian: crank angle, rad, of the box with the same variance
     harmonics : float   harmonic: harmonics of the cycle that are kept
     taper : float       harmonic: 0 cuts hard; else the half-width of the cosine edge as a share
@@ -65,7 +66,7 @@ class Smoother:
             ("width", 0 < self.width <= CYCLE, "> 0 rad, within one cycle"),
             ("harmonics", 1 <= self.harmonics < np.inf, ">= 1"),
             ("taper", 0 <= self.taper < 1, "0 to 1"),
-            ("degree", self.kind != "savitzky_golay" or self._fits(), ">= 0, below the points"),
+            ("degree", 0 <= self.degree <= 20, "0 to 20"),
             ("strength", 0 < self.strength < np.inf, "> 0"),
         )
         for name, holds, limit in rules:
@@ -79,9 +80,6 @@ class Smoother:
         given = {name: getattr(smoothing, name, None) for name in names}
         return cls(**{name: value for name, value in given.items() if value is not None})
 
-    def _fits(self) -> bool:
-        return 0 <= self.degree < 2 * (self.points // 2) + 1
-
     def stretched(self, strength: float) -> Smoother:
         """The same smoother at another strength."""
         return replace(self, strength=float(strength))
@@ -94,7 +92,7 @@ class Smoother:
             "moving_average": self.points * self.spacing,
             "gaussian": self.width,
             "harmonic": CYCLE / self.harmonics,
-            "savitzky_golay": 2 * (self.points // 2) * self.spacing,
+            "savitzky_golay": self.points * self.spacing,
         }
         return float(widths[self.kind] * self.strength)
 
@@ -110,8 +108,7 @@ class Smoother:
             "gaussian": f"gaussian with the variance of a window of {degrees:.4g} deg of crank",
             "harmonic": f"harmonics of the cycle up to {self.harmonics / self.strength:.4g}: "
             f"the last one kept is {degrees:.4g} deg of crank long",
-            "savitzky_golay": f"Savitzky-Golay fit of degree {self.degree} to "
-            f"{2 * (self.points // 2) + 1} values {spacing:.4g} deg apart: "
+            "savitzky_golay": f"Savitzky-Golay fit of degree {self.degree}: "
             f"a window of {degrees:.4g} deg of crank",
         }
         return words[self.kind]
@@ -153,32 +150,26 @@ def smoothed(torque: ArrayLike, smoother: Smoother) -> Array:
     return readonly(np.fft.irfft(spectrum, n=count, axis=-1))
 
 
-def _sample_phase(smoother: Smoother, order: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Phase of a harmonic from one point to the next, and whether the points resolve it.
-
-    What the points cannot resolve is removed: the papers' average acts on samples, and samples
-    carry nothing above half their own rate.
-    """
-    phase = order * (2.0 * np.pi / CYCLE) * smoother.spacing
-    return phase, phase <= np.pi * (1.0 + 1e-12)
-
-
 def _moving_average(smoother: Smoother, order: Array) -> Array:
-    phase, resolved = _sample_phase(smoother, order)
+    phase = order * (2.0 * np.pi / CYCLE) * smoother.spacing  # from one point to the next
     reach = smoother.points // 2
     weights = np.full(reach + 1, 2.0 / smoother.points)
     weights[0] /= 2.0
     if smoother.points % 2 == 0:
         weights[-1] /= 2.0  # an even count is centred by two half values at its ends
-    return np.where(resolved, _cosine_sum(weights, phase), 0.0)
+    averaged = np.cos(phase[..., None] * np.arange(reach + 1)) @ weights
+    # The papers' average acts on samples, which carry nothing above half their own rate.
+    return np.where(phase <= np.pi * (1.0 + 1e-12), averaged, 0.0)
 
 
 def _savitzky_golay(smoother: Smoother, order: Array) -> Array:
-    phase, resolved = _sample_phase(smoother, order)
-    reach = smoother.points // 2
-    weights = savgol_coeffs(2 * reach + 1, smoother.degree)[reach:].copy()
-    weights[1:] *= 2.0
-    return np.where(resolved, _cosine_sum(weights / weights.sum(), phase), 0.0)
+    # The fit to a continuous window: a polynomial in Legendre's basis, read at its middle.
+    argument = 0.5 * smoother.points * smoother.spacing * order * (2.0 * np.pi / CYCLE)
+    found = np.zeros_like(order)
+    for even in range(0, smoother.degree + 1, 2):
+        middle = float(eval_legendre(even, 0.0)) * (-1.0) ** (even // 2)
+        found += (2 * even + 1) * middle * spherical_jn(even, argument)
+    return found
 
 
 def _gaussian(smoother: Smoother, order: Array) -> Array:
@@ -196,10 +187,6 @@ def _harmonic(smoother: Smoother, order: Array) -> Array:
 
 def _none(_smoother: Smoother, order: Array) -> Array:
     return np.ones_like(order)
-
-
-def _cosine_sum(weights: Array, phase: Array) -> Array:
-    return np.cos(phase[..., None] * np.arange(len(weights))) @ weights
 
 
 _TRANSFER: dict[str, Callable[[Smoother, Array], Array]] = {
