@@ -88,7 +88,7 @@ class BearingLine:
     def enlargement(self, load: Array) -> Array:
         """Factor that lets a load dent the bore by more than the round-off of its play, (n,)."""
         size = np.abs(load[0]) + np.abs(load[1]) / self.positions[-1]
-        least = _LEAST_DENT * self.stiffness.sum() * self.play.max()
+        least = _LEAST_DENT * self.stiffness.min() * self.play.max()
         return np.where((size > 0.0) & (size < least), least / np.where(size > 0.0, size, 1.0), 1.0)
 
     def slack_corners(self) -> Array:
