@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf, isfinite, radians
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import (
     AfterValidator,
@@ -112,6 +112,8 @@ Force = Annotated[float, In("N", at_least=0, at_most=1e9)]
 Share = Annotated[float, In(at_least=0, at_most=1)]
 Positive = Annotated[float, In(above=0, at_most=1e6)]
 Fraction = Annotated[float, In(above=0, at_most=1)]
+Safety = Annotated[float, In(above=0, at_most=100)]
+Residual = Annotated[float, In(above=0, at_most=1e-3)]
 
 
 class Section(BaseModel):
@@ -321,61 +323,57 @@ class Material(Section):
 class Smoothing(Section):
     """What is done to the torque before the lift is drawn from it; angles are crank angles."""
 
-    kind: Literal["none", "moving_average", "gaussian", "harmonic"] = "none"
-    points: Annotated[int, Field(ge=1, le=720)] = 1
+    kind: Literal["none", "moving_average", "gaussian", "harmonic", "savitzky_golay"] = "none"
+    points: Annotated[int, Field(ge=1, le=720)] = 12
     spacing: Annotated[float, In("deg", above=0, at_most=120)] = radians(5.0)
-    width: Duration | None = None
-    harmonics: Annotated[int, Field(ge=1, le=360)] | None = None
+    width: Duration = radians(60.0)
+    harmonics: Annotated[float, In(at_least=1, at_most=360)] = 12.0
+    taper: Annotated[float, In(at_least=0, below=1)] = 0.25
+    degree: Annotated[int, Field(ge=0, le=20)] = 2
     source: Text = ""
+
+    @model_validator(mode="after")
+    def _fits_into_a_cycle(self) -> Self:
+        if self.points * self.spacing > radians(720.0) + 1e-9:
+            raise InputError("smoothing.points", self.points, "<= 720 deg over smoothing.spacing")
+        return self
 
 
 class Limits(Section):
-    """What the checks compare with; a margin above 1 is a demand beyond the bare limit."""
+    """What the checks compare with; a safety above 1 asks for more than the bare limit."""
 
     closure: Annotated[float, In("mm", above=0, at_most=1)] = 1e-9
     pressure_angle: Annotated[float, In("deg", above=0, below=90)] = radians(30.0)
     curvature_ratio: Annotated[float, In(at_least=1, at_most=100)] = 1.5
     undercut_factor: Annotated[float, In(above=0, below=1)] = 0.3
-    contact_safety: Annotated[float, In(above=0, at_most=100)] = 1.0
-    yield_safety: Annotated[float, In(above=0, at_most=100)] = 1.0
-    shakedown_safety: Annotated[float, In(above=0, at_most=100)] = 1.0
+    second_contact_depth: Annotated[float, In("mm", above=0, at_most=1)] = 1e-6
+    tool_radius: Length | None = None
+    minimum_wall: Annotated[float, In(at_least=1, at_most=100)] = 1.75
+    contact_safety: Safety = 1.0
+    yield_safety: Safety = 1.0
+    shakedown_safety: Safety = 1.0
     contact_force_margin: Annotated[float, In(above=0, below=1)] = 0.2
+    jump: Safety = 1.0
     jam_index: Annotated[float, In(above=0, below=1)] = 0.5
-    roller_static_safety: Annotated[float, In(above=0, at_most=100)] = 1.0
+    roller_static_safety: Safety = 1.0
+    roller_life: Annotated[float, In("h", above=0, at_most=1e6)] | None = None
     roller_speed_share: Fraction = 0.7
     torque_reduction: Annotated[float, In(above=0, below=1)] = 0.4
-    equilibrium: Annotated[float, In(above=0, at_most=1e-3)] = 1e-9
-    complementarity: Annotated[float, In(above=0, at_most=1e-3)] = 1e-9
+    energy_closure: Residual = 1e-9
+    friction_balance: Residual = 1e-6
+    equilibrium: Residual = 1e-9
+    complementarity: Residual = 1e-9
     mesh_uncertainty: Annotated[float, In(above=0, at_most=1)] = 0.03
-    sources: Annotated[dict[str, Text], Field(validate_default=True)] = Field(default_factory=dict)
+    sources: dict[str, Text] = Field(default_factory=dict)
 
     @field_validator("sources")
     @classmethod
-    def _every_limit_has_a_source(cls, given: dict[str, str]) -> dict[str, str]:
+    def _name_limits(cls, given: dict[str, str]) -> dict[str, str]:
+        known = [name for name in cls.model_fields if name != "sources"]
         for key in given:
-            if key not in LIMIT_SOURCES:
-                limit = f"a known limit{_suggestion(key, LIMIT_SOURCES)}"
-                raise refusal(limit, unknown_key=key)
-        return LIMIT_SOURCES | given
-
-
-LIMIT_SOURCES = {
-    "closure": "a step of 1 nm is below any measurement",
-    "pressure_angle": "Rothbart, Cam Design Handbook (2004), ch. 6: 30 deg, translating follower",
-    "curvature_ratio": "Norton, Cam Design and Manufacturing Handbook: 1.5 to 3 roller radii",
-    "undercut_factor": "assumed; 0 is a cusp (Rothbart, Cam Design Handbook, sec. 6.4.2)",
-    "contact_safety": "1 is the endurance pressure of the material card",
-    "yield_safety": "1 is first yield below the surface, Johnson, Contact Mechanics (1985), 4.2",
-    "shakedown_safety": "1 is p0 = 4 k, Johnson, Contact Mechanics (1985), sec. 9.2",
-    "contact_force_margin": "Norton: least contact force 0.2 to 0.3 of the preload",
-    "jam_index": "assumed; 1 is self-locking (Rothbart, eq. 6.8)",
-    "roller_static_safety": "bearing makers, after ISO 76: 1 for normal running",
-    "roller_speed_share": "assumed share of the catalogue's limiting speed",
-    "torque_reduction": "assumed; the least that makes the cam worth building",
-    "equilibrium": "round-off of a direct solve",
-    "complementarity": "round-off of a direct solve",
-    "mesh_uncertainty": "assumed; grid convergence index of ASME V&V 20, 3 to 5 % in common use",
-}
+            if key not in known:
+                raise refusal(f"a known limit{_suggestion(key, known)}", unknown_key=key)
+        return given
 
 
 class Solver(Section):
