@@ -76,8 +76,10 @@ def plan(
         for s in np.geomspace(low, high, FINE_STEPS, endpoint=False)[1:]:
             seen[float(s)] = _foreseen(first.stretched(s), known, predict)
     chosen = _least(seen)
+    if seen[chosen][0]:
+        return None  # whatever it helps, it would be paid for with the torque
     # A pass is worth a small step, a little less of a failure is not.
-    near = 0.25 * tolerance if seen[chosen][:2] == (False, 0) else tolerance
+    near = 0.25 * tolerance if seen[chosen][1] == 0 else tolerance
     steps = [abs(math.log(chosen / item.smoother.strength)) for item in attempts]
     gains = seen[chosen] < min(score(item.checks) for item in attempts)
     return first.stretched(chosen) if gains and min(steps) > near else None

@@ -1,0 +1,118 @@
+"""One check, the verdict over many, and their order."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from pipeline.checks.check import Check
+from pipeline.checks.verdict import binding, in_order, verdict
+
+
+def at_most(demand, limit=2.0, **more) -> Check:
+    return Check("x", "X", demand, limit, "MPa", **more)
+
+
+def at_least(demand, limit=2.0, **more) -> Check:
+    return Check("x", "X", demand, limit, "-", sense="at_least", **more)
+
+
+@pytest.mark.parametrize(
+    ("check", "status", "utilisation"),
+    [
+        (at_most(2.0 * 0.99), "pass", 0.99),
+        (at_most(2.0), "pass", 1.0),
+        (at_most(2.0 * 1.01), "fail", 1.01),
+        (at_least(2.0 / 0.99), "pass", 0.99),
+        (at_least(2.0), "pass", 1.0),
+        (at_least(2.0 / 1.01), "fail", 1.01),
+        (at_least(0.0), "fail", math.inf),
+        (at_least(-1.0), "fail", math.inf),
+        (at_most(math.inf), "fail", math.inf),
+        (at_most(0.0, 0.0), "pass", 0.0),
+        (at_most(1.0, 0.0), "fail", math.inf),
+    ],
+)
+def test_status_and_utilisation(check, status, utilisation):
+    assert check.status == status
+    assert check.utilisation == pytest.approx(utilisation)
+
+
+@pytest.mark.parametrize("sense", ["at_most", "at_least"])
+@pytest.mark.parametrize(
+    ("demand", "limit"),
+    [(None, 1.0), (1.0, None), (np.nan, 1.0), (1.0, np.nan), (None, None), (1.0, np.inf)],
+)
+def test_a_missing_number_never_passes(sense, demand, limit):
+    check = Check("x", "X", demand, limit, sense=sense)
+    assert check.status == "not_evaluated"
+    assert check.utilisation is None
+    assert verdict([check]) == "fail"
+    assert binding([check]) == ("x",)
+
+
+def test_numpy_numbers_are_numbers():
+    check = at_most(np.float64(1.0))
+    assert check.status == "pass"
+    assert isinstance(check.as_record()["demand"], float)
+
+
+@pytest.mark.parametrize("demand", [3.0, None, np.nan, np.inf])
+def test_a_waiver_is_printed_and_lets_the_verdict_pass(demand):
+    check = at_most(demand, waiver="A. Engineer, 2025-01-02: proven in service")
+    assert check.status == "waived"
+    assert verdict([check]) == "pass"
+    assert binding([check]) == ()
+    assert "proven in service" in check.as_record()["waiver"]
+
+
+def test_a_waiver_not_needed_stays_a_pass():
+    assert at_most(1.0, waiver="A. Engineer").status == "pass"
+
+
+def test_an_optional_check_does_not_decide():
+    failed, missing = at_most(3.0, must_have=False), at_most(None, must_have=False)
+    assert verdict([failed, missing, at_most(1.0)]) == "pass"
+    assert binding([failed, missing]) == ()
+
+
+def test_no_checks_no_pass():
+    assert verdict([]) == "fail"
+
+
+def test_order_not_evaluated_first_then_worst():
+    checks = [
+        Check("mild", "", 0.5, 1.0),
+        Check("bad", "", 3.0, 1.0),
+        Check("never", "", 0.0, 1.0, sense="at_least"),
+        Check("optional_unknown", "", None, 1.0, must_have=False),
+        Check("unknown", "", None, 1.0),
+        Check("over", "", 1.01, 1.0),
+    ]
+    names = [check.id for check in in_order(checks)]
+    assert names == ["unknown", "optional_unknown", "never", "bad", "over", "mild"]
+    assert binding(checks) == ("unknown", "never", "bad", "over")
+
+
+def test_order_does_not_depend_on_the_input_order():
+    checks = [Check(name, "", 1.0, 1.0) for name in "cab"]
+    assert [check.id for check in in_order(checks)] == ["a", "b", "c"]
+
+
+def test_record_has_the_contract_s_keys():
+    record = at_most(1.0, load_case="idle", cam_angle_deg=12.0, source="s", method="m").as_record()
+    first = "id title demand limit unit utilisation status load_case cam_angle_deg source method"
+    assert list(record)[:11] == first.split()
+    assert record["utilisation"] == 0.5
+
+
+@pytest.mark.parametrize(
+    "check",
+    [at_most(np.nan), at_most(np.inf), at_least(0.0), at_most(1.0, np.inf), at_most(None)],
+)
+def test_record_is_valid_json(check):
+    record = check.as_record()
+    assert json.loads(json.dumps(record, allow_nan=False)) == record
+    assert record["utilisation"] is None
+    assert record["status"] in ("fail", "not_evaluated")

@@ -1,0 +1,305 @@
+"""The feedback: gentler while it helps, never at the price of the torque, always an end."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from geometry.errors import GeometryError, InputError
+from pipeline.checks.check import Check
+from pipeline.checks.verdict import verdict
+from pipeline.smoothing.gentler import Next, Stop, best_attempt, next_smoother
+from pipeline.smoothing.outlook import Attempt, keeps_torque, score
+from pipeline.smoothing.smoothers import Smoother
+
+Model = Callable[[float], tuple[Check, ...]]
+BOUND = 6
+
+
+def check(name: str, utilisation: float, lift: bool = True, **more) -> Check:
+    return Check(name, name, utilisation, 1.0, must_have=True, lift_can_help=lift, **more)
+
+
+def torque(reduction: float) -> Check:
+    return Check("torque_reduction", "torque", reduction, 0.4, sense="at_least")
+
+
+def drive(model: Model, max_trials: int = BOUND, predict: Model | None = None, kind="gaussian"):
+    """Run whole trials until the feedback ends; the attempts, the reasons, the end."""
+    smoother, attempts, whys = Smoother(kind), [], []
+    while True:
+        attempts.append(Attempt(smoother, model(smoother.strength)))
+        step = next_smoother(
+            attempts,
+            max_trials,
+            None if predict is None else lambda ahead: predict(ahead.strength),
+        )
+        if isinstance(step, Stop):
+            return attempts, whys, step
+        assert len(attempts) < max_trials
+        whys.append(step)
+        smoother = step.smoother
+
+
+def strengths(attempts) -> list[float]:
+    return [attempt.smoother.strength for attempt in attempts]
+
+
+def passes_at_once(_s: float):
+    return torque(0.7), check("pressure_angle", 0.9)
+
+
+def passes_at_half_again(s: float):
+    return torque(0.9 - 0.25 * s), check("pressure_angle", 1.45 / s)
+
+
+def cannot_pass(s: float):
+    """As the published engine: torque lost beyond 2.1, angle met at 2, roller never."""
+    return (
+        torque(0.77 - 0.37 * (s - 1.0) / 1.1),
+        check("pressure_angle", 1.4 / (1.0 + 0.4 * (s - 1.0))),
+        check("roller_static", 2.9 - 0.12 * s),
+        check("mesh", 0.3, lift=False),
+    )
+
+
+BOTH = pytest.mark.parametrize("informed", [False, True], ids=["trials alone", "predictor"])
+
+
+@BOTH
+def test_passes_at_once(informed):
+    attempts, _, stop = drive(passes_at_once, predict=passes_at_once if informed else None)
+    assert len(attempts) == 1
+    assert stop.passed
+    assert stop.best == 1
+    assert "trial 1 passes" in stop.reason
+
+
+@BOTH
+def test_passes_after_some_trials_and_torque_is_kept(informed):
+    model = passes_at_half_again
+    attempts, whys, stop = drive(model, predict=model if informed else None)
+    assert stop.passed
+    assert verdict(attempts[-1].checks) == "pass"
+    assert 2 <= len(attempts) <= 3
+    assert "pressure_angle at 1.45" in whys[0].why
+
+
+def test_the_gentlest_change_foreseen_to_pass_is_taken():
+    attempts, _, _ = drive(passes_at_half_again, predict=passes_at_half_again)
+    # 1.45 passes; a margin of half a percent and the fine sweep (1.1^(1/16)) lie above it.
+    assert strengths(attempts) == [1.0, pytest.approx(1.45 * 1.005, rel=0.01)]
+    assert attempts[-1].smoother.strength >= 1.45
+
+
+@BOTH
+def test_cannot_pass_ends_on_the_strongest_smoothing_that_keeps_the_torque(informed):
+    attempts, _, stop = drive(cannot_pass, predict=cannot_pass if informed else None)
+    assert not stop.passed
+    assert stop.binding == ("roller_static",)
+    assert len(attempts) <= (3 if informed else 5)
+    assert stop.best == len(attempts)
+    last = attempts[-1]
+    assert keeps_torque(last.checks)
+    # The torque is lost at 2.1; the stated tolerance is 2 %.
+    assert 2.1 / 1.03 <= last.smoother.strength <= 2.1
+    assert "smoothing cannot reach" in stop.reason
+    assert "roller_static at 2.78 at trial 1, 2.65 of its limit now" in stop.reason
+
+
+@BOTH
+def test_torque_lost_at_trial_one_ends_at_once(informed):
+    def model(s):
+        return torque(0.39 / s), check("pressure_angle", 1.4 / s)
+
+    attempts, _, stop = drive(model, predict=model if informed else None)
+    assert len(attempts) == 1
+    assert stop.binding == ("pressure_angle", "torque_reduction")
+    assert "torque_reduction is not met by the smoothing the case asks for" in stop.reason
+
+
+def test_torque_lost_at_trial_one_but_regained_is_found_by_the_predictor():
+    def model(s):  # inertia eats the reduction of a sharp cam
+        return torque(0.5 - (s - 2.0) ** 2 / 5.0), check("pressure_angle", 1.2 / s)
+
+    attempts, whys, stop = drive(model, predict=model)
+    assert stop.passed
+    assert len(attempts) == 2
+    assert "torque_reduction is lost" in whys[0].why
+
+
+def test_what_the_lift_cannot_help_is_left_alone():
+    def model(_s):
+        return torque(0.7), check("closure", 2.0, lift=False)
+
+    attempts, _, stop = drive(model)
+    assert len(attempts) == 1
+    assert stop.binding == ("closure",)
+    assert "no gentler lift can help" in stop.reason
+    assert "not a matter of a gentler lift" in stop.reason
+
+
+def test_a_missing_number_does_not_drive_the_lift_and_does_not_pass():
+    def model(_s):
+        missing = Check("bush_pv_B", "pv", 2.0, None, lift_can_help=True)
+        return torque(0.7), missing
+
+    attempts, _, stop = drive(model)
+    assert len(attempts) == 1
+    assert stop.binding == ("bush_pv_B",)
+    assert "bush_pv_B is not evaluated" in stop.reason
+
+
+@BOTH
+def test_nan_torque_reduction_is_not_kept(informed):
+    def model(_s):
+        return torque(np.nan), check("pressure_angle", 1.4)
+
+    attempts, _, stop = drive(model, predict=model if informed else None)
+    assert len(attempts) == 1
+    assert "torque_reduction" in stop.binding
+
+
+def test_nan_later_ends_on_a_trial_that_is_known():
+    def model(s):
+        lost = s > 1.5
+        return torque(np.nan if lost else 0.7), check("pressure_angle", np.nan if lost else 2.9 / s)
+
+    attempts, _, stop = drive(model)
+    assert keeps_torque(attempts[-1].checks)
+    assert len(attempts) <= BOUND
+    assert stop.binding == ("pressure_angle",)
+
+
+def test_no_smoothing_asked_for_cannot_be_gentler():
+    attempts, _, stop = drive(cannot_pass, kind="none")
+    assert len(attempts) == 1
+    assert "asks for no smoothing" in stop.reason
+
+
+def test_a_case_without_an_engine_has_no_torque_to_lose():
+    def model(s):
+        return (check("pressure_angle", 1.3 / s),)
+
+    attempts, _, stop = drive(model)
+    assert stop.passed
+    assert len(attempts) == 2
+
+
+def test_a_wiggling_predictor_still_ends_on_the_best():
+    def model(s):
+        return (
+            torque(0.8 - 0.15 * s),
+            check("pressure_angle", 1.5 + 0.4 * np.cos(9.0 * s)),
+        )
+
+    attempts, _, stop = drive(model, predict=model)
+    assert best_attempt(attempts) == len(attempts) - 1
+    assert stop.best == len(attempts)
+    # 9 s = pi (2 n + 1), s >= 1: every minimum is 1.1 and n = 1 comes first.
+    assert score(attempts[-1].checks)[2] == pytest.approx(1.1, rel=0.01)
+
+
+def test_a_predictor_that_is_off_is_put_right_by_the_trials():
+    def truth(s):
+        return torque(0.9 - 0.25 * s), check("pressure_angle", 1.6 / s)
+
+    def closed_form(s):  # a tenth too low, and a torque that is too rosy
+        return torque(0.95 - 0.25 * s), check("pressure_angle", 1.44 / s)
+
+    attempts, _, stop = drive(truth, predict=closed_form)
+    assert stop.passed
+    assert len(attempts) <= 4
+
+
+def test_checks_nobody_foresees_stay_as_the_trial_found_them():
+    def truth(s):
+        return torque(0.9 - 0.25 * s), check("pressure_angle", 1.4 / s), check("fe_only", 1.3)
+
+    def closed_form(s):
+        return truth(s)[:2]
+
+    attempts, _, stop = drive(truth, predict=closed_form)
+    assert stop.binding == ("fe_only",)
+    assert keeps_torque(attempts[-1].checks)
+    assert len(attempts) <= 3
+
+
+def test_strengths_without_a_cam_are_passed_over():
+    def truth(s):
+        return torque(0.9 - 0.25 * s), check("pressure_angle", 1.4 / s)
+
+    def closed_form(s):
+        if 1.3 < s < 1.6:
+            raise GeometryError("no such cam")
+        return truth(s)
+
+    attempts, _, stop = drive(truth, predict=closed_form)
+    assert stop.passed
+    assert attempts[-1].smoother.strength >= 1.6
+
+
+@BOTH
+@pytest.mark.parametrize("bound", [1, 2, 3, 4, 6])
+@pytest.mark.parametrize("lost_at", [1.05, 1.3, 1.9, 2.1, 3.0])
+def test_never_more_trials_than_allowed_and_the_last_is_the_best(informed, bound, lost_at):
+    def model(s):
+        return torque(0.4 + 0.3 * (lost_at - s)), check("roller_static", 2.9 - 0.1 * s)
+
+    attempts, _, stop = drive(model, bound, predict=model if informed else None)
+    assert len(attempts) <= bound
+    assert stop.best == len(attempts)
+    assert score(attempts[-1].checks) == min(score(item.checks) for item in attempts)
+    assert keeps_torque(attempts[-1].checks)
+
+
+def test_bound_is_named():
+    *_, stop = drive(cannot_pass, 1)
+    assert "the bound of 1 trials is reached" in stop.reason
+
+
+def test_going_back_repeats_the_best_and_then_ends():
+    worse = Attempt(Smoother("gaussian", strength=2.0), (torque(0.2), check("roller_static", 2.0)))
+    better = Attempt(Smoother("gaussian"), (torque(0.41), check("roller_static", 2.9)))
+    step = next_smoother([better, worse], 3)
+    assert isinstance(step, Next)
+    assert step.final
+    assert step.smoother == better.smoother
+    assert "trial 1 is the best" in step.why
+    end = next_smoother([better, worse, better], 3)
+    assert isinstance(end, Stop)
+    assert end.best == 3
+
+
+def test_without_a_place_to_go_back_the_better_trial_is_named():
+    worse = Attempt(Smoother("gaussian", strength=2.0), (torque(0.2), check("roller_static", 2.0)))
+    better = Attempt(Smoother("gaussian"), (torque(0.41), check("roller_static", 2.9)))
+    stop = next_smoother([better, worse], 2)
+    assert isinstance(stop, Stop)
+    assert stop.best == 1
+    assert "trial 1 was better" in stop.reason
+
+
+def test_infinite_utilisation_is_a_failure_like_any_other():
+    def model(s):
+        force = -0.1 if s < 1.5 else 0.3
+        lost = Check("contact_force_margin", "m", force, 0.2, sense="at_least", lift_can_help=True)
+        return torque(0.9 - 0.2 * s), lost
+
+    attempts, whys, stop = drive(model)
+    assert stop.passed
+    assert strengths(attempts) == [1.0, 2.0]  # the step is bounded
+    assert "inf" in whys[0].why
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"attempts": []}, {"max_trials": 0}, {"tolerance": 0.0}, {"tolerance": np.nan}]
+)
+def test_nonsense_is_refused(wrong):
+    given = {
+        "attempts": [Attempt(Smoother(), cannot_pass(1.0))],
+        "max_trials": BOUND,
+        "tolerance": 0.02,
+    }
+    with pytest.raises(InputError):
+        next_smoother(**(given | wrong))
