@@ -1,0 +1,259 @@
+"""The command `camwright`: arguments in, exit code out. Nothing imports this module.
+
+Heavy modules are imported by the command that needs them, so that ``--version`` answers at once.
+"""
+
+from __future__ import annotations
+
+import json
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+from rich.console import Console
+from rich.table import Table as RichTable
+
+from geometry.errors import CamError, InputError, ResultError
+from pipeline.progress import Bars, Lines, Progress
+
+if TYPE_CHECKING:
+    from pipeline.results import Run
+
+PASSED, FAILED, ERROR, INTERRUPTED = 0, 1, 2, 130
+TEMPLATE_SUFFIX = ".toml"
+
+app = typer.Typer(
+    name="camwright",
+    help="From engine torque to a balancing cam with a verdict.",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+_out = Console(highlight=False, soft_wrap=True)
+_err = Console(stderr=True, highlight=False, soft_wrap=True)
+
+CaseArgument = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
+DirArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Run folder.")]
+
+
+def main() -> NoReturn:
+    """Entry point: every error becomes one line and an exit code."""
+    arguments = [argument for argument in sys.argv[1:] if argument != "--debug"]
+    signal.signal(signal.SIGTERM, _as_interrupt)
+    try:
+        code = app(args=arguments, standalone_mode=False)
+        sys.exit(code if isinstance(code, int) else PASSED)
+    except typer.Exit as leaving:
+        sys.exit(leaving.exit_code)
+    except (KeyboardInterrupt, typer.Abort):
+        running = arguments[:1] == ["run"]
+        _say("interrupted" + ("; the same command with --resume goes on" if running else ""))
+        sys.exit(INTERRUPTED)
+    except Exception as error:
+        if "--debug" in sys.argv:
+            raise
+        _say(_describe(error))
+        sys.exit(ERROR)
+
+
+def _describe(error: Exception) -> str:
+    usage = getattr(error, "format_message", None)  # the parser's own; its class has no fixed home
+    if usage is not None:
+        return _one_line(f"{usage()} (--help shows the usage)")
+    if isinstance(error, CamError):
+        return _one_line(str(error))
+    if isinstance(error, OSError):
+        place = f"{error.filename}: " if error.filename else ""
+        return _one_line(f"{place}{error.strerror or error}")
+    kind = type(error).__name__
+    return f"unexpected {kind}: {_one_line(str(error))} (--debug shows where)"
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _say(text: str) -> None:
+    print(f"camwright: {text}", file=sys.stderr)  # noqa: T201 - rich would read markup in it
+
+
+def _as_interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        import importlib.metadata
+
+        _out.print(f"camwright {importlib.metadata.version('camwright')}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def _root(
+    context: typer.Context,
+    version: Annotated[  # noqa: ARG001 - the callback acts
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show and leave.")
+    ] = False,
+    debug: Annotated[  # noqa: ARG001 - `main` acts
+        bool, typer.Option("--debug", help="Show where an unexpected error arose.")
+    ] = False,
+) -> None:
+    """From engine torque to a balancing cam with a verdict."""
+    if context.invoked_subcommand is None:
+        _out.print(context.get_help(), markup=False)
+
+
+@app.command()
+def run(
+    case: CaseArgument,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run is to lie.")],
+    positions: Annotated[
+        int | None, typer.Option(help="Positions per cam turn, instead of the case's.")
+    ] = None,
+    jobs: Annotated[int | None, typer.Option(help="Processes; all cores by default.")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on after an interruption.")] = False,
+) -> int:
+    """Run a case: torque, lift, contour, mesh, contact, checks, report."""
+    from pipeline.case import load_case_file
+
+    if jobs is not None and not 1 <= jobs <= 256:
+        raise InputError("--jobs", jobs, ">= 1 and <= 256")
+    design = load_case_file(case)
+    if positions is not None:
+        design = design.with_positions(positions)
+    if not (resume and _finished(out, design.sha256)):
+        from pipeline.run import run_case
+
+        with _progress() as progress:
+            run_case(design, out, positions=positions, jobs=jobs, resume=resume, progress=progress)
+    _show(_load(out))
+    return PASSED
+
+
+@app.command()
+def check(
+    folder: DirArgument,
+    as_json: Annotated[bool, typer.Option("--json", help="The checks as JSON.")] = False,
+) -> int:
+    """Verdict of a finished run, from its folder alone: exit 0 passed, 1 failed, 2 error."""
+    from pipeline.results import verify_run
+
+    verify_run(folder)
+    found = _load(folder)
+    if as_json:
+        document = {
+            "case": found.summary["case"],
+            "input_sha256": found.summary["input_sha256"],
+            "verdict": found.verdict,
+            "binding": list(found.final.binding),
+            "trials": found.summary["trials"],
+            "headline": found.summary["headline"],
+            "checks": [dict(record) for record in found.final.checks],
+        }
+        print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - not to be wrapped
+    else:
+        _show(found)
+    return PASSED if found.verdict == "pass" else FAILED
+
+
+@app.command()
+def report(
+    folder: DirArgument,
+) -> int:
+    """Write the report of a finished run again; nothing is solved."""
+    from reports import page
+
+    _load(folder)
+    _out.print(f"report: {page.build(folder)}", markup=False)
+    return PASSED
+
+
+@app.command()
+def init(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the new case.")],
+) -> int:
+    """Write NAME.toml, a commented case file that runs."""
+    from pipeline.case_template import template
+
+    name = name.removesuffix(TEMPLATE_SUFFIX)
+    text = template(name)
+    path = Path(f"{name}{TEMPLATE_SUFFIX}")
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise ResultError(f"{path}: exists already and is left as it is") from None
+    _out.print(f"wrote {path}; next: camwright run {path} --out runs/{name}", markup=False)
+    return PASSED
+
+
+def _load(folder: Path) -> Run:
+    from pipeline.results import load_run
+
+    return load_run(folder)
+
+
+def _finished(out: Path, sha256: str) -> bool:
+    """Whether `out` already holds this run, by the same versions: nothing is left to resume."""
+    from pipeline.results import read_summary
+    from pipeline.run_folder import versions
+
+    if not (out / "run.json").is_file():
+        return False
+    summary = read_summary(out)
+    return bool(summary["input_sha256"] == sha256 and summary["versions"] == versions())
+
+
+@contextmanager
+def _progress() -> Iterator[Progress]:
+    """Bars on a terminal, plain lines where nobody watches; both on the error stream."""
+    if _err.is_terminal:
+        with Bars(_err) as bars:
+            yield bars
+    else:
+        yield Lines(lambda text: print(text, file=sys.stderr, flush=True))  # noqa: T201
+
+
+def _show(found: Run) -> None:
+    """Checks by utilisation, then the verdict and where the report is."""
+    table = RichTable(box=None, pad_edge=False, header_style="")
+    for heading, side in (("check", "left"), ("demand", "right"), ("limit", "right"),
+                          ("unit", "left"), ("used", "right"), ("status", "left")):  # fmt: skip
+        table.add_column(heading, justify=side, no_wrap=heading != "check")  # type: ignore[arg-type]
+    for record in sorted(found.final.checks, key=_rank):
+        status = record["status"] + ("" if record.get("must_have", True) else " (optional)")
+        used = record["utilisation"]
+        table.add_row(
+            record["title"],
+            _number(record["demand"]),
+            _number(record["limit"]),
+            record["unit"],
+            "-" if used is None else f"{used:.0%}",
+            status,
+        )
+    _out.print(table)
+    binding = ", ".join(found.final.binding)
+    trials = f"{len(found.trials)} trial{'s' if len(found.trials) > 1 else ''}"
+    _out.print(f"verdict: {found.verdict} after {trials}", markup=False)
+    if binding:
+        _out.print(f"binding: {binding}", markup=False)
+    _out.print(f"report: {found.path / '8_report.html'}", markup=False)
+
+
+def _rank(record: Any) -> tuple[bool, float, str]:
+    """Without a number first, then by falling utilisation."""
+    used = record["utilisation"]
+    return used is not None, -(used or 0.0), record["id"]
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4g}"
+
+
+if __name__ == "__main__":
+    main()
