@@ -121,6 +121,10 @@ class BodyMesh:
         """The mesh as ``skfem.MeshTri2``: same elements in the same order, facets by name.
 
         Vertices keep their numbers. Middles need not; `dof_map` tells which is which.
+
+        ``skfem.FacetBasis`` inverts the curved mapping to 1e-12 of a facet, which round-off
+        allows only where coordinates are below some 1000 facet lengths. Move the contact to the
+        origin first (`transformed`), or integrate along `facet_triples`.
         """
         from skfem import MeshTri2
 
@@ -294,6 +298,7 @@ def _mirrored(half: Triangulation, axis: str) -> BodyMesh:
     points = np.empty((2, count + own.size))
     points[:, image] = half.points * [[-1.0], [1.0]]
     points[:, kept] = half.points
+    points[0, kept[shared]] = 0.0
     triangles = np.hstack([kept[half.triangles], image[half.triangles[[0, 2, 1, 5, 4, 3]]]])
     boundaries = {}
     for name, facet in half.boundaries.items():

@@ -73,7 +73,7 @@ def write_vtu(
     path: str | Path,
     meshes: BodyMesh | Mapping[str, BodyMesh],
     point_data: Fields | Mapping[str, Fields] | None = None,
-    field_data: Mapping[str, float | str] | None = None,
+    field_data: Mapping[str, float] | None = None,
 ) -> None:
     """Write bodies with fields as quadratic triangles for ParaView.
 
@@ -84,7 +84,7 @@ def write_vtu(
     point_data : mapping            field name, unit included -> (n,) or (c, n) at the nodes; for
                                     several bodies one such mapping per body name, same fields
                                     in each. A vector (2, n) gets a third component 0.
-    field_data : mapping            numbers and texts that belong to the file as a whole
+    field_data : mapping            numbers that belong to the file as a whole
 
     With several bodies, cell and point data ``body`` number them from 0.
 
@@ -121,7 +121,7 @@ def write_vtu(
     )
     with _replacing(path) as temporary:
         grid.write(temporary, file_format="vtu")
-        _insert_field_data(temporary, {"length_unit": "mm", **(field_data or {})})
+        _insert_field_data(temporary, field_data or {})
 
 
 def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Any]) -> dict[str, Any]:
@@ -144,18 +144,13 @@ def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Any]) -> dict[str
     return {name: np.concatenate(values) for name, values in parts.items()}
 
 
-def _insert_field_data(path: Path, values: Mapping[str, float | str]) -> None:
-    """Add numbers and texts to a VTU file; meshio leaves its field data out."""
-    rows = []
-    for name, value in values.items():
-        if isinstance(value, str):
-            kind, text = "String", " ".join(str(byte) for byte in (*value.encode(), 0))
-        else:
-            kind, text = "Float64", repr(float(value))
-        rows.append(
-            f'<DataArray type="{kind}" Name={quoteattr(name)} NumberOfTuples="1" '
-            f'format="ascii">{text}</DataArray>'
-        )
+def _insert_field_data(path: Path, values: Mapping[str, float]) -> None:
+    """Add numbers to a VTU file; meshio leaves its field data out."""
+    rows = (
+        f'<DataArray type="Float64" Name={quoteattr(name)} NumberOfTuples="1" '
+        f'format="ascii">{float(value)!r}</DataArray>'
+        for name, value in values.items()
+    )
     mark = b"<UnstructuredGrid>"
     block = f"<FieldData>{''.join(rows)}</FieldData>".encode()
     path.write_bytes(path.read_bytes().replace(mark, mark + block, 1))
