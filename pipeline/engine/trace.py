@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import Akima1DInterpolator
 
-from geometry.arrays import Array, freeze, readonly
+from geometry.arrays import Array, finite, freeze, readonly
 from geometry.errors import InputError
 from pipeline.engine.trace_file import (
     QUANTITY_UNITS,
@@ -26,6 +26,7 @@ CYCLE_ANGLE = 4.0 * pi
 ROWS_MIN = 12
 GAP_MAX = np.radians(20.0)
 GAP_OVER_MEDIAN_MAX = 5.0
+VALUE_MAX = 1e12  # beyond what any engine shows, and what sums and squares can bear
 END_TOLERANCE = 0.25  # of the usual spacing, by which the last sample may miss the period's end
 
 
@@ -54,7 +55,12 @@ class Trace:
     end_difference: float = 0.0
 
     def __post_init__(self) -> None:
-        freeze(self, angle=self.angle, values=self.values)
+        freeze(self, angle=self.angle, values=finite(f"{self.source}, {self.column}", self.values))
+        wild = np.abs(self.values) > VALUE_MAX
+        if wild.any():
+            worst = float(self.values[wild][0])
+            limit = f"within {VALUE_MAX:g} of zero in SI units"
+            raise InputError(f"{self.source}, {self.column}", worst, limit)
 
     @property
     def spacing(self) -> Array:

@@ -46,7 +46,6 @@ QUANTITY_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
             "MNm": 1e6,
             "Ncm": 1e-2,
             "Nmm": 1e-3,
-            "J/rad": 1.0,
             "kgfm": 9.80665,
             "lbfft": 1.3558179483314,
             "ftlbf": 1.3558179483314,
@@ -136,11 +135,16 @@ def split_cells(line: str, delimiter: str) -> list[str]:
 
 
 def _unit(header: str, units: Mapping[str, float]) -> float | None:
-    """The factor to SI of the unit a header ends with, the longest that is known."""
-    bare = re.sub(r"[\[\](){}]", " ", header).strip()
-    starts = [0, *(match.end() for match in re.finditer(r"[\s_/:]+", bare))]
-    for start in starts:
-        unit = bare[start:].translate(_UNIT_SPELLING)
+    """The factor to SI of the unit a header ends with: all in its brackets, else the shortest
+    ending that is a unit, so that `M_Nm` is a moment in N m."""
+    bracketed = re.search(r"[\[({](.*)[\])}]\s*$", header)
+    if bracketed:
+        endings = [bracketed.group(1)]
+    else:
+        starts = [0, *(match.end() for match in re.finditer(r"[\s_/:]+", header))]
+        endings = [header[start:] for start in reversed(starts)]
+    for ending in endings:
+        unit = ending.translate(_UNIT_SPELLING)
         if unit in units:
             return units[unit]
         alike = {factor for known, factor in units.items() if known.lower() == unit.lower()}

@@ -8,6 +8,7 @@ from math import pi
 import numpy as np
 
 from geometry.arrays import Array, finite, freeze
+from geometry.errors import InputError
 from pipeline.engine.combustion import burn_rate, burnt_fraction
 from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
 from pipeline.engine.valves import valve_train_torque
@@ -113,11 +114,20 @@ class CylinderCycle:
 
     @property
     def friction_torque(self) -> Array:
-        """Constant torque of friction: of the given pressure, or what closes the balance, N m."""
+        """Constant torque of friction: of the given pressure, or what closes the balance, N m.
+
+        Raises
+        ------
+        InputError
+            If it should close the balance of a cycle that drives nothing.
+        """
         if self.engine.friction == "closing":
             others = self.gas_torque + self.inertia_torque
-            others = others + self.valve_train_torque + self.dipper_torque
-            return np.full_like(self.theta, -others.mean())
+            mean = float((others + self.valve_train_torque + self.dipper_torque).mean())
+            if mean < 0.0:
+                limit = f"a pressure, for the cycle itself needs {-mean:.3g} N m to turn"
+                raise InputError("engine.friction", "closing", limit)
+            return np.full_like(self.theta, -mean)
         mean = self.engine.friction * self.engine.displacement / CYCLE_ANGLE
         return np.full_like(self.theta, -mean)
 
