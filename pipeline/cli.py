@@ -6,10 +6,11 @@ Heavy modules are imported by the command that needs them, so that ``--version``
 from __future__ import annotations
 
 import json
+import os
 import signal
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
@@ -22,6 +23,10 @@ from pipeline.progress import Bars, Lines, Progress
 
 if TYPE_CHECKING:
     from pipeline.results import Run
+
+# The work is parallel by processes; set before numpy is imported, it also fixes the sums' order.
+for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_variable, "1")
 
 PASSED, FAILED, ERROR, INTERRUPTED = 0, 1, 2, 130
 TEMPLATE_SUFFIX = ".toml"
@@ -117,6 +122,9 @@ def run(
     ] = None,
     jobs: Annotated[int | None, typer.Option(help="Processes; all cores by default.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on after an interruption.")] = False,
+    replace: Annotated[
+        bool, typer.Option("--replace", help="Write over an earlier run of a case of this name.")
+    ] = False,
 ) -> int:
     """Run a case: torque, lift, contour, mesh, contact, checks, report."""
     from pipeline.case import load_case_file
@@ -128,8 +136,10 @@ def run(
         design = design.with_positions(positions)
     if not (resume and _finished(out, design.sha256)):
         from pipeline.run import run_case
+        from pipeline.run_folder import set_aside
 
-        with _progress() as progress:
+        old = set_aside(out, design) if replace else nullcontext()
+        with old, _progress() as progress:
             run_case(design, out, positions=positions, jobs=jobs, resume=resume, progress=progress)
     _show(_load(out))
     return PASSED

@@ -15,7 +15,8 @@ import re
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -316,6 +317,35 @@ class RunFolder:
         self, name: str, columns: Iterable[results.Column], values: Mapping[str, ArrayLike]
     ) -> None:
         write_atomic(self._file(name), results.table(columns, values).to_csv())
+
+
+@contextmanager
+def set_aside(out: Path, case: Case) -> Iterator[None]:
+    """Make room for another run of a case of the same name; put the old one back on failure.
+
+    A run of a case of another name, or a folder that is no run, is left where it is: opening
+    the `RunFolder` then refuses it.
+    """
+    out = _absolute(out)
+    aside = out.with_name(f".{out.name}.replaced")
+    if aside.exists() and not out.exists():
+        aside.rename(out)  # left by a process that was killed
+    moved = _holds_only_a_run(out) and results.read_summary(out)["case"] == case.name
+    if moved:
+        shutil.rmtree(aside, ignore_errors=True)
+        out.rename(aside)
+    try:
+        yield
+    finally:
+        if moved and not out.exists():
+            aside.rename(out)
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def _holds_only_a_run(out: Path) -> bool:
+    if not (out / "run.json").is_file():
+        return False
+    return all(_OURS.fullmatch(entry.name) for entry in out.iterdir())
 
 
 def _refuse_strangers(out: Path, case: Case) -> None:

@@ -1,0 +1,54 @@
+# make run     set up .venv, run the GX120 case into runs/gx120, print verdict and report
+# make test    set up .venv, run the tests
+# make verify  the slow certificates      make bench  benchmarks      make lint  ruff and mypy
+
+PYTHON ?= python3
+CASE ?= cases/gx120.toml
+OUT ?= runs/gx120
+
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+# The project is parallel by processes; threads inside them would only fight.
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+
+.PHONY: help setup run test verify lint bench clean
+
+help:
+	@sed -n 's/^# make/make/p' Makefile
+
+setup: .venv/installed
+
+.venv/system: scripts/system_libraries.py
+	@$(PYTHON) scripts/system_libraries.py
+	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	@touch $@
+
+.venv/installed: pyproject.toml .venv/system
+	@echo "installing into .venv (once, about a minute)"
+	@$(PIP) install --editable .
+	@touch $@
+
+.venv/developing: .venv/installed
+	@$(PIP) install --editable '.[dev]'
+	@touch $@
+
+run: .venv/installed
+	@$(BIN)/camwright run $(CASE) --out $(OUT) --replace
+
+test: .venv/developing
+	$(BIN)/python -m pytest -q -m "not slow"
+
+verify: .venv/developing
+	$(BIN)/python -m pytest -q -m slow
+
+lint: .venv/developing
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+bench: .venv/developing
+	@set -e; for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script; done
+
+clean:
+	rm -rf .venv .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info
