@@ -9,6 +9,7 @@ from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence
 
 TOOL_ALLOWANCE = 1.1  # a hollow is ground by a wheel at least a tenth smaller
+SECOND_CONTACT_DEPTH = 1e-6  # m, the depth no cam is ground to
 HUB_RATIO = 1.75  # outside over inside radius of the ring about the bore
 
 
@@ -33,7 +34,7 @@ def pressure_angle(evidence: TrialEvidence) -> Check:
         id="pressure_angle",
         title="Pressure angle",
         demand=float(np.rad2deg(abs(value))),
-        limit=None if limit is None else float(np.rad2deg(limit)),
+        limit=None if limit is None else round(float(np.rad2deg(limit)), 9),  # 30, not 29.9...96
         unit="deg",
         cam_angle_deg=_degrees(theta),
         source=evidence.source(
@@ -99,11 +100,12 @@ def self_intersection(evidence: TrialEvidence) -> Check:
 def second_contact(evidence: TrialEvidence) -> Check:
     """The roller touches the cam in one place only."""
     value, theta = evidence.contour.clearance()
+    depth = evidence.limit("second_contact_depth", SECOND_CONTACT_DEPTH)
     return Check(
         id="second_contact",
         title="Roller cuts into another part of the cam",
-        demand=1e3 * max(0.0, -float(value)) if np.isfinite(value) else _missing(value),
-        limit=1e3 * (evidence.limit("second_contact_depth", 1e-6) or 0.0),
+        demand=1e3 * float(np.maximum(0.0, -value)),  # NaN stays, nothing in sight is no depth
+        limit=None if depth is None else 1e3 * depth,
         unit="mm",
         cam_angle_deg=_degrees(theta),
         source=evidence.source("second_contact", "one contact at a time, Rothbart (2004) ch. 6"),
@@ -190,10 +192,5 @@ CHECKS = (
 )
 
 
-def _degrees(theta: float) -> float:
-    return float(np.rad2deg(np.mod(theta, FULL_TURN)))
-
-
-def _missing(value: float) -> float:
-    """No other part near (infinite clearance) is no depth; NaN stays missing."""
-    return 0.0 if value > 0 else float("nan")
+def _degrees(theta: float) -> float | None:
+    return float(np.rad2deg(np.mod(theta, FULL_TURN))) if np.isfinite(theta) else None

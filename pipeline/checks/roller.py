@@ -9,6 +9,7 @@ import numpy as np
 from geometry.arrays import Array
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest, worst_case
+from pipeline.follower.roller import rating_life, roller_motion
 
 if TYPE_CHECKING:
     from pipeline.cycle import Cycle
@@ -16,29 +17,20 @@ if TYPE_CHECKING:
 RPM = 30.0 / np.pi
 
 
-def roller_speed_of(evidence: TrialEvidence, cycle: Cycle) -> Array:
-    """Speed of the roller on its pin, rad/s, rolling without slip, (n,).
-
-    In the cam's frame the roller's centre runs along the pitch curve while the follower turns
-    about the cam, which the bearing does not feel.
-
-    References
-    ----------
-    Mech. Based Des. Struct. Mach. (2024), slider-crank and eccentric cam, eqs 35-36.
-    """
-    radius = evidence.contour.roller_radius
-    path = evidence.contour.pitch.speed(cycle.theta)
-    return evidence.cam_speed(cycle) * (path - radius) / radius
+def _spin(evidence: TrialEvidence, cycle: Cycle) -> Array:
+    """Speed of the roller on its pin, rad/s, (n,)."""
+    contour = evidence.contour
+    speed = evidence.cam_speed(cycle)
+    return roller_motion(contour.pitch, contour.roller_radius, speed, cycle.theta).spin
 
 
-def equivalent_load(force: Array, speed: Array) -> float:
-    """Constant load of the same fatigue life, N.
-
-    References
-    ----------
-    ISO 281:2007, variable load: cube mean, weighted by revolutions.
-    """
-    return float(np.cbrt(np.sum(force**3 * speed) / np.sum(speed)))
+def _life(evidence: TrialEvidence, cycle: Cycle) -> float:
+    """L10, hours; NaN without a rating or a force, infinite for a roller at rest."""
+    rating, force = evidence.case.roller.bearing.C, cycle.loads.normal_force
+    if rating is None or not np.isfinite(force).all():
+        return np.nan
+    spin = _spin(evidence, cycle)
+    return rating_life(force, spin, rating).hours if spin.any() else np.inf
 
 
 def roller_static(evidence: TrialEvidence) -> Check:
@@ -69,13 +61,7 @@ def roller_life(evidence: TrialEvidence) -> Check:
     bearing = evidence.case.roller.bearing
     rating, target = bearing.C, evidence.limit("roller_life")
 
-    def hours(cycle: Cycle) -> float:
-        speed = roller_speed_of(evidence, cycle)
-        load = equivalent_load(cycle.loads.normal_force, speed)
-        revolutions = 1e6 * (rating / load) ** 3 if rating is not None else np.nan
-        return float(revolutions / (3600.0 * np.mean(speed) / (2.0 * np.pi)))
-
-    worst = worst_case(evidence, hours, at_least=True)
+    worst = worst_case(evidence, lambda cycle: _life(evidence, cycle), at_least=True)
     missing = [
         text
         for value, text in ((rating, "no dynamic rating"), (target, "no life is asked for"))
@@ -104,7 +90,7 @@ def roller_speed(evidence: TrialEvidence) -> Check:
     bearing = evidence.case.roller.bearing
     share, ceiling = evidence.limit("roller_speed_share", 0.7), bearing.speed_limit
     limit = None if share is None or ceiling is None else RPM * share * ceiling
-    worst = greatest(evidence, lambda cycle: np.abs(roller_speed_of(evidence, cycle)))
+    worst = greatest(evidence, lambda cycle: np.abs(_spin(evidence, cycle)))
     return Check(
         id="roller_speed",
         title="Speed of the roller",

@@ -1,0 +1,120 @@
+"""Evidence of a made-up trial whose every demand is known by hand."""
+
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from pipeline.checks.trial import TrialEvidence
+
+POSITIONS = 72
+THETA = uniform_turn(POSITIONS)
+BASE, ROLLER, STROKE = 0.05, 0.008, 0.01
+RATE, PRELOAD, MASS, CAM_SPEED = 24_200.0, 242.0, 0.175, 80.0
+
+
+@cache
+def contour(stroke: float = STROKE, base: float = BASE, roller: float = ROLLER) -> Contour:
+    """A simple harmonic lift: s = stroke (1 - cos theta) / 2."""
+    lift = Lift(THETA, 0.5 * stroke * (1.0 - np.cos(THETA)))
+    return Contour(PitchCurve(lift, base), roller)
+
+
+def case(**changes):
+    """A case all of whose limits are met by `evidence()`."""
+    steel = SimpleNamespace(yield_strength=600e6, endurance_pressure=1000e6, source="a card")
+    hard = SimpleNamespace(yield_strength=1500e6, endurance_pressure=None, source="another")
+    guide = SimpleNamespace(
+        length=0.02,
+        diameter=0.01,
+        material="nylon",
+        pressure_limit=5e6,
+        pv_limit=0.6e6,
+        source="maker",
+    )
+    plain = {
+        "limits": SimpleNamespace(sources={}),
+        "mechanism": SimpleNamespace(gear_ratio=2.0),
+        "spring": SimpleNamespace(rate=RATE, preload=PRELOAD, travel_max=0.02),
+        "cam": SimpleNamespace(material="steel", bore_radius=0.0085, keyway=None),
+        "roller": SimpleNamespace(
+            material="hard",
+            bearing=SimpleNamespace(name="625", C=1140.0, C0=600.0, speed_limit=1500.0, source="c"),
+        ),
+        "follower": SimpleNamespace(mass=MASS),
+        "guides": SimpleNamespace(a=guide, b=guide),
+        "materials": {"steel": steel, "hard": hard},
+        "waivers": (),
+    }
+    return SimpleNamespace(**(plain | changes))
+
+
+def cycle(shape: Contour | None = None, load_case: str = "idle", scale: float = 1.0, **changes):
+    """Loads of a rubbing follower on the harmonic lift, and round figures beside them."""
+    lift = (shape or contour()).pitch.lift
+    s, slope, bend = (lift(THETA, order) for order in (0, 1, 2))
+    spring, inertia = PRELOAD + RATE * s, MASS * CAM_SPEED**2 * bend
+    rub = np.full(POSITIONS, 10.0)
+    wave = np.sin(THETA)
+    plain = {
+        "load_case": load_case,
+        "crank_speed": 2.0 * CAM_SPEED,
+        "theta": THETA,
+        "torque_before": 10.0 * wave,
+        "residual_torque": 5.0 * wave * scale,
+        "loads": SimpleNamespace(
+            normal_force=300.0 * scale + 100.0 * wave,
+            velocity=slope * CAM_SPEED,
+            lift_slope=slope,
+            spring_force=spring,
+            inertia_force=inertia,
+            friction_force_a=rub,
+            friction_force_b=rub,
+            cam_torque=(spring + inertia) * slope + 2.0 * rub * np.abs(slope),
+            jam_index=0.2 + 0.1 * wave,
+        ),
+        "contact": SimpleNamespace(
+            p0=(800e6 + 100e6 * wave) * scale,
+            p0_hertz=(800e6 + 100e6 * wave) * scale / 1.01,
+            von_mises=(400e6 + 100e6 * wave) * scale,
+            residual_equilibrium=np.full(POSITIONS, 1e-9),
+            residual_complementarity=np.full(POSITIONS, 1e-11),
+        ),
+        "guides": SimpleNamespace(
+            reaction_a=-500.0 * wave,
+            reaction_b=-200.0 * wave,
+            force_residual=np.full(POSITIONS, 1e-13),
+            moment_residual=np.full(POSITIONS, 1e-12),
+        ),
+    }
+    return SimpleNamespace(**(plain | changes))
+
+
+MESH = SimpleNamespace(
+    min_angle_deg=28.0, min_scaled_jacobian=0.5, edges_across_half_width=10.0, elements=1, nodes=1
+)
+CERTIFICATE = (
+    SimpleNamespace(theta=0.5, spread_percent=-0.2, gci_percent=0.5),
+    SimpleNamespace(theta=1.5, spread_percent=-0.4, gci_percent=0.4),
+)
+
+
+def evidence(**changes) -> TrialEvidence:
+    """A trial that passes; `changes` replace its parts."""
+    plain = TrialEvidence(case(), contour(), (cycle(),), MESH, CERTIFICATE)
+    return replace(plain, **changes)
+
+
+def limits(**values):
+    """A case whose limits are these, the rest as in `case()`."""
+    return case(limits=SimpleNamespace(sources={}, **values))
+
+
+def changed(base, **values):
+    """A namespace with some of its values replaced."""
+    return SimpleNamespace(**(vars(base) | values))
