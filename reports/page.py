@@ -1,0 +1,281 @@
+"""One self-contained page from a run folder; nothing is solved again."""
+
+from __future__ import annotations
+
+import base64
+import os
+import re
+import tempfile
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from geometry.errors import ResultError
+from pipeline.results import Run, TrialRecord, load_run
+from reports import scene, tables
+from reports.figures import Figure
+from reports.plots import svg_and_png
+from reports.sheet import Turn, figures
+from reports.verdict import governing_load_case, verdict
+
+PAGE = "8_report.html"
+LONG = 400
+UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+FIELD = Path("fields") / "contact_worst.vtu"
+GROUPS = (
+    ("Torque", ("torque", "torque-components")),
+    ("Shape", ("outline", "lift", "pressure-angle", "radii")),
+    ("Contact", ("pressure", "half-width", "stress")),
+    ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
+)
+ASSUMPTIONS = (
+    "The contact is two-dimensional and in plane strain: every slice across the width carries the "
+    "same load. Edge stress at the ends of the roller, tilt and crowning are not in the numbers.",
+    "Both bodies are linear elastic. Where the shakedown or yield check fails, the true stresses "
+    "differ from those shown.",
+    "Surfaces are smooth and dry of film: roughness, lubrication and traction on the contact are "
+    "left out. The roller turns freely.",
+    "Cam speed is constant over the turn; the engine's own speed ripple does not act on the "
+    "follower.",
+    "The camshaft, its bearings and the drive between crank and cam are rigid and without play.",
+    "Follower and roller move as one rigid mass. Spring surge, vibration and impacts after a loss "
+    "of contact are left out.",
+    "Guide friction is of Coulomb's kind with constant coefficients and changes sign with the "
+    "direction of motion.",
+    "Stress at the keyway's corners and at the edge of the bore depends on fillets the case does "
+    "not give, and is excluded from every check.",
+    "The pressure of Hertz's theory takes both bodies for half-planes; a roller of finite size "
+    "differs a little, which is part of the difference shown.",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A raster on the page, or the words that stand in its place."""
+
+    title: str
+    caption: str
+    alt: str
+    data: str = ""
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A sheet figure with its SVG."""
+
+    figure: Figure
+    svg: Markup
+
+
+def build(folder: Path) -> Path:
+    """Rebuild ``8_report.html`` and ``figures/*.png`` from the run folder alone.
+
+    Returns
+    -------
+    page : Path
+
+    Raises
+    ------
+    ResultError
+        If the folder does not hold a finished run, or the page cannot be written.
+    """
+    folder = Path(folder)
+    run = load_run(folder)
+    case = _case(run)
+    turn = the_turn(run, case)
+    try:
+        (folder / "figures").mkdir(exist_ok=True)
+        groups = _drawn(turn, folder / "figures")
+        pictures = _pictures(turn, folder)
+        html = _environment().get_template("report.html").render(
+            context(run, case, turn, groups, pictures)
+        )  # fmt: skip
+        _write(folder / PAGE, html.encode("utf-8", "replace"))
+    except OSError as error:
+        raise ResultError(f"{folder}: {error.strerror or error}") from None
+    return folder / PAGE
+
+
+def the_turn(run: Run, case: Mapping[str, Any]) -> Turn:
+    """What the sheet draws: the load case that governs, in the final trial."""
+    final = run.final
+    names = [str(name) for name in dict.fromkeys(final.cycle["load_case"].tolist())]
+    if not names:
+        raise ResultError(f"{final.path}: the cycle has no rows")
+    by_name = {name: _numbers(final.cycle.where("load_case", name).columns) for name in names}
+    drawn = governing_load_case(final.checks, names)
+    return Turn(
+        by_name[drawn], tuple(by_name.values()), final.lift.columns, final.contour.columns,
+        None if run.torque is None else run.torque.columns, final.checks, case, drawn,
+    )  # fmt: skip
+
+
+def _numbers(columns: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: values for name, values in columns.items() if values.dtype.kind == "f"}
+
+
+def _case(run: Run) -> dict[str, Any]:
+    try:
+        return tomllib.loads(run.case_text)
+    except tomllib.TOMLDecodeError as error:
+        raise ResultError(f"{run.path / 'case.toml'}: {error}") from None
+
+
+def context(
+    run: Run, case: Mapping[str, Any], turn: Turn, groups: list[tuple[str, list[Drawn]]],
+    pictures: list[Picture],
+) -> dict[str, Any]:  # fmt: skip
+    """Everything the template prints."""
+    summary, final = run.summary, run.final
+    stopped = str(summary.get("stop_reason") or final.record.get("stop_reason") or "")
+    headline = summary["headline"]
+    return {
+        "case": case,
+        "name": str(case.get("name") or summary["case"]),
+        "title": str(case.get("title") or summary["case"]),
+        "verdict": verdict(run.verdict, final.checks, final.binding, stopped),
+        "tiles": tables.tiles(headline),
+        "headline": tables.headline_rows(headline),
+        "checks": tables.check_rows(final.checks),
+        "groups": groups,
+        "load_case": turn.load_case,
+        "load_cases": len(turn.others),
+        "trials": [_trial(trial) for trial in run.trials],
+        "pictures": pictures,
+        "certificate_head": tables.CERTIFICATE_HEAD,
+        "certificate": tables.certificate_rows(final.record.get("certificate") or ()),
+        "mesh": tables.named_rows(final.record.get("mesh_quality") or {}),
+        "residuals": residuals(turn),
+        "inputs": tables.input_tables(case),
+        "assumptions": ASSUMPTIONS,
+        "versions": [(str(k), str(v)) for k, v in summary["versions"].items()],
+        "timings": [(k, tables.quantity(v, "s", 3)) for k, v in summary["timings_s"].items()],
+        "sha": str(summary["input_sha256"]),
+        "schema": summary["schema"],
+    }  # fmt: skip
+
+
+def residuals(turn: Turn) -> list[tuple[str, str]]:
+    """Greatest relative residual of each balance over the turn drawn."""
+    names = {
+        "residual_equilibrium": "contact pressures against the load",
+        "residual_complementarity": "pressure times gap",
+        "residual_guide_force": "forces on the follower",
+        "residual_guide_moment": "moments on the follower",
+    }
+    return [
+        (words, tables.number(float(np.max(np.abs(turn.columns[name]))), 2))
+        for name, words in names.items()
+        if name in turn.columns
+    ]
+
+
+def _trial(trial: TrialRecord) -> dict[str, Any]:
+    """One row of the trials table."""
+    record = trial.record
+    failing = [
+        row for row in tables.check_rows(trial.checks) if row.id in trial.binding
+    ]  # fmt: skip
+    width = record.get("angular_width_deg")
+    return {
+        "number": trial.number,
+        "smoother": tables.smoother_words(record.get("smoother")),
+        "width": tables.quantity(width, "deg") if width is not None else tables.DASH,
+        "changed": str(record.get("changed") or ""),
+        "why": str(record.get("why") or ""),
+        "passed": trial.verdict == "pass",
+        "failing": [(row.title, row.utilisation) for row in failing],
+    }  # fmt: skip
+
+
+def _drawn(turn: Turn, folder: Path) -> list[tuple[str, list[Drawn]]]:
+    """Figures by group, drawn to `folder` and as SVG."""
+    by_id = {figure.id: figure for figure in figures(turn)}
+    groups = []
+    for title, ids in GROUPS:
+        drawn = [
+            Drawn(by_id[i], Markup(svg_and_png(by_id[i], folder / f"{i}.png")))  # noqa: S704
+            for i in ids
+            if i in by_id
+        ]
+        if drawn:
+            groups.append((title, drawn))
+    return groups
+
+
+def _pictures(turn: Turn, folder: Path) -> list[Picture]:
+    """The stress field under the roller and in the whole cam."""
+    try:
+        field = scene.read_field(folder / FIELD)
+        point, normal = scene.find_contact(field)
+        half_width = float(turn.half_width)
+        views = [scene.contact_view(field, half_width, point, normal), scene.body_view(field)]
+        rasters = scene.render(folder / FIELD, views)
+    except ResultError as error:
+        return [Picture("Stress field", "", "", note=f"There is no picture of the field: {error}.")]
+    framed = (scene.frame_contact(rasters[0], half_width), scene.frame_body(rasters[1]))
+    for name, png in zip(("field-contact", "field-body"), framed, strict=True):
+        _write(folder / "figures" / f"{name}.png", png)
+    angle = tables.number(float(turn.columns["cam_angle_deg"][turn.worst]))
+    peak = tables.quantity(views[0].clim[1], "MPa")
+    return [
+        Picture(
+            "Von Mises stress under the roller",
+            f"At {angle} deg of the cam, where the contact pressure is greatest. Lengths count "
+            f"half-widths; lines at 20, 40, 60, 80 and 95 % of the {peak} found below the surface. "
+            "Shapes are deformed at true scale.",
+            f"Von Mises stress within four half-widths of the contact; greatest value {peak}.",
+            base64.b64encode(framed[0]).decode(), rasters[0].note,
+        ),
+        Picture(
+            "Von Mises stress in the whole cam",
+            f"The same angle; colours are logarithmic over {scene.DECADES:g} decades, and what "
+            "lies below is shown in the darkest one.",
+            "Von Mises stress in the whole cam and roller on a logarithmic scale.",
+            base64.b64encode(framed[1]).decode(), rasters[1].note,
+        ),
+    ]  # fmt: skip
+
+
+def _environment() -> Environment:
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent / "templates"), autoescape=True,
+        undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    environment.filters["plain"] = plain
+    environment.filters["cut"] = partial(shortened, length=140)
+    environment.globals["LONG"] = LONG
+    return environment
+
+
+def plain(text: object) -> str:
+    """Text without the control characters that HTML cannot hold; everything else stays."""
+    return re.sub(
+        r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]", "\ufffd", str(text)
+    )
+
+
+def shortened(text: str, length: int) -> str:
+    """One line of at most `length` characters."""
+    line = " ".join(plain(text).split())
+    return line if len(line) <= length else line[: length - 1] + "…"
+
+
+def _write(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all."""
+    handle, temporary = tempfile.mkstemp(prefix=".", suffix=".tmp", dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    finally:
+        Path(temporary).unlink(missing_ok=True)

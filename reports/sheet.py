@@ -1,0 +1,357 @@
+"""The cam analysis sheet: which figures a run shows, made from its columns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.errors import InputError, ResultError
+from pipeline import units
+from reports.figures import SERIES, AngleFigure, Curve, Figure, LimitLine, OutlineFigure, Panel
+from reports.tables import in_unit, words
+
+Columns = Mapping[str, Array]
+LARGEST_RADIUS_MM = 150.0
+
+
+@dataclass(frozen=True, eq=False)
+class Turn:
+    """One load case of the final trial, with what is needed to draw it.
+
+    Parameters
+    ----------
+    columns : mapping     columns of 5_cycle.csv, rows of the load case drawn
+    others : tuple        the same for every load case, this one included
+    lift, contour : mapping    columns of 2_lift.csv and 3_contour.csv
+    torque : mapping or None   columns of 1_torque.csv
+    checks : sequence     records of 6_checks.json
+    case : mapping        case.toml as read
+    """
+
+    columns: Columns
+    others: tuple[Columns, ...]
+    lift: Columns
+    contour: Columns
+    torque: Columns | None
+    checks: Sequence[Mapping[str, Any]]
+    case: Mapping[str, Any]
+    load_case: str = ""
+
+    @property
+    def crank(self) -> Array:
+        return self.columns["crank_angle_deg"]
+
+    @property
+    def gear_ratio(self) -> float:
+        ratio = self.case.get("mechanism", {}).get("gear_ratio", 2.0)
+        return float(ratio) if isinstance(ratio, (int, float)) and ratio > 0 else 2.0
+
+    @property
+    def worst(self) -> int:
+        """Row of the greatest contact pressure."""
+        pressure = self.columns.get("p0_fe_MPa", self.columns.get("normal_force_N"))
+        if pressure is None or not np.isfinite(pressure).any():
+            return 0
+        return int(np.nanargmax(pressure))
+
+    @property
+    def half_width(self) -> float:
+        """Half-width of the contact at the worst angle, mm; Hertz's where there is no other."""
+        for name in ("half_width_fe_mm", "half_width_hertz_mm"):
+            values = self.columns.get(name)
+            if values is not None and values[self.worst] > 0:
+                return float(values[self.worst])
+        raise ResultError("the cycle has no half-width at its worst angle")
+
+    def length(self, *path: str, unit: str = "mm") -> float | None:
+        """A value of the case file in the given unit; None when absent."""
+        value: Any = self.case
+        for key in path:
+            value = value.get(key) if isinstance(value, Mapping) else None
+        try:
+            return units.parse(value, unit, ".".join(path)) / units.factor(unit)
+        except InputError:
+            return None
+
+    def bound(self, check_id: str) -> float | None:
+        """The limit of a check as recorded; None when it has none."""
+        for check in self.checks:
+            if check.get("id") == check_id and isinstance(check.get("limit"), (int, float)):
+                return float(check["limit"])
+        return None
+
+    def limit(self, label: str, unit: str, check_id: str) -> tuple[LimitLine, ...]:
+        """The limit of a check as a line in the panel's unit; none when it does not fit."""
+        given = self.bound(check_id)
+        of = next((c for c in self.checks if c.get("id") == check_id), {})
+        value = None if given is None else in_unit(given, str(of.get("unit", "")), unit)
+        return () if value is None or not np.isfinite(value) else (LimitLine(value, label),)
+
+
+def figures(turn: Turn) -> tuple[Figure, ...]:
+    """Every figure the run has columns for, in reading order."""
+    makers: tuple[Callable[[Turn], Figure | None], ...] = (
+        _torque, _components, _lift, _outline, _pressure_angle, _radii, _forces, _normal_force,
+        _pressure, _half_width, _stress, _guides, _jamming, _speed,
+    )  # fmt: skip
+    made = (maker(turn) for maker in makers)
+    return tuple(figure for figure in made if figure is not None)
+
+
+def _curves(turn: Turn, *wanted: tuple[str, str], dashed: Sequence[int] = ()) -> tuple[Curve, ...]:
+    """Curves for (column, label) pairs; columns the run lacks are left out."""
+    made = []
+    for number, (column, label) in enumerate(wanted):
+        values = turn.columns.get(column)
+        if values is None or not np.isfinite(values).any():
+            continue
+        band = None
+        if len(turn.others) > 1 and number not in dashed:
+            stack = [other[column] for other in turn.others if other[column].size == values.size]
+            band = (np.min(stack, axis=0), np.max(stack, axis=0))
+        made.append(Curve(label, values, SERIES[number % len(SERIES)], number in dashed, band))
+    return tuple(made)
+
+
+def _angles(
+    turn: Turn, figure_id: str, title: str, caption: str, *panels: Panel, mark: bool = True,
+    crank: Array | None = None,
+) -> Figure | None:  # fmt: skip
+    """An angle figure of the panels that have curves; None when none has."""
+    full = tuple(panel for panel in panels if panel.curves)
+    if not full:
+        return None
+    return AngleFigure(
+        figure_id, title, caption, turn.crank if crank is None else crank, full, turn.gear_ratio,
+        strokes=turn.gear_ratio == 2.0 and turn.torque is not None,
+        worst=float(turn.crank[turn.worst]) if mark else None,
+    )  # fmt: skip
+
+
+def _torque(turn: Turn) -> Figure | None:
+    curves = _curves(
+        turn, ("torque_before_Nm", "engine alone"), ("torque_after_Nm", "with the cam"),
+    )  # fmt: skip
+    if not curves:
+        return None
+    cam = turn.columns.get("cam_torque_Nm")
+    if cam is not None:
+        curves += (Curve("taken by the cam", cam / turn.gear_ratio, "muted", dashed=True),)
+    return _angles(
+        turn, "torque", "Crank torque before and after",
+        "Crank torque about its mean, without and with the balancing cam as delivered (guide "
+        "friction and follower inertia included).",
+        Panel("torque", "N m", curves, height=1.25), mark=False,
+    )  # fmt: skip
+
+
+def _components(turn: Turn) -> Figure | None:
+    if turn.torque is None or "crank_angle_deg" not in turn.torque:
+        return None
+    parts = [c for c in turn.torque if c not in ("crank_angle_deg", "total_Nm")][: len(SERIES)]
+    curves = [
+        Curve(words(name.removesuffix("_Nm"))[:24], turn.torque[name], colour)
+        for name, colour in zip(parts, SERIES, strict=False)
+    ]
+    if "total_Nm" in turn.torque:
+        curves.append(Curve("total", turn.torque["total_Nm"], "ink", dashed=bool(parts)))
+    return _angles(
+        turn, "torque-components", "What the engine torque is made of",
+        "Positive drives the crank. Crank angle 0 is the top dead centre where intake begins; "
+        "360 deg is the firing top dead centre.",
+        Panel("torque", "N m", tuple(curves), height=1.25), mark=False,
+        crank=turn.torque["crank_angle_deg"],
+    )  # fmt: skip
+
+
+def _lift(turn: Turn) -> Figure | None:
+    columns = turn.lift
+    if "lift_mm" not in columns:
+        return None
+    rows = (
+        ("lift_mm", "s", "mm"), ("lift_d1_mm_per_rad", "s′", "mm/rad"),
+        ("lift_d2_mm_per_rad2", "s″", "mm/rad²"), ("lift_d3_mm_per_rad3", "s‴", "mm/rad³"),
+    )  # fmt: skip
+    panels = [
+        Panel(label, unit, (Curve("", columns[name], "blue"),), height=0.62)
+        for name, label, unit in rows
+        if name in columns
+    ]
+    return _angles(
+        turn, "lift", "Lift and its derivatives",
+        "Lift s of the roller centre above the pitch base circle, with derivatives by cam angle.",
+        *panels, mark=False, crank=columns["crank_angle_deg"],
+    )  # fmt: skip
+
+
+def _outline(turn: Turn) -> Figure | None:
+    c = turn.contour
+    if "contour_x_mm" not in c:
+        return None
+    theta = turn.columns["cam_angle_deg"][turn.worst]
+    distance = np.abs((c["cam_angle_deg"] - theta + 180.0) % 360.0 - 180.0)
+    width, depth = (turn.length("cam", "keyway", key) for key in ("width", "depth"))
+    angle = turn.length("cam", "keyway", "angle", unit="rad") or 0.0
+    return OutlineFigure(
+        "outline", "Contour and pitch curve",
+        "The cam seen along its shaft, with the roller where the contact pressure is greatest.",
+        np.array([c["contour_x_mm"], c["contour_y_mm"]]),
+        np.array([c["pitch_x_mm"], c["pitch_y_mm"]]),
+        turn.length("roller", "radius"), turn.length("cam", "bore_radius"),
+        (width, depth, angle) if width is not None and depth is not None else None,
+        int(np.argmin(distance)), f"at {theta:.4g} deg",
+    )  # fmt: skip
+
+
+def _pressure_angle(turn: Turn) -> Figure | None:
+    limits = turn.limit("limit", "deg", "pressure_angle")
+    both = limits + tuple(LimitLine(-line.value, "limit") for line in limits)
+    return _angles(
+        turn, "pressure-angle", "Pressure angle",
+        "Between the contact normal and the follower's line of travel; positive on the rise.",
+        Panel("pressure angle", "deg", _curves(turn, ("pressure_angle_deg", "")), both),
+    )  # fmt: skip
+
+
+def _radii(turn: Turn) -> Figure | None:
+    roller = turn.length("roller", "radius")
+    limits: tuple[LimitLine, ...] = ()
+    if roller is not None:
+        limits = (LimitLine(roller, "roller radius"),)
+    ratio = turn.bound("curvature_ratio")
+    if roller and ratio:
+        limits += (LimitLine(ratio * roller, "least pitch radius"),)
+    curves = []
+    wanted = (("pitch_radius_mm", "pitch curve"), ("contour_radius_of_curvature_mm", "contour"))
+    for (column, label), colour in zip(wanted, SERIES, strict=False):
+        if column in turn.columns:
+            curves.append(Curve(label, broken(turn.columns[column], LARGEST_RADIUS_MM), colour))
+    return _angles(
+        turn, "radii", "Radii of curvature",
+        f"Signed, positive where convex. The curve leaves the axes above {LARGEST_RADIUS_MM:g} mm, "
+        "where the flank is nearly straight.",
+        Panel("radius", "mm", tuple(curves), limits, height=1.25, span=_radius_span(curves)),
+    )  # fmt: skip
+
+
+def broken(values: Array, largest: float) -> Array:
+    """`values` with NaN where their size exceeds `largest`, so that a pole draws no line."""
+    return np.where(np.abs(values) > largest, np.nan, values)
+
+
+def _radius_span(curves: Sequence[Curve]) -> tuple[float, float]:
+    lows = [float(np.nanmin(c.values)) for c in curves if np.isfinite(c.values).any()]
+    return min([0.0, *lows]) * 1.05, LARGEST_RADIUS_MM * 1.12
+
+
+def _forces(turn: Turn) -> Figure | None:
+    curves = _curves(
+        turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
+        ("tangential_force_N", "side force"), ("friction_A_N", "friction A"),
+        ("friction_B_N", "friction B"),
+    )  # fmt: skip
+    return _angles(
+        turn, "forces", "Force components on the follower",
+        "Along the stem, but for the side force, which the guides carry.",
+        Panel("force", "N", curves, height=1.25),
+    )  # fmt: skip
+
+
+def _normal_force(turn: Turn) -> Figure | None:
+    limits: tuple[LimitLine, ...] = ()
+    rating, safety = turn.length("roller", "bearing", "C0", unit="N"), turn.bound("roller_static")
+    if rating and safety:
+        limits = (LimitLine(rating / safety, "roller static rating allows"),)
+    curves = _curves(turn, ("normal_force_N", "normal force"), ("axial_force_N", "axial force"))
+    return _angles(
+        turn, "normal-force", "Normal force",
+        "Between roller and cam, with its component along the stem. Contact is lost where the "
+        "normal force reaches zero.",
+        Panel("force", "N", curves, (LimitLine(0.0, "contact lost at"), *limits)),
+    )  # fmt: skip
+
+
+def _pressure(turn: Turn) -> Figure | None:
+    limits = turn.limit("endurance", "MPa", "contact_pressure")
+    limits += turn.limit("shakedown", "MPa", "shakedown")
+    curves = _curves(
+        turn, ("p0_fe_MPa", "finite elements"), ("p0_hertz_MPa", "Hertz"), dashed=(1,)
+    )  # fmt: skip
+    return _angles(
+        turn, "pressure", "Greatest contact pressure",
+        "p0 by finite elements and by Hertz's closed form, and their difference.",
+        Panel("p0", "MPa", curves, limits, height=1.2),
+        Panel("difference", "%", _curves(turn, ("p0_difference_percent", "")), height=0.55),
+    )  # fmt: skip
+
+
+def _half_width(turn: Turn) -> Figure | None:
+    curves = _curves(
+        turn, ("half_width_fe_mm", "finite elements"), ("half_width_hertz_mm", "Hertz"), dashed=(1,)
+    )  # fmt: skip
+    return _angles(
+        turn, "half-width", "Half-width of the contact",
+        "Half the width of the strip over which roller and cam touch.",
+        Panel("half-width a", "mm", curves),
+    )  # fmt: skip
+
+
+def _stress(turn: Turn) -> Figure | None:
+    stress = _curves(turn, ("von_mises_MPa", "von Mises"), ("tau_max_MPa", "greatest shear"))
+    depth = _curves(
+        turn, ("von_mises_depth_mm", "depth of von Mises"), ("tau_depth_mm", "depth of shear")
+    )  # fmt: skip
+    return _angles(
+        turn, "stress", "Stress below the surface, and its depth",
+        "Greatest von Mises stress and greatest in-plane shear stress under the contact.",
+        Panel("stress", "MPa", stress, turn.limit("yield, von Mises", "MPa", "first_yield")),
+        Panel("depth", "mm", depth, height=0.62),
+    )  # fmt: skip
+
+
+def _guides(turn: Turn) -> Figure | None:
+    pairs = (
+        ("reaction_A_N", "A, finite elements"), ("reaction_A_statics_N", "A, statics"),
+        ("reaction_B_N", "B, finite elements"), ("reaction_B_statics_N", "B, statics"),
+    )  # fmt: skip
+    return _angles(
+        turn, "guides", "Guide reactions",
+        "The follower as a beam on elastic one-sided guides of finite length, against two point "
+        "supports.",
+        Panel("reaction", "N", _curves(turn, *pairs, dashed=(1, 3)), height=1.25),
+    )  # fmt: skip
+
+
+def _jamming(turn: Turn) -> Figure | None:
+    limits = turn.limit("limit", "", "jam_index")
+    return _angles(
+        turn, "jamming", "Jam index",
+        "Share of the axial force that guide friction takes; at 1 the follower locks.",
+        Panel("jam index", "", _curves(turn, ("jam_index", "")), limits, height=0.8),
+    )  # fmt: skip
+
+
+def _speed(turn: Turn) -> Figure | None:
+    velocity = turn.columns.get("velocity_m_per_s")
+    if velocity is None:
+        return None
+    curves: list[Curve] = []
+    limits: list[LimitLine] = []
+    for name, colour in (("A", "blue"), ("B", "vermillion")):
+        length = turn.length("guides", name.lower(), "length")
+        diameter = turn.length("guides", name.lower(), "diameter")
+        reaction = turn.columns.get(f"reaction_{name}_N")
+        if length and diameter and reaction is not None:
+            pv = np.abs(reaction * velocity) / (length * diameter)
+            curves.append(Curve(f"guide {name}", pv, colour))
+            limits += turn.limit(f"mean PV limit {name}", "MPa m/s", f"bush_pv_{name}")
+    return _angles(
+        turn, "speed", "Follower velocity and guide PV",
+        "PV is the guide pressure on its projected area times the sliding speed.",
+        Panel("velocity", "m/s", _curves(turn, ("velocity_m_per_s", "")), height=0.8),
+        Panel("PV", "MPa m/s", tuple(curves), tuple(dict.fromkeys(limits)), height=0.9),
+    )  # fmt: skip

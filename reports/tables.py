@@ -1,0 +1,352 @@
+"""Numbers to rows: what the page prints, with units and a sensible count of digits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf, isfinite, isnan, log10, pi
+from typing import Any
+
+MINUS = "\N{MINUS SIGN}"
+DASH = "\N{EN DASH}"
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+SHOWN_AS = {
+    "Pa": ("MPa", 1e-6),
+    "m": ("mm", 1e3),
+    "rad": ("deg", 180.0 / pi),
+    "N/m": ("N/mm", 1e-3),
+    "Pa m/s": ("MPa m/s", 1e-6),
+    "Pa*m/s": ("MPa m/s", 1e-6),
+    "Pa·m/s": ("MPa m/s", 1e-6),
+    "MPa*m/s": ("MPa m/s", 1.0),
+    "MPa·m/s": ("MPa m/s", 1.0),
+    "Nm": ("N m", 1.0),
+    "1": ("", 1.0),
+    "-": ("", 1.0),
+}
+HEADLINES = {
+    "torque_std_before_Nm": ("Torque ripple before, standard deviation", "N m"),
+    "torque_std_after_Nm": ("Torque ripple after, standard deviation", "N m"),
+    "torque_p2p_before_Nm": ("Torque before, peak to peak", "N m"),
+    "torque_p2p_after_Nm": ("Torque after, peak to peak", "N m"),
+    "lift_max_mm": ("Greatest lift", "mm"),
+    "pressure_angle_max_deg": ("Greatest pressure angle", "deg"),
+    "pitch_radius_min_mm": ("Least convex radius of the pitch curve", "mm"),
+    "normal_force_min_N": ("Least normal force", "N"),
+    "normal_force_max_N": ("Greatest normal force", "N"),
+    "p0_max_MPa": ("Contact pressure p0, finite elements", "MPa"),
+    "p0_hertz_max_MPa": ("Contact pressure p0, Hertz", "MPa"),
+    "half_width_max_mm": ("Greatest half-width of the contact", "mm"),
+    "von_mises_max_MPa": ("Greatest von Mises stress", "MPa"),
+    "reaction_A_max_N": ("Greatest reaction, guide A", "N"),
+    "reaction_B_max_N": ("Greatest reaction, guide B", "N"),
+    "friction_loss_J_per_cam_turn": ("Friction loss per cam turn", "J"),
+    "fe_vs_hertz_p0_max_percent": ("p0, finite elements against Hertz, at most", "%"),
+    "residual_equilibrium_max": ("Equilibrium residual, relative, at most", ""),
+}
+STATUS = {
+    "pass": "pass",
+    "fail": "fail",
+    "waived": "waived",
+    "not_evaluated": "not evaluated",
+}
+
+
+def number(value: Any, digits: int = 4) -> str:
+    """A number to `digits` significant digits; a dash for what is missing.
+
+    Integers keep all their digits, zeros that say nothing are left off (30, not 30.00, where the
+    value is 30 exactly), sizes outside 1e-4 to 1e6 get a power of ten, the minus is a true one.
+    """
+    if isinstance(value, bool) or value is None:
+        return DASH if value is None else ("yes" if value else "no")
+    if isinstance(value, int):
+        return str(value).replace("-", MINUS)
+    if not isinstance(value, float):
+        return str(value)
+    if isnan(value):
+        return DASH
+    if not isfinite(value):
+        return "∞" if value > 0 else MINUS + "∞"
+    if value == 0:
+        return "0"
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    power = int(exponent)
+    exact = float(f"{mantissa}e{exponent}") == value
+    if not -4 <= power < 6:
+        shown = mantissa.rstrip("0").rstrip(".") if exact and "." in mantissa else mantissa
+        return f"{shown}×10{str(power).translate(SUPERSCRIPT)}".replace("-", MINUS)
+    shown = f"{value:.{max(digits - 1 - power, 0)}f}"
+    if exact and "." in shown:
+        shown = shown.rstrip("0").rstrip(".")
+    return shown.replace("-", MINUS)
+
+
+def quantity(value: Any, unit: str = "", digits: int = 4) -> str:
+    """A number with its unit, SI scaled to what a drawing uses (Pa to MPa, rad to deg)."""
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and unit in SHOWN_AS:
+        unit, scale = SHOWN_AS[unit]
+        value = value * scale if scale != 1.0 else value
+    text = number(value, digits)
+    return f"{text}\N{NO-BREAK SPACE}{unit}" if unit and text != DASH else text
+
+
+def in_unit(value: float, unit: str, wanted: str) -> float | None:
+    """`value` in the `wanted` unit of a figure; None when the units do not fit."""
+    shown, scale = SHOWN_AS.get(unit, (unit, 1.0))
+    if shown == wanted:
+        return value * scale
+    return value if unit == wanted else None
+
+
+def words(name: str) -> str:
+    """A snake_case name as words."""
+    return name.replace("_", " ").strip()
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """A check as printed. `bar` is the utilisation for the bar, 0 to 1.5, or None."""
+
+    id: str
+    title: str
+    status: str
+    status_text: str
+    demand: str
+    limit: str
+    utilisation: str
+    bar: float | None
+    where: str
+    load_case: str
+    source: str
+    method: str
+    note: str
+    waiver: str
+    must_have: bool
+
+
+def utilisation(check: Mapping[str, Any]) -> float | None:
+    """Utilisation of a record; JSON has no infinity, so null beside a `fail` stands for it."""
+    value = check.get("utilisation")
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and not isnan(value):
+        return float(value)
+    return inf if check.get("status") == "fail" else None
+
+
+def sorted_checks(checks: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Not evaluated first, then the highest utilisation first."""
+
+    def order(check: Mapping[str, Any]) -> tuple[bool, float, str]:
+        value = utilisation(check)
+        size = -inf if value is None else value
+        return check.get("status") != "not_evaluated", -size, str(check.get("id"))
+
+    return sorted(checks, key=order)
+
+
+def check_rows(checks: Sequence[Mapping[str, Any]]) -> list[CheckRow]:
+    """The checks table, most pressing first."""
+    rows = []
+    for check in sorted_checks(checks):
+        value = utilisation(check)
+        status = str(check.get("status", "not_evaluated"))
+        unit = str(check.get("unit") or "")
+        sense = "≥" if check.get("sense") == "at_least" else "≤"
+        limit = quantity(check.get("limit"), unit)
+        angle = check.get("cam_angle_deg")
+        rows.append(CheckRow(
+            id=str(check.get("id", "")), title=str(check.get("title", "")), status=status,
+            status_text=STATUS.get(status, words(status)),
+            demand=quantity(check.get("demand"), unit),
+            limit=limit if limit == DASH else f"{sense}\N{NO-BREAK SPACE}{limit}",
+            utilisation=_ratio(value), bar=_bar(value),
+            where=quantity(angle, "deg") if isinstance(angle, (int, float)) else "",
+            load_case=str(check.get("load_case") or ""),
+            source=str(check.get("source") or ""), method=str(check.get("method") or ""),
+            note=str(check.get("note") or ""), waiver=_waiver(check.get("waiver")),
+            must_have=bool(check.get("must_have", True)),
+        ))  # fmt: skip
+    return rows
+
+
+def _bar(value: float | None) -> float | None:
+    return None if value is None or isnan(value) else min(max(value, 0.0), 1.5)
+
+
+def _ratio(value: float | None) -> str:
+    """Utilisation to hundredths, never rounded across 1: 1.0004 prints as 1.0004."""
+    if value is None or isnan(value):
+        return DASH
+    if not isfinite(value):
+        return "∞"
+    if value >= 100:
+        return number(value, 3)
+    if value != 1.0 and abs(value - 1.0) < 0.005:
+        digits = min(max(2, 1 - int(log10(abs(value - 1.0)))), 12)
+        return f"{value:.{digits}f}"
+    return f"{value:.2f}" if value >= 0.005 or value == 0 else "< 0.01"
+
+
+def _waiver(waiver: Any) -> str:
+    if isinstance(waiver, Mapping):
+        return ", ".join(str(value) for key, value in waiver.items() if key != "check")
+    return str(waiver or "")
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One headline number in large type, with a line below it."""
+
+    title: str
+    value: str
+    below: str
+
+
+def tiles(headline: Mapping[str, Any]) -> list[Tile]:
+    """The few numbers read first; those the run does not have are left out."""
+    made = []
+    before, after = (headline.get(f"torque_std_{when}_Nm") for when in ("before", "after"))
+    if before and after is not None:
+        made.append(Tile(
+            "Torque ripple removed", quantity(100.0 * (1.0 - after / before), "%", 3),
+            f"standard deviation {number(before, 3)} to {quantity(after, 'N m', 3)}",
+        ))  # fmt: skip
+    rows = (
+        ("Contact pressure", "p0_max_MPa", "MPa", "Hertz {}", "p0_hertz_max_MPa"),
+        ("Normal force", "normal_force_max_N", "N", "least {}", "normal_force_min_N"),
+        ("Lift", "lift_max_mm", "mm", "least convex pitch radius {} mm", "pitch_radius_min_mm"),
+        ("Pressure angle", "pressure_angle_max_deg", "deg", "", ""),
+        ("Guide A reaction", "reaction_A_max_N", "N", "guide B {} N", "reaction_B_max_N"),
+    )
+    for title, key, unit, below, other in rows:
+        if headline.get(key) is not None:
+            second = headline.get(other)
+            made.append(Tile(
+                title, quantity(headline[key], unit),
+                below.format(number(second)) if second is not None else "",
+            ))  # fmt: skip
+    return made
+
+
+def smoother_words(record: Any) -> str:
+    """A smoother's record as words: the kind, then its settings."""
+    if not isinstance(record, Mapping):
+        return str(record or DASH)
+    settings = [
+        f"{words(str(key))} {number(value)}"
+        for key, value in record.items()
+        if key != "kind" and value is not None
+    ]
+    return ", ".join([words(str(record.get("kind", ""))), *settings]).strip(", ")
+
+
+def named_rows(record: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """(words, value) of a flat record."""
+    return [(words(str(key)), number(value)) for key, value in record.items()]
+
+
+def headline_rows(headline: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """(words, value with unit) of the run's headline numbers; keys that do not apply left out."""
+    rows = []
+    for key, value in headline.items():
+        if value is None:
+            continue
+        title, unit = HEADLINES.get(key, (words(key), ""))
+        rows.append((title, quantity(value, unit)))
+    return rows
+
+
+def certificate_rows(points: Sequence[Mapping[str, Any]]) -> list[list[str]]:
+    """One row per certificate point: angle, p0 on each mesh, its limit, order, GCI, spread.
+
+    A pressure is taken from ``NAME_MPa``, or from ``NAME`` in pascals.
+    """
+    rows = []
+    for point in points:
+        angle = point.get("cam_angle_deg")
+        if angle is None and isinstance(point.get("theta"), (int, float)):
+            angle = point["theta"] * 180.0 / pi
+        meshes = _megapascals(point, "p0")
+        rows.append([
+            number(angle), ", ".join(number(n) for n in point.get("dofs") or []),
+            ", ".join(number(p, 5) for p in meshes if p is not None),
+            number(_megapascals(point, "p0_extrapolated")[0], 5), number(point.get("order"), 3),
+            number(point.get("gci_percent"), 2), number(_megapascals(point, "hertz_p0")[0], 5),
+            number(_megapascals(point, "cycle_p0")[0], 5), number(point.get("spread_percent"), 2),
+            number(point.get("residual_equilibrium"), 2),
+        ])  # fmt: skip
+    return rows
+
+
+def _megapascals(point: Mapping[str, Any], name: str) -> list[float | None]:
+    value, scale = point.get(f"{name}_MPa"), 1.0
+    if value is None:
+        value, scale = point.get(name), 1e-6
+    values = value if isinstance(value, list) else [value]
+    return [v * scale if isinstance(v, (int, float)) else None for v in values] or [None]
+
+
+CERTIFICATE_HEAD = (
+    "cam angle, deg", "unknowns", "p0 per mesh, MPa", "p0 extrapolated, MPa", "order", "GCI, %",
+    "p0 Hertz, MPa", "p0 in the cycle, MPa", "spread, %", "equilibrium residual",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class InputTable:
+    """One section of the case file. Rows are (name, value, source)."""
+
+    title: str
+    rows: tuple[tuple[str, str, str], ...]
+    source: str = ""
+
+    @property
+    def sourced(self) -> bool:
+        """Whether a row names its own source."""
+        return any(row[2] for row in self.rows)
+
+
+def input_tables(case: Mapping[str, Any]) -> list[InputTable]:
+    """The resolved case as tables, each value with its source where the file gives one."""
+    general = {key: v for key, v in case.items() if not isinstance(v, (Mapping, list))}
+    tables = [_input_table("general", general)] if general else []
+    for title, section in _sections(case):
+        table = _input_table(title, section)
+        if table.rows or table.source:
+            tables.append(table)
+    return tables
+
+
+def _sections(case: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:
+    for key, value in case.items():
+        title = f"{path} › {words(key)}" if path else words(key)
+        if isinstance(value, Mapping) and key not in ("source", "sources"):
+            yield title, value
+            yield from _sections(value, title)
+        elif isinstance(value, list) and value and isinstance(value[0], Mapping):
+            for number_, item in enumerate(value, 1):
+                yield f"{title} {number_}", item
+                yield from _sections(item, f"{title} {number_}")
+
+
+def _input_table(title: str, section: Mapping[str, Any]) -> InputTable:
+    source = section.get("source", section.get("sources", ""))
+    by_key = source if isinstance(source, Mapping) else {}
+    rows = tuple(
+        (words(key), _value(value), str(by_key.get(key, "")))
+        for key, value in section.items()
+        if key not in ("source", "sources") and not _is_section(value)
+    )
+    return InputTable(title, rows, "" if isinstance(source, Mapping) else str(source))
+
+
+def _is_section(value: Any) -> bool:
+    return isinstance(value, Mapping) or (
+        isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)
+    )
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, list):
+        return ", ".join(_value(item) for item in value) or DASH
+    return number(value, 12) if isinstance(value, float) else number(value)
