@@ -18,7 +18,10 @@ _LOOP_REACH = 3.0
 """A small swallow-tail closes at sqrt(3) times its cusps, so within this many."""
 
 _POLISH_STEPS = 30
-_SAME_ANGLE = 1e-8
+_POLISHED = 1e-12
+"""rad: Newton's method has arrived; in the smallest loops round-off keeps it farther away."""
+_RESOLVED = 0.01
+"""Of the angle between the two passes: what their angles must be certain to."""
 
 _POSITIONS_MAX = 720
 _CANDIDATES_MAX = 32
@@ -162,9 +165,9 @@ def _polished(points: Curve, velocity: Curve, first: Array, second: Array) -> tu
         step = np.clip([_cross(miss, other), _cross(miss, along)] / across, -1.0, 1.0)
         one, two = one + step[0], two + step[1]
         moved = np.abs(step).max(axis=0)
-        if not (moved > _SAME_ANGLE).any():
+        if not (moved > _POLISHED).any():
             break
-    true = (moved <= _SAME_ANGLE) & (np.abs(two - one) > 0.25 * apart)
+    true = (moved <= _RESOLVED * apart) & (np.abs(two - one) > 0.25 * apart)
     return one[true], two[true]
 
 
@@ -173,7 +176,8 @@ def _distinct(first: Array, second: Array) -> tuple[tuple[float, float], ...]:
     pairs = np.sort(np.mod([first, second], FULL_TURN), axis=0)
     kept: list[tuple[float, float]] = []
     for one, two in sorted(zip(*pairs.tolist(), strict=True)):
-        if all(max(abs(one - a), abs(two - b)) > _SAME_ANGLE for a, b in kept):
+        same = _RESOLVED * min(two - one, FULL_TURN - two + one)
+        if all(max(abs(one - a), abs(two - b)) > same for a, b in kept):
             kept.append((one, two))
     return tuple(kept)
 
