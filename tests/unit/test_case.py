@@ -1,0 +1,240 @@
+"""Case files: what is read, what is refused and in which words."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from geometry.errors import InputError
+from pipeline.case import CASE_BYTES, Case, load_case_file, parse_case
+from pipeline.case_template import template
+
+ROOT = Path(__file__).resolve().parents[2]
+GX120 = (ROOT / "cases" / "gx120.toml").read_text(encoding="utf-8")
+
+
+def changed(old: str, new: str) -> str:
+    """The GX120 case with one passage changed; the passage must be there once."""
+    assert GX120.count(old) == 1, old
+    return GX120.replace(old, new)
+
+
+def refused(text: str) -> str:
+    with pytest.raises(InputError) as caught:
+        parse_case(text)
+    message = str(caught.value)
+    assert "\n" not in message
+    return message
+
+
+def test_gx120_is_the_published_design() -> None:
+    case = parse_case(GX120)
+    assert case.spring.rate == 24200.0
+    assert case.spring.preload == 242.0
+    assert case.cam.pitch_base_radius == 0.050
+    assert case.roller.radius == 0.008
+    assert case.roller.bearing.C0 == 380.0
+    assert case.guides.a.friction == 0.04
+    assert case.guides.b.friction == 0.20
+    assert case.guides.spacing == 0.080
+    assert case.limits.torque_reduction == 0.4
+    assert case.solver.positions == 720
+    assert [load_case.name for load_case in case.load_cases] == ["idle"]
+
+
+def test_cylinder_builds_the_engine_it_describes() -> None:
+    case = parse_case(GX120)
+    engine = case.engine.build()  # type: ignore[union-attr]
+    assert engine.crank_radius == 0.021
+    assert engine.friction == "closing"
+    text = changed(
+        'heat_loss = "hohenberg"', 'friction_pressure = "165 kPa"\nheat_loss = "woschni"'
+    )
+    engine = parse_case(text).engine.build()  # type: ignore[union-attr]
+    assert engine.friction == 165e3
+    assert engine.heat_loss == "woschni"
+
+
+def test_resolved_text_reads_back_bit_for_bit() -> None:
+    case = parse_case(GX120)
+    text = case.to_toml()
+    again = parse_case(text)
+    assert again.model_dump() == case.model_dump()
+    assert again.to_toml() == text
+    assert again.sha256 == case.sha256
+
+
+def test_resolved_text_writes_defaults_out() -> None:
+    resolved = tomllib.loads(parse_case(GX120).to_toml())
+    assert resolved["engine"]["wall_temperature"] == "400 K"
+    assert resolved["engine"]["rod_big_end_share"] == 2.0 / 3.0
+    assert resolved["limits"]["undercut_factor"] == 0.3
+
+
+def test_comments_do_not_change_the_hash_but_values_do() -> None:
+    case = parse_case(GX120)
+    assert parse_case("# a remark\n" + GX120).sha256 == case.sha256
+    assert parse_case(changed('"24.2 kN/m"', '"24200 N/m"')).sha256 == case.sha256
+    assert parse_case(changed('"24.2 kN/m"', '"24.3 kN/m"')).sha256 != case.sha256
+
+
+def test_positions_can_be_given_again() -> None:
+    case = parse_case(GX120)
+    assert case.with_positions(36).solver.positions == 36
+    assert case.with_positions(36).sha256 != case.sha256
+    for positions in (35, 7201):
+        with pytest.raises(InputError, match=r"solver\.positions"):
+            case.with_positions(positions)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('radius = "8 mm" ', 'radus = "8 mm" ', "roller.radus = unknown key, must be a known key; "
+         "did you mean radius?"),
+        ("[spring]", "[sprung]", "sprung = unknown key, must be a known key; did you mean spring?"),
+        ('rate = "24.2 kN/m" ', "", "spring.rate = missing, must be given"),
+        ('rate = "24.2 kN/m"', "rate = 24200", "spring.rate = 24200, must be a number with a unit"),
+        ('rate = "24.2 kN/m"', 'rate = "24.2 kN"', "spring.rate = 24.2 kN, must be in a unit of"),
+        ('rate = "24.2 kN/m"', 'rate = "-24.2 kN/m"', "spring.rate = -24.2 kN/m, must be > 0"),
+        ('rate = "24.2 kN/m"', 'rate = "nan kN/m"', "spring.rate = nan kN/m, must be finite"),
+        ("compression_ratio = 8.5", "compression_ratio = nan", "compression_ratio = nan, must be"),
+        ("compression_ratio = 8.5", "compression_ratio = true", "must be a number without a unit"),
+        ("compression_ratio = 8.5", 'compression_ratio = "8.5"', "must be a number without a unit"),
+        ("nu = 0.4", "nu = 0.5", "materials.nylon.nu = 0.5, must be >= 0 and < 0.5"),
+        ("friction = 0.04", "friction = -0.01", "guides.a.friction = -0.01, must be >= 0 and < 2"),
+        ("friction = 0.04", "friction = 2", "guides.a.friction = 2, must be >= 0 and < 2"),
+        ("positions = 720", "positions = 35", "solver.positions = 35, must be >= 36"),
+        ("positions = 720", "positions = 7201", "solver.positions = 7201, must be <= 7200"),
+        ("positions = 720", "positions = 72.0", "solver.positions = 72.0, must be a whole number"),
+        ('"1500 rpm" ', '"0 rpm" ', "load_case[0].speed = 0 rpm, must be > 0 and < 20000 rpm"),
+        ('"1500 rpm" ', '"25 Hz" ', "load_case[0].speed = 25 Hz, must be in a unit of"),
+        ('name = "idle"', 'name = "../idle"', "load_case[0].name = ../idle, must be 1 to 40"),
+        ('name = "gx120"', 'name = "gx/120"', "name = gx/120, must be 1 to 40"),
+        ('radius = "8 mm" ', 'radius = "51 mm" ', "roller.radius = 0.051 m, must be < cam."),
+        ('"8.5 mm"', '"42 mm"', "cam.bore_radius = 0.042 m, must be < 0.042 m"),
+        ('depth = "2.3 mm"', 'depth = "34 mm"', "cam.keyway.depth = 0.034 m, must be < 0.0335 m"),
+        ('hub_radius = "4.2 mm"', 'hub_radius = "8 mm"', "roller.hub_radius = 0.008 m, must be <"),
+        ('material = "s355"', 'material = "s354"', "cam.material = s354, must be one of"),
+        ('kind = "cylinder"', 'kind = "rocket"', "engine.kind = rocket, must be"),
+        ('kind = "cylinder"', "", "must be a table with kind"),
+        ("gear_ratio = 2.0", "gear_ratio = 1.0", "mechanism.gear_ratio = 1.0, must be 2"),
+        ("schema_version = 1", "schema_version = 2", "schema_version = 2, must be 1"),
+        ("points = 12", "points = 200", "smoothing.points = 200, must be <= 720 deg"),
+        ('rod_length = "73 mm"', 'rod_length = "20 mm"', "engine.rod_length = 0.02 m, must be"),
+        ("[limits.sources]", '[limits.sources]\njamindex = "x"',
+         "limits.sources.jamindex = unknown key, must be a known limit; did you mean jam_index?"),
+    ],
+)  # fmt: skip
+def test_refusals_name_field_value_and_limit(old: str, new: str, message: str) -> None:
+    assert message in refused(changed(old, new))
+
+
+def test_more_refusals_are_counted() -> None:
+    text = changed('"24.2 kN/m"', '"-1 kN/m"').replace('"242 N"', '"-1 N"')
+    assert refused(text).endswith("(and 1 more)")
+
+
+def test_load_case_names_differ() -> None:
+    text = GX120 + '\n[[load_case]]\nname = "IDLE"\nspeed = "1600 rpm"\n'
+    assert refused(text) == "load_case[1].name = IDLE, must be unlike every other"
+
+
+def test_enters_the_road_once() -> None:
+    assert "must be exactly one" in refused(GX120 + '\n[lift]\nfile = "lift.csv"\n')
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a = " + "[" * 50_000,
+        "a = {" * 20_000,
+        "a = 'open",
+        "a = 1\na = 2",
+        "a = " + "9" * 5000,
+        "\0",
+    ],
+)
+def test_broken_toml_is_one_line(text: str) -> None:
+    assert refused(text).startswith("case = ")
+
+
+def test_file_that_is_missing_too_large_or_not_text(tmp_path: Path) -> None:
+    def message(path: Path) -> str:
+        with pytest.raises(InputError) as caught:
+            load_case_file(path)
+        return str(caught.value)
+
+    assert "must be an existing file" in message(tmp_path / "none.toml")
+    assert "must be an existing file" in message(tmp_path)
+    large = tmp_path / "large.toml"
+    large.write_text("# " + "x" * CASE_BYTES)
+    assert "must be at most 256 KiB" in message(large)
+    binary = tmp_path / "binary.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    assert "UTF-8" in message(binary)
+
+
+def with_table(folder: Path, name: str = "torque.csv") -> Path:
+    """A case of which the torque comes from a file."""
+    engine = GX120[GX120.index("[engine]") : GX120.index("[mechanism]")]
+    text = GX120.replace(engine, f'[engine]\nkind = "table"\nfile = {name!r}\n\n')
+    path = folder / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_included_files_are_part_of_the_hash(tmp_path: Path) -> None:
+    table = tmp_path / "torque.csv"
+    table.write_text("angle_deg,torque_Nm\n0,1\n")
+    case = load_case_file(with_table(tmp_path))
+    assert case.included == {"inputs/torque.csv": table.read_bytes()}
+    assert case.path("torque.csv") == tmp_path / "torque.csv"
+    before = case.sha256
+    table.write_text("angle_deg,torque_Nm\n0,2\n")
+    assert load_case_file(tmp_path / "case.toml").sha256 != before
+
+
+def test_resolved_case_with_its_inputs_is_the_same_case(tmp_path: Path) -> None:
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "torque.csv").write_text("angle_deg,torque_Nm\n0,1\n")
+    case = load_case_file(with_table(tmp_path, "data/torque.csv"))
+    kept = tmp_path / "kept"
+    for name, content in case.included.items():
+        (kept / name).parent.mkdir(parents=True)
+        (kept / name).write_bytes(content)
+    (kept / "case.toml").write_text(case.to_toml(), encoding="utf-8")
+    assert load_case_file(kept / "case.toml").sha256 == case.sha256
+
+
+@pytest.mark.parametrize(
+    "name", ["/etc/passwd", "../torque.csv", "a/../../torque.csv", "link.csv", "..\\torque.csv"]
+)
+def test_includes_stay_in_the_folder(tmp_path: Path, name: str) -> None:
+    (tmp_path / "torque.csv").write_text("x")
+    folder = tmp_path / "case"
+    folder.mkdir()
+    (folder / "link.csv").symlink_to(tmp_path / "torque.csv")
+    with pytest.raises(InputError, match="stays in the case file's folder"):
+        load_case_file(with_table(folder, name))
+
+
+def test_include_that_is_missing_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"engine\.file = .*none\.csv, must be an existing file"):
+        load_case_file(with_table(tmp_path, "none.csv"))
+
+
+def test_frozen() -> None:
+    case = parse_case(GX120)
+    with pytest.raises(ValueError, match="frozen"):
+        case.spring.rate = 1.0  # type: ignore[misc]
+
+
+def test_template_is_a_case() -> None:
+    case = parse_case(template("demo"))
+    assert case.name == "demo"
+    assert isinstance(case, Case)
+    with pytest.raises(InputError):
+        template("../demo")
