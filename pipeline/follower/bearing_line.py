@@ -80,10 +80,10 @@ class BearingLine:
 
         No closer than round-off of the deflection, which counts where a load hardly dents it.
         """
-        deflection = self.deflection(push, rigid)
         depth = (np.abs(push) / self.stiffness[:, None]).max(axis=0)
-        allowed = TOLERANCE * depth + _ROUND_OFF * np.abs(deflection).max(axis=0)
-        return np.asarray(self.law_miss(deflection, push) <= allowed)
+        terms = np.abs(self.compliance) @ np.abs(push) + self.rigid_modes @ np.abs(rigid)
+        allowed = TOLERANCE * depth + _ROUND_OFF * terms.max(axis=0)
+        return np.asarray(self.law_miss(self.deflection(push, rigid), push) <= allowed)
 
     def enlargement(self, load: Array) -> Array:
         """Factor that lets a load dent the bore by more than the round-off of its play, (n,)."""

@@ -163,6 +163,39 @@ def turn_integral(theta: Array, values: Array) -> float:
     return float(np.sum(0.5 * (steps + np.roll(steps, 1)) * values))
 
 
+def jump_speed(pitch: PitchCurve, system: FollowerSystem, theta: ArrayLike) -> tuple[float, float]:
+    """Least constant cam speed at which the follower leaves the cam, and where it does.
+
+    sqrt((P + k s + m g) / (-m s'')), least over the angles with s'' < 0.
+
+    Parameters
+    ----------
+    pitch : PitchCurve
+    system : FollowerSystem
+    theta : array (n,)   cam angles, rad
+
+    Returns
+    -------
+    speed : float   rad/s; infinite where nothing would throw the follower off
+    theta : float   rad; NaN in that case
+
+    References
+    ----------
+    Norton, Cam Design and Manufacturing Handbook (2009), ch. 15: follower jump.
+    """
+    theta = finite("theta", theta)
+    lift, _, bend = pitch.lift.derivatives(theta, 2)
+    hold = system.preload + system.spring_rate * lift + system.mass * system.gravity_along_axis
+    throw = -system.mass * bend
+    square = np.divide(
+        np.maximum(hold, 0.0), throw, out=np.full_like(throw, np.inf), where=throw > 0.0
+    )
+    first = int(np.argmin(square))
+    if not np.isfinite(square[first]):
+        return np.inf, np.nan
+    return float(np.sqrt(square[first])), float(theta[first])
+
+
 def follower_loads(
     pitch: PitchCurve,
     system: FollowerSystem,

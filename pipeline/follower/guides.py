@@ -99,9 +99,11 @@ class GuideReactions:
     the guides on the stem about their own middles: what finite length adds to the statics.
     `slope_*` is the tilt of the stem at the middle of a guide, `roller_deflection` the way of
     the roller with F_t, both from the guides' common axis. `line_pressure_*` (knots, n), N/m,
-    are the guides' pushes on the stem, positive against F_t. The residuals are those of force,
-    of moment about the roller, each over the load, and of the contact law at the worst knot, over
-    the largest deflection.
+    are the guides' pushes on the stem, positive against F_t, at `knots_*` (m from the middle of
+    the guide, growing away from the roller). `rubbing_load_*` adds the pushes of both sides of
+    the bore, where a reaction takes their difference: friction follows it. The residuals are
+    those of force, of moment about the roller, each over the load, and of the contact law at the
+    worst knot, over the largest deflection.
     """
 
     tangential_force: Array
@@ -119,6 +121,8 @@ class GuideReactions:
     line_pressure_b: Array
     knots_a: Array
     knots_b: Array
+    rubbing_load_a: Array
+    rubbing_load_b: Array
     stem_diameter: float
     force_residual: Array
     moment_residual: Array
@@ -260,6 +264,8 @@ def guide_reactions(
         line_pressure_b=in_b / weights_b[:, None],
         knots_a=from_a,
         knots_b=from_b,
+        rubbing_load_a=np.abs(in_a).sum(axis=0),
+        rubbing_load_b=np.abs(in_b).sum(axis=0),
         stem_diameter=stem.diameter,
         force_residual=_relative(
             reaction_a - reaction_b - force, np.abs(force) + np.abs(moment) / guides.spacing

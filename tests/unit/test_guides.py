@@ -1,0 +1,247 @@
+"""Guides and stem: values, refusals, small properties."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from geometry.errors import ContactError, InputError
+from pipeline.follower import bearing_line
+from pipeline.follower import guides as guides_module
+from pipeline.follower.guides import (
+    WALL_SHARE,
+    Guide,
+    GuidePair,
+    bush_foundation_modulus,
+    guide_reactions,
+    lobatto,
+)
+from pipeline.follower.stem import Stem, stem_compliance
+
+STEM = Stem(0.01, 210e9)
+NYLON = Guide(0.02, 0.01, 50e-6, 2e10, 0.04)
+STEEL = Guide(0.016, 0.01, 30e-6, 9e11, 0.2)
+PAIR = GuidePair(0.08, NYLON, STEEL)
+FORCE = np.array([-120.0, -1.0, 0.0, 2.0, 300.0, 800.0])
+OVERHANG = np.linspace(0.03, 0.06, 6)
+
+
+def test_reactions_are_signed_like_the_statics():
+    found = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+    np.testing.assert_allclose(found.statics_a, FORCE * (OVERHANG + 0.08) / 0.08)
+    np.testing.assert_allclose(found.statics_b, FORCE * OVERHANG / 0.08)
+    loaded = FORCE != 0.0
+    for name in "ab":
+        ratio = (
+            getattr(found, f"reaction_{name}")[loaded] / getattr(found, f"statics_{name}")[loaded]
+        )
+        assert ((ratio > 0.3) & (ratio < 1.3)).all()
+
+
+def test_equilibrium_from_the_pressures_themselves():
+    """Integrated anew over the knots, force and moment about the roller close to 1e-9."""
+    found = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+    _, weight = lobatto(guides_module.KNOTS)
+    push_a = found.line_pressure_a * (0.01 * weight)[:, None]
+    push_b = found.line_pressure_b * (0.008 * weight)[:, None]
+    total = push_a.sum(axis=0) + push_b.sum(axis=0)
+    np.testing.assert_allclose(total, FORCE, rtol=1e-9, atol=1e-12)
+    turning = (push_a * (found.knots_a[:, None] + OVERHANG)).sum(axis=0)
+    turning += (push_b * (found.knots_b[:, None] + 0.08 + OVERHANG)).sum(axis=0)
+    np.testing.assert_allclose(turning, 0.0, atol=1e-9 * 800.0 * 0.14)
+    for name in ("force_residual", "moment_residual", "complementarity_residual"):
+        assert getattr(found, name).max() <= 1e-9
+
+
+def test_no_load_gives_zeros():
+    found = guide_reactions(np.zeros(3), 0.04, STEM, PAIR)
+    for name in ("reaction_a", "reaction_b", "pressure_max_a", "slope_a", "roller_deflection"):
+        np.testing.assert_array_equal(getattr(found, name), 0.0)
+    np.testing.assert_array_equal(found.moment_residual, 0.0)
+
+
+def test_pressure_is_line_pressure_over_the_stem():
+    found = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+    peak = np.abs(found.line_pressure_b).max(axis=0) / 0.01
+    np.testing.assert_allclose(found.pressure_max_b, peak)
+    assert (found.pressure_max_a >= np.abs(found.reaction_a) / (0.02 * 0.01) - 1e-9).all()
+
+
+def test_a_bore_pushes_from_one_side_only_at_a_knot_and_not_within_its_play():
+    found = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+    assert (found.rubbing_load_a >= np.abs(found.reaction_a) - 1e-9).all()
+    assert (found.line_pressure_b[:, -1] == 0.0).any()
+
+
+def test_reversing_the_load_mirrors_the_answer():
+    one, two = (guide_reactions(sign * FORCE, OVERHANG, STEM, PAIR) for sign in (1, -1))
+    np.testing.assert_allclose(two.reaction_a, -one.reaction_a, rtol=1e-9)
+    np.testing.assert_allclose(two.roller_deflection, -one.roller_deflection, rtol=1e-9)
+    np.testing.assert_allclose(two.pressure_max_b, one.pressure_max_b, rtol=1e-7)
+
+
+@pytest.mark.parametrize("size", [1e-15, 1e-6, 1e4])
+def test_load_and_play_scaled_together_scale_everything(size):
+    def scaled(guide):
+        return replace(guide, clearance=size * guide.clearance)
+
+    one = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+    many = guide_reactions(
+        size * FORCE, OVERHANG, STEM, GuidePair(0.08, scaled(NYLON), scaled(STEEL))
+    )
+    np.testing.assert_allclose(many.reaction_b, size * one.reaction_b, rtol=1e-8)
+    np.testing.assert_allclose(many.slope_b, size * one.slope_b, rtol=1e-8, atol=1e-16 * size)
+
+
+@pytest.mark.parametrize("force", [1e-30, 1e-12, 1e-3])
+def test_a_load_that_hardly_dents_the_bore_is_still_in_equilibrium(force):
+    found = guide_reactions([force], 0.04, STEM, PAIR)
+    assert found.reaction_a - found.reaction_b == pytest.approx(force, rel=1e-9)
+    # the stem leans on the outer mouth of A and the far end of B
+    assert found.reaction_b == pytest.approx(force * (0.04 - 0.01) / (0.08 + 0.018), rel=2e-2)
+
+
+def test_answers_do_not_depend_on_the_company():
+    together = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+    alone = [
+        guide_reactions([f], a, STEM, PAIR).reaction_a[0]
+        for f, a in zip(FORCE, OVERHANG, strict=True)
+    ]
+    np.testing.assert_allclose(together.reaction_a, alone, rtol=1e-9)
+
+
+def test_lobatto_rule_is_exact_to_degree_2n_minus_3():
+    for count in (3, 7, 25):
+        knots, weights = lobatto(count)
+        assert (knots[0], knots[-1]) == (-1.0, 1.0)
+        for degree in (0, 2, 2 * count - 4):
+            assert weights @ knots**degree == pytest.approx(2 / (degree + 1), rel=1e-12)
+    knots, weights = lobatto(5)
+    assert weights @ knots**8 != pytest.approx(2 / 9, rel=1e-3)
+
+
+def test_bush_foundation_is_the_sum_of_the_radial_pressures():
+    modulus, nu, bore, wall = 2.8e9, 0.4, 0.01, 0.002
+    angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 20001)
+    confined = modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+    pressure = confined * np.cos(angle) / wall
+    summed = np.trapezoid(pressure * np.cos(angle) * 0.5 * bore, angle)
+    assert bush_foundation_modulus(bore, wall, modulus, nu) == pytest.approx(summed, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("values", "field"),
+    [
+        ((0.0, 0.002, 1e9, 0.3), "diameter"),
+        ((0.01, np.nan, 1e9, 0.3), "wall"),
+        ((0.01, 0.002, -1.0, 0.3), "elastic_modulus"),
+        ((0.01, 0.002, 1e9, 0.5), "poisson_ratio"),
+    ],
+)
+def test_bad_bush_is_refused(values, field):
+    with pytest.raises(InputError, match=field):
+        bush_foundation_modulus(*values)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "says"),
+    [
+        ("length", 0.0, "length"),
+        ("diameter", np.inf, "diameter"),
+        ("clearance", -1e-6, "press fit"),
+        ("clearance", np.nan, "clearance"),
+        ("foundation_modulus", 0.0, "foundation_modulus"),
+        ("friction", -0.1, "friction"),
+    ],
+)
+def test_bad_guide_is_refused(field, value, says):
+    with pytest.raises(InputError, match=says):
+        replace(NYLON, **{field: value})
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("diameter", 0.0), ("elastic_modulus", np.nan), ("poisson_ratio", 0.6), ("bore", 0.01)],
+)
+def test_bad_stem_is_refused(field, value):
+    with pytest.raises(InputError, match=field):
+        replace(STEM, **{field: value})
+
+
+@pytest.mark.parametrize(("share", "fits"), [(1.01, True), (0.99, False)])
+def test_guides_may_not_overlap(share, fits):
+    spacing = share * 0.018
+    if fits:
+        assert GuidePair(spacing, NYLON, STEEL).spacing == spacing
+    else:
+        with pytest.raises(InputError, match=r"guides\.spacing"):
+            GuidePair(spacing, NYLON, STEEL)
+
+
+@pytest.mark.parametrize(("share", "fits"), [(1.01, True), (0.99, False)])
+def test_the_roller_stays_outside_guide_a(share, fits):
+    if fits:
+        assert guide_reactions([1.0], share * 0.01, STEM, PAIR).reaction_a > 0.0
+    else:
+        with pytest.raises(InputError, match="overhang"):
+            guide_reactions([1.0], share * 0.01, STEM, PAIR)
+
+
+def test_a_stem_thicker_than_the_bore_is_refused():
+    with pytest.raises(InputError, match="stem_diameter"):
+        guide_reactions([1.0], 0.04, replace(STEM, diameter=0.011), PAIR)
+
+
+@pytest.mark.parametrize("knots", [1, 2, 24])
+def test_knots_must_be_odd(knots):
+    with pytest.raises(InputError, match="knots"):
+        guide_reactions([1.0], 0.04, STEM, PAIR, knots=knots)
+
+
+def test_nan_load_is_refused():
+    with pytest.raises(InputError, match="tangential_force"):
+        guide_reactions([np.nan], 0.04, STEM, PAIR)
+
+
+def test_nodes_must_rise():
+    with pytest.raises(InputError, match="nodes"):
+        stem_compliance(np.array([0.0, 0.01, 0.01]), STEM)
+
+
+def test_an_unsettled_position_raises(monkeypatch):
+    monkeypatch.setattr(bearing_line, "MAX_STEPS", 1)
+    with pytest.raises(ContactError, match="not settled"):
+        guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+
+
+@pytest.mark.parametrize(("spoilt", "name"), [(0, "force_residual"), (1, "complementarity")])
+def test_a_residual_that_is_not_met_raises(monkeypatch, spoilt, name):
+    def careless(line, force, moment):
+        push, rigid = bearing_line.settle(line, force, moment)
+        return (push * (1 + 1e-7), rigid) if spoilt == 0 else (push, rigid * (1 + 1e-6))
+
+    monkeypatch.setattr(guides_module, "settle", careless)
+    with pytest.raises(ContactError, match=name):
+        guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+
+
+def test_from_case_takes_the_bush_unless_a_stiffness_is_given():
+    table = {"length": 0.02, "diameter": 0.01, "clearance": 5e-5, "friction": 0.04}
+    case = SimpleNamespace(
+        materials={
+            "steel": SimpleNamespace(E=210e9, nu=0.3),
+            "nylon": SimpleNamespace(E=2.8e9, nu=0.4),
+        },
+        follower=SimpleNamespace(stem_diameter=0.01, stem_material="steel"),
+        guides=SimpleNamespace(
+            spacing=0.08,
+            a=SimpleNamespace(**table, material="nylon", stiffness=None),
+            b=SimpleNamespace(**table, material="steel", stiffness=3e10),
+        ),
+    )
+    pair = GuidePair.from_case(case)
+    assert pair.a.foundation_modulus == bush_foundation_modulus(0.01, WALL_SHARE * 0.01, 2.8e9, 0.4)
+    assert pair.b.foundation_modulus == 3e10
+    assert pair.spacing == 0.08
+    assert Stem.from_case(case).elastic_modulus == 210e9

@@ -1,0 +1,315 @@
+"""Stem and guides against closed forms, a collocation solver and their own limits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from skfem import Basis, ElementLineHermite, MeshLine
+
+from pipeline.follower.bearing_line import BearingLine, settle
+from pipeline.follower.guides import KNOTS, Guide, GuidePair, guide_reactions, lobatto
+from pipeline.follower.stem import Stem, bending, end_flexibility, stem_compliance
+
+STEM = Stem(0.01, 210e9)
+EI = STEM.bending_stiffness
+
+
+def guide_pair(length=0.02, clearance=0.0, modulus=2e10, spacing=0.08):
+    guide = Guide(length, 0.01, clearance, modulus)
+    return GuidePair(spacing, guide, guide)
+
+
+def test_bending_stiffness_of_a_bar_and_of_a_tube():
+    assert pytest.approx(210e9 * np.pi * 0.01**4 / 64, rel=1e-14) == EI
+    tube = replace(STEM, bore=0.006)
+    assert tube.bending_stiffness == pytest.approx(210e9 * np.pi * (1e-8 - 0.006**4) / 64)
+
+
+def test_cantilever_under_force_and_moment_at_its_end():
+    """w = P L^3/3EI + M L^2/2EI, slope = P L^2/2EI + M L/EI; 1e-8 asked, round-off kept."""
+    length = np.array([1e-5, 0.04, 3.0])
+    expected = np.array([[length**3 / 3, length**2 / 2], [length**2 / 2, length]]) / EI
+    found = end_flexibility(length, STEM)
+    np.testing.assert_allclose(np.moveaxis(found, 0, -1), expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("knots", [5, 25, 97])
+def test_cantilever_loaded_anywhere(knots):
+    """Green's function xi^2 (3 x - xi)/6EI, on nodes that crowd at the mouths of two guides."""
+    unit, _ = lobatto(knots)
+    nodes = np.r_[0.01 * (1 + unit), 0.09 + 0.01 * unit]
+    near, far = np.minimum.outer(nodes, nodes), np.maximum.outer(nodes, nodes)
+    deflection, slope = stem_compliance(nodes, STEM)
+    np.testing.assert_allclose(deflection, near**2 * (3 * far - near) / (6 * EI), rtol=1e-8, atol=0)
+    x, load = np.meshgrid(nodes, nodes, indexing="ij")
+    turned = np.where(x < load, x * (2 * load - x), load**2) / (2 * EI)
+    np.testing.assert_allclose(slope, turned, rtol=1e-8, atol=0)
+
+
+def test_condensed_chain_is_the_assembled_system():
+    """The same elements assembled over the whole stem and factorised: 1e-8 on even elements."""
+    nodes = np.linspace(0.0, 0.1, 21)
+    basis = Basis(MeshLine(nodes), ElementLineHermite())
+    free = np.setdiff1d(np.arange(basis.N), [dofs[0] for dofs in basis.nodal_dofs])
+    stiffness = EI * bending.assemble(basis).toarray()[np.ix_(free, free)]
+    inverse = np.zeros((basis.N, basis.N))
+    inverse[np.ix_(free, free)] = np.linalg.inv(stiffness)
+    at, turned = basis.nodal_dofs
+    deflection, slope = stem_compliance(nodes, STEM)
+    largest = np.abs(deflection).max()
+    np.testing.assert_allclose(inverse[np.ix_(at, at)], deflection, atol=1e-8 * largest)
+    np.testing.assert_allclose(inverse[np.ix_(turned, at)], slope, atol=1e-8 * np.abs(slope).max())
+
+
+@pytest.mark.parametrize("bore", [0.0, 0.006])
+def test_shear_adds_its_closed_form(bore):
+    """Timoshenko cantilever: + P L/(kappa G A); Cowper's kappa for a solid bar is 6/7 at nu = 0.
+
+    A very thin tube tends to kappa = 2 (1 + nu)/(4 + 3 nu).
+    """
+    plain = Stem(0.01, 210e9, 0.0, bore=bore)
+    shears = replace(plain, shear=True)
+    area = np.pi / 4 * (0.01**2 - bore**2)
+    added = end_flexibility(0.05, shears) - end_flexibility(0.05, plain)
+    kappa = 0.05 / (added[0, 0] * 105e9 * area)
+    if bore == 0.0:
+        assert kappa == pytest.approx(6 / 7, rel=1e-12)
+    np.testing.assert_allclose(added, [[added[0, 0], 0.0], [0.0, 0.0]], atol=1e-24)
+    skin = Stem(0.01, 210e9, 0.3, shear=True, bore=0.01 * (1 - 1e-7))
+    thin = 1 / (skin.shear_flexibility * 210e9 / 2.6 * np.pi / 4 * (0.01**2 - skin.bore**2))
+    assert thin == pytest.approx(2 * 1.3 / (4 + 0.9), rel=1e-6)
+
+
+def test_shear_of_a_compliance_matrix():
+    """Every node past a load follows it without turning: the shear term is min(x, xi)/(kGA)."""
+    nodes = np.linspace(0.0, 0.1, 8)
+    shears = replace(STEM, shear=True)
+    added = stem_compliance(nodes, shears)[0] - stem_compliance(nodes, STEM)[0]
+    np.testing.assert_allclose(
+        added, np.minimum.outer(nodes, nodes) * shears.shear_flexibility, atol=1e-19
+    )
+
+
+def test_overhanging_beam_on_two_point_supports():
+    """Tip deflection F a^2 (a+b)/3EI and slope F a b/3EI at the first support: 1e-8.
+
+    The supports yield by A/K and B/K, which turns the beam by a little more.
+    """
+    span, reach, force = 0.08, np.array([0.03, 0.06]), np.array([800.0, -200.0])
+    nodes, stiffness = np.array([0.0, span]), 1e14
+    line = BearingLine(
+        positions=nodes,
+        weights=np.ones(2),
+        foundation=np.full(2, stiffness),
+        play=np.zeros(2),
+        compliance=stem_compliance(nodes, STEM)[0],
+        edges=np.array([0, 1]),
+    )
+    push, rigid = settle(line, force, -force * reach)
+    np.testing.assert_allclose(push[0], force * (reach + span) / span, rtol=1e-12)
+    np.testing.assert_allclose(push[1], -force * reach / span, rtol=1e-12)
+    yielding = (push[1] - push[0]) / stiffness / span
+    slope = -force * reach * span / (3 * EI) + yielding
+    np.testing.assert_allclose(rigid[1], slope, rtol=1e-8)
+    tip = rigid[0] - rigid[1] * reach + end_flexibility(reach, STEM)[:, 0, 0] * force
+    expected = force * reach**2 * (reach + span) / (3 * EI)
+    expected += push[0] / stiffness - yielding * reach
+    np.testing.assert_allclose(tip, expected, rtol=1e-8)
+
+
+def hetenyi(x, length, modulus, force):
+    """Deflection of a free beam on an elastic foundation, loaded at its end x = 0.
+
+    Hetenyi, Beams on Elastic Foundation (1946), ch. III, free ends and a load at one of them.
+    """
+    stretch = (modulus / (4 * EI)) ** 0.25
+    full, at, rest = stretch * length, stretch * x, stretch * (length - x)
+    shape = np.sinh(full) * np.cos(at) * np.cosh(rest) - np.sin(full) * np.cosh(at) * np.cos(rest)
+    return 2 * force * stretch / modulus * shape / (np.sinh(full) ** 2 - np.sin(full) ** 2)
+
+
+def foundation_error(modulus, knots):
+    """Worst deflection on the foundation of guide A, B as soft as air, over that of its end."""
+    length, force = 0.04, 500.0
+    alone = GuidePair(0.08, Guide(length, 0.01, 0.0, modulus), Guide(0.01, 0.01, 0.0, 1e-5))
+    found = guide_reactions([force], 0.5 * length, STEM, alone, knots=knots)
+    expected = hetenyi(found.knots_a + 0.5 * length, length, modulus, force)
+    miss = np.abs(found.line_pressure_a[:, 0] / modulus - expected).max()
+    return max(miss / expected[0], abs(found.roller_deflection[0] / expected[0] - 1))
+
+
+@pytest.mark.parametrize(("modulus", "knots"), [(1e8, 33), (1e9, 65), (2e10, 129)])
+def test_beam_on_an_elastic_foundation(modulus, knots):
+    """1e-8 of the end's deflection, with more knots where the foundation is stiffer."""
+    assert foundation_error(modulus, knots) <= 1e-8
+
+
+@pytest.mark.parametrize(("modulus", "limit"), [(2e10, 3e-6), (9e11, 2e-5)])
+def test_the_knots_in_use_meet_the_foundation(modulus, limit):
+    """With the default knots, on a nylon and on a steel bush twice as long as usual."""
+    assert foundation_error(modulus, KNOTS) <= limit
+
+
+def test_foundation_converges_with_the_fourth_order():
+    """The beam's kernel has a corner in its third derivative: order 4 in the knot spacing."""
+    error = [foundation_error(9e11, n) for n in (33, 65, 129)]
+    order = np.log2(np.divide(error[:-1], error[1:]))
+    np.testing.assert_allclose(order, 4.0, atol=0.2)
+
+
+def test_end_force_and_end_moment_are_reciprocal():
+    """Turn per unit force is deflection per unit moment (Maxwell), overhang included."""
+    pair, step = guide_pair(), 1e-7
+    force, reach = 300.0, 0.045
+    by_moment = guide_reactions([0.0], reach, STEM, pair, end_moment=[1.0]).roller_deflection[0]
+    tips = [
+        guide_reactions([force], r, STEM, pair).roller_deflection[0] for r in (reach, reach + step)
+    ]
+    assert by_moment * force < 0.0 < tips[0] < tips[1]
+    with_both = guide_reactions([force], reach, STEM, pair, end_moment=[2.0])
+    assert with_both.roller_deflection[0] == pytest.approx(tips[0] + 2.0 * by_moment, rel=1e-10)
+    assert with_both.statics_b[0] == pytest.approx((force * reach - 2.0) / 0.08)
+    arm = reach - 0.01
+    cantilever = end_flexibility(arm, STEM)
+    mouth = guide_reactions([force], 0.01, STEM, pair, end_moment=[-force * arm])
+    tilt_by_force = (tips[0] - mouth.roller_deflection[0] - cantilever[0, 0] * force) / arm
+    force_by_moment = guide_reactions([0.0], 0.01, STEM, pair, end_moment=[1.0])
+    shift = force_by_moment.roller_deflection[0] - tilt_of_mouth(pair, 1.0) * arm
+    assert by_moment == pytest.approx(shift - cantilever[0, 1], rel=1e-9)
+    assert tilt_by_force > 0.0
+
+
+def tilt_of_mouth(pair, moment):
+    """Tilt of the stem at the mouth under a moment there, from two overhangs."""
+    near = guide_reactions([0.0], 0.01, STEM, pair, end_moment=[moment]).roller_deflection[0]
+    far = guide_reactions([0.0], 0.02, STEM, pair, end_moment=[moment]).roller_deflection[0]
+    return (near - far - end_flexibility(0.01, STEM)[0, 1] * moment) / 0.01
+
+
+def test_short_stiff_guides_are_the_papers_point_supports():
+    """1e-6 of the reactions, with guides of 20 micrometres that yield as little as long ones."""
+    force, reach = np.array([800.0, -150.0]), np.array([0.03, 0.06])
+    found = guide_reactions(force, reach, STEM, guide_pair(length=2e-5, modulus=1e12))
+    np.testing.assert_allclose(found.reaction_a, force * (reach + 0.08) / 0.08, rtol=1e-6)
+    np.testing.assert_allclose(found.reaction_b, force * reach / 0.08, rtol=1e-6)
+    assert np.abs(found.moment_a / (force * reach)).max() < 1e-6
+
+
+def test_difference_from_point_supports_falls_with_the_square_of_the_length():
+    """At the same stiffness k L of the support the couple it can hold goes as k L^3."""
+
+    def difference(length):
+        pair = guide_pair(length, modulus=1e8 / length)
+        found = guide_reactions([500.0], 0.04, STEM, pair)
+        return abs(found.reaction_a[0] / found.statics_a[0] - 1)
+
+    misses = np.array([difference(1e-3 * 0.5**k) for k in range(4)])
+    np.testing.assert_allclose(misses[:-1] / misses[1:], 4.0, rtol=0.05)
+
+
+def test_a_short_guide_with_play_is_a_point_support_too():
+    """In the point limit play tilts the stem but moves no reaction: 1e-4 with 0.1 mm guides."""
+    pair = guide_pair(length=1e-4, modulus=1e10, clearance=2e-5)
+    found = guide_reactions([500.0], 0.04, STEM, pair)
+    assert found.reaction_b[0] == pytest.approx(250.0, rel=2e-3)
+    assert found.force_residual[0] <= 1e-9
+
+
+def test_a_light_load_leans_on_the_mouths():
+    """Stem against the outer mouth of A and the far end of B: levers a - L/2 and b + L."""
+    pair = guide_pair(length=0.02, clearance=1e-4)
+    found = guide_reactions([1e-7], 0.05, STEM, pair)
+    assert found.reaction_b[0] == pytest.approx(1e-7 * 0.04 / 0.10, rel=1e-9)
+    assert found.slope_a[0] == pytest.approx(-1e-4 / 0.10, rel=1e-6)
+    assert found.moment_a[0] < 0.0 < found.reaction_a[0]
+
+
+def test_a_tight_guide_a_holds_a_light_load_alone():
+    """With play only in B both mouths of A carry it, in the levers a -+ L/2."""
+    pair = GuidePair(0.08, Guide(0.02, 0.01, 1e-6, 1e12), Guide(0.02, 0.01, 1e-3, 1e12))
+    found = guide_reactions([1e-7], 0.05, STEM, pair)
+    assert found.reaction_b[0] == 0.0
+    assert found.reaction_a[0] == pytest.approx(1e-7, rel=1e-9)
+    assert found.rubbing_load_a[0] == pytest.approx(1e-7 * (0.06 + 0.04) / 0.02, rel=1e-6)
+
+
+@pytest.mark.parametrize("force", [40.0, 900.0])
+@pytest.mark.parametrize("clearance", [1e-5, 6e-5])
+def test_partial_contact_against_a_displacement_solution(force, clearance):
+    """The same beam as an assembled displacement model: even elements, the bore at Gauss points.
+
+    A Newton iteration in the displacements, no knots and no compliance; 1e-3 of the reactions.
+    """
+    modulus, reach, span, half = 2e10, 0.045, 0.08, 0.01
+    pair = guide_pair(clearance=clearance)
+    found = guide_reactions([force], reach, STEM, pair, knots=65)
+    basis = Basis(
+        MeshLine(np.linspace(0.0, span + 2 * half, 201)), ElementLineHermite(), intorder=8
+    )
+    place = basis.global_coordinates()[0].ravel()
+    weight = basis.dx.ravel() * modulus * ((place < 2 * half) | (place > span))
+    shape = basis.probes(place[None, :]).toarray()
+    stiffness = EI * bending.assemble(basis).toarray()
+    load = np.zeros(basis.N)
+    load[[dofs[0] for dofs in basis.nodal_dofs]] = force, -force * (reach - half)
+    play, w = 0.5 * clearance, np.where(place < 0.6 * span, 1.0, -1.0)
+    for _ in range(60):
+        touch = weight * (np.abs(w) > play)
+        tangent = stiffness + (shape.T * touch) @ shape
+        u = np.linalg.solve(tangent, load + shape.T @ (touch * np.sign(w) * play))
+        settled = np.array_equal(np.abs(shape @ u) > play, np.abs(w) > play)
+        w = shape @ u
+        if settled:
+            break
+    assert settled
+    push = weight * np.sign(w) * np.maximum(np.abs(w) - play, 0.0)
+    reference = [push[place < 2 * half].sum(), -push[place > span].sum()]
+    np.testing.assert_allclose([found.reaction_a[0], found.reaction_b[0]], reference, rtol=1e-3)
+    assert found.slope_a[0] == pytest.approx(
+        np.interp(half, basis.doflocs[0][basis.nodal_dofs[1]], u[basis.nodal_dofs[1]]), rel=1e-3
+    )
+
+
+def test_partial_contact_converges_with_the_knots():
+    """25 knots miss the reactions by < 0.1 %, the peak of a guide whose mouth bites by < 2 %."""
+    force, pair = np.array([30.0, 300.0, 900.0]), guide_pair(clearance=5e-5)
+    by_knots = {n: guide_reactions(force, 0.045, STEM, pair, knots=n) for n in (13, KNOTS, 161)}
+
+    def miss(knots, name):
+        return np.abs(getattr(by_knots[knots], name) / getattr(by_knots[161], name) - 1).max()
+
+    assert miss(KNOTS, "reaction_b") < 1e-3
+    assert miss(KNOTS, "pressure_max_a") < 2e-2
+    assert miss(KNOTS, "reaction_b") < miss(13, "reaction_b")
+
+
+def test_many_guides_settle_in_equilibrium():
+    """Random lengths, plays, stiffnesses and loads; every residual is far below 1e-9."""
+    rng = np.random.default_rng(11)
+    worst = 0.0
+    for _ in range(25):
+        lengths = rng.uniform(0.003, 0.04, 2)
+        moduli = 10 ** rng.uniform(7.0, 12.5, 2)
+        plays = rng.choice([0.0, 1e-6, 1e-5, 1e-4, 1e-3], 2)
+        spacing = lengths.mean() + rng.uniform(0.001, 0.1)
+        a, b = (Guide(n, 0.01, c, k) for n, c, k in zip(lengths, plays, moduli, strict=True))
+        force = rng.normal(size=60) * 10 ** rng.uniform(-3.0, 4.0)
+        reach = 0.5 * lengths[0] + rng.uniform(0.0, 0.08, 60)
+        moment = rng.normal(size=60) * rng.integers(0, 2)
+        found = guide_reactions(force, reach, STEM, GuidePair(spacing, a, b), moment)
+        worst = max(worst, found.force_residual.max(), found.moment_residual.max())
+        assert found.complementarity_residual.max() <= 1e-9
+    assert worst <= 1e-11
+
+
+def test_more_play_more_tilt_and_longer_guides_less_pressure():
+    tilt = [
+        abs(guide_reactions([600.0], 0.05, STEM, guide_pair(clearance=c)).slope_a[0])
+        for c in (0.0, 1e-5, 5e-5, 2e-4)
+    ]
+    assert (np.diff(tilt) > 0.0).all()
+    peak = [
+        guide_reactions([600.0], 0.05, STEM, guide_pair(n, modulus=1e9)).pressure_max_a[0]
+        for n in (0.005, 0.01, 0.02, 0.03)
+    ]
+    assert (np.diff(peak) < 0.0).all()
