@@ -200,7 +200,7 @@ def _reached(attempts: Sequence[Attempt]) -> str:
     answer = attempts[best_attempt(attempts)].smoother
     return (
         f"smoothing cannot reach the limits while it keeps {TORQUE_REDUCTION}: "
-        f"the best is a {answer.width_in_words}"
+        f"the best is {answer.width_in_words}"
     )
 
 

@@ -37,11 +37,13 @@ def keeps_torque(checks: Sequence[Check]) -> bool:
 
 
 def score(checks: Sequence[Check]) -> Score:
-    """Less is better: torque reduction lost, must-haves failing, worst utilisation of those."""
+    """Less is better: torque reduction lost, must-haves failing, worst utilisation of those.
+
+    A missing number counts among the failing; that it is missing says nothing of how badly.
+    """
     failing = [check for check in checks if check.blocks]
-    utilisations = [check.utilisation for check in failing]
-    worst = max((math.inf if u is None else u for u in utilisations), default=0.0)
-    return (not keeps_torque(checks), len(failing), worst)
+    known = [check.utilisation for check in failing if check.utilisation is not None]
+    return (not keeps_torque(checks), len(failing), max(known, default=0.0))
 
 
 def plan(

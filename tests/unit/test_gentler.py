@@ -150,6 +150,15 @@ def test_a_missing_number_does_not_drive_the_lift_and_does_not_pass():
     assert "bush_pv_B is not evaluated" in stop.reason
 
 
+def test_beside_a_missing_number_the_others_still_improve():
+    def model(s):
+        return *cannot_pass(s), Check("bush_pv_B", "pv", 2.0, None, lift_can_help=True)
+
+    attempts, _, stop = drive(model, predict=model)
+    assert stop.binding == ("bush_pv_B", "roller_static")
+    assert 2.1 / 1.03 <= attempts[-1].smoother.strength <= 2.1
+
+
 @BOTH
 def test_nan_torque_reduction_is_not_kept(informed):
     def model(_s):
