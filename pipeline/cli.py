@@ -51,18 +51,19 @@ def main() -> NoReturn:
     signal.signal(signal.SIGTERM, _as_interrupt)
     try:
         code = app(args=arguments, standalone_mode=False)
-        sys.exit(code if isinstance(code, int) else PASSED)
     except typer.Exit as leaving:
-        sys.exit(leaving.exit_code)
+        code = leaving.exit_code
     except (KeyboardInterrupt, typer.Abort):
-        running = arguments[:1] == ["run"]
-        _say("interrupted" + ("; the same command with --resume goes on" if running else ""))
-        sys.exit(INTERRUPTED)
+        code = INTERRUPTED
     except Exception as error:
         if "--debug" in sys.argv:
             raise
         _say(_describe(error))
-        sys.exit(ERROR)
+        code = ERROR
+    if code == INTERRUPTED:  # however the parser hands an interrupt on
+        running = arguments[:1] == ["run"]
+        _say("interrupted" + ("; the same command with --resume goes on" if running else ""))
+    sys.exit(code if isinstance(code, int) else PASSED)
 
 
 def _describe(error: Exception) -> str:

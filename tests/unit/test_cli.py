@@ -1,0 +1,252 @@
+"""The command line: one line for every error, the promised exit codes."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+from small_run import check, small_case, summary, write_run, write_trial
+
+from geometry.errors import ContactError
+from pipeline import cli
+from pipeline.run_folder import RunFolder
+
+Command = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
+    """Runs `camwright` in this process: exit code, output, errors."""
+
+    def call(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["camwright", *map(str, arguments)])
+        handler = signal.getsignal(signal.SIGTERM)
+        try:
+            with pytest.raises(SystemExit) as leaving:
+                cli.main()
+        finally:
+            signal.signal(signal.SIGTERM, handler)
+        captured = capsys.readouterr()
+        return int(leaving.value.code or 0), captured.out, captured.err
+
+    return call
+
+
+@pytest.fixture
+def road(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Any]], None]:
+    """Puts a stand-in in the place of the run itself."""
+
+    def install(run_case: Callable[..., Any]) -> None:
+        module = ModuleType("pipeline.run")
+        module.run_case = run_case  # type: ignore[attr-defined]
+        monkeypatch.setitem(sys.modules, "pipeline.run", module)
+
+    return install
+
+
+@pytest.fixture
+def case_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command) -> Path:
+    monkeypatch.chdir(tmp_path)
+    assert command("init", "small")[0] == 0
+    return tmp_path / "small.toml"
+
+
+def short_road(
+    case: Any, out: Path, *, positions: int | None, jobs: int | None, resume: bool, progress: Any
+) -> None:
+    progress.stage("cycle")
+    progress.advance(1, 2)
+    with RunFolder(out, case, resume=resume) as folder:
+        write_trial(folder, [check("fail"), check("not_evaluated", id="x", must_have=False)])
+        folder.finish(summary("fail"))
+
+
+def is_one_line(text: str) -> bool:
+    return text.startswith("camwright: ") and text.count("\n") == 1
+
+
+def test_run_completes_with_0_whatever_the_verdict(
+    case_file: Path, command: Command, road: Any
+) -> None:
+    road(short_road)
+    code, out, err = command("run", case_file, "--out", "runs/small", "--jobs", 2)
+    assert code == 0
+    assert "verdict: fail after 1 trial\n" in out
+    assert "binding: pressure_angle\n" in out
+    assert out.endswith("8_report.html\n")
+    assert out.index("not_evaluated (optional)") < out.index("150%")
+    assert err == "cycle\n"
+
+
+def test_positions_reach_the_case(case_file: Path, command: Command, road: Any) -> None:
+    seen: list[Any] = []
+
+    def look(case: Any, out: Path, **options: Any) -> None:
+        seen.append((case.solver.positions, options["positions"]))
+        short_road(case, out, **options)
+
+    road(look)
+    assert command("run", case_file, "--out", "run", "--positions", 48)[0] == 0
+    assert seen == [(48, 48)]
+
+
+def test_resume_of_a_finished_run_solves_nothing(
+    case_file: Path, command: Command, road: Any
+) -> None:
+    road(short_road)
+    first = command("run", case_file, "--out", "run")
+    road(lambda *_, **__: pytest.fail("solved again"))
+    assert command("run", case_file, "--out", "run", "--resume")[:2] == first[:2]
+
+
+def test_replace_takes_an_earlier_version_of_the_case_only(
+    case_file: Path, command: Command, road: Any
+) -> None:
+    road(short_road)
+    assert command("run", case_file, "--out", "run")[0] == 0
+    case_file.write_text(case_file.read_text().replace('"400 N"', '"401 N"'))
+    code, _, err = command("run", case_file, "--out", "run")
+    assert code == 2
+    assert "holds the run of another input" in err.splitlines()[-1]
+    assert command("run", case_file, "--out", "run", "--replace")[0] == 0
+    case_file.write_text(case_file.read_text().replace('name = "small"', 'name = "big"'))
+    assert command("run", case_file, "--out", "run", "--replace")[0] == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((), "Missing"),
+        (("--out", "run", "--positions", "3"), "solver.positions = 3, must be >= 36"),
+        (("--out", "run", "--positions", "x"), "--positions"),
+        (("--out", "run", "--jobs", "0"), "--jobs = 0, must be >= 1 and <= 256"),
+        (("--out", "run", "--speed", "1"), "--speed"),
+    ],
+)
+def test_bad_arguments(
+    case_file: Path, command: Command, arguments: tuple[str, ...], message: str
+) -> None:
+    code, out, err = command("run", case_file, *arguments)
+    assert (code, out) == (2, "")
+    assert message in err
+    assert is_one_line(err)
+    assert not Path("run").exists()
+
+
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [
+        (ContactError("no convergence at\n12 deg"), "no convergence at 12 deg"),
+        (OSError(errno.ENOSPC, "No space left on device", "a.vtu"), "a.vtu: No space left"),
+        (ZeroDivisionError("x"), "unexpected ZeroDivisionError: x (--debug shows where)"),
+        (MemoryError(), "unexpected MemoryError"),
+    ],
+)
+def test_errors_of_the_road(
+    case_file: Path, command: Command, road: Any, error: Exception, message: str
+) -> None:
+    def fails(case: Any, out: Path, **_: Any) -> None:
+        with RunFolder(out, case):
+            raise error
+
+    road(fails)
+    code, out, err = command("run", case_file, "--out", "runs/small")
+    assert (code, out) == (2, "")
+    assert message in err
+    assert is_one_line(err)
+    assert sorted(entry.name for entry in case_file.parent.iterdir()) == ["small.toml"]
+
+
+def test_debug_shows_where(case_file: Path, command: Command, road: Any) -> None:
+    def fails(*_: Any, **__: Any) -> None:
+        raise ZeroDivisionError
+
+    road(fails)
+    with pytest.raises(ZeroDivisionError):
+        command("run", case_file, "--out", "run", "--debug")
+
+
+def test_interrupt_says_how_to_go_on(case_file: Path, command: Command, road: Any) -> None:
+    def stopped(case: Any, out: Path, **_: Any) -> None:
+        with RunFolder(out, case) as folder:
+            folder.save_chunk(1, "idle", 0, {"p0": [1.0]})
+            raise KeyboardInterrupt
+
+    road(stopped)
+    code, _, err = command("run", case_file, "--out", "run")
+    assert code == 130
+    assert is_one_line(err)
+    assert "--resume" in err
+    assert Path(".run.partial").is_dir()
+    assert not Path("run").exists()
+
+
+@pytest.mark.parametrize(("status", "code"), [("pass", 0), ("waived", 0), ("fail", 1)])
+def test_check_judges_from_the_folder_alone(
+    tmp_path: Path, command: Command, status: str, code: int
+) -> None:
+    out = write_run(tmp_path / "run", status=status)
+    assert command("check", out)[0] == code
+    found, text, err = command("check", out, "--json")
+    document = json.loads(text)
+    assert (found, err) == (code, "")
+    assert document["verdict"] == ("fail" if code else "pass")
+    assert document["checks"][0]["status"] == status
+    assert document["input_sha256"] == small_case().sha256
+
+
+def test_check_of_what_is_no_run(tmp_path: Path, command: Command) -> None:
+    out = write_run(tmp_path / "run")
+    (out / "trial_1" / "5_cycle.csv").write_text("load_case\n")
+    for folder in (tmp_path / "none", tmp_path, out):
+        code, text, err = command("check", folder, "--json")
+        assert (code, text) == (2, "")
+        assert is_one_line(err)
+
+
+def test_init_does_not_overwrite(case_file: Path, command: Command) -> None:
+    case_file.write_text("mine")
+    code, _, err = command("init", "small.toml")
+    assert code == 2
+    assert is_one_line(err)
+    assert case_file.read_text() == "mine"
+    assert command("init", "../other")[0] == 2
+    assert not Path("../other.toml").exists()
+
+
+def test_bad_case_file_is_one_line(case_file: Path, command: Command) -> None:
+    case_file.write_text(case_file.read_text().replace('"24.2 kN/m"', '"-24.2 kN/m"'))
+    code, _, err = command("run", case_file, "--out", "run")
+    assert code == 2
+    assert err == "camwright: spring.rate = -24.2 kN/m, must be > 0 and <= 1e+06 kN/m\n"
+
+
+def test_help_and_version(command: Command) -> None:
+    code, out, _ = command()
+    assert code == 0
+    assert "run" in out
+    assert command("--version")[1].startswith("camwright ")
+    assert command("nonsense")[0] == 2
+
+
+def test_version_answers_without_the_heavy_libraries() -> None:
+    script = (
+        "import sys; sys.argv = ['camwright', '--version']\n"
+        "from pipeline import cli\n"
+        "try: cli.main()\n"
+        "except SystemExit: pass\n"
+        "print(sorted({'numpy', 'pydantic', 'pint', 'gmsh', 'pyvista'} & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, env=os.environ
+    )
+    assert done.stdout.splitlines()[-1] == "[]"

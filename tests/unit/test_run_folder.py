@@ -1,0 +1,228 @@
+"""Run folders: whole or not at all, never over somebody else's files, resumable."""
+
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from small_run import check, small_case, summary, write_run, write_trial
+
+from geometry.errors import ResultError
+from pipeline import results, run_folder
+from pipeline.case import parse_case
+from pipeline.case_template import template
+from pipeline.run_folder import RunFolder, set_aside, write_atomic
+
+
+def entries(folder: Path) -> list[str]:
+    return sorted(entry.name for entry in folder.iterdir())
+
+
+def other_case() -> Any:
+    return parse_case(template("small").replace('"400 N"', '"401 N"'))
+
+
+def test_a_finished_run_leaves_nothing_else_behind(tmp_path: Path) -> None:
+    out = write_run(tmp_path / "new" / "run")
+    assert entries(tmp_path / "new") == ["run"]
+    assert entries(out) == ["1_torque.csv", "case.toml", "run.json", "trial_1"]
+    summary = results.read_summary(out)
+    assert summary["input_sha256"] == small_case().sha256 == results.input_sha256(out)
+    assert summary["versions"]["numpy"] == np.__version__
+
+
+def test_rerun_of_the_same_case_takes_the_place_of_the_first(tmp_path: Path) -> None:
+    out = write_run(tmp_path / "run")
+    (out / "figures").mkdir()
+    write_run(out, status="fail")
+    assert results.load_run(out).verdict == "fail"
+    assert not (out / "figures").exists()
+    assert entries(tmp_path) == ["run"]
+
+
+def test_failed_rerun_keeps_the_first(tmp_path: Path) -> None:
+    out = write_run(tmp_path / "run")
+    with pytest.raises(ZeroDivisionError), RunFolder(out, small_case()):
+        raise ZeroDivisionError
+    assert entries(tmp_path) == ["run"]
+    assert results.load_run(out).verdict == "pass"
+
+
+def test_an_empty_folder_will_do(tmp_path: Path) -> None:
+    (tmp_path / "run").mkdir()
+    write_run(tmp_path / "run")
+    assert results.load_run(tmp_path / "run").verdict == "pass"
+
+
+def test_refuses_the_run_of_another_case(tmp_path: Path) -> None:
+    out = write_run(tmp_path / "run")
+    with pytest.raises(ResultError, match="holds the run of another case, small"):
+        RunFolder(out, small_case("large"))
+    with pytest.raises(ResultError, match="holds the run of another input"):
+        RunFolder(out, other_case())
+    assert entries(tmp_path) == ["run"]
+
+
+def test_refuses_foreign_files(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("years")
+    with pytest.raises(ResultError, match=r"holds thesis\.tex, which is not of a run"):
+        RunFolder(tmp_path, small_case())
+    out = write_run(tmp_path / "run")
+    (out / "notes.txt").write_text("mine")
+    with pytest.raises(ResultError, match=r"holds notes\.txt"):
+        RunFolder(out, small_case())
+    with pytest.raises(ResultError, match="is not a folder"):
+        RunFolder(tmp_path / "thesis.tex", small_case())
+    with pytest.raises(ResultError):
+        RunFolder(tmp_path / "thesis.tex" / "run", small_case())
+    assert entries(tmp_path) == ["run", "thesis.tex"]
+
+
+def test_refuses_what_stands_where_the_work_folder_goes(tmp_path: Path) -> None:
+    (tmp_path / ".run.partial").mkdir()
+    (tmp_path / ".run.partial" / "precious").write_text("x")
+    with pytest.raises(ResultError, match="in the way"):
+        RunFolder(tmp_path / "run", small_case())
+    assert (tmp_path / ".run.partial" / "precious").read_text() == "x"
+
+
+def test_two_runs_at_once(tmp_path: Path) -> None:
+    with RunFolder(tmp_path / "run", small_case()) as first:
+        with pytest.raises(ResultError, match="another run is writing"):
+            RunFolder(tmp_path / "run", small_case())
+        write_trial(first, [check()])
+        first.finish(summary())
+    assert results.load_run(tmp_path / "run").verdict == "pass"
+
+
+def interrupted(out: Path) -> None:
+    with pytest.raises(KeyboardInterrupt), RunFolder(out, small_case()) as folder:
+        folder.save_chunk(1, "idle", 0, {"p0": np.arange(3) / 7.0}, key="a")
+        folder.save_chunk(1, "idle", 1, {"p0": np.arange(3) / 9.0}, key="b")
+        raise KeyboardInterrupt
+
+
+def test_interrupted_run_resumes(tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    interrupted(out)
+    assert not out.exists()
+    with RunFolder(out, small_case(), resume=True) as folder:
+        assert folder.resumed
+        found = folder.load_chunks(1, "idle", key="a")
+        assert list(found) == [0]
+        assert found[0]["p0"].tolist() == (np.arange(3) / 7.0).tolist()
+        assert folder.load_chunks(2, "idle", key="a") == {}
+        write_trial(folder, [check()])
+        folder.finish(summary())
+    assert entries(tmp_path) == ["run"]
+    assert not any(name.startswith(".") for name in entries(out))
+
+
+def test_without_resume_an_interrupted_run_starts_afresh(tmp_path: Path) -> None:
+    interrupted(tmp_path / "run")
+    with RunFolder(tmp_path / "run", small_case()) as folder:
+        assert not folder.resumed
+        assert folder.load_chunks(1, "idle", key="a") == {}
+
+
+def test_resume_without_a_start_begins(tmp_path: Path) -> None:
+    with RunFolder(tmp_path / "run", small_case(), resume=True) as folder:
+        assert not folder.resumed
+
+
+def test_resume_refuses_another_input_or_other_versions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "run"
+    interrupted(out)
+    with pytest.raises(ResultError, match="cannot be resumed, its input differ"):
+        RunFolder(out, other_case(), resume=True)
+    with monkeypatch.context() as patch:
+        patch.setattr(run_folder, "versions", lambda: {"camwright": "9"})
+        with pytest.raises(ResultError, match="its versions differ"):
+            RunFolder(out, small_case(), resume=True)
+    assert RunFolder(out, small_case(), resume=True).resumed
+
+
+def test_torn_chunk_is_computed_anew(tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    interrupted(out)
+    (chunk,) = tmp_path.rglob("000000.npz")
+    chunk.write_bytes(chunk.read_bytes()[:100])
+    with RunFolder(out, small_case(), resume=True) as folder:
+        assert folder.load_chunks(1, "idle", key="a") == {}
+
+
+def full_disk(*_: object) -> None:
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_full_disk_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = tmp_path / "runs" / "run"
+    with (
+        pytest.raises(ResultError, match="No space left on device"),
+        RunFolder(out, small_case()) as folder,
+    ):
+        monkeypatch.setattr(os, "fsync", full_disk)
+        write_trial(folder, [check()])
+    assert entries(tmp_path) == []
+
+
+def test_full_disk_at_the_start_leaves_no_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "fsync", full_disk)
+    with pytest.raises(ResultError, match="No space left on device"):
+        RunFolder(tmp_path / "runs" / "run", small_case())
+    assert entries(tmp_path) == []
+
+
+def test_write_atomic_keeps_the_old_file_on_failure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "file"
+    write_atomic(path, "old")
+    monkeypatch.setattr(os, "fsync", full_disk)
+    with pytest.raises(ResultError):
+        write_atomic(path, "new")
+    assert path.read_text() == "old"
+    assert entries(tmp_path) == ["file"]
+
+
+def test_headline_is_whole(tmp_path: Path) -> None:
+    given = summary()
+    del given["headline"]["p0_max_MPa"]
+    with (
+        RunFolder(tmp_path / "run", small_case()) as folder,
+        pytest.raises(ResultError, match="headline lacks p0_max_MPa"),
+    ):
+        folder.write_summary(given)
+
+
+def test_set_aside_makes_room_and_puts_back(tmp_path: Path) -> None:
+    out = write_run(tmp_path / "run")
+    with set_aside(out, other_case()):
+        write_run(out, other_case(), status="fail")
+    assert results.load_run(out).verdict == "fail"
+    with pytest.raises(ZeroDivisionError), set_aside(out, small_case()):
+        raise ZeroDivisionError
+    assert results.load_run(out).verdict == "fail"
+    with set_aside(out, small_case("large")), pytest.raises(ResultError):
+        RunFolder(out, small_case("large"))
+    assert entries(tmp_path) == ["run"]
+
+
+def test_included_files_are_kept(tmp_path: Path) -> None:
+    text = template("small")
+    engine = text[text.index("[engine]") : text.index("[mechanism]")]
+    (tmp_path / "torque.csv").write_text("crank_angle_deg,torque_Nm\n0,1\n")
+    text = text.replace(engine, '[engine]\nkind = "table"\nfile = "torque.csv"\n')
+    case = parse_case(text, tmp_path)
+    out = write_run(tmp_path / "runs" / "run", case)
+    assert (out / "inputs" / "torque.csv").read_text() == "crank_angle_deg,torque_Nm\n0,1\n"
+    results.verify_run(out)
+    assert results.input_sha256(out) == case.sha256
