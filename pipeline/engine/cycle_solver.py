@@ -81,20 +81,29 @@ class _Port:
     enthalpy: float = 0.0
     burnt: float = 0.0
 
-    def offered(self) -> tuple[float, float]:
-        """Specific enthalpy (J/kg) and burnt fraction of what flows in next."""
-        if self.mass > 0.0:
-            return self.enthalpy / self.mass, self.burnt / self.mass
-        return self.fresh_enthalpy, 0.0
+    @property
+    def offered(self) -> float:
+        """Specific enthalpy of what flows in next, J/kg."""
+        return self.enthalpy / self.mass if self.mass > 0.0 else self.fresh_enthalpy
 
-    def give(self, drawn: float) -> None:
-        """Let a mass flow into the cylinder."""
-        kept = max(1.0 - drawn / self.mass, 0.0) if self.mass > 0.0 else 0.0
-        self.mass, self.enthalpy, self.burnt = (
-            kept * self.mass,
-            kept * self.enthalpy,
-            kept * self.burnt,
-        )
+    def give(self, drawn: float) -> tuple[float, float]:
+        """Let a mass flow into the cylinder.
+
+        Returns
+        -------
+        burnt : float       the burnt gas in it, kg
+        enthalpy : float    what it holds over its mass at the enthalpy offered, J: not zero where
+                            the gas pushed back runs out and fresh charge follows
+        """
+        if self.mass == 0.0:
+            return 0.0, 0.0
+        beyond = max(drawn - self.mass, 0.0) * (self.fresh_enthalpy - self.offered)
+        given = min(drawn / self.mass, 1.0)
+        burnt = given * self.burnt
+        self.mass -= given * self.mass
+        self.enthalpy -= given * self.enthalpy
+        self.burnt -= burnt
+        return burnt, beyond
 
     def take(self, pushed: float, enthalpy: float, burnt: float) -> None:
         """Let a mass flow out of the cylinder, its specific enthalpy and burnt fraction given."""
@@ -198,18 +207,21 @@ def _step(
     return [sixth * (a + 2.0 * (b + c) + d) for a, b, c, d in zip(k1, k2, k3, k4, strict=True)]
 
 
-def _exchange(content: _Content, port: _Port, intake: float, exhaust: float, gas: Gas) -> None:
-    """Carry the burnt gas and the intake's contents along with what passed the valves."""
-    own = content.burnt / content.mass
+def _exchange(content: _Content, port: _Port, intake: float, exhaust: float, gas: Gas) -> float:
+    """Carry the burnt gas and the intake's contents along with what passed the valves.
+
+    Returns the enthalpy (J) that the gas drawn in holds over what the intake offered.
+    """
+    own, over = content.burnt / content.mass, 0.0
     if intake > 0.0:
-        content.burnt += intake * port.offered()[1]
-        port.give(intake)
+        burnt, over = port.give(intake)
     else:
         specific = content.energy / content.mass
         leaving = specific + gas.constant * gas.temperature(specific)
         port.take(-intake, leaving, own)
-        content.burnt += intake * own
-    content.burnt += exhaust * (1.0 if exhaust > 0.0 else own)
+        burnt = intake * own
+    content.burnt += burnt + exhaust * (1.0 if exhaust > 0.0 else own)
+    return over
 
 
 def fuel_mass(engine: CylinderEngine, fresh: float) -> float:
@@ -250,14 +262,14 @@ def _one_cycle(
         states.append((content.mass, content.energy))
         for _ in range(count):
             heat, length = released * steps.burnt[step], steps.length[step]
-            flows = _step(rates, 2 * step, length, content, heat, port.offered()[0])
-            intake, exhaust, enthalpy, work, lost = flows
+            flows = _step(rates, 2 * step, length, content, heat, port.offered)
+            intake, exhaust, _, work, lost = flows
             if steps.burnt[step] > 0.0:
                 content.burnt = content.mass  # the flame leaves no fresh charge behind
             if intake != 0.0 or exhaust != 0.0:
-                _exchange(content, port, intake, exhaust, gas)
+                flows[2] += _exchange(content, port, intake, exhaust, gas)
             content.mass += intake + exhaust
-            content.energy += heat * length + enthalpy - work - lost
+            content.energy += heat * length + flows[2] - work - lost
             sums = [total + part for total, part in zip(sums, flows, strict=True)]
             heat_released += heat * length
             step += 1

@@ -39,6 +39,7 @@ ANGLE_UNITS: Mapping[str, float] = MappingProxyType(
 # Written without blanks, dots, stars, dashes and carets; exact case is tried first (mPa, MPa).
 QUANTITY_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
+        "lift": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254},
         "torque": {
             "Nm": 1.0,
             "kNm": 1e3,

@@ -107,7 +107,7 @@ class CylinderCycle:
             return np.zeros_like(self.theta)
         from_bottom = np.mod(self.theta, 2.0 * pi) - pi
         reached = np.minimum(np.abs(from_bottom) / engine.dipper_immersion, 1.0)
-        dipped = np.cos(0.5 * pi * reached) ** 2
+        dipped = 0.5 * (1.0 + np.cos(pi * reached))
         flow_pressure = 0.5 * engine.oil_density * (self.crank_speed * engine.dipper_radius) ** 2
         drag = flow_pressure * engine.dipper_drag_coefficient * engine.dipper_area
         return np.asarray(-drag * engine.dipper_radius * dipped)
