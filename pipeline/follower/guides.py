@@ -56,12 +56,15 @@ class Guide:
 
     @classmethod
     def from_case(cls, case: Any, name: str) -> Guide:
-        """Guide `a` or `b` of a case; its bush is the foundation unless a stiffness is given."""
+        """Guide `a` or `b` of a case; a stiffness given there is that of the whole guide, N/m."""
         given = getattr(case.guides, name)
         material = case.materials[given.material]
-        modulus = given.stiffness or bush_foundation_modulus(
-            given.diameter, WALL_SHARE * given.diameter, material.E, material.nu
-        )
+        if given.stiffness is not None:
+            modulus = given.stiffness / given.length
+        else:
+            modulus = bush_foundation_modulus(
+                given.diameter, WALL_SHARE * given.diameter, material.E, material.nu
+            )
         return cls(given.length, given.diameter, given.clearance, modulus, given.friction)
 
 
