@@ -46,6 +46,7 @@ class Column:
     name: str
     unit: str = ""
     optional: bool = False
+    may_be_unknown: bool = False
 
     @property
     def header(self) -> str:
@@ -53,11 +54,16 @@ class Column:
 
 
 def _columns(text: str) -> tuple[Column, ...]:
-    """Columns from ``name [unit]`` lines; ``?`` marks one that may be left out."""
+    """Columns from ``name [unit]`` lines.
+
+    ``?`` marks one that may be left out, ``~`` one whose cells may be empty (NaN): the contact
+    of a contour that is no body is not known.
+    """
     found = []
     for line in text.split(";"):
         name, _, unit = line.strip().partition(" ")
-        found.append(Column(name.rstrip("?"), unit.strip(" []"), name.endswith("?")))
+        marks = name[len(name.rstrip("?~")) :]
+        found.append(Column(name.rstrip("?~"), unit.strip(" []"), "?" in marks, "~" in marks))
     return tuple(found)
 
 
@@ -72,15 +78,18 @@ CONTOUR = _columns(
 )
 CYCLE = _columns(
     "load_case; cam_angle [deg]; crank_angle [deg]; lift [mm]; pressure_angle [deg];"
-    "pitch_radius [mm]; contour_radius_of_curvature [mm]; normal_force [N]; line_load [N/mm];"
-    "p0_hertz [MPa]; p0_fe [MPa]; p0_difference [percent]; half_width_hertz [mm];"
-    "half_width_fe [mm]; tau_max [MPa]; tau_depth [mm]; von_mises [MPa]; von_mises_depth [mm];"
+    "pitch_radius [mm]; contour_radius_of_curvature [mm]; normal_force [N]; line_load~ [N/mm];"
+    "p0_hertz~ [MPa]; p0_fe~ [MPa]; p0_difference~ [percent]; half_width_hertz~ [mm];"
+    "half_width_fe~ [mm]; tau_max~ [MPa]; tau_depth~ [mm]; von_mises~ [MPa]; von_mises_depth~ [mm];"
     "reaction_A [N]; reaction_B [N]; reaction_A_statics [N]; reaction_B_statics [N];"
     "spring_force [N]; inertia_force [N]; axial_force [N]; tangential_force [N];"
     "friction_A [N]; friction_B [N]; jam_index; velocity [m/s]; cam_torque [N m];"
-    "torque_before? [N m]; torque_after? [N m]; residual_equilibrium; residual_complementarity;"
+    "torque_before? [N m]; torque_after? [N m]; residual_equilibrium~; residual_complementarity~;"
     "residual_guide_force; residual_guide_moment"
 )
+
+
+_MAY_BE_UNKNOWN = {column.header for column in CYCLE if column.may_be_unknown}
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,10 +126,12 @@ class Table:
 def table(columns: Iterable[Column], values: Mapping[str, ArrayLike]) -> Table:
     """A table from SI values by bare column name, turned into the unit of each column.
 
+    A quantity that could not be found is NaN all the way down, and its cells are left empty.
+
     Raises
     ------
     ResultError
-        If a column is missing, unknown, of another length, or holds a NaN.
+        If a column is not given, unknown, of another length, or holds a NaN among numbers.
     """
     columns = tuple(columns)
     unknown = set(values) - {column.name for column in columns}
@@ -140,7 +151,7 @@ def table(columns: Iterable[Column], values: Mapping[str, ArrayLike]) -> Table:
 
 
 def read_table(path: Path) -> Table:
-    """A CSV table; a column is of floats unless it is ``load_case``."""
+    """A CSV table; a column is of floats unless it is ``load_case``, an empty one is of NaN."""
     rows = list(csv.reader(io.StringIO(read_text(path))))
     if not rows or len(set(rows[0])) != len(rows[0]):
         raise ResultError(f"{path}: no header, or a column twice")
@@ -351,7 +362,7 @@ def _in_unit(column: Column, given: NDArray[Any]) -> NDArray[Any]:
     if given.dtype.kind in "US":
         return _fixed(given.astype(str))
     values = given.astype(float)
-    if values.ndim != 1 or np.isnan(values).any():
+    if values.ndim != 1 or (np.isnan(values).any() and not column.may_be_unknown):
         what = "NaN" if values.ndim == 1 else f"{values.ndim} dimensions"
         raise ResultError(f"column {column.header} holds {what}")
     if column.unit:
@@ -364,8 +375,14 @@ def _in_unit(column: Column, given: NDArray[Any]) -> NDArray[Any]:
 def _parsed(path: Path, name: str, cells: Iterable[str]) -> NDArray[Any]:
     if name == "load_case":
         return _fixed(np.array(list(cells), dtype=str))
+    cells = tuple(cells)
+    if not any(cells):
+        return _fixed(np.full(len(cells), np.nan))
     values: list[float] = []
     for line, cell in enumerate(cells, start=2):
+        if cell == "" and name in _MAY_BE_UNKNOWN:
+            values.append(math.nan)
+            continue
         try:
             value = float(cell)
         except ValueError:
@@ -382,7 +399,9 @@ def _fixed(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def _texts(column: NDArray[Any]) -> Iterable[str]:
-    return column.tolist() if column.dtype.kind == "U" else map(repr, column.tolist())
+    if column.dtype.kind == "U":
+        return column.tolist()
+    return ("" if math.isnan(value) else repr(value) for value in column.tolist())
 
 
 def _plain(value: object) -> object:

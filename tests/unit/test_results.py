@@ -70,13 +70,23 @@ def test_columns_that_do_not_apply_are_left_out() -> None:
     assert len(made) == ROWS
 
 
+def test_what_could_not_be_found_is_left_empty(tmp_path: Path) -> None:
+    made = results.table(results.LIFT, values(results.LIFT) | {"lift": np.full(ROWS, np.nan)})
+    path = tmp_path / "table.csv"
+    path.write_text(made.to_csv())
+    assert "nan" not in path.read_text()
+    again = results.read_table(path)
+    assert np.isnan(again["lift_mm"]).all()
+    assert again["lift_d1_mm_per_rad"].tolist() == made["lift_d1_mm_per_rad"].tolist()
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
         ({"lift": None}, "column lift_mm was not given"),
         ({"lyft": np.zeros(ROWS)}, "no such column: lyft"),
         ({"lift": np.zeros(ROWS + 1)}, "columns of different length"),
-        ({"lift": np.array([0.0, np.nan, 0.0, 0.0, 0.0])}, "column lift_mm holds NaN"),
+        ({"lift": np.array([0.0, np.nan, 0.0, 0.0, 0.0])}, "column lift_mm holds NaN among"),
     ],
 )
 def test_table_refuses(change: dict[str, Any], message: str) -> None:
@@ -93,7 +103,7 @@ def test_table_refuses(change: dict[str, Any], message: str) -> None:
         ("a,b\n1\n", "line 2: 1 cells, must be 2"),
         ("a,b\n1,x\n", "line 2: b = 'x', must be a number"),
         ("a,b\n1,nan\n", "line 2: b = 'nan', must be a number"),
-        ("a,b\n1,\n", "line 2: b = '', must be a number"),
+        ("a,b\n1,\n1,2\n", "line 2: b = '', must be a number"),
     ],
 )
 def test_broken_csv_is_refused(tmp_path: Path, text: str, message: str) -> None:
