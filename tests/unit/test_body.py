@@ -140,6 +140,7 @@ def test_block_is_fine_where_its_contact_is():
     start = mesh.points[:, mesh.facet_triples("top")[0]]
     finest = start[:, facet_lengths(mesh, "top").argmin()]
     assert np.hypot(*(finest - [0.03, 0.0])) < 2.5 * HALF_WIDTH
+    assert np.hypot(*(start - [[0.03], [0.0]])).min() < 1e-15  # a facet ends at the contact
     assert mesh.area == pytest.approx(0.02, rel=1e-13)
 
 
@@ -212,6 +213,14 @@ def test_same_input_gives_the_same_mesh_bit_for_bit(roller):
     assert roller_mesh(0.008, 0.003, 0.7, fine(phase=0.5)).sha256 != roller.sha256
 
 
+def test_fingerprint_covers_points_and_triangles():
+    names = {"edge": [[0], [1], [3]]}
+    first = BodyMesh(TRIANGLE, np.arange(6)[:, None], names)
+    turned = BodyMesh(TRIANGLE, [[1], [2], [0], [4], [5], [3]], names)
+    scaled = BodyMesh(2 * TRIANGLE, np.arange(6)[:, None], names)
+    assert len({first.sha256, turned.sha256, scaled.sha256}) == 3
+
+
 def test_another_process_gives_the_same_mesh(roller):
     script = (
         "from meshes.body import roller_mesh; from meshes.sizing import Sizing;"
@@ -234,9 +243,12 @@ def test_a_running_gmsh_is_left_as_it_was(roller):
         gmsh.model.add("mine")
         gmsh.model.geo.addPoint(1, 2, 3, tag=7)
         gmsh.model.geo.synchronize()
+        gmsh.model.add("mine too")
+        gmsh.model.setCurrent("mine")
         assert roller_mesh(0.008, 0.003, 0.7, fine()).sha256 == roller.sha256
         assert gmsh.isInitialized()
         assert gmsh.model.getCurrent() == "mine"
+        assert gmsh.model.list() == ["", "mine", "mine too"]
         assert gmsh.model.getEntities(0) == [(0, 7)]
         assert gmsh.option.getNumber("Mesh.Algorithm") == 5
         assert gmsh.option.getNumber("Mesh.MeshSizeFactor") == 2.5
