@@ -92,7 +92,7 @@ class Lift:
         knots = np.append(angle, angle[0] + FULL_TURN)
         table = make_interp_spline(knots, np.append(value, value[0]), DEGREE, bc_type="periodic")
         even = uniform_turn(max(_RESAMPLED, 4 * len(angle)))
-        return cls(even, table(angle[0] + np.mod(even - angle[0], FULL_TURN)), closure)
+        return cls(even, table(even), closure)
 
     @cached_property
     def spline(self) -> PeriodicPolynomial:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.interference import crossings, second_contact
+from geometry.interference import _distinct, crossings, second_contact
 
 
 def forwards(theta):
@@ -56,6 +56,13 @@ def test_crossing_at_the_seam_is_found_once():
 
     (pair,) = crossings(turned(limacon), turned(limacon_velocity), forwards, 90)
     np.testing.assert_allclose(np.cos(pair), [1, -0.5], rtol=0, atol=1e-12)
+
+
+def test_pairs_are_ordered_and_told_once():
+    """A crossing in a corner of two chords is met by up to four pairs of them."""
+    first = np.array([5.0, 1.0, 3.0 + 1e-13, 1.0 + 2 * np.pi])
+    second = np.array([2.0, 3.0, 1.0 - 1e-13, 3.0])
+    assert _distinct(first, second) == pytest.approx(np.array([(1.0, 3.0), (2.0, 5.0)]))
 
 
 def test_ellipse_has_no_crossing():

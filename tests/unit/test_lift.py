@@ -169,6 +169,14 @@ def test_interpolates_an_uneven_table(start):
     np.testing.assert_allclose(lift(theta), smooth(theta), rtol=0, atol=1e-12)
 
 
+def test_coarse_uneven_table_is_kept_at_its_own_angles():
+    """30 rows about 12 degrees apart: sampled at 720 angles the spline keeps each to 1e-9 m."""
+    theta = uniform_turn(30) + 0.05 * np.sin(np.arange(30))
+    lift = Lift.from_samples(theta, smooth(theta))
+    assert len(lift.theta) == 720
+    np.testing.assert_allclose(lift(theta), smooth(theta), rtol=0, atol=1e-9)
+
+
 def test_gap_limit_is_thirty_degrees():
     def table(gap):
         return np.radians(np.arange(361 - gap))

@@ -43,7 +43,7 @@ def test_closure_is_that_of_the_integral():
     mean = 3e-11
     lift = lift_from_torque(theta, harmonic_torque(theta, 5) + mean, RATE, PRELOAD)
     force = PRELOAD + RATE * float(lift(0.0))
-    assert lift.closure == pytest.approx(2 * np.pi * mean / force, rel=1e-2)
+    assert lift.closure == pytest.approx(2 * np.pi * mean / force, rel=1e-2, abs=0)
 
 
 @pytest.mark.parametrize("initial_energy", [0.0, 8.0])

@@ -1,0 +1,40 @@
+"""Extremes of periodic functions whose places are known."""
+
+import numpy as np
+import pytest
+
+from geometry.extrema import greatest, least, valleys
+
+
+@pytest.mark.parametrize("place", [0.0, 1e-9, 1.234567, 3.0, 6.28])
+@pytest.mark.parametrize("sharpness", [1.0, 20.0])
+def test_extreme_of_a_lopsided_hump(place, sharpness):
+    """Value to round-off; the angle to the root of it, as for any extreme found by values."""
+
+    def hump(theta):
+        turned = theta - place
+        return np.exp(sharpness * (np.cos(turned + 0.3 * np.sin(turned)) - 1))
+
+    found = greatest(hump, 50)
+    assert found.value == pytest.approx(1.0, abs=1e-15)
+    assert np.cos(found.theta - place) == pytest.approx(1.0, abs=1e-14)
+    assert least(lambda theta: -hump(theta), 50) == (-found.value, found.theta)
+
+
+def test_every_valley_is_refined():
+    """sin 3t + 0.1 sin t: three valleys, against the roots of the derivative."""
+    values, theta = valleys(lambda t: np.sin(3 * t) + 0.1 * np.sin(t), 24)
+    assert len(values) == 3
+    np.testing.assert_allclose(3 * np.cos(3 * theta) + 0.1 * np.cos(theta), 0, atol=1e-6)
+    np.testing.assert_allclose(values, np.sin(3 * theta) + 0.1 * np.sin(theta), rtol=1e-14)
+
+
+@pytest.mark.parametrize("place", np.linspace(0, 2 * np.pi / 24, 7))
+def test_sharp_minimum_is_bracketed_to_its_edge(place):
+    """The root of a distance keeps a kink: its angle is found to the last bracket, 1e-9 rad."""
+    found = least(lambda theta: np.abs(np.sin(0.5 * (theta - place))), 24)
+    assert found.value <= 1e-9
+
+
+def test_constant_has_its_value():
+    assert least(np.ones_like, 5000).value == 1.0
