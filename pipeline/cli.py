@@ -251,6 +251,8 @@ def _show(found: Run) -> None:
     binding = ", ".join(found.final.binding)
     trials = f"{len(found.trials)} trial{'s' if len(found.trials) > 1 else ''}"
     _out.print(f"verdict: {found.verdict} after {trials}", markup=False)
+    if found.summary.get("statement"):
+        _out.print(found.summary["statement"], markup=False)
     if binding:
         _out.print(f"binding: {binding}", markup=False)
     _out.print(f"report: {found.path / '8_report.html'}", markup=False)

@@ -126,12 +126,10 @@ class Table:
 def table(columns: Iterable[Column], values: Mapping[str, ArrayLike]) -> Table:
     """A table from SI values by bare column name, turned into the unit of each column.
 
-    A quantity that could not be found is NaN all the way down, and its cells are left empty.
-
     Raises
     ------
     ResultError
-        If a column is not given, unknown, of another length, or holds a NaN among numbers.
+        If a column is not given, unknown, of another length, or holds a NaN it may not hold.
     """
     columns = tuple(columns)
     unknown = set(values) - {column.name for column in columns}
@@ -151,7 +149,7 @@ def table(columns: Iterable[Column], values: Mapping[str, ArrayLike]) -> Table:
 
 
 def read_table(path: Path) -> Table:
-    """A CSV table; a column is of floats unless it is ``load_case``, an empty one is of NaN."""
+    """A CSV table; a column is of floats unless it is ``load_case``."""
     rows = list(csv.reader(io.StringIO(read_text(path))))
     if not rows or len(set(rows[0])) != len(rows[0]):
         raise ResultError(f"{path}: no header, or a column twice")
@@ -375,9 +373,6 @@ def _in_unit(column: Column, given: NDArray[Any]) -> NDArray[Any]:
 def _parsed(path: Path, name: str, cells: Iterable[str]) -> NDArray[Any]:
     if name == "load_case":
         return _fixed(np.array(list(cells), dtype=str))
-    cells = tuple(cells)
-    if not any(cells):
-        return _fixed(np.full(len(cells), np.nan))
     values: list[float] = []
     for line, cell in enumerate(cells, start=2):
         if cell == "" and name in _MAY_BE_UNKNOWN:
