@@ -137,20 +137,20 @@ def settle(line: BearingLine, force: Array, moment: Array) -> tuple[Array, Array
     push = np.zeros((len(line.positions), load.shape[1]))
     corners = line.slack_corners()
     rigid = corners[:, np.argmax(corners.T @ load, axis=0)]
-    open_ = np.flatnonzero(np.abs(load).max(axis=0) > 0.0)
-    rigid[:, np.setdiff1d(np.arange(load.shape[1]), open_)] = 0.0
+    unsettled = np.flatnonzero(np.abs(load).max(axis=0) > 0.0)
+    rigid[:, np.setdiff1d(np.arange(load.shape[1]), unsettled)] = 0.0
     for _ in range(MAX_STEPS):
-        if not len(open_):
+        if not len(unsettled):
             return push / enlargement, rigid
-        now, at, on = push[:, open_], rigid[:, open_], load[:, open_]
+        now, at, on = push[:, unsettled], rigid[:, unsettled], load[:, unsettled]
         next_push, next_rigid = _linear_step(line, now, at, on)
         settled = line.settled(next_push, next_rigid)
         length = _best_length(line, now, at, next_push - now, next_rigid - at, on)
         length[settled] = 1.0
-        push[:, open_] = now + length * (next_push - now)
-        rigid[:, open_] = at + length * (next_rigid - at)
-        open_ = open_[~settled]
-    raise ContactError(f"guides: {len(open_)} positions not settled in {MAX_STEPS} steps")
+        push[:, unsettled] = now + length * (next_push - now)
+        rigid[:, unsettled] = at + length * (next_rigid - at)
+        unsettled = unsettled[~settled]
+    raise ContactError(f"guides: {len(unsettled)} positions not settled in {MAX_STEPS} steps")
 
 
 def _linear_step(line: BearingLine, push: Array, rigid: Array, load: Array) -> tuple[Array, Array]:

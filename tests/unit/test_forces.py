@@ -206,6 +206,17 @@ def test_bad_speed_and_angle_are_refused():
         follower_loads(harmonic(), SYSTEM, 1.0, [np.nan])
 
 
+def test_the_overhang_is_least_at_the_largest_lift():
+    loads = follower_loads(harmonic(), SYSTEM, SPEED, [0.0, np.pi])
+    np.testing.assert_allclose(loads.overhang, [0.03 + STROKE, 0.03], rtol=1e-9)
+
+
+def test_turn_integral_by_hand():
+    """Corners (0, 1), (1, 2), (3, 4) and back to 1 at the full turn."""
+    found = turn_integral(np.array([0.0, 1.0, 3.0]), np.array([1.0, 2.0, 4.0]))
+    assert found == pytest.approx(1.5 + 6.0 + 2.5 * (2 * np.pi - 3.0), rel=1e-14)
+
+
 def test_turn_integral_on_uneven_angles():
     rng = np.random.default_rng(5)
     theta = np.sort(rng.uniform(0.0, 2 * np.pi, 4000))
