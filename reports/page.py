@@ -31,7 +31,7 @@ UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\uff
 FIELD = Path("fields") / "contact_worst.vtu"
 GROUPS = (
     ("Torque", ("torque", "torque-components")),
-    ("Shape", ("outline", "lift", "pressure-angle", "radii")),
+    ("Shape", ("outline", "pressure-angle", "lift", "radii")),
     ("Contact", ("pressure", "half-width", "stress")),
     ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
 )

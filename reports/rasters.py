@@ -86,9 +86,9 @@ def triangles_picture(
     ax.axis("off")
     norm = LogNorm(*clim) if log else Normalize(*clim)
     shown = np.clip(values, *clim)
-    ax.tripcolor(
-        Triangulation(*points, triangles.T), shown, norm=norm, cmap=colour_map, shading="gouraud"
-    )
+    mesh: Any = Triangulation(points[0], points[1], triangles.T)
+    paint: Any = ax.tripcolor
+    paint(mesh, shown, norm=norm, cmap=colour_map, shading="gouraud")
     ax.set_xlim(window[0], window[1])
     ax.set_ylim(window[2], window[3])
     agg.draw()

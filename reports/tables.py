@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite, isnan, log10, pi
+from math import inf, isclose, isfinite, isnan, log10, pi
 from typing import Any
 
 MINUS = "\N{MINUS SIGN}"
@@ -72,7 +72,7 @@ def number(value: Any, digits: int = 4) -> str:
         return "0"
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     power = int(exponent)
-    exact = float(f"{mantissa}e{exponent}") == value
+    exact = isclose(float(f"{mantissa}e{exponent}"), value, rel_tol=1e-12)
     if not -4 <= power < 6:
         shown = mantissa.rstrip("0").rstrip(".") if exact and "." in mantissa else mantissa
         return f"{shown}×10{str(power).translate(SUPERSCRIPT)}".replace("-", MINUS)
@@ -88,6 +88,7 @@ def quantity(value: Any, unit: str = "", digits: int = 4) -> str:
         unit, scale = SHOWN_AS[unit]
         value = value * scale if scale != 1.0 else value
     text = number(value, digits)
+    unit = unit.replace(" ", "\N{NO-BREAK SPACE}")
     return f"{text}\N{NO-BREAK SPACE}{unit}" if unit and text != DASH else text
 
 

@@ -375,6 +375,11 @@ def write_field(path: Path, g: dict[str, np.ndarray], worst: int, p0: float, a: 
     ).write(path)
 
 
+def quoted(text: str) -> str:
+    """A TOML string."""
+    return json.dumps(text, ensure_ascii=False)
+
+
 def write_columns(
     path: Path, columns: dict[str, np.ndarray], load_cases: tuple[str, ...] = ()
 ) -> None:
@@ -404,8 +409,8 @@ def write_run(
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "fields").mkdir(exist_ok=True)
     text = CASE.format(
-        title=json.dumps(title), notes=json.dumps(notes), positions=positions,
-        load_case=json.dumps(load_case),
+        title=quoted(title), notes=quoted(notes), positions=positions,
+        load_case=quoted(load_case),
     )  # fmt: skip
     (folder / "case.toml").write_text(text, encoding="utf-8")
     write_columns(folder / "1_torque.csv", {

@@ -1,0 +1,156 @@
+"""Pictures of the stress field off screen, and the page in a real browser."""
+
+from __future__ import annotations
+
+import io
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import report_fixture
+
+from geometry.errors import ResultError
+from reports import page, scene
+
+CHROMIUM = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return report_fixture.write_run(tmp_path_factory.mktemp("run"), positions=180)
+
+
+@pytest.fixture(scope="module")
+def built(folder):
+    return page.build(folder)
+
+
+@pytest.fixture(scope="module")
+def contact(folder):
+    """Field, contact point, normal (from the contour) and half-width at the worst angle."""
+    t = report_fixture.turn(180)
+    g = report_fixture.shape(t)
+    cycle = report_fixture.cycle_columns(t, g)
+    worst = int(np.argmax(cycle["p0_fe_MPa"]))
+    field = scene.read_field(folder / page.FIELD)
+    point, normal = g["contour"][:, worst] * 1e3, g["normal"][:, worst]
+    return field, point, normal, float(cycle["half_width_hertz_mm"][worst])
+
+
+def test_the_contact_is_found_from_the_field_alone(contact):
+    field, point, normal, half_width = contact
+    found, direction = scene.find_contact(field)
+    np.testing.assert_allclose(found, point, atol=0.2 * half_width)
+    np.testing.assert_allclose(direction, normal, atol=0.01)
+
+
+def test_the_contact_view_puts_the_roller_above(contact):
+    field, point, normal, half_width = contact
+    view = scene.contact_view(field, half_width, point, normal)
+    placed = view.placed(field.points)
+    assert placed[1, field.body == 1].mean() > 0
+    assert placed[1, field.body == 0].mean() < 0
+    assert view.window[1] == pytest.approx(4 * half_width)
+    np.testing.assert_allclose(view.placed(point[:, None]), 0.0, atol=1e-9)
+    # von Mises peaks at 0.558 p0 below the surface of a line contact
+    assert view.clim[1] == pytest.approx(0.5575 * 1088.9, rel=0.01)
+
+
+def test_the_rendered_and_the_flat_picture_agree(folder, contact):
+    field, point, normal, half_width = contact
+    view = scene.contact_view(field, half_width, point, normal)
+    body = scene.body_view(field)
+    rendered = scene.render(folder / page.FIELD, [view, body])
+    if rendered[0].note:
+        pytest.skip("no OpenGL device, the flat picture is all there is")
+    for raster in rendered:
+        assert raster.pixels.shape == (raster.view.size[1], raster.view.size[0], 3)
+    flat = scene.flat(field, view).pixels.astype(float)
+    pixels = rendered[0].pixels.astype(float)
+    shares = [0.1, 0.3, 0.42, 0.6, 0.85]
+
+    def patch(image, down, across):
+        row, column = int(down * image.shape[0]), int(across * image.shape[1])
+        return image[row - 3 : row + 4, column - 3 : column + 4].mean(axis=(0, 1))
+
+    def sampled(image):
+        return np.array([patch(image, down, across) for down in shares for across in shares])
+
+    # same colours at the same places: lines of the rendering darken a few samples slightly
+    assert np.median(np.abs(sampled(flat) - sampled(pixels))) < 6.0
+
+
+def test_without_opengl_the_page_says_so_and_still_shows_the_field(folder, contact, monkeypatch):
+    monkeypatch.setattr(scene, "WINDOWS", ("vtkNoSuchRenderWindow",))
+    real = subprocess.run
+    monkeypatch.setattr(
+        scene.subprocess, "run",
+        lambda command, **more: real([sys.executable, "-c", "raise SystemExit(139)"], **more),
+    )  # fmt: skip
+    field, point, normal, half_width = contact
+    view = scene.contact_view(field, half_width, point, normal)
+    raster = scene.render(folder / page.FIELD, [view])[0]
+    assert "No OpenGL device" in raster.note
+    middle = raster.pixels[raster.pixels.shape[0] // 2 + 80, raster.pixels.shape[1] // 2]
+    assert np.ptp(middle.astype(float)) > 60  # a colour, not paper
+
+
+def test_pictures_are_whole_png_files(folder, contact):
+    _, point, normal, half_width = contact
+    png = scene.contact_picture(folder / page.FIELD, half_width, point, normal)
+    assert png.startswith(b"\x89PNG")
+    image = imread(io.BytesIO(png), format="png")
+    assert min(image.shape[:2]) > 500
+    assert image[..., :3].std() > 0.1
+
+
+def test_a_file_without_field_is_refused(tmp_path):
+    with pytest.raises(ResultError, match="no such file"):
+        scene.read_field(tmp_path / "none.vtu")
+
+
+def test_the_page_carries_both_pictures_within_its_size(built):
+    html = built.read_text(encoding="utf-8")
+    assert html.count("data:image/png;base64,") == 2
+    assert "Von Mises stress under the roller" in html
+    assert built.stat().st_size < 8e6
+    for name in ("field-contact", "field-body"):
+        assert (built.parent / "figures" / f"{name}.png").is_file()
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine")
+@pytest.mark.parametrize("width", [390, 1440])
+def test_no_width_makes_the_page_scroll_sideways(built, tmp_path, width):
+    probe = (
+        "<script>addEventListener('load',()=>parent.postMessage(["
+        "document.documentElement.scrollWidth,document.querySelectorAll('figure svg').length,"
+        "[...document.querySelectorAll('figure svg')].every(s=>s.getBoundingClientRect().height>80)"
+        "],'*'))</script></body>"
+    )
+    html = re.sub(r"<meta http-equiv[^>]*>", "", built.read_text(encoding="utf-8"))
+    (tmp_path / "page.html").write_text(html.replace("</body>", probe), encoding="utf-8")
+    (tmp_path / "frame.html").write_text(
+        "<body><p id=out>nothing</p><script>addEventListener('message',e=>"
+        "{document.getElementById('out').textContent=e.data.join(' ')})</script>"
+        f'<iframe src="page.html" style="width:{width}px;height:900px;border:0"></iframe></body>'
+    )
+    dumped = subprocess.run(
+        [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
+         "--window-size=1600,1000", "--virtual-time-budget=8000", "--dump-dom",
+         f"--user-data-dir={tmp_path / 'profile'}", (tmp_path / "frame.html").as_uri()],
+        capture_output=True, text=True, timeout=90, check=False,
+    )  # fmt: skip
+    found = re.search(r'<p id="out">(\d+) (\d+) (\w+)</p>', dumped.stdout)
+    assert found, dumped.stdout[-500:]
+    assert int(found.group(1)) <= width
+    assert int(found.group(2)) == 14
+    assert found.group(3) == "true"

@@ -1,0 +1,213 @@
+"""The page from a synthetic run folder: order, words, and text that means harm."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import report_fixture
+
+from geometry.errors import ResultError
+from reports import page
+
+HOSTILE = "<script>alert(1)</script>\"'&lt;../../x " + "אבג \u202e \U0001f527 "
+
+
+class Outline(HTMLParser):
+    """Tags, headings and ids of a page; fails on anything left open."""
+
+    VOID = ("meta", "img", "br", "use", "path", "rect", "circle")
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.ids: list[str] = []
+        self.stack: list[str] = []
+        self.attributes: list[tuple[str, str, str]] = []
+        self.feed(html)
+
+    def handle_startendtag(self, tag, attrs):
+        self.note(tag, attrs)
+
+    def handle_starttag(self, tag, attrs):
+        self.note(tag, attrs)
+        if tag not in self.VOID:
+            self.stack.append(tag)
+
+    def note(self, tag, attrs):
+        self.tags.append(tag)
+        for name, value in attrs:
+            self.attributes.append((tag, name, value or ""))
+            if name == "id":
+                self.ids.append(value)
+
+    def handle_endtag(self, tag):
+        if tag not in self.VOID:
+            assert self.stack.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    folder = report_fixture.write_run(tmp_path_factory.mktemp("run"), positions=72, field=False)
+    return page.build(folder)
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Figures left blank, for tests of words."""
+    monkeypatch.setattr(page, "svg_and_png", lambda figure, _png: f"<svg>{figure.id}</svg>")
+
+
+@pytest.fixture(scope="module")
+def html(built):
+    return built.read_text(encoding="utf-8")
+
+
+def test_the_page_is_one_file_that_reaches_for_nothing(built, html):
+    assert built.name == "8_report.html"
+    assert built.stat().st_size < 8e6
+    assert not re.search(r'(src|href)="(?!#|data:)', html)
+    assert "@import" not in html
+    assert "url(http" not in html
+    assert "default-src 'none'" in html
+
+
+def test_the_page_is_well_formed_with_ids_used_once(html):
+    outline = Outline(html)
+    assert outline.stack == []
+    assert len(outline.ids) == len(set(outline.ids))
+    named = {value for _, name, value in outline.attributes if name == "aria-labelledby"}
+    assert named <= set(outline.ids)
+    anchors = {v[1:] for t, n, v in outline.attributes if t == "a" and n == "href"}
+    assert anchors <= set(outline.ids)
+    assert all(any(n == "alt" for t2, n, _ in outline.attributes if t2 == "img")
+               for t in outline.tags if t == "img")  # fmt: skip
+
+
+def test_the_verdict_comes_first_and_names_what_binds(html):
+    order = [html.index(f'id="{name}"') for name in (
+        "verdict", "checks", "sheet", "fields", "trials", "evidence", "inputs", "assumptions",
+        "versions")]  # fmt: skip
+    assert order == sorted(order)
+    top = html[order[0] : order[1]]
+    assert "FAIL" in top
+    assert "4 of 8 required checks hold, 3 fail, 1 is waived." in top
+    assert "Static safety of the roller bearing, load case idle, cam angle 192" in top
+    assert "no smoothing that keeps the torque reduction" in top
+
+
+def test_every_figure_of_the_sheet_is_there_with_words_for_it(built, html):
+    wanted = [name for _, names in page.GROUPS for name in names]
+    for name in wanted:
+        assert f'<figure id="{name}">' in html
+        assert f'id="{name}-alt"' in html
+        assert (built.parent / "figures" / f"{name}.png").stat().st_size > 5000
+    assert html.count("<svg ") == len(wanted)
+
+
+def test_a_missing_field_is_told_in_words(html):
+    assert "There is no picture of the field: contact_worst.vtu: no such file." in html
+
+
+def test_rebuilding_needs_only_the_folder_and_gives_the_same_page(tmp_path, undrawn):
+    folder = report_fixture.write_run(tmp_path / "run", positions=36, field=False)
+    first = page.build(folder).read_bytes()
+    (folder / page.PAGE).unlink()
+    assert page.build(folder.rename(tmp_path / "moved")).read_bytes() == first
+
+
+def test_hostile_text_comes_out_harmless_and_whole(tmp_path, undrawn):
+    text = HOSTILE + "x" * 10_000
+    records = report_fixture.checks()
+    for record in records:
+        record.update(title=text, note=text, source=text, method=text)
+    folder = report_fixture.write_run(
+        tmp_path / "run", positions=36, title=text, notes=text, records=records, field=False
+    )
+    html = page.build(folder).read_text(encoding="utf-8")
+    assert "<script" not in html
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in html
+    assert "x" * 10_000 in html
+    assert "אבג" in html
+    assert "\U0001f527" in html
+    outline = Outline(html)
+    assert outline.stack == []
+    title = re.search(r"<title>(.*?)</title>", html, re.DOTALL)
+    assert title is not None
+    assert len(title.group(1)) < 300
+
+
+def test_control_characters_are_replaced():
+    assert page.plain("a\x00b\x1bc\ud800d\n\te") == "a\ufffdb\ufffdc\ufffdd\n\te"
+    assert page.shortened("one\n two", 20) == "one two"
+    assert page.shortened("a" * 50, 10) == "a" * 9 + "…"
+
+
+def test_a_run_without_engine_or_optional_columns_is_reported(tmp_path, undrawn):
+    folder = report_fixture.write_run(tmp_path / "run", positions=36, field=False)
+    (folder / "1_torque.csv").unlink()
+    cycle = folder / "trial_2" / "5_cycle.csv"
+    lines = [line.split(",") for line in cycle.read_text().splitlines()]
+    drop = [k for k, name in enumerate(lines[0]) if name.startswith("torque_")]
+    kept = [",".join(cell for k, cell in enumerate(row) if k not in drop) for row in lines]
+    cycle.write_text("\n".join(kept) + "\n")
+    html = page.build(folder).read_text(encoding="utf-8")
+    assert '<figure id="torque">' not in html
+    assert '<figure id="torque-components">' not in html
+    assert '<figure id="pressure">' in html
+    assert ">intake<" not in html
+
+
+def test_several_load_cases_show_the_governing_one_and_a_ribbon(tmp_path, monkeypatch):
+    folder = report_fixture.write_run(tmp_path / "run", positions=36, field=False)
+    trial = folder / "trial_2"
+    lines = (trial / "5_cycle.csv").read_text().splitlines()
+    more = ["rated" + line.removeprefix("idle") for line in lines[1:]]
+    (trial / "5_cycle.csv").write_text("\n".join([*lines, *more]) + "\n")
+    records = json.loads((trial / "6_checks.json").read_text())
+    next(r for r in records if r["id"] == "roller_static")["load_case"] = "rated"
+    next(r for r in records if r["id"] == "contact_force_margin")["status"] = "not_evaluated"
+    (trial / "6_checks.json").write_text(json.dumps(records))
+    seen = []
+    monkeypatch.setattr(page, "svg_and_png", lambda figure, _png: seen.append(figure) or "")
+    html = page.build(folder).read_text(encoding="utf-8")
+    pressure = next(figure for figure in seen if figure.id == "pressure")
+    assert pressure.panels[0].curves[0].band is not None
+    assert pressure.panels[0].curves[1].band is None
+    assert "Load case <bdi>rated</bdi>, which governs" in html
+    assert "span all 2 load cases" in html
+
+
+def test_a_passing_run_says_pass(tmp_path, undrawn):
+    records = [r for r in report_fixture.checks() if r["status"] == "pass"]
+    folder = report_fixture.write_run(
+        tmp_path / "run", positions=36, records=records, field=False
+    )  # fmt: skip
+    html = page.build(folder).read_text(encoding="utf-8")
+    assert ">PASS</h2>" in html
+    assert "FAIL" not in html
+
+
+def test_what_is_not_a_run_is_refused_and_left_alone(tmp_path):
+    with pytest.raises(ResultError, match=r"run\.json is missing"):
+        page.build(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(ResultError, match="no such folder"):
+        page.build(tmp_path / "nowhere")
+
+
+def test_a_failed_write_leaves_the_old_page(built, html, undrawn, monkeypatch):
+    def full(*_args, **_kwargs):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(page.os, "fdopen", full)
+    with pytest.raises(ResultError, match="No space left on device"):
+        page.build(built.parent)
+    assert built.read_text(encoding="utf-8") == html
+    assert not [p for p in built.parent.iterdir() if p.name.endswith(".tmp")]

@@ -1,0 +1,131 @@
+"""Figures: closed curves, limits in view or in words, SVG that a page can take in."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from reports import plots
+from reports.figures import AngleFigure, Curve, LimitLine, OutlineFigure, Panel
+from reports.sheet import broken
+
+CRANK = np.arange(0.0, 720.0, 10.0)
+WAVE = np.sin(np.radians(CRANK))
+
+
+def figure(*panels, **more):
+    panels = panels or (Panel("torque", "N m", (Curve("engine", WAVE),)),)
+    return AngleFigure("wave", "A wave", "", CRANK, panels, **more)
+
+
+def drawn(made):
+    with plots.style("test"):
+        return plots.draw(made)
+
+
+def words(canvas):
+    return [text.get_text() for ax in canvas.axes for text in ax.texts]
+
+
+def test_a_curve_closes_at_the_end_of_the_turn():
+    line = drawn(figure()).axes[0].get_lines()[0]
+    assert line.get_xdata()[-1] == 720.0
+    assert line.get_ydata()[-1] == line.get_ydata()[0]
+    assert line.get_xdata().size == CRANK.size + 1
+
+
+def test_both_axes_are_named_and_agree():
+    ax = drawn(figure()).axes[0]
+    cam = next(c for c in ax.child_axes)
+    assert ax.get_xlabel() == "crank angle, deg"
+    assert cam.get_xlabel() == "cam angle, deg"
+    assert cam.get_xticks()[-1] == 360.0
+    assert ax.get_xlim() == (0.0, 720.0)
+
+
+def test_a_drive_of_another_ratio_gets_its_own_crank_axis():
+    ax = drawn(figure(gear_ratio=1.0, strokes=False)).axes[0]
+    assert ax.get_xlim() == (0.0, 360.0)
+    assert "intake" not in words(drawn(figure(gear_ratio=1.0, strokes=False)))
+
+
+def test_strokes_are_named_in_order():
+    assert words(drawn(figure()))[:4] == ["intake", "compression", "expansion", "exhaust"]
+
+
+def test_a_near_limit_is_in_view_and_a_far_one_in_words():
+    near = Panel("p0", "MPa", (Curve("", WAVE),), (LimitLine(1.5, "limit"),))
+    far = Panel("p0", "MPa", (Curve("", WAVE),), (LimitLine(50.0, "limit"),))
+    below = Panel("p0", "MPa", (Curve("", WAVE),), (LimitLine(-50.0, "limit"),))
+    assert drawn(figure(near)).axes[0].get_ylim()[1] > 1.5
+    assert "limit 1.5 MPa" in words(drawn(figure(near)))
+    assert drawn(figure(far)).axes[0].get_ylim()[1] < 2.0
+    assert "limit 50 MPa (above this axis)" in words(drawn(figure(far)))
+    assert "limit −50 MPa (below this axis)" in words(drawn(figure(below)))
+
+
+@pytest.mark.parametrize(
+    "values", [np.zeros(72), np.full(72, 7.0), np.full(72, np.nan), -(WAVE**2)]
+)
+def test_flat_and_empty_curves_are_drawn_too(values):
+    low, high = drawn(figure(Panel("x", "mm", (Curve("", values),)))).axes[0].get_ylim()
+    assert np.isfinite([low, high]).all()
+    assert low < high
+
+
+def test_a_pole_draws_no_line():
+    values = broken(np.array([10.0, 200.0, -400.0, -20.0]), 150.0)
+    np.testing.assert_array_equal(np.isnan(values), [False, True, True, False])
+
+
+def test_the_alternative_text_tells_range_place_and_limit():
+    made = figure(Panel("angle", "deg", (Curve("flank", WAVE * 40),), (LimitLine(30.0, "limit"),)))
+    assert "angle, flank: -40 to 40 deg" in made.alt
+    assert "90 degrees crank" in made.alt
+    assert "limit limit: 30 deg" in made.alt
+
+
+def test_the_svg_is_well_formed_themed_and_free_of_clashing_ids():
+    svg = plots.svg_and_png(figure())
+    other = plots.svg_and_png(AngleFigure("second", "", "", CRANK, figure().panels))
+    ET.fromstring(svg)
+    assert 'role="img"' in svg
+    assert "var(--blue)" in svg
+    assert not set(plots.COLOURS.values()) & set(re.findall(r"#[0-9a-f]{6}\b", svg))
+    assert "crank angle, deg" in svg
+    ids = [re.findall(r'\bid="([^"]+)"', text) for text in (svg, other)]
+    assert not set(ids[0]) & set(ids[1])
+    assert len(ids[0]) == len(set(ids[0]))
+    used = set(re.findall(r'(?:url\(#|href="#)([^")]+)', svg))
+    assert used <= set(ids[0])
+
+
+def test_the_same_figure_gives_the_same_bytes(tmp_path):
+    first = plots.svg_and_png(figure(), tmp_path / "a.png")
+    second = plots.svg_and_png(figure(), tmp_path / "b.png")
+    assert first == second
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_hostile_labels_stay_text():
+    svg = plots.svg_and_png(
+        figure(Panel("x", "", (Curve("<script>$\\frac{", WAVE), Curve("b", WAVE))))
+    )
+    assert "<script" not in svg
+    assert "&lt;script&gt;$\\frac{" in svg
+
+
+def test_the_outline_has_equal_axes_and_holds_the_roller():
+    angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    ring = np.array([np.cos(angle), np.sin(angle)])
+    made = OutlineFigure(
+        "outline", "Cam", "", 42 * ring, 50 * ring, 8.0, 10.0, (4.0, 2.0, 0.3), 15, "at 90 deg"
+    )
+    ax = drawn(made).axes[0]
+    assert ax.get_aspect() == 1.0
+    assert ax.get_xlim()[1] > 58.0
+    assert "between 42 and 42 mm" in made.alt
+    plots.svg_and_png(OutlineFigure("o", "", "", 42 * ring, 50 * ring, None, None, None, 0, ""))

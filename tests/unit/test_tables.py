@@ -1,0 +1,168 @@
+"""Numbers to rows: digits, units, order of the checks, and the words of the verdict."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from reports import tables
+from reports.verdict import governing, governing_load_case, verdict
+
+
+def check(name, status="pass", utilisation=0.5, **more):
+    base = {
+        "id": name, "title": name.title(), "demand": 1.0, "limit": 2.0, "unit": "MPa",
+        "utilisation": utilisation, "status": status, "load_case": "idle", "cam_angle_deg": 12.5,
+        "source": "", "method": "", "must_have": True, "sense": "at_most",
+    }  # fmt: skip
+    return base | more
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (1234.567, "1235"),
+        (0.123456, "0.1235"),
+        (30.0, "30"),
+        (32.99999999, "33.00"),
+        (-4.5, "−4.5"),
+        (0.0, "0"),
+        (1.5e-9, "1.5×10⁻⁹"),
+        (1e-9 * 1e3, "1×10⁻⁶"),
+        (2.34567e8, "2.346×10⁸"),
+        (999.96, "1000"),
+        (math.inf, "∞"),
+        (-math.inf, "−∞"),
+        (math.nan, "–"),
+        (None, "–"),
+        (720, "720"),
+        (True, "yes"),
+        ("idle", "idle"),
+    ],
+)
+def test_a_number_has_four_digits_and_a_true_minus(value, shown):
+    assert tables.number(value) == shown
+
+
+def test_si_values_are_shown_in_drawing_units():
+    assert tables.quantity(1.05e9, "Pa") == "1050\xa0MPa"
+    assert tables.quantity(math.radians(30), "rad") == "30\xa0deg"
+    assert tables.quantity(0.5, "-") == "0.5"
+    assert tables.quantity(None, "MPa") == "–"
+    assert "MPa\xa0m/s" in tables.quantity(1.9, "MPa m/s")
+
+
+def test_a_limit_is_only_drawn_in_a_unit_that_fits():
+    assert tables.in_unit(820.0, "MPa", "MPa") == 820.0
+    assert tables.in_unit(8.2e8, "Pa", "MPa") == pytest.approx(820.0, rel=1e-12)
+    assert tables.in_unit(0.5, "-", "") == 0.5
+    assert tables.in_unit(820.0, "N", "MPa") is None
+
+
+def test_checks_come_unevaluated_first_then_by_utilisation():
+    checks = [
+        check("low", utilisation=0.1),
+        check("high", "fail", 2.0),
+        check("endless", "fail", None),
+        check("missing", "not_evaluated", None, demand=None, limit=None),
+        check("waived", "waived", 19.0),
+    ]
+    rows = tables.check_rows(checks)
+    assert [row.id for row in rows] == ["missing", "endless", "waived", "high", "low"]
+    assert [row.utilisation for row in rows] == ["–", "∞", "19.00", "2.00", "0.10"]
+    assert [row.bar for row in rows] == [None, 1.5, 1.5, 1.5, 0.1]
+    assert rows[0].limit == "–"
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"), [(1.0, "1.00"), (1.0004, "1.0004"), (0.9996, "0.9996"), (1.01, "1.01")]
+)
+def test_a_utilisation_is_never_rounded_across_its_limit(value, shown):
+    assert tables.check_rows([check("near", utilisation=value)])[0].utilisation == shown
+
+
+def test_the_sense_of_a_limit_is_printed():
+    rows = tables.check_rows([check("most"), check("least", sense="at_least", utilisation=0.4)])
+    assert [row.limit for row in rows] == ["≤\xa02\xa0MPa", "≥\xa02\xa0MPa"]
+
+
+def test_a_pass_needs_the_word_and_every_required_check():
+    good = [check("a"), check("b", "waived", 3.0), check("c", "fail", 2.0, must_have=False)]
+    assert verdict("pass", good, (), "").passed
+    assert not verdict("fail", good, (), "").passed
+    assert not verdict("pass", [], (), "").passed
+    assert not verdict("pass", [*good, check("d", "fail", 1.1)], (), "").passed
+    assert not verdict("pass", [*good, check("d", "not_evaluated", None)], (), "").passed
+
+
+def test_the_sentence_counts_what_holds_fails_and_is_missing():
+    checks = [
+        check("a"), check("b", "fail", 2.0), check("c", "not_evaluated", None),
+        check("d", "waived", 2.0), check("e", "not_evaluated", None, must_have=False),
+    ]  # fmt: skip
+    words = verdict("fail", checks, ("b", "c"), "no more room")
+    assert words.sentence == (
+        "1 of 4 required checks holds, 1 fails, 1 could not be evaluated, which counts as failing,"
+        " 1 is waived. Of 1 optional check: 1 not evaluated."
+    )
+    assert words.binding == ("B", "C")
+    assert words.stopped == "no more room"
+
+
+def test_the_governing_check_is_required_and_not_waived():
+    checks = [
+        check("optional", "fail", 9.0, must_have=False), check("waived", "waived", 8.0),
+        check("worst", "fail", 2.0, load_case="rated"), check("fine"),
+    ]  # fmt: skip
+    assert governing(checks).startswith("Worst, load case rated, cam angle 12.5")
+    assert governing([]) == ""
+
+
+def test_the_sheet_draws_the_load_case_that_governs():
+    checks = [check("a", "fail", 2.0, load_case="rated"), check("b")]
+    assert governing_load_case(checks, ["idle", "rated"]) == "rated"
+    assert governing_load_case([check("c", load_case="")], ["idle", "rated"]) == "idle"
+
+
+def test_input_tables_keep_each_source_beside_its_value():
+    case = {
+        "name": "x",
+        "spring": {"rate": "24.2 kN/m", "source": "paper"},
+        "limits": {"jam_index": 0.5, "sources": {"jam_index": "Rothbart"}},
+        "materials": {"s355": {"E": "210 GPa", "source": "EN 10025"}},
+        "load_case": [{"name": "idle"}, {"name": "rated"}],
+    }
+    found = {table.title: table for table in tables.input_tables(case)}
+    assert found["spring"].source == "paper"
+    assert found["limits"].rows == (("jam index", "0.5", "Rothbart"),)
+    assert found["materials › s355"].rows == (("E", "210 GPa", ""),)
+    assert found["load case 2"].rows == (("name", "rated", ""),)
+    assert found["general"].rows == (("name", "x", ""),)
+
+
+def test_input_values_keep_their_digits():
+    table = tables.input_tables({"solver": {"share": 0.6666666666666666}})[0]
+    assert table.rows[0][1] == "0.666666666667"
+
+
+def test_certificate_rows_read_pascals_and_megapascals_alike():
+    point = {"p0_MPa": [1000.0, 1001.0], "p0_extrapolated_MPa": 1001.5, "cam_angle_deg": 30.0}
+    other = {"p0": [1.0e9, 1.001e9], "p0_extrapolated": 1.0015e9, "theta": math.radians(30)}
+    one, two = tables.certificate_rows([point, other])
+    assert one == two
+    assert one[:4] == ["30", "", "1000, 1001", "1001.5"]
+    assert len(one) == len(tables.CERTIFICATE_HEAD)
+
+
+def test_headlines_that_do_not_apply_are_left_out():
+    headline = {"torque_std_before_Nm": None, "lift_max_mm": 33.0, "new_number": 2.5}
+    assert tables.headline_rows(headline) == [
+        ("Greatest lift", "33\xa0mm"), ("new number", "2.5")
+    ]  # fmt: skip
+    assert [tile.title for tile in tables.tiles(headline)] == ["Lift"]
+
+
+def test_the_removed_ripple_is_a_share_of_the_ripple_before():
+    tile = tables.tiles({"torque_std_before_Nm": 6.0, "torque_std_after_Nm": 3.0})[0]
+    assert tile.value == "50\xa0%"
