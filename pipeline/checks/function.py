@@ -23,12 +23,7 @@ def torque_reduction(evidence: TrialEvidence) -> Check | None:
     """Share of the torque ripple the cam takes away; None when there is no engine."""
     if any(cycle.torque_before is None for cycle in evidence.cycles):
         return None
-
-    def reduction(cycle: Cycle) -> float:
-        before = float(np.std(cycle.torque_before))
-        return 1.0 - float(np.std(cycle.residual_torque)) / before if before > 0 else np.nan
-
-    worst = worst_case(evidence, reduction, at_least=True)
+    worst = worst_case(evidence, _reduction, at_least=True)
     return Check(
         id=TORQUE_REDUCTION,
         title="Torque ripple taken away",
@@ -42,6 +37,13 @@ def torque_reduction(evidence: TrialEvidence) -> Check | None:
         lift_can_help=False,
         **worst.place,
     )
+
+
+def _reduction(cycle: Cycle) -> float:
+    before, after = cycle.torque_before, cycle.residual_torque
+    if before is None or after is None or not np.std(before) > 0:
+        return np.nan
+    return float(1.0 - np.std(after) / np.std(before))
 
 
 def energy_closure(evidence: TrialEvidence) -> Check:

@@ -97,6 +97,4 @@ def _extreme(
             continue
         degrees = float(np.rad2deg(cycle.theta[worst])) if angle else None
         found = Worst(value, cycle.load_case, degrees)
-        if np.isnan(value):
-            break
     return found

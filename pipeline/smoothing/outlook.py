@@ -67,7 +67,8 @@ def plan(
     Smoother or None      None when nothing better than the best trial is foreseen
     """
     first = attempts[0].smoother
-    known = tuple((item, _demands(predict, item.smoother)) for item in attempts)
+    looked_at = tuple((item, _ahead(predict, item.smoother)) for item in attempts)
+    known = tuple(pair for pair in looked_at if pair[1])
     reach = math.log(max(widest / first.angular_width, 1.0))
     count = 1 + math.ceil(reach / math.log(COARSE_STEP))
     coarse = first.strength * np.exp(np.linspace(0.0, reach, count))
@@ -92,32 +93,43 @@ def _least(seen: Mapping[float, Score]) -> float:
     return min(seen, key=lambda strength: (seen[strength], strength))
 
 
-def _demands(predict: Predict, smoother: Smoother) -> Mapping[str, float]:
-    """Demands by check id; empty where no cam exists."""
+def _ahead(predict: Predict, smoother: Smoother) -> Mapping[str, Check]:
+    """Foreseen checks by id; none where no cam exists."""
     try:
-        return {c.id: c.demand for c in predict(smoother) if c.demand is not None}
+        return {check.id: check for check in predict(smoother)}
     except CamError:
         return {}
 
 
 def _foreseen(
     smoother: Smoother,
-    known: Sequence[tuple[Attempt, Mapping[str, float]]],
+    known: Sequence[tuple[Attempt, Mapping[str, Check]]],
     predict: Predict,
 ) -> Score:
-    ahead = _demands(predict, smoother)
+    ahead = _ahead(predict, smoother)
     if not ahead:
         return (True, sys.maxsize, math.inf)
+    if not known:  # no trial so far had a cam to learn from
+        return score([_in_hand(check) for check in ahead.values()])
     attempt, behind = min(
-        known, key=lambda item: abs(math.log(item[0].smoother.strength / smoother.strength))
+        known, key=lambda pair: abs(math.log(pair[0].smoother.strength / smoother.strength))
     )
     return score([_moved(check, ahead, behind) for check in attempt.checks])
 
 
-def _moved(check: Check, ahead: Mapping[str, float], behind: Mapping[str, float]) -> Check:
-    """The check as foreseen, a margin of its limit kept in hand."""
-    if check.id not in ahead or check.demand is None:
+def _moved(check: Check, ahead: Mapping[str, Check], behind: Mapping[str, Check]) -> Check:
+    """A trial's check as foreseen elsewhere; as it was where nobody foresees it."""
+    there, here = ahead.get(check.id), behind.get(check.id)
+    if there is None or here is None:
         return check
-    demand = check.demand + ahead[check.id] - behind.get(check.id, check.demand)
+    if check.demand is None or there.demand is None or here.demand is None:
+        return replace(check, demand=None)
+    return _in_hand(replace(check, demand=check.demand + there.demand - here.demand))
+
+
+def _in_hand(check: Check) -> Check:
+    """The check with a margin of its limit kept in hand."""
+    if check.demand is None or check.limit is None:
+        return check
     side = 1.0 if check.sense == "at_most" else -1.0
-    return replace(check, demand=demand + side * MARGIN * abs(check.limit or 0.0))
+    return replace(check, demand=check.demand + side * MARGIN * abs(check.limit))

@@ -305,6 +305,15 @@ def test_bush_pv_by_hand():
     assert guides.bush_pv_b(fake.evidence()).demand == pytest.approx(0.2, rel=1e-6)
 
 
+def test_bush_pv_takes_the_size_of_what_slides_either_way():
+    plain = fake.cycle()
+    reaction = fake.changed(plain.guides, reaction_a=np.full(fake.POSITIONS, 500.0))
+    check = guides.bush_pv_a(fake.evidence(cycles=(fake.changed(plain, guides=reaction),)))
+    # Mean |sin| over 72 equal steps; 2/pi for many. The signed mean would vanish.
+    mean = np.abs(np.sin(fake.THETA)).mean()
+    assert check.demand == pytest.approx(500.0 * 0.4 * mean / 200.0, rel=1e-6)
+
+
 # --- function --------------------------------------------------------------------------------
 
 

@@ -89,7 +89,8 @@ def test_the_gentlest_change_foreseen_to_pass_is_taken():
     attempts, _, _ = drive(passes_at_half_again, predict=passes_at_half_again)
     # 1.45 passes; a margin of half a percent and the fine sweep (1.1^(1/16)) lie above it.
     assert strengths(attempts) == [1.0, pytest.approx(1.45 * 1.005, rel=0.01)]
-    assert attempts[-1].smoother.strength >= 1.45
+    # Half a percent of the limit is kept in hand, the prediction being what it is.
+    assert attempts[-1].checks[1].utilisation <= 0.995 + 1e-12
 
 
 @BOTH
@@ -234,6 +235,22 @@ def test_checks_nobody_foresees_stay_as_the_trial_found_them():
     assert len(attempts) <= 3
 
 
+def test_a_first_trial_without_a_cam_leaves_the_word_to_the_prediction():
+    def foreseen(s):
+        if s < 1.5:
+            raise GeometryError("undercut")
+        return torque(0.9 - 0.25 * s), check("undercut", 1.6 / s)
+
+    def truth(s):
+        if s < 1.5:  # no body, so nothing is known of its contact
+            return torque(0.8), check("undercut", 9.0), check("contact_pressure", np.nan)
+        return *foreseen(s), check("contact_pressure", 0.9)
+
+    attempts, _, stop = drive(truth, predict=foreseen)
+    assert stop.passed
+    assert strengths(attempts) == [1.0, pytest.approx(1.61, rel=0.01)]
+
+
 def test_strengths_without_a_cam_are_passed_over():
     def truth(s):
         return torque(0.9 - 0.25 * s), check("pressure_angle", 1.4 / s)
@@ -278,6 +295,18 @@ def test_going_back_repeats_the_best_and_then_ends():
     end = next_smoother([better, worse, better], 3)
     assert isinstance(end, Stop)
     assert end.best == 3
+
+
+def test_the_best_is_repeated_once_even_if_it_shows_a_new_flaw():
+    # The last trial is looked at more closely: what it adds must not set off another round.
+    first = (torque(0.41), check("roller_static", 2.9))
+    better = Attempt(Smoother("gaussian"), first)
+    worse = Attempt(Smoother("gaussian", strength=1.015), (torque(0.2), check("x", 2.0)))
+    again = Attempt(Smoother("gaussian"), (*first, check("certificate", 1.2, lift=False)))
+    end = next_smoother([better, worse, again], 6)
+    assert isinstance(end, Stop)
+    assert end.best == 3
+    assert "certificate" in end.binding
 
 
 def test_without_a_place_to_go_back_the_better_trial_is_named():
