@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -177,7 +178,8 @@ def _distinct(first: Array, second: Array) -> tuple[tuple[float, float], ...]:
     kept: list[tuple[float, float]] = []
     for one, two in sorted(zip(*pairs.tolist(), strict=True)):
         same = _RESOLVED * min(two - one, FULL_TURN - two + one)
-        if all(max(abs(one - a), abs(two - b)) > same for a, b in kept):
+        start = bisect_left(kept, (one - same, 0.0))
+        if all(abs(two - other) > same for _, other in kept[start:]):
             kept.append((one, two))
     return tuple(kept)
 

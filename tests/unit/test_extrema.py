@@ -31,9 +31,15 @@ def test_every_valley_is_refined():
 
 @pytest.mark.parametrize("place", np.linspace(0, 2 * np.pi / 24, 7))
 def test_sharp_minimum_is_bracketed_to_its_edge(place):
-    """The root of a distance keeps a kink: its angle is found to the last bracket, 1e-9 rad."""
-    found = least(lambda theta: np.abs(np.sin(0.5 * (theta - place))), 24)
-    assert found.value <= 1e-9
+    """A lopsided kink needs every part of its bracket: found to the last one, 1e-9 rad."""
+
+    def valley(theta):
+        side = np.sin(theta - place)
+        return np.where(side > 0, side, -20 * side) - np.cos(theta - place)
+
+    found = least(valley, 24)
+    assert found.value == pytest.approx(-1, abs=1e-8)
+    assert np.sin(found.theta - place) == pytest.approx(0, abs=1e-9)
 
 
 def test_constant_has_its_value():
