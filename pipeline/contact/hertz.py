@@ -1,0 +1,144 @@
+"""Hertz line contact in closed form: the yardstick at every angle.
+
+Coordinates of the subsurface field are those of the half-plane: `x` along the surface,
+`depth` into the solid, both in half-widths, stresses in peak pressures.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize_scalar
+
+from geometry.arrays import Array, finite, positive
+from geometry.errors import InputError
+from pipeline.contact.stress import von_mises
+
+# In-plane maximum shear under a frictionless line contact (Johnson 1985, sec. 4.2(a)),
+# the root of the axis field carried to more digits than are printed there.
+SHEAR_MAX = 0.300283106
+SHEAR_MAX_DEPTH = 0.786151366
+
+
+def contact_modulus(
+    modulus_1: float, poisson_1: float, modulus_2: float, poisson_2: float
+) -> float:
+    """Contact modulus E* of two elastic bodies in plane strain (Pa).
+
+    Raises
+    ------
+    InputError
+        If a modulus is not positive or a Poisson ratio is outside [0, 0.5).
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), eq. 4.26.
+    """
+    compliance = 0.0
+    for name, modulus, poisson in (("1", modulus_1, poisson_1), ("2", modulus_2, poisson_2)):
+        if not modulus > 0:
+            raise InputError(f"modulus_{name}", modulus, "> 0 Pa")
+        if not 0 <= poisson < 0.5:
+            raise InputError(f"poisson_{name}", poisson, "in [0, 0.5)")
+        compliance += (1 - poisson**2) / modulus
+    return 1 / compliance
+
+
+def line_contact(
+    line_load: ArrayLike, relative_radius: ArrayLike, modulus: float
+) -> tuple[Array, Array]:
+    """Half-width and peak pressure of a Hertz line contact.
+
+    Parameters
+    ----------
+    line_load : array (...)        P', N/m, >= 0
+    relative_radius : array (...)  R, m, 1/R = 1/R1 + 1/R2
+    modulus : float                E*, Pa
+
+    Returns
+    -------
+    half_width, peak_pressure : array (...)   a, m; p0, Pa; both zero where the load is
+
+    Raises
+    ------
+    InputError
+        If a load is negative, a radius or the modulus not positive; NaN included.
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), eqs. 4.43 and 4.45.
+    """
+    load = finite("line_load", line_load)
+    if (load < 0).any():
+        raise InputError("line_load", float(load.min()), ">= 0 N/m")
+    radius = positive("relative_radius", relative_radius, "m")
+    stiffness = float(positive("modulus", modulus, "Pa"))
+    half_width = np.sqrt(4 * load * radius / (np.pi * stiffness))
+    peak_pressure = np.sqrt(load * stiffness / (np.pi * radius))
+    return half_width, peak_pressure
+
+
+def subsurface_stress(x: ArrayLike, depth: ArrayLike, friction: float = 0.0) -> Array:
+    """Stress under a Hertz line contact, with a sliding traction `friction` times pressure.
+
+    Parameters
+    ----------
+    x, depth : array (...)   in half-widths, depth >= 0 into the solid
+    friction : float         traction on the solid over pressure, acting along +x
+
+    Returns
+    -------
+    array (3, ...)   sigma_xx, sigma_zz, tau_xz over p0; tension positive; z is the depth
+
+    References
+    ----------
+    McEwen (1949) as given by Johnson, Contact Mechanics (1985), eqs. 4.49 and 7.3; the shear
+    has the sign that equilibrium asks of a depth counted into the solid.
+    """
+    x, z = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(depth, dtype=float))
+    a_term = 1 - x**2 + z**2
+    b_term = np.sqrt(a_term**2 + 4 * x**2 * z**2)
+    m = np.sqrt(np.maximum(b_term + a_term, 0) / 2)
+    n = np.copysign(np.sqrt(np.maximum(b_term - a_term, 0) / 2), x)
+    square = np.maximum(m**2 + n**2, np.finfo(float).tiny)
+    ratio = (z**2 + n**2) / square
+    stress_xx = 2 * z - m * (1 + ratio)
+    stress_zz = -m * (1 - ratio)
+    shear = -n * (m**2 - z**2) / square
+    sliding_xx = n * (2 - (z**2 - m**2) / square) - 2 * x
+    return np.stack(
+        [
+            stress_xx + friction * sliding_xx,
+            stress_zz + friction * shear,
+            shear + friction * stress_xx,
+        ]
+    )
+
+
+@lru_cache(maxsize=32)
+def von_mises_peak(poisson: float) -> tuple[float, float]:
+    """Largest von Mises stress under a frictionless contact over p0, and its depth over a.
+
+    On the axis in plane strain, where for nu > 0.19 the maximum lies.
+    """
+
+    def falling(depth: float) -> float:
+        return -float(von_mises(subsurface_stress(0.0, depth), poisson))
+
+    found = minimize_scalar(falling, bounds=(0.0, 2.0), method="bounded", options={"xatol": 1e-10})
+    return -float(found.fun), float(found.x)
+
+
+def disc_correction(line_load: ArrayLike, radius: ArrayLike) -> Array:
+    """What a diametrically loaded disc adds to the half-plane's in-plane shear near a contact (Pa).
+
+    The far load and the free rim add ``sigma_xx = P'/(pi r)`` along the surface and nothing
+    along the load, to first order in half-width over radius: half of it is shear.
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), eq. 5.55 (disc compressed along a diameter).
+    """
+    return np.asarray(line_load) / (2 * np.pi * np.asarray(radius))

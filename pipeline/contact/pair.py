@@ -1,0 +1,225 @@
+"""Cam and roller as a contact pair: shapes, materials, and the tiers that solve them.
+
+Three tiers answer the same question with growing cost: the closed form; the two-scale
+finite-element solution of every angle (`pair_history`); the full two-body finite elements at
+chosen angles (`pair_certificate`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geometry.arrays import Array
+from geometry.contour import Contour
+from geometry.errors import ContactError
+from meshes.body import BodyMesh, cam_mesh, roller_mesh
+from meshes.cam_outline import KeywayLike
+from meshes.sizing import Sizing
+from pipeline.contact import hertz, stress
+from pipeline.contact.bodies import LoadedBody
+from pipeline.contact.elastic_body import ElasticBody
+from pipeline.contact.history import ContactHistory
+from pipeline.contact.patch import contact_patch, solve_patches
+
+# Beyond this ratio of half-width to relative radius the flat patch is off by more than 0.5 %.
+_FLAT_LIMIT = 0.1
+_GRID_OF_CYCLE_MESH = 180
+TWO_SCALE = "two-scale finite elements: contact patch and bodies"
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """Young's modulus (Pa) and Poisson ratio."""
+
+    modulus: float
+    poisson: float
+
+    @property
+    def plane_strain_modulus(self) -> float:
+        return self.modulus / (1 - self.poisson**2)
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPair:
+    """Cam and roller: contour, effective width of the line contact (m), bodies, materials."""
+
+    contour: Contour
+    width: float
+    bore_radius: float
+    keyway: KeywayLike | None
+    hub_radius: float
+    cam: Elastic
+    roller: Elastic
+
+    @property
+    def contact_modulus(self) -> float:
+        return hertz.contact_modulus(
+            self.cam.modulus, self.cam.poisson, self.roller.modulus, self.roller.poisson
+        )
+
+    def relative_radius(self, theta: ArrayLike) -> Array:
+        """Relative radius of curvature (...), m; 1/R = 1/r_r + 1/r_c.
+
+        Raises
+        ------
+        ContactError
+            If the cam is so hollow that the roller does not fit.
+        """
+        curvature = 1 / self.contour.roller_radius + self.contour.curvature(theta)
+        if not (curvature > 0).all():
+            worst = float(np.degrees(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))]))
+            raise ContactError(f"the roller does not fit the hollow of the cam at {worst:.3f} deg")
+        return 1 / curvature
+
+    def gap(self, theta: Array, xi: Array) -> Array:
+        """Distance (n, q) between contour and roller circle, along the normal, before loading.
+
+        theta (n,) rad; xi (n, q) m along the tangent of a contact frame, which runs clockwise,
+        against the contour's own.
+        """
+        radius = self.contour.roller_radius
+        circle = xi**2 / (radius + np.sqrt(radius**2 - xi**2))
+        return circle - self.contour.surface_offset(theta, -xi)
+
+
+@dataclass(frozen=True, eq=False)
+class CycleBodies:
+    """Cam and roller on coarse meshes, factored once, for the contact at every angle."""
+
+    cam: LoadedBody
+    roller: LoadedBody
+
+    @classmethod
+    def meshed(cls, pair: ContactPair) -> CycleBodies:
+        """Bodies of a pair; the element size follows the curvature of the surfaces."""
+        radius = pair.contour.roller_radius
+        outline = float(pair.contour.perimeter())
+        cam = cam_mesh(
+            pair.contour,
+            pair.bore_radius,
+            pair.keyway,
+            Sizing(far_size=outline / _GRID_OF_CYCLE_MESH),
+        )
+        roller = roller_mesh(radius, pair.hub_radius, 0.5 * np.pi, Sizing(far_size=radius / 8))
+        keyed = ("keyway",) if "keyway" in cam.boundaries else ()
+        return cls(
+            LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", keyed),
+            LoadedBody(elastic_body(roller, pair.roller, "hub"), "rim"),
+        )
+
+
+def elastic_body(mesh: BodyMesh, material: Elastic, held: str) -> ElasticBody:
+    return ElasticBody(mesh, material.modulus, material.poisson, held)
+
+
+def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) -> ContactHistory:
+    """Contact by Hertz alone, every field of it; for a look ahead, not for a verdict."""
+    load = np.maximum(normal_force, 0.0) / pair.width
+    radius = pair.relative_radius(theta)
+    half_width, p0 = hertz.line_contact(load, radius, pair.contact_modulus)
+    mises, depth = hertz.von_mises_peak(pair.cam.poisson)
+    nothing = np.zeros(theta.size)
+    return ContactHistory(
+        line_load=load,
+        relative_radius=radius,
+        p0_hertz=p0,
+        half_width_hertz=half_width,
+        p0=p0,
+        half_width=half_width,
+        tau_max=hertz.SHEAR_MAX * p0,
+        tau_depth=hertz.SHEAR_MAX_DEPTH * half_width,
+        von_mises=mises * p0,
+        von_mises_depth=depth * half_width,
+        residual_equilibrium=nothing,
+        residual_complementarity=nothing,
+        method="closed form: Hertz line contact",
+    )
+
+
+def pair_history(
+    pair: ContactPair, bodies: CycleBodies, theta: Array, normal_force: Array
+) -> ContactHistory:
+    """Contact at the cam angles theta (n,) rad under normal forces (n,) N.
+
+    Two scales: pressures and near stresses from the finite-element patch, with the gap of the
+    true contour; stress and bending of the real bodies from their correction fields.
+
+    Raises
+    ------
+    ContactError
+        If the contact is too wide for a patch, or its solution fails.
+    """
+    load = np.maximum(normal_force, 0.0) / pair.width
+    radius = pair.relative_radius(theta)
+    half_width, p0 = hertz.line_contact(load, radius, pair.contact_modulus)
+    on = load > 0
+    results = {
+        name: np.zeros(theta.size)
+        for name in (
+            "p0", "half_width", "tau_max", "tau_depth", "von_mises", "von_mises_depth",
+            "residual_equilibrium", "residual_complementarity",
+        )
+    }  # fmt: skip
+    if on.any():
+        if (half_width / radius > _FLAT_LIMIT).any():
+            raise ContactError(
+                f"half-width over relative radius = {(half_width / radius).max():.3f}, must be "
+                f"<= {_FLAT_LIMIT} for the contact to be locally flat"
+            )
+        loaded = _loaded_positions(
+            pair, bodies, theta[on], load[on], radius[on], half_width[on], p0[on]
+        )
+        for name, values in loaded.items():
+            results[name][on] = values
+    return ContactHistory(
+        line_load=load,
+        relative_radius=radius,
+        p0_hertz=p0,
+        half_width_hertz=half_width,
+        method=TWO_SCALE,
+        **results,
+    )
+
+
+def _loaded_positions(
+    pair: ContactPair,
+    bodies: CycleBodies,
+    theta: Array,
+    load: Array,
+    radius: Array,
+    half_width: Array,
+    p0: Array,
+) -> dict[str, Array]:
+    patches = (contact_patch(pair.cam.poisson), contact_patch(pair.roller.poisson))
+    shares = tuple(
+        pair.contact_modulus / material.plane_strain_modulus for material in (pair.cam, pair.roller)
+    )
+    cam = bodies.cam.correction(pair.contour.points(theta), pair.contour.normal(theta))
+    rim = pair.contour.roller_radius
+    roller = bodies.roller.correction(np.array([[0.0], [rim]]), np.array([[0.0], [1.0]]))
+
+    unit_xi, _ = patches[0].shapes.quadrature()
+    xi = half_width[:, None] * unit_xi
+    bend = load * (roller.bend[0] + cam.bend)
+    gap = pair.gap(theta, xi) + 0.5 * bend[:, None] * xi**2
+    contacts = solve_patches(
+        patches, (shares[0], shares[1]), gap * (2 * radius / half_width**2)[:, None]
+    )
+
+    near = np.einsum("cmj,kj->cmk", patches[0].stress, contacts.pressure) * p0
+    total = near + (cam.stress * load)[:, None, :]
+    shear, shear_at = patches[0].peaks(stress.shear_in_plane(total))
+    mises, mises_at = patches[0].peaks(stress.von_mises(total, pair.cam.poisson))
+    return {
+        "p0": contacts.p0 * p0,
+        "half_width": contacts.half_width * half_width,
+        "tau_max": shear,
+        "tau_depth": shear_at[1] * half_width,
+        "von_mises": mises,
+        "von_mises_depth": mises_at[1] * half_width,
+        "residual_equilibrium": contacts.residual_equilibrium,
+        "residual_complementarity": contacts.residual_complementarity,
+    }

@@ -1,0 +1,108 @@
+"""The certificate: cam and roller in full at one angle, on three meshes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.errors import ContactError
+from meshes.body import BodyMesh, cam_mesh, roller_mesh
+from meshes.sizing import Sizing
+from pipeline.contact import hertz
+from pipeline.contact.certificate import ContactSide, ContactSolution, solve_contact
+from pipeline.contact.convergence import converged
+from pipeline.contact.history import CertificatePoint, ContactHistory
+from pipeline.contact.pair import ContactPair, elastic_body
+from pipeline.contact.surface import ContactFrame
+
+# A whole number of edges each time: the contact edge then falls on a knot of every mesh.
+REFINEMENT = 2.0
+EDGES = (4.0, 8.0, 16.0)
+# Elements as large as this share of the roller radius lie far from the contact.
+_FAR_SHARE = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedPair:
+    """Meshes of both bodies in the cam's frame and their contact at one angle."""
+
+    theta: float
+    frame: ContactFrame
+    cam: BodyMesh
+    roller: BodyMesh
+    sides: tuple[ContactSide, ContactSide]
+    half_width_hertz: float
+    solution: ContactSolution
+
+
+def contact_meshes(
+    pair: ContactPair, theta: float, half_width: float, edges: float
+) -> tuple[BodyMesh, BodyMesh]:
+    """Cam and roller in the cam's frame, `edges` element edges across the half-width."""
+    contact, normal = pair.contour.points(theta), pair.contour.normal(theta)
+    radius = pair.contour.roller_radius
+    sizing = Sizing.from_half_width(
+        half_width, _FAR_SHARE * radius, contact_point=contact, edges=edges
+    )
+    cam = cam_mesh(pair.contour, pair.bore_radius, pair.keyway, sizing)
+    facing = float(np.arctan2(-normal[1], -normal[0]))
+    roller = roller_mesh(radius, pair.hub_radius, facing, sizing)
+    return cam, roller.transformed(0.0, contact + radius * normal)
+
+
+def solve_pair(
+    pair: ContactPair, theta: float, normal_force: float, edges: float = EDGES[1]
+) -> SolvedPair:
+    """Cam and roller in full at the cam angle theta (rad) under a normal force (N).
+
+    Raises
+    ------
+    ContactError
+        If there is no load, or the solution fails.
+    """
+    load = normal_force / pair.width
+    if not load > 0:
+        raise ContactError(f"no load at {np.degrees(theta):.3f} deg, nothing to certify")
+    half_width, _ = hertz.line_contact(load, pair.relative_radius(theta), pair.contact_modulus)
+    cam, roller = contact_meshes(pair, theta, float(half_width), edges)
+    frame = ContactFrame(pair.contour.points(theta), pair.contour.normal(theta))
+    sides = (
+        ContactSide(elastic_body(cam, pair.cam, "bore"), "contour"),
+        ContactSide(elastic_body(roller, pair.roller, "hub"), "rim"),
+    )
+
+    def gap(xi: Array) -> Array:
+        return pair.gap(np.array([theta]), xi[None])[0]
+
+    solution = solve_contact(sides, frame, gap, load, float(half_width))
+    return SolvedPair(theta, frame, cam, roller, sides, float(half_width), solution)
+
+
+def certificate_point(
+    pair: ContactPair, history: ContactHistory, index: int, theta: float
+) -> CertificatePoint:
+    """Certificate at position `index` of a history, whose cam angle is theta (rad)."""
+    force = float(history.line_load[index]) * pair.width
+    solutions = [solve_pair(pair, theta, force, edges).solution for edges in EDGES]
+
+    def over_meshes(name: str) -> tuple[float, ...]:
+        return tuple(float(getattr(s, name)) for s in solutions)
+
+    return CertificatePoint(
+        theta=theta,
+        p0=converged(over_meshes("p0"), REFINEMENT),
+        half_width=converged(over_meshes("half_width"), REFINEMENT),
+        tau_max=converged(over_meshes("tau_max"), REFINEMENT),
+        von_mises=converged(over_meshes("von_mises"), REFINEMENT),
+        edges=EDGES,
+        dofs=tuple(s.dofs for s in solutions),
+        p0_hertz=float(history.p0_hertz[index]),
+        p0_cycle=float(history.p0[index]),
+        half_width_cycle=float(history.half_width[index]),
+        tau_max_cycle=float(history.tau_max[index]),
+        von_mises_cycle=float(history.von_mises[index]),
+        residual_equilibrium=max(over_meshes("residual_equilibrium")),
+        residual_complementarity=max(over_meshes("residual_complementarity")),
+    )

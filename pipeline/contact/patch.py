@@ -1,0 +1,167 @@
+"""The contact patch: a finite-element template, computed once and used at every angle.
+
+A half-disc in units of the half-width, forty half-widths across, so that its compliance and
+stresses serve any size and load. Its arc moves as the half-plane does, which leaves nothing to
+truncate. What the real body adds (its own boundary, bore and support) is smooth and is put on
+by `pipeline.contact.bodies`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geometry.arrays import Array, freeze, readonly
+from geometry.errors import ContactError
+from meshes.body import half_disc_mesh
+from meshes.sizing import Sizing
+from pipeline.contact import active_set
+from pipeline.contact.elastic_body import ElasticBody, StressRecovery, elements_near
+from pipeline.contact.halfplane import point_force_displacement
+from pipeline.contact.pressure import PressureShapes, fitted_ellipses
+from pipeline.contact.stress import PeakFinder
+from pipeline.contact.surface import ContactFrame, normal_loads
+
+_RADIUS = 40.0
+_WINDOW = 1.4
+_STRESS_REACH = 1.6
+_ELEMENTS_PER_HALF_WIDTH = 16
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPatch:
+    """Half-plane under unit linear pressures, by finite elements, for one Poisson ratio.
+
+    Lengths in half-widths, stresses in pressures, displacements in pressure times half-width
+    over the plane-strain modulus E / (1 - nu^2).
+
+    knots (n + 2,), compliance (n, n) weighted settlement, points (2, m) along and depth,
+    stress (3, m, n), dofs.
+    """
+
+    poisson: float
+    knots: Array
+    compliance: Array
+    points: Array
+    stress: Array
+    dofs: int
+
+    def __post_init__(self) -> None:
+        names = ("knots", "compliance", "points", "stress")
+        freeze(self, **{name: getattr(self, name) for name in names})
+
+    @property
+    def shapes(self) -> PressureShapes:
+        return PressureShapes(self.knots)
+
+    @cached_property
+    def peaks(self) -> PeakFinder:
+        return PeakFinder(self.points)
+
+
+@lru_cache(maxsize=8)
+def contact_patch(
+    poisson: float, elements_per_half_width: int = _ELEMENTS_PER_HALF_WIDTH
+) -> ContactPatch:
+    """The template for a material, see `ContactPatch`."""
+    size = 1 / elements_per_half_width
+    mesh = half_disc_mesh(
+        _RADIUS,
+        Sizing(
+            contact_point=readonly((0.0, 0.0)), contact_size=size, contact_extent=1.7, far_size=5.0
+        ),
+    )
+    body = ElasticBody(mesh, modulus=1 - poisson**2, poisson=poisson, held="arc")
+    frame = ContactFrame(np.zeros(2), np.array([0.0, 1.0]))
+    # Knots at the ends and middles of facets, as in the certificate.
+    count = round(2 * _WINDOW / size)
+    shapes = PressureShapes(readonly(np.arange(-count, count + 1) * (size / 2)))
+    loads = normal_loads(mesh, "top", frame, shapes)
+    displacement = body.displacement(-loads, _far_displacement(mesh.points, shapes, poisson))
+    compliance = -np.einsum("cni,cnj->ij", loads, displacement)
+    recovery = StressRecovery(body, elements_near(body, frame.origin, _STRESS_REACH))
+    points = mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]])
+    nodal = recovery(displacement)
+    # Seen from above the depth axis is turned over, and with it the sign of the shear.
+    nodal[2] *= -1
+    return ContactPatch(
+        poisson=poisson,
+        knots=shapes.knots,
+        compliance=(compliance + compliance.T) / 2,
+        points=points,
+        stress=nodal,
+        dofs=body.dof_count,
+    )
+
+
+def _far_displacement(points: Array, shapes: PressureShapes, poisson: float) -> Array:
+    """Half-plane displacement (2, nodes, n) far from each pressure shape."""
+    xi, weights = shapes.quadrature()
+    weighted = shapes.values(xi) * weights
+    far = np.hypot(*points) > 0.9 * _RADIUS
+    field = np.zeros((2, points.shape[1], shapes.centres.size))
+    x, depth = points[0, far], -points[1, far]
+    moved = point_force_displacement(
+        x[:, None] - xi, np.broadcast_to(depth[:, None], (x.size, xi.size)), poisson
+    )
+    field[:, far] = moved @ weighted.T * np.array([1.0, -1.0])[:, None, None]
+    return field
+
+
+@dataclass(frozen=True, eq=False)
+class PatchContacts:
+    """Contact at `count` positions, in the units of each position's Hertz solution.
+
+    pressure (count, n), p0, half_width, centre (count,), residuals (count,).
+    """
+
+    pressure: Array
+    p0: Array
+    half_width: Array
+    centre: Array
+    residual_equilibrium: Array
+    residual_complementarity: Array
+
+
+def solve_patches(
+    patches: tuple[ContactPatch, ContactPatch], shares: tuple[float, float], gap: ArrayLike
+) -> PatchContacts:
+    """Pressures at many positions at once.
+
+    Parameters
+    ----------
+    patches : two ContactPatch   body 1 and 2
+    shares : two floats          contact modulus over each body's plane-strain modulus; sum 1
+    gap : array (count, q)       at the quadrature points of the knots, over a^2 / (2 R)
+
+    Raises
+    ------
+    ContactError
+        If a contact reaches the end of the patch.
+    """
+    shapes = patches[0].shapes
+    compliance = shares[0] * patches[0].compliance + shares[1] * patches[1].compliance
+    xi, weights = shapes.quadrature()
+    weighted_gap = (np.asarray(gap) * weights) @ shapes.values(xi).T
+    count = weighted_gap.shape[0]
+    solution = active_set.solve(
+        compliance, weighted_gap, shapes.integrals, np.full(count, np.pi / 2)
+    )
+    outside = (solution.pressure[:, 0] > 0) | (solution.pressure[:, -1] > 0)
+    if outside.any():
+        raise ContactError(
+            f"at {int(outside.sum())} positions the contact is wider than {_WINDOW} Hertz "
+            "half-widths: the surfaces are not locally cylindrical there"
+        )
+    ellipses = fitted_ellipses(shapes, solution.pressure)
+    return PatchContacts(
+        pressure=solution.pressure,
+        p0=ellipses.p0,
+        half_width=ellipses.half_width,
+        centre=ellipses.centre,
+        residual_equilibrium=solution.equilibrium,
+        residual_complementarity=solution.complementarity,
+    )
