@@ -169,7 +169,7 @@ class Cylinder(Section):
     valve_spring_preload: Force = 47.0
     rocker_ratio: Positive = 1.0
 
-    intake_pressure: GasPressure = 28.0e3
+    intake_pressure: GasPressure = 30.5e3
     exhaust_pressure: GasPressure = 101.3e3
     crankcase_pressure: GasPressure = 101.3e3
     intake_temperature: Temperature = 305.0
