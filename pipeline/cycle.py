@@ -1,0 +1,159 @@
+"""Loads, contact and guide reactions at every angle of one cam turn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.arrays import Array, freeze, uniform_turn
+from geometry.contour import Contour
+from pipeline.case import Case
+from pipeline.contact.history import ContactHistory
+from pipeline.contact.pair import ContactPair, Elastic, closed_form_history
+from pipeline.engine.torque import Torque
+from pipeline.follower.forces import FollowerSystem, Loads, follower_loads
+from pipeline.follower.guides import GuidePair, GuideReactions, guide_reactions
+from pipeline.follower.stem import Stem
+
+
+@dataclass(frozen=True, eq=False)
+class Turn:
+    """What acts on the cam over one turn of one load case, before the contact is solved.
+
+    Arrays (n,) at the cam angles theta (rad). torque_before and residual_torque are crank
+    torques (N m) without and with the cam, their means taken off; None without an engine.
+    """
+
+    load_case: str
+    crank_speed: float
+    theta: Array
+    loads: Loads
+    torque_before: Array | None
+    residual_torque: Array | None
+
+    def __post_init__(self) -> None:
+        freeze(self, theta=self.theta)
+        if self.torque_before is not None and self.residual_torque is not None:
+            freeze(self, torque_before=self.torque_before, residual_torque=self.residual_torque)
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle(Turn):
+    """A turn with its contact and guide reactions; radii (n,) of curvature in m, signed."""
+
+    pressure_angle: Array
+    pitch_radius: Array
+    contour_radius: Array
+    contact: ContactHistory
+    guides: GuideReactions
+
+    def columns(self, gear_ratio: float) -> Mapping[str, Array]:
+        """SI values by the names of the columns of ``5_cycle.csv``."""
+        loads, contact, guides = self.loads, self.contact, self.guides
+        found = {
+            "load_case": np.full(self.theta.size, self.load_case),
+            "cam_angle": self.theta,
+            "crank_angle": gear_ratio * self.theta,
+            "lift": loads.lift,
+            "pressure_angle": self.pressure_angle,
+            "pitch_radius": self.pitch_radius,
+            "contour_radius_of_curvature": self.contour_radius,
+            "normal_force": loads.normal_force,
+            "line_load": contact.line_load,
+            "p0_hertz": contact.p0_hertz,
+            "p0_fe": contact.p0,
+            "p0_difference": contact.p0_difference,
+            "half_width_hertz": contact.half_width_hertz,
+            "half_width_fe": contact.half_width,
+            "tau_max": contact.tau_max,
+            "tau_depth": contact.tau_depth,
+            "von_mises": contact.von_mises,
+            "von_mises_depth": contact.von_mises_depth,
+            "reaction_A": guides.reaction_a,
+            "reaction_B": guides.reaction_b,
+            "reaction_A_statics": guides.statics_a,
+            "reaction_B_statics": guides.statics_b,
+            "spring_force": loads.spring_force,
+            "inertia_force": loads.inertia_force,
+            "axial_force": loads.axial_force,
+            "tangential_force": loads.tangential_force,
+            "friction_A": loads.friction_force_a,
+            "friction_B": loads.friction_force_b,
+            "jam_index": loads.jam_index,
+            "velocity": loads.velocity,
+            "cam_torque": loads.cam_torque,
+            "residual_equilibrium": contact.residual_equilibrium,
+            "residual_complementarity": contact.residual_complementarity,
+            "residual_guide_force": guides.force_residual,
+            "residual_guide_moment": guides.moment_residual,
+        }
+        if self.torque_before is not None and self.residual_torque is not None:
+            found |= {"torque_before": self.torque_before, "torque_after": self.residual_torque}
+        return found
+
+
+def contact_width(case: Case) -> float:
+    """Width of the line contact, m: what both cam and roller carry, chamfers left out."""
+    return float(min(case.cam.width, case.roller.width - 2 * case.roller.chamfer))
+
+
+def contact_pair(case: Case, contour: Contour) -> ContactPair:
+    """Cam and roller of a case."""
+    cam, roller = case.material(case.cam.material), case.material(case.roller.material)
+    return ContactPair(
+        contour=contour,
+        width=contact_width(case),
+        bore_radius=case.cam.bore_radius,
+        keyway=case.cam.keyway,
+        hub_radius=case.roller.hub_radius,
+        cam=Elastic(cam.E, cam.nu),
+        roller=Elastic(roller.E, roller.nu),
+    )
+
+
+def turn(
+    case: Case, contour: Contour, torque: Torque | None, load_case: str, positions: int
+) -> Turn:
+    """Loads of one load case at `positions` equally spaced cam angles."""
+    theta = uniform_turn(positions)
+    ratio = case.mechanism.gear_ratio
+    speed = next(state.speed for state in case.load_cases if state.name == load_case)
+    loads = follower_loads(contour.pitch, FollowerSystem.from_case(case), speed / ratio, theta)
+    before = None if torque is None else torque.without_mean().resampled(positions).total
+    return Turn(
+        load_case=load_case,
+        crank_speed=speed,
+        theta=theta,
+        loads=loads,
+        torque_before=before,
+        residual_torque=None if before is None else before - loads.cam_torque / ratio,
+    )
+
+
+def finished(case: Case, contour: Contour, given: Turn, contact: ContactHistory) -> Cycle:
+    """The cycle of a turn whose contact is solved; the guides are solved here."""
+    loads = given.loads
+    return Cycle(
+        load_case=given.load_case,
+        crank_speed=given.crank_speed,
+        theta=given.theta,
+        loads=loads,
+        torque_before=given.torque_before,
+        residual_torque=given.residual_torque,
+        pressure_angle=loads.pressure_angle,
+        pitch_radius=contour.pitch.radius_of_curvature(given.theta),
+        contour_radius=contour.radius_of_curvature(given.theta),
+        contact=contact,
+        guides=guide_reactions(
+            loads.tangential_force, loads.overhang, Stem.from_case(case), GuidePair.from_case(case)
+        ),
+    )
+
+
+def closed_form_cycle(case: Case, contour: Contour, given: Turn) -> Cycle:
+    """The cycle by closed forms in the contact, for a look ahead."""
+    pair = contact_pair(case, contour)
+    history = closed_form_history(pair, given.theta, given.loads.normal_force)
+    return finished(case, contour, given, history)

@@ -1,0 +1,155 @@
+"""What a run writes about itself: columns of its tables, its headline, a trial's record."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Array, uniform_turn
+from geometry.contour import Contour
+from geometry.lift import Lift
+from pipeline.case import Case
+from pipeline.contact.convergence import Convergence
+from pipeline.contact.history import CertificatePoint
+from pipeline.cycle import Cycle, contact_width
+from pipeline.engine.torque import Torque
+from pipeline.trial import Trial
+
+_MM, _MPA = 1e3, 1e-6
+
+
+def lift_columns(case: Case, lift: Lift) -> dict[str, Array]:
+    """SI values of ``2_lift.csv``."""
+    theta = uniform_turn(case.solver.positions)
+    return {
+        "cam_angle": theta,
+        "crank_angle": case.mechanism.gear_ratio * theta,
+        "lift": lift(theta),
+        "lift_d1": lift(theta, 1),
+        "lift_d2": lift(theta, 2),
+        "lift_d3": lift(theta, 3),
+    }
+
+
+def contour_columns(case: Case, contour: Contour) -> dict[str, Array]:
+    """SI values of ``3_contour.csv``."""
+    theta = uniform_turn(case.solver.positions)
+    pitch, normal = contour.pitch.points(theta), contour.normal(theta)
+    surface = contour.points(theta)
+    return {
+        "cam_angle": theta,
+        "pitch_x": pitch[0],
+        "pitch_y": pitch[1],
+        "contour_x": surface[0],
+        "contour_y": surface[1],
+        "normal_x": normal[0],
+        "normal_y": normal[1],
+        "pressure_angle": contour.pitch.pressure_angle(theta),
+        "pitch_radius": contour.pitch.radius_of_curvature(theta),
+        "contour_radius_of_curvature": contour.radius_of_curvature(theta),
+    }
+
+
+def headline(case: Case, torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | None]:
+    """Figures of the final trial in millimetres, newtons and megapascals; null: not applicable."""
+    first, contour = trial.cycles[0], trial.contour
+    sound = trial.mesh is not None
+    design = torques.get(case.load_cases[0].name)
+
+    def over(measure: Any) -> float:
+        return float(max(np.max(measure(cycle)) for cycle in trial.cycles))
+
+    def contact(measure: Any, scale: float) -> float | None:
+        return scale * over(lambda c: measure(c.contact)) if sound else None
+
+    after = first.residual_torque
+    return {
+        "torque_std_before_Nm": None if design is None else design.std,
+        "torque_std_after_Nm": None if after is None else float(np.std(after)),
+        "torque_p2p_before_Nm": None if design is None else design.peak_to_peak,
+        "torque_p2p_after_Nm": None if after is None else float(np.ptp(after)),
+        "torque_mean_removed_Nm": None if design is None else design.mean,
+        "lift_max_mm": _MM * trial.lift.highest.value,
+        "pressure_angle_max_deg": float(np.degrees(contour.pressure_angle_max().value)),
+        "pitch_radius_min_mm": _MM * contour.least_convex_pitch_radius().value,
+        "normal_force_min_N": float(min(c.loads.normal_force.min() for c in trial.cycles)),
+        "normal_force_max_N": over(lambda c: c.loads.normal_force),
+        "p0_max_MPa": contact(lambda h: h.p0, _MPA),
+        "p0_hertz_max_MPa": contact(lambda h: h.p0_hertz, _MPA),
+        "half_width_max_mm": contact(lambda h: h.half_width, _MM),
+        "von_mises_max_MPa": contact(lambda h: h.von_mises, _MPA),
+        "reaction_A_max_N": over(lambda c: np.abs(c.guides.reaction_a)),
+        "reaction_B_max_N": over(lambda c: np.abs(c.guides.reaction_b)),
+        "friction_loss_J_per_cam_turn": float(first.loads.friction_loss),
+        "fe_vs_hertz_p0_max_percent": contact(lambda h: np.abs(h.p0_difference), 100.0),
+        "residual_equilibrium_max": _residual_max(trial) if sound else None,
+    }
+
+
+def _residual_max(trial: Trial) -> float:
+    def worst(cycle: Cycle) -> float:
+        parts = (
+            cycle.contact.residual_equilibrium,
+            cycle.guides.force_residual,
+            cycle.guides.moment_residual,
+        )
+        return float(max(np.abs(part).max() for part in parts))
+
+    return max(worst(cycle) for cycle in trial.cycles)
+
+
+def trial_record(case: Case, trial: Trial) -> dict[str, Any]:
+    """Contents of ``trial.json``: what was changed and why, mesh, certificate."""
+    smoother, mesh = trial.smoother, trial.mesh
+    window = None if smoother is None else float(np.degrees(smoother.angular_width))
+    return {
+        "number": trial.number,
+        "why": trial.why,
+        "smoother": None if smoother is None else smoother.kind,
+        "strength": None if smoother is None else smoother.strength,
+        "angular_width_deg": window,
+        "smoothing": "a given lift" if smoother is None else smoother.width_in_words,
+        "closure_mm": _MM * trial.lift.closure,
+        "contact_method": trial.cycles[0].contact.method,
+        "line_contact_width_mm": _MM * contact_width(case),
+        "mesh": None
+        if mesh is None
+        else {
+            "cam_angle_deg": float(np.degrees(mesh.theta)),
+            "half_width_mm": _MM * mesh.half_width,
+            "sha256": {"cam": mesh.cam.sha256, "roller": mesh.roller.sha256},
+            **asdict(mesh.quality),
+        },
+        "certificate": [certificate_record(point) for point in trial.certificate],
+    }
+
+
+def certificate_record(point: CertificatePoint) -> dict[str, Any]:
+    """One certified angle in millimetres and megapascals."""
+    return {
+        "cam_angle_deg": float(np.degrees(point.theta)),
+        "p0_MPa": _figure(point.p0, point.p0_cycle, _MPA),
+        "half_width_mm": _figure(point.half_width, point.half_width_cycle, _MM),
+        "tau_max_MPa": _figure(point.tau_max, point.tau_max_cycle, _MPA),
+        "von_mises_MPa": _figure(point.von_mises, point.von_mises_cycle, _MPA),
+        "p0_hertz_MPa": _MPA * point.p0_hertz,
+        "edges_across_half_width": list(point.edges),
+        "dofs": list(point.dofs),
+        "spread_percent": point.spread_percent,
+        "gci_percent": point.gci_percent,
+        "residual_equilibrium": point.residual_equilibrium,
+        "residual_complementarity": point.residual_complementarity,
+    }
+
+
+def _figure(figure: Convergence, cycle: float, scale: float) -> dict[str, Any]:
+    return {
+        "cycle": scale * cycle,
+        "meshes": [scale * value for value in figure.values],
+        "extrapolated": scale * figure.extrapolated,
+        "order": figure.order,
+        "gci_percent": 100 * figure.gci,
+    }

@@ -1,0 +1,237 @@
+"""The road, one line a stage: torque, lift, contour, mesh, cycle, checks, smoothing, report."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pipeline import trial as road
+from pipeline.case import Case
+from pipeline.certify import certified, positions_to_certify
+from pipeline.checks.verdict import binding, verdict
+from pipeline.contact.pair import CycleBodies
+from pipeline.contact.pair_certificate import solve_pair
+from pipeline.cycle import Cycle, contact_pair, finished
+from pipeline.engine.torque import Torque
+from pipeline.fields import write_contact, write_turn
+from pipeline.progress import Progress
+from pipeline.records import contour_columns, headline, lift_columns, trial_record
+from pipeline.run_folder import RunFolder
+from pipeline.smoothing.gentler import Next, Stop, next_smoother
+from pipeline.smoothing.outlook import Attempt
+from pipeline.smoothing.smoothers import Smoother
+from pipeline.trial import Trial
+
+_FIELD_STEP_DEG = 5.0
+
+
+@dataclass
+class Stopwatch:
+    """Seconds per stage; a stage timed again counts anew, so the last trial is what stays."""
+
+    seconds: dict[str, float] = field(default_factory=dict)
+    began: float = field(default_factory=time.perf_counter)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        start = time.perf_counter()
+        yield
+        self.seconds[name] = time.perf_counter() - start
+
+    def read(self) -> dict[str, float]:
+        total = time.perf_counter() - self.began
+        return {name: round(s, 3) for name, s in (self.seconds | {"total": total}).items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Journey:
+    """What every trial of a run shares."""
+
+    case: Case
+    folder: RunFolder
+    torques: Mapping[str, Torque]
+    progress: Progress
+    watch: Stopwatch
+
+
+def run_case(
+    case: Case,
+    out: Path,
+    *,
+    positions: int | None = None,
+    jobs: int | None = None,
+    resume: bool = False,
+    progress: Progress,
+) -> dict[str, Any]:
+    """Walk a case down the road until it passes or the limit that binds is named.
+
+    Parameters
+    ----------
+    positions : int   per cam turn, instead of the case's
+    jobs : int        processes for the certificate; default: the processors there are, at most 4
+    resume : bool     go on with what an interrupted run left
+
+    Returns
+    -------
+    dict    the contents of ``run.json``
+
+    Raises
+    ------
+    CamError
+        In one line, for whatever the user can act upon.
+    """
+    case = case if positions is None else case.with_positions(positions)
+    with RunFolder(out, case, resume=resume) as folder:
+        watch = Stopwatch()
+        progress.stage("torque")
+        with watch.stage("torque"):
+            torques = road.engine_torques(case)
+            _write_torque(folder, case, torques)
+        journey = Journey(case, folder, torques, progress, watch)
+        trials, stop = _trials(journey)
+        final = _certified(journey, trials[-1], jobs)
+        for done in (*trials[:-1], final):
+            folder.write_checks(done.number, [check.as_record() for check in done.checks])
+            folder.write_trial(done.number, trial_record(case, done))
+        _write_fields(journey, final)
+        summary = {
+            "timings_s": watch.read(),
+            "trials": len(trials),
+            "verdict": verdict(final.checks),
+            "binding": list(binding(final.checks)),
+            "statement": stop.reason,
+            "headline": headline(case, torques, final),
+        }
+        with watch.stage("report"):
+            progress.stage("report")
+            folder.write_summary(summary)
+            _write_report(folder.path)
+        return folder.finish(summary | {"timings_s": watch.read()})
+
+
+def _trials(journey: Journey) -> tuple[list[Trial], Stop]:
+    """Trials until one passes or none could do better."""
+    case = journey.case
+    if case.engine is None:
+        alone = _trial(journey, 1, None, "the lift is given")
+        found = binding(alone.checks)
+        reason = "the given lift passes" if not found else "a given lift is not smoothed"
+        return [alone], Stop(reason, found, 1)
+    step = Next(Smoother.from_case(case.smoothing), "the smoothing the case asks for")
+    trials: list[Trial] = []
+    while True:
+        trials.append(_trial(journey, len(trials) + 1, step.smoother, step.why))
+        attempts = [Attempt(t.smoother, t.checks) for t in trials if t.smoother is not None]
+        after = next_smoother(
+            attempts,
+            case.solver.max_trials,
+            lambda smoother: road.foreseen(case, journey.torques, smoother),
+        )
+        if isinstance(after, Stop):
+            return trials, after
+        journey.progress.note(f"trial {len(trials)} fails: {after.why}")
+        step = after
+
+
+def _trial(journey: Journey, number: int, smoother: Smoother | None, why: str) -> Trial:
+    """One trial, written down as it goes."""
+    case, folder, progress, watch = (
+        journey.case, journey.folder, journey.progress, journey.watch
+    )  # fmt: skip
+    progress.stage(f"trial {number}: lift and contour")
+    with watch.stage("lift"):
+        lift = road.designed_lift(case, journey.torques, smoother)
+        folder.write_lift(number, lift_columns(case, lift))
+    with watch.stage("contour"):
+        contour = road.cam_contour(case, lift)
+        folder.write_contour(number, contour_columns(case, contour))
+        sound = road.is_body(contour)
+        turns = road.turns_of(case, contour, journey.torques, case.solver.positions)
+    progress.stage(f"trial {number}: mesh")
+    with watch.stage("mesh"):
+        mesh = road.meshed(contact_pair(case, contour), turns) if sound else None
+        if mesh is not None:
+            road.write_mesh(folder.mesh_path(number), mesh)
+    progress.stage(f"trial {number}: contact")
+    with watch.stage("cycle"):
+        cycles = tuple(
+            _cycle(journey, number, contour, given) if sound
+            else finished(case, contour, given, road.unknown_contact(given))
+            for given in turns
+        )  # fmt: skip
+        _write_cycles(journey, number, cycles)
+    progress.stage(f"trial {number}: checks")
+    with watch.stage("checks"):
+        return road.checked(case, Trial(number, smoother, why, lift, contour, cycles, mesh, ()))
+
+
+def _cycle(journey: Journey, number: int, contour: Any, given: Any) -> Cycle:
+    """The contact of a turn, kept piece by piece so that an interruption loses little."""
+    pair = contact_pair(journey.case, contour)
+    bodies = CycleBodies.meshed(pair)
+    key = road.chunk_key(pair, given)
+    known = journey.folder.load_chunks(number, given.load_case, key)
+    pieces = {}
+    total = road.chunk_count(given)
+    for index, arrays in road.contact_chunks(pair, bodies, given, known):
+        pieces[index] = arrays
+        if index not in known:
+            journey.folder.save_chunk(number, given.load_case, index, arrays, key)
+        journey.progress.advance(index + 1, total)
+    return finished(journey.case, contour, given, road.joined(pieces))
+
+
+def _certified(journey: Journey, final: Trial, jobs: int | None) -> Trial:
+    """The final trial with its certificate, checked again."""
+    case, progress = journey.case, journey.progress
+    chosen = positions_to_certify(final, case.solver.certificate_positions)
+    if not chosen:
+        return final
+    progress.stage(f"certificate at {len(chosen)} angles")
+    with journey.watch.stage("certificate"):
+        points = certified(contact_pair(case, final.contour), final, chosen, jobs, progress.advance)
+    return road.checked(case, replace(final, certificate=points))
+
+
+def _write_torque(folder: RunFolder, case: Case, torques: Mapping[str, Torque]) -> None:
+    if not torques:
+        return
+    design = torques[case.load_cases[0].name]
+    parts = {"total": design.total, **design.components}
+    folder.write_torque(design.theta_crank, parts)
+
+
+def _write_cycles(journey: Journey, number: int, cycles: tuple[Cycle, ...]) -> None:
+    """All load cases, one below the other."""
+    ratio = journey.case.mechanism.gear_ratio
+    tables = [cycle.columns(ratio) for cycle in cycles]
+    journey.folder.write_cycle(
+        number, {name: np.concatenate([t[name] for t in tables]) for name in tables[0]}
+    )
+
+
+def _write_fields(journey: Journey, final: Trial) -> None:
+    if final.mesh is None:
+        return
+    case, folder, progress = journey.case, journey.folder, journey.progress
+    progress.stage("fields")
+    pair = contact_pair(case, final.contour)
+    loads = [cycle.loads.normal_force for cycle in final.cycles]
+    index = round(final.mesh.theta / (final.cycles[0].theta[1] - final.cycles[0].theta[0]))
+    force = max(float(load[index]) for load in loads)
+    write_contact(folder.fields / "contact_worst.vtu", solve_pair(pair, final.mesh.theta, force))
+    bodies = CycleBodies.meshed(pair)
+    write_turn(folder.fields, pair, bodies, final.cycles[0], _FIELD_STEP_DEG, progress.advance)
+
+
+def _write_report(path: Path) -> None:
+    # The page is drawn from the files alone, as `camwright report` does it later.
+    from reports.page import build
+
+    build(path)

@@ -1,0 +1,232 @@
+"""One trip down the road: from a smoother, or a given lift, to checks."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+
+import numpy as np
+
+from geometry.arrays import FULL_TURN, Array, uniform_turn
+from geometry.contour import Contour
+from geometry.energy import lift_from_torque
+from geometry.errors import GeometryError, ResultError
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from meshes.body import BodyMesh
+from meshes.files import write_msh
+from meshes.quality import Quality, gate, quality
+from pipeline import cycle as cycles
+from pipeline.case import Case
+from pipeline.case_fields import TorqueTable
+from pipeline.checks.check import Check
+from pipeline.checks.everything import all_checks, design_checks
+from pipeline.checks.trial import TrialEvidence
+from pipeline.contact.history import CertificatePoint, ContactHistory
+from pipeline.contact.pair import (
+    TWO_SCALE,
+    ContactPair,
+    CycleBodies,
+    closed_form_history,
+    pair_history,
+)
+from pipeline.contact.pair_certificate import EDGES, contact_meshes
+from pipeline.cycle import Cycle, Turn
+from pipeline.engine.torque import Torque, torque_from_csv, torque_from_cylinder
+from pipeline.engine.trace import read_trace
+from pipeline.smoothing.smoothers import Smoother, smoothed
+
+# Positions solved together: what an interruption may cost, and the grain of the progress bar.
+CHUNK = 90
+# A look ahead needs no more angles than this.
+_OUTLOOK_POSITIONS = 360
+
+
+@dataclass(frozen=True, eq=False)
+class ContactMesh:
+    """Cam and roller meshed for the contact at their worst angle (rad)."""
+
+    theta: float
+    half_width: float
+    cam: BodyMesh
+    roller: BodyMesh
+    quality: Quality
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A lift and all that follows from it; `why` says what brought it about.
+
+    mesh is None, and the contact unknown (NaN), where the contour cannot exist as a body.
+    """
+
+    number: int
+    smoother: Smoother | None
+    why: str
+    lift: Lift
+    contour: Contour
+    cycles: tuple[Cycle, ...]
+    mesh: ContactMesh | None
+    checks: tuple[Check, ...]
+    certificate: tuple[CertificatePoint, ...] = ()
+
+
+def engine_torques(case: Case) -> dict[str, Torque]:
+    """Engine torque of each load case by name; empty for a case that starts at the lift."""
+    if case.engine is None:
+        return {}
+    found = {}
+    for state in case.load_cases:
+        if state.torque is not None:
+            found[state.name] = torque_from_csv(case.path(state.torque))
+        elif isinstance(case.engine, TorqueTable):
+            found[state.name] = torque_from_csv(case.path(case.engine.file))
+        else:
+            found[state.name] = torque_from_cylinder(case.engine.build(), state.speed)
+    return found
+
+
+def designed_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None) -> Lift:
+    """The lift that balances the first load case's torque, or the one the case gives."""
+    if case.lift is not None:
+        trace = read_trace(case.path(case.lift.file), "lift", period=FULL_TURN)
+        return Lift.from_samples(trace.angle, trace.values)
+    if smoother is None:
+        raise ResultError("a cam that balances torque needs a smoother")
+    torque = torques[case.load_cases[0].name].without_mean().total
+    target = case.mechanism.gear_ratio * smoothed(torque, smoother)
+    return lift_from_torque(
+        uniform_turn(target.size), target, case.spring.rate, case.spring.preload
+    )
+
+
+def cam_contour(case: Case, lift: Lift) -> Contour:
+    """The cam that moves the roller so."""
+    pitch = PitchCurve(lift, case.cam.pitch_base_radius, case.cam.offset)
+    return Contour(pitch, case.roller.radius)
+
+
+def is_body(contour: Contour) -> bool:
+    """Whether the contour encloses a body: no undercut, no crossing."""
+    return not contour.undercut().found and not contour.self_intersections()
+
+
+def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:
+    """Meshes at the angle of greatest Hertz pressure over all turns; None without a load.
+
+    Raises
+    ------
+    MeshError
+        If the mesh does not pass the quality gate.
+    """
+    worst = None
+    for given in turns:
+        history = closed_form_history(pair, given.theta, given.loads.normal_force)
+        k = int(np.argmax(history.p0))
+        if history.p0[k] > 0 and (worst is None or history.p0[k] > worst[0]):
+            worst = (history.p0[k], float(given.theta[k]), float(history.half_width[k]))
+    if worst is None:
+        return None
+    _, theta, half_width = worst
+    cam, roller = contact_meshes(pair, theta, half_width, EDGES[1])
+    contact = pair.contour.points(theta)
+    found = [gate(quality(body, contact, half_width), edges_min=EDGES[1]) for body in (cam, roller)]
+    both = Quality(
+        min_angle_deg=min(q.min_angle_deg for q in found),
+        min_scaled_jacobian=min(q.min_scaled_jacobian for q in found),
+        edges_across_half_width=min(q.edges_across_half_width for q in found),
+        elements=sum(q.elements for q in found),
+        nodes=sum(q.nodes for q in found),
+    )
+    return ContactMesh(theta, half_width, cam, roller, both)
+
+
+def write_mesh(path: Path, mesh: ContactMesh) -> None:
+    """``4_mesh.msh``: both bodies in the cam's frame."""
+    write_msh(path, {"cam": mesh.cam, "roller": mesh.roller})
+
+
+def contact_chunks(
+    pair: ContactPair, bodies: CycleBodies, given: Turn, known: Mapping[int, Mapping[str, Array]]
+) -> Iterator[tuple[int, Mapping[str, Array]]]:
+    """Contact of a turn piece by piece, those already `known` handed through."""
+    for index, start in enumerate(range(0, given.theta.size, CHUNK)):
+        if index in known:
+            yield index, known[index]
+            continue
+        part = slice(start, start + CHUNK)
+        history = pair_history(pair, bodies, given.theta[part], given.loads.normal_force[part])
+        yield index, _as_arrays(history)
+
+
+def chunk_count(given: Turn) -> int:
+    """Number of pieces `contact_chunks` gives."""
+    return -(-given.theta.size // CHUNK)
+
+
+def chunk_key(pair: ContactPair, given: Turn) -> str:
+    """Fingerprint of all that decides the contact of a turn."""
+    digest = hashlib.sha256(pair.contour.pitch.lift.values.tobytes())
+    digest.update(given.loads.normal_force.tobytes())
+    digest.update(
+        repr((pair.width, pair.bore_radius, pair.hub_radius, pair.cam, pair.roller)).encode()
+    )
+    return digest.hexdigest()
+
+
+def joined(chunks: Mapping[int, Mapping[str, Array]]) -> ContactHistory:
+    """One history from its pieces."""
+    parts = [chunks[k] for k in sorted(chunks)]
+    whole = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return ContactHistory(**whole, method=TWO_SCALE)
+
+
+def unknown_contact(given: Turn) -> ContactHistory:
+    """The contact of a contour that is no body: not a number anywhere, so that no check passes."""
+    names = [f.name for f in fields(ContactHistory) if f.name != "method"]
+    nothing = np.full(given.theta.size, np.nan)
+    return ContactHistory(**dict.fromkeys(names, nothing), method="none: the contour is no body")
+
+
+def _as_arrays(history: ContactHistory) -> dict[str, Array]:
+    return {f.name: getattr(history, f.name) for f in fields(history) if f.name != "method"}
+
+
+def checked(case: Case, trial: Trial) -> Trial:
+    """The trial with its checks, certificate included as far as there is one."""
+    evidence = TrialEvidence(
+        case=case,
+        contour=trial.contour,
+        cycles=trial.cycles,
+        mesh_quality=None if trial.mesh is None else trial.mesh.quality,
+        certificate=trial.certificate,
+    )
+    return replace(trial, checks=all_checks(evidence))
+
+
+def foreseen(case: Case, torques: Mapping[str, Torque], smoother: Smoother) -> tuple[Check, ...]:
+    """Checks of the design that a smoother leads to, by closed forms.
+
+    Raises
+    ------
+    GeometryError
+        If there is no such cam.
+    """
+    contour = cam_contour(case, designed_lift(case, torques, smoother))
+    if not is_body(contour):
+        raise GeometryError("the contour is undercut")
+    turns = turns_of(case, contour, torques, _OUTLOOK_POSITIONS)
+    found = tuple(cycles.closed_form_cycle(case, contour, given) for given in turns)
+    return design_checks(TrialEvidence(case=case, contour=contour, cycles=found))
+
+
+def turns_of(
+    case: Case, contour: Contour, torques: Mapping[str, Torque], positions: int
+) -> tuple[Turn, ...]:
+    """Loads of every load case."""
+    return tuple(
+        cycles.turn(case, contour, torques.get(state.name), state.name, positions)
+        for state in case.load_cases
+    )
