@@ -224,9 +224,10 @@ def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
     half, outer = 0.5 * keyway.width, bore_radius + keyway.depth
     mouth = float(np.arcsin(half / bore_radius))
     fillet = _fillet(keyway)
-    least = min(half, outer - bore_radius * np.cos(mouth))
-    if not 0 <= fillet < least:
-        raise InputError("cam.keyway.fillet", fillet, f"in 0..{least:g} m")
+    # A sliver of a straight side between the fillets would make slivers of triangles.
+    fillet_max = 0.8 * min(half, outer - bore_radius * np.cos(mouth))
+    if not 0 <= fillet <= fillet_max:
+        raise InputError("cam.keyway.fillet", fillet, f"in 0..{fillet_max:g} m")
     frame, x = _keyway_frame(keyway), bore_radius * np.cos(mouth)
     # Clockwise: along the bore from the lower edge of the mouth round to the upper one ...
     pieces = [arc("bore", bore_radius, keyway.angle + FULL_TURN - mouth, keyway.angle + mouth)]
@@ -239,8 +240,7 @@ def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
         centre = tuple(frame @ np.array([outer - fillet, half - fillet]))
         top = keyway.angle + 0.5 * np.pi
         pieces.append(arc("keyway", fillet, top, keyway.angle, centre))
-    if half - fillet > 1e-12:
-        pieces.append(line("keyway", corners[2], corners[3]))
+    pieces.append(line("keyway", corners[2], corners[3]))
     if fillet > 0:
         centre = tuple(frame @ np.array([outer - fillet, fillet - half]))
         pieces.append(arc("keyway", fillet, keyway.angle, keyway.angle - 0.5 * np.pi, centre))
