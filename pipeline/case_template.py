@@ -138,8 +138,8 @@ torque_reduction = "what this design is for"
 
 [solver]
 positions = 72                       # per cam turn; 720 for the real answer
-max_trials = 3
-certificate_positions = 2
+max_trials = 3                       # lifts tried, each gentler than the last
+certificate_positions = 1            # angles solved again on ever finer meshes
 
 # --- One table for each state the cam has to bear
 [[load_case]]

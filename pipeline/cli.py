@@ -6,6 +6,7 @@ Heavy modules are imported by the command that needs them, so that ``--version``
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import sys
@@ -259,9 +260,9 @@ def _show(found: Run) -> None:
 
 
 def _rank(record: Any) -> tuple[bool, float, str]:
-    """Without a number first, then by falling utilisation."""
+    """Not evaluated first, then by falling utilisation; one beyond all bounds has no number."""
     used = record["utilisation"]
-    return used is not None, -(used or 0.0), record["id"]
+    return record["status"] != "not_evaluated", -(math.inf if used is None else used), record["id"]
 
 
 def _number(value: float | None) -> str:
