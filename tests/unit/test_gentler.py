@@ -235,6 +235,40 @@ def test_checks_nobody_foresees_stay_as_the_trial_found_them():
     assert len(attempts) <= 3
 
 
+def test_a_foreseen_pass_by_a_hair_is_not_trusted():
+    def model(s):
+        return torque(0.9 - 0.1 * s), check("pressure_angle", 1.4 if s < 1.3 else 0.9)
+
+    def foreseen(s):
+        return torque(0.9 - 0.1 * s), check(
+            "pressure_angle", (1.4, 0.997, 0.9)[(s > 1.3) + (s > 2)]
+        )
+
+    attempts, _, stop = drive(model, predict=foreseen)
+    assert stop.passed
+    assert attempts[-1].smoother.strength >= 2.0
+
+
+def test_a_small_step_is_worth_a_pass():
+    def model(s):
+        return torque(0.7), check("pressure_angle", 1.004 / s)
+
+    attempts, _, stop = drive(model, predict=model)
+    assert stop.passed
+    assert strengths(attempts) == [1.0, pytest.approx(1.01, abs=0.01)]
+
+
+@BOTH
+def test_no_window_is_wider_than_one_crank_turn(informed):
+    def model(s):
+        return (check("roller_static", 1.5 + 1.0 / s),)
+
+    attempts, _, stop = drive(model, predict=model if informed else None)
+    # 60 deg at strength 1.
+    assert max(strengths(attempts)) == pytest.approx(6.0, rel=1e-9)
+    assert "smoothing cannot reach the limits" in stop.reason
+
+
 def test_a_first_trial_without_a_cam_leaves_the_word_to_the_prediction():
     def foreseen(s):
         if s < 1.5:
