@@ -1,0 +1,28 @@
+"""Seconds per stage of the GX120 case: python benchmarks/stages.py [positions]"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+from pipeline.case import load_case_file
+from pipeline.progress import Silent
+from pipeline.run import run_case
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def main() -> None:
+    positions = int(sys.argv[1]) if len(sys.argv) > 1 else 72
+    case = load_case_file(ROOT / "cases" / "gx120.toml")
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "gx120"
+        summary = run_case(case, out, positions=positions, progress=Silent())
+    print(f"{case.name}, {positions} positions, {summary['trials']} trials")
+    for stage, seconds in summary["timings_s"].items():
+        print(f"{stage:>12} {seconds:8.2f} s")
+
+
+if __name__ == "__main__":
+    main()
