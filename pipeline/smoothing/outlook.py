@@ -19,8 +19,8 @@ Predict = Callable[[Smoother], Sequence[Check]]
 Score = tuple[bool, int, float]
 
 MARGIN = 0.005  # share of a limit kept in hand when a candidate is aimed at it
-COARSE_STEP = 1.1  # ratio of neighbouring strengths in the first sweep
-FINE_STEPS = 16  # in each of the two intervals beside the best of the first sweep
+COARSE_STEP = 1.2  # ratio of neighbouring strengths in the first sweep
+FINE_STEPS = 10  # in each of the two intervals beside the best of the first sweep
 
 
 @dataclass(frozen=True)
