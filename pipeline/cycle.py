@@ -14,8 +14,10 @@ from pipeline.contact.history import ContactHistory
 from pipeline.contact.pair import ContactPair, Elastic, closed_form_history
 from pipeline.engine.torque import Torque
 from pipeline.follower.forces import FollowerSystem, Loads, follower_loads
-from pipeline.follower.guides import GuidePair, GuideReactions, guide_reactions
+from pipeline.follower.guides import KNOTS, GuidePair, GuideReactions, guide_reactions
 from pipeline.follower.stem import Stem
+
+_FEW_KNOTS = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +134,9 @@ def turn(
     )
 
 
-def finished(case: Case, contour: Contour, given: Turn, contact: ContactHistory) -> Cycle:
+def finished(
+    case: Case, contour: Contour, given: Turn, contact: ContactHistory, knots: int = KNOTS
+) -> Cycle:
     """The cycle of a turn whose contact is solved; the guides are solved here."""
     loads = given.loads
     return Cycle(
@@ -147,13 +151,17 @@ def finished(case: Case, contour: Contour, given: Turn, contact: ContactHistory)
         contour_radius=contour.radius_of_curvature(given.theta),
         contact=contact,
         guides=guide_reactions(
-            loads.tangential_force, loads.overhang, Stem.from_case(case), GuidePair.from_case(case)
+            loads.tangential_force,
+            loads.overhang,
+            Stem.from_case(case),
+            GuidePair.from_case(case),
+            knots=knots,
         ),
     )
 
 
 def closed_form_cycle(case: Case, contour: Contour, given: Turn) -> Cycle:
-    """The cycle by closed forms in the contact, for a look ahead."""
+    """The cycle by closed forms in the contact and few knots in the guides, for a look ahead."""
     pair = contact_pair(case, contour)
     history = closed_form_history(pair, given.theta, given.loads.normal_force)
-    return finished(case, contour, given, history)
+    return finished(case, contour, given, history, _FEW_KNOTS)

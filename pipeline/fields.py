@@ -22,8 +22,10 @@ UNITS = {"length": "mm", "stress": "MPa", "force": "N"}
 def write_contact(path: Path, solved: SolvedPair) -> None:
     """Both bodies at one angle, as solved: displacement, stress, in the cam's frame."""
     sides = zip(("cam", "roller"), solved.sides, solved.solution.displacements, strict=True)
+    # The roller was held still; what it has come nearer is its rigid motion.
+    rigid = {"cam": np.zeros(2), "roller": -solved.solution.approach * solved.frame.normal}
     data = {
-        name: _point_data(side.body, moved, _recovered(side.body, moved))
+        name: _point_data(side.body, moved + rigid[name][:, None], _recovered(side.body, moved))
         for name, side, moved in sides
     }
     write_vtu(

@@ -5,19 +5,21 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from geometry.contour import Contour
 from pipeline import trial as road
 from pipeline.case import Case
 from pipeline.certify import certified, positions_to_certify
 from pipeline.checks.verdict import binding, verdict
 from pipeline.contact.pair import CycleBodies
 from pipeline.contact.pair_certificate import solve_pair
-from pipeline.cycle import Cycle, contact_pair, finished
+from pipeline.cycle import Cycle, Turn, contact_pair, finished
 from pipeline.engine.torque import Torque
 from pipeline.fields import write_contact, write_turn
 from pipeline.progress import Progress
@@ -107,6 +109,7 @@ def run_case(
             "binding": list(binding(final.checks)),
             "statement": stop.reason,
             "headline": headline(case, torques, final),
+            "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
         }
         with watch.stage("report"):
             progress.stage("report")
@@ -124,15 +127,12 @@ def _trials(journey: Journey) -> tuple[list[Trial], Stop]:
         reason = "the given lift passes" if not found else "a given lift is not smoothed"
         return [alone], Stop(reason, found, 1)
     step = Next(Smoother.from_case(case.smoothing), "the smoothing the case asks for")
+    foreseen = cache(partial(road.foreseen, case, journey.torques))
     trials: list[Trial] = []
     while True:
         trials.append(_trial(journey, len(trials) + 1, step.smoother, step.why))
         attempts = [Attempt(t.smoother, t.checks) for t in trials if t.smoother is not None]
-        after = next_smoother(
-            attempts,
-            case.solver.max_trials,
-            lambda smoother: road.foreseen(case, journey.torques, smoother),
-        )
+        after = next_smoother(attempts, case.solver.max_trials, foreseen)
         if isinstance(after, Stop):
             return trials, after
         journey.progress.note(f"trial {len(trials)} fails: {after.why}")
@@ -171,7 +171,7 @@ def _trial(journey: Journey, number: int, smoother: Smoother | None, why: str) -
         return road.checked(case, Trial(number, smoother, why, lift, contour, cycles, mesh, ()))
 
 
-def _cycle(journey: Journey, number: int, contour: Any, given: Any) -> Cycle:
+def _cycle(journey: Journey, number: int, contour: Contour, given: Turn) -> Cycle:
     """The contact of a turn, kept piece by piece so that an interruption loses little."""
     pair = contact_pair(journey.case, contour)
     bodies = CycleBodies.meshed(pair)
