@@ -135,13 +135,12 @@ def context(
 ) -> dict[str, Any]:  # fmt: skip
     """Everything the template prints."""
     summary, final = run.summary, run.final
-    stopped = str(summary.get("stop_reason") or final.record.get("stop_reason") or "")
-    headline = summary["headline"]
+    headline, statement = summary["headline"], str(summary.get("statement") or "")
     return {
         "case": case,
         "name": str(case.get("name") or summary["case"]),
         "title": str(case.get("title") or summary["case"]),
-        "verdict": verdict(run.verdict, final.checks, final.binding, stopped),
+        "verdict": verdict(run.verdict, final.checks, final.binding, statement),
         "tiles": tables.tiles(headline),
         "headline": tables.headline_rows(headline),
         "checks": tables.check_rows(final.checks),
@@ -152,7 +151,10 @@ def context(
         "pictures": pictures,
         "certificate_head": tables.CERTIFICATE_HEAD,
         "certificate": tables.certificate_rows(final.record.get("certificate") or ()),
-        "mesh": tables.named_rows(final.record.get("mesh_quality") or {}),
+        "figures_head": tables.FIGURES_HEAD,
+        "certified": tables.certified_rows(final.record.get("certificate") or ()),
+        "mesh": tables.named_rows(final.record.get("mesh") or {}),
+        "method": str(final.record.get("contact_method") or ""),
         "residuals": residuals(turn),
         "inputs": tables.input_tables(case),
         "assumptions": ASSUMPTIONS,
@@ -187,9 +189,9 @@ def _trial(trial: TrialRecord) -> dict[str, Any]:
     width = record.get("angular_width_deg")
     return {
         "number": trial.number,
-        "smoother": tables.smoother_words(record.get("smoother")),
+        "smoothing": str(record.get("smoothing") or record.get("smoother") or tables.DASH),
         "width": tables.quantity(width, "deg") if width is not None else tables.DASH,
-        "changed": str(record.get("changed") or ""),
+        "strength": tables.number(record.get("strength"), 3),
         "why": str(record.get("why") or ""),
         "passed": trial.verdict == "pass",
         "failing": [(row.title, row.utilisation) for row in failing],
@@ -216,7 +218,7 @@ def _pictures(turn: Turn, folder: Path) -> list[Picture]:
     try:
         field = scene.read_field(folder / FIELD)
         point, normal = scene.find_contact(field)
-        half_width = float(turn.half_width)
+        half_width = field.notes.get("half_width_mm") or turn.half_width
         views = [scene.contact_view(field, half_width, point, normal), scene.body_view(field)]
         rasters = scene.render(folder / FIELD, views)
     except ResultError as error:
@@ -224,13 +226,14 @@ def _pictures(turn: Turn, folder: Path) -> list[Picture]:
     framed = (scene.frame_contact(rasters[0], half_width), scene.frame_body(rasters[1]))
     for name, png in zip(("field-contact", "field-body"), framed, strict=True):
         _write(folder / "figures" / f"{name}.png", png)
-    angle = tables.number(float(turn.columns["cam_angle_deg"][turn.worst]))
+    given = field.notes.get("cam_angle_deg", turn.columns["cam_angle_deg"][turn.worst])
+    angle = tables.number(float(given))
     peak = tables.quantity(views[0].clim[1], "MPa")
     return [
         Picture(
             "Von Mises stress under the roller",
             f"At {angle} deg of the cam, where the contact pressure is greatest. Lengths count "
-            f"half-widths; lines at 20, 40, 60, 80 and 95 % of the {peak} found below the surface. "
+            f"half-widths; lines at 20, 40, 60, 80 and 95 % of the greatest, {peak}. "
             "Shapes are deformed at true scale.",
             f"Von Mises stress within four half-widths of the contact; greatest value {peak}.",
             base64.b64encode(framed[0]).decode(), rasters[0].note,

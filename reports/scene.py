@@ -12,8 +12,8 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +36,8 @@ FIELD = "von_mises_MPa"
 class Field:
     """A stress field on six-node triangles: points (2, n) mm, triangles (6, m), values MPa.
 
-    `displacement` (2, n) mm and `body` (n,) are zero where the file has none.
+    `displacement` (2, n) mm and `body` (n,) are zero where the file has none; `notes` are the
+    numbers that belong to the file as a whole, such as ``half_width_mm``.
     """
 
     points: Array
@@ -44,6 +45,7 @@ class Field:
     von_mises: Array
     displacement: Array
     body: Array
+    notes: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -110,24 +112,36 @@ def read_field(vtu: Path) -> Field:
     data = grid.point_data
     shift = np.asarray(data["displacement_mm"]) if "displacement_mm" in data else zeros
     body = np.asarray(data["body"]) if "body" in data else zeros[:, 0]
+    notes = {
+        str(name): float(np.ravel(grid.field_data[name])[0])
+        for name in grid.field_data
+        if np.size(grid.field_data[name]) == 1
+    }
     return Field(
-        np.asarray(grid.points, dtype=float).T[:2], np.asarray(cells).T,
-        np.asarray(data[FIELD], dtype=float), np.asarray(shift, dtype=float).T[:2],
+        np.asarray(grid.points, dtype=float).T[:2],
+        np.asarray(cells).T,
+        np.asarray(data[FIELD], dtype=float),
+        np.asarray(shift, dtype=float).T[:2],
         np.asarray(body, dtype=float),
-    )  # fmt: skip
+        notes,
+    )
 
 
 def find_contact(field: Field) -> tuple[Array, Array]:
     """Where the bodies touch and the unit normal towards the roller, each (2,).
 
-    The roller is the body whose outline is a circle round the middle of its own extent; the
-    contact is the other body's point nearest to that middle.
+    The file says so itself; else its shapes do: the roller is the smaller body, a circle round
+    the middle of its own extent, and touches the other body's point nearest to that middle.
 
     Raises
     ------
     ResultError
         If the field does not hold two bodies.
     """
+    names = ("contact_x_mm", "contact_y_mm", "normal_x", "normal_y")
+    if all(name in field.notes for name in names):
+        told = np.array([field.notes[name] for name in names])
+        return told[:2], told[2:] / np.hypot(*told[2:])
     marks = np.unique(field.body)
     if marks.size != 2:
         raise ResultError(f"the field holds {marks.size} bodies, must be 2")

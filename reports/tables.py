@@ -229,21 +229,17 @@ def tiles(headline: Mapping[str, Any]) -> list[Tile]:
     return made
 
 
-def smoother_words(record: Any) -> str:
-    """A smoother's record as words: the kind, then its settings."""
-    if not isinstance(record, Mapping):
-        return str(record or DASH)
-    settings = [
-        f"{words(str(key))} {number(value)}"
-        for key, value in record.items()
-        if key != "kind" and value is not None
-    ]
-    return ", ".join([words(str(record.get("kind", ""))), *settings]).strip(", ")
-
-
 def named_rows(record: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """(words, value) of a flat record."""
-    return [(words(str(key)), number(value)) for key, value in record.items()]
+    """(words, value) of a record; a unit at the end of a name goes with the value."""
+    rows = []
+    for key, value in record.items():
+        if isinstance(value, Mapping):
+            rows += [(f"{words(str(key))}, {words(str(k))}", number(v)) for k, v in value.items()]
+            continue
+        name, _, unit = str(key).rpartition("_")
+        known = unit in ("deg", "mm", "MPa", "N")
+        rows.append((words(name if known else str(key)), quantity(value, unit if known else "")))
+    return rows
 
 
 def headline_rows(headline: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -257,40 +253,58 @@ def headline_rows(headline: Mapping[str, Any]) -> list[tuple[str, str]]:
     return rows
 
 
-def certificate_rows(points: Sequence[Mapping[str, Any]]) -> list[list[str]]:
-    """One row per certificate point: angle, p0 on each mesh, its limit, order, GCI, spread.
+CERTIFICATE_HEAD = (
+    "cam angle, deg", "edges over a", "unknowns", "p0 per mesh, MPa", "p0 extrapolated, MPa",
+    "order", "GCI, %", "p0 Hertz, MPa", "p0 in the cycle, MPa", "spread, %", "equilibrium",
+)  # fmt: skip
+FIGURES_HEAD = (
+    "cam angle, deg", "quantity", "per mesh", "extrapolated", "order", "GCI, %", "in the cycle",
+)  # fmt: skip
+CERTIFIED = {
+    "half_width_mm": "half-width a, mm",
+    "tau_max_MPa": "greatest shear stress, MPa",
+    "von_mises_MPa": "greatest von Mises stress, MPa",
+}
 
-    A pressure is taken from ``NAME_MPa``, or from ``NAME`` in pascals.
-    """
+
+def certificate_rows(points: Sequence[Mapping[str, Any]]) -> list[list[str]]:
+    """One row per certificate point: the pressure on each mesh and what follows from it."""
     rows = []
     for point in points:
-        angle = point.get("cam_angle_deg")
-        if angle is None and isinstance(point.get("theta"), (int, float)):
-            angle = point["theta"] * 180.0 / pi
-        meshes = _megapascals(point, "p0")
+        pressure = _figure(point, "p0_MPa")
         rows.append([
-            number(angle), ", ".join(number(n) for n in point.get("dofs") or []),
-            ", ".join(number(p, 5) for p in meshes if p is not None),
-            number(_megapascals(point, "p0_extrapolated")[0], 5), number(point.get("order"), 3),
-            number(point.get("gci_percent"), 2), number(_megapascals(point, "hertz_p0")[0], 5),
-            number(_megapascals(point, "cycle_p0")[0], 5), number(point.get("spread_percent"), 2),
+            number(point.get("cam_angle_deg")), _several(point.get("edges_across_half_width"), 3),
+            _several(point.get("dofs")), _several(pressure.get("meshes"), 5),
+            number(pressure.get("extrapolated"), 5), number(pressure.get("order"), 3),
+            number(pressure.get("gci_percent"), 2), number(point.get("p0_hertz_MPa"), 5),
+            number(pressure.get("cycle"), 5), number(point.get("spread_percent"), 2),
             number(point.get("residual_equilibrium"), 2),
         ])  # fmt: skip
     return rows
 
 
-def _megapascals(point: Mapping[str, Any], name: str) -> list[float | None]:
-    value, scale = point.get(f"{name}_MPa"), 1.0
-    if value is None:
-        value, scale = point.get(name), 1e-6
-    values = value if isinstance(value, list) else [value]
-    return [v * scale if isinstance(v, (int, float)) else None for v in values] or [None]
+def certified_rows(points: Sequence[Mapping[str, Any]]) -> list[list[str]]:
+    """A row per certificate point and quantity other than the pressure."""
+    rows = []
+    for point in points:
+        for name, title in CERTIFIED.items():
+            figure = _figure(point, name)
+            if figure:
+                rows.append([
+                    number(point.get("cam_angle_deg")), title, _several(figure.get("meshes"), 5),
+                    number(figure.get("extrapolated"), 5), number(figure.get("order"), 3),
+                    number(figure.get("gci_percent"), 2), number(figure.get("cycle"), 5),
+                ])  # fmt: skip
+    return rows
 
 
-CERTIFICATE_HEAD = (
-    "cam angle, deg", "unknowns", "p0 per mesh, MPa", "p0 extrapolated, MPa", "order", "GCI, %",
-    "p0 Hertz, MPa", "p0 in the cycle, MPa", "spread, %", "equilibrium residual",
-)  # fmt: skip
+def _figure(point: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    figure = point.get(name)
+    return figure if isinstance(figure, Mapping) else {}
+
+
+def _several(values: Any, digits: int = 4) -> str:
+    return ", ".join(number(v, digits) for v in values) if isinstance(values, list) else DASH
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,23 @@ def test_the_contact_is_found_from_the_field_alone(contact):
     found, direction = scene.find_contact(field)
     np.testing.assert_allclose(found, point, atol=0.2 * half_width)
     np.testing.assert_allclose(direction, normal, atol=0.01)
+
+
+def test_what_the_file_says_of_its_contact_is_believed(contact):
+    field = contact[0]
+    notes = {"contact_x_mm": 1.0, "contact_y_mm": 2.0, "normal_x": 0.0, "normal_y": 3.0}
+    point, normal = scene.find_contact(replace(field, notes=notes))
+    assert point.tolist() == [1.0, 2.0]
+    assert normal.tolist() == [0.0, 1.0]
+
+
+def test_numbers_of_the_whole_file_are_read(folder, tmp_path):
+    import pyvista
+
+    grid = pyvista.read(folder / page.FIELD)
+    grid.field_data["half_width_mm"] = [0.125]
+    grid.save(tmp_path / "noted.vtu")
+    assert scene.read_field(tmp_path / "noted.vtu").notes["half_width_mm"] == 0.125
 
 
 def test_the_contact_view_puts_the_roller_above(contact):

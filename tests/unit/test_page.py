@@ -111,6 +111,15 @@ def test_every_figure_of_the_sheet_is_there_with_words_for_it(built, html):
     assert html.count("<svg ") == len(wanted)
 
 
+def test_trials_and_certificate_are_printed(html):
+    assert "moving average of 24 values 5 deg apart" in html
+    assert "pressure_angle fails" in html
+    evidence = html[html.index('id="evidence"') :]
+    assert evidence.count("18233, 43120, 120411") == 8
+    assert evidence.count("half-width a, mm") == 8
+    assert "finite elements joined to the half-plane" in evidence
+
+
 def test_a_missing_field_is_told_in_words(html):
     assert "There is no picture of the field: contact_worst.vtu: no such file." in html
 

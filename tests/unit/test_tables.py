@@ -146,13 +146,33 @@ def test_input_values_keep_their_digits():
     assert table.rows[0][1] == "0.666666666667"
 
 
-def test_certificate_rows_read_pascals_and_megapascals_alike():
-    point = {"p0_MPa": [1000.0, 1001.0], "p0_extrapolated_MPa": 1001.5, "cam_angle_deg": 30.0}
-    other = {"p0": [1.0e9, 1.001e9], "p0_extrapolated": 1.0015e9, "theta": math.radians(30)}
-    one, two = tables.certificate_rows([point, other])
-    assert one == two
-    assert one[:4] == ["30", "", "1000, 1001", "1001.5"]
-    assert len(one) == len(tables.CERTIFICATE_HEAD)
+def test_certificate_rows_follow_their_heads():
+    figure = {"meshes": [1000.0, 1001.0, 1001.25], "extrapolated": 1001.5, "order": None,
+              "gci_percent": 0.031, "cycle": 1002.0}  # fmt: skip
+    point = {"p0_MPa": figure, "half_width_mm": figure, "cam_angle_deg": 30.0, "dofs": [10, 20, 40],
+             "edges_across_half_width": [6.0, 9.0, 13.5], "p0_hertz_MPa": 999.0,
+             "spread_percent": 0.05, "residual_equilibrium": 1e-13}  # fmt: skip
+    (row,) = tables.certificate_rows([point])
+    assert row == [
+        "30", "6, 9, 13.5", "10, 20, 40", "1000, 1001, 1001.2", "1001.5", "–", "0.031", "999",
+        "1002", "0.05", "1×10⁻¹³",
+    ]  # fmt: skip
+    assert len(row) == len(tables.CERTIFICATE_HEAD)
+    (other,) = tables.certified_rows([point])
+    assert other[:2] == ["30", "half-width a, mm"]
+    assert len(other) == len(tables.FIGURES_HEAD)
+
+
+def test_a_point_without_figures_gives_dashes():
+    assert tables.certificate_rows([{}]) == [["–"] * len(tables.CERTIFICATE_HEAD)]
+    assert tables.certified_rows([{}]) == []
+
+
+def test_a_record_shows_units_and_what_is_inside():
+    record = {"min_angle_deg": 27.3, "nodes": 42531, "sha256": {"cam": "ab"}}
+    assert tables.named_rows(record) == [
+        ("min angle", "27.3\xa0deg"), ("nodes", "42531"), ("sha256, cam", "ab")
+    ]  # fmt: skip
 
 
 def test_headlines_that_do_not_apply_are_left_out():
