@@ -18,6 +18,7 @@ from geometry.arrays import Array, freeze, readonly
 from geometry.errors import ContactError
 from meshes.body import half_disc_mesh
 from meshes.sizing import Sizing
+from pipeline import cache
 from pipeline.contact import active_set
 from pipeline.contact.elastic_body import ElasticBody, StressRecovery, elements_near
 from pipeline.contact.halfplane import point_force_displacement
@@ -29,6 +30,12 @@ _RADIUS = 40.0
 _WINDOW = 1.4
 _STRESS_REACH = 1.6
 _ELEMENTS_PER_HALF_WIDTH = 16
+# The modules whose text decides a template: a change in one of them makes a new one.
+RECIPE = (
+    __name__,
+    *(f"meshes.{name}" for name in ("body", "mesher", "sizing", "outline")),
+    *(f"pipeline.contact.{name}" for name in ("elastic_body", "halfplane", "pressure", "surface")),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +73,20 @@ class ContactPatch:
 def contact_patch(
     poisson: float, elements_per_half_width: int = _ELEMENTS_PER_HALF_WIDTH
 ) -> ContactPatch:
-    """The template for a material, see `ContactPatch`."""
+    """The template for a material, see `ContactPatch`; kept between runs."""
+    arrays = cache.kept(
+        "patch",
+        (float(poisson), int(elements_per_half_width)),
+        lambda: _computed(poisson, elements_per_half_width),
+        RECIPE,
+    )
+    return ContactPatch(poisson, **{**arrays, "dofs": int(arrays["dofs"])})
+
+
+def patch_body(
+    poisson: float, elements_per_half_width: int
+) -> tuple[ElasticBody, ContactFrame, PressureShapes]:
+    """The half disc of a template, its contact frame and the pressures on it."""
     size = 1 / elements_per_half_width
     mesh = half_disc_mesh(
         _RADIUS,
@@ -78,7 +98,13 @@ def contact_patch(
     frame = ContactFrame(np.zeros(2), np.array([0.0, 1.0]))
     # Knots at the ends and middles of facets, as in the certificate.
     count = round(2 * _WINDOW / size)
-    shapes = PressureShapes(readonly(np.arange(-count, count + 1) * (size / 2)))
+    return body, frame, PressureShapes(readonly(np.arange(-count, count + 1) * (size / 2)))
+
+
+def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
+    """The arrays of a template by their names in `ContactPatch`."""
+    body, frame, shapes = patch_body(poisson, elements_per_half_width)
+    mesh = body.mesh
     loads = normal_loads(mesh, "top", frame, shapes)
     displacement = body.displacement(-loads, _far_displacement(mesh.points, shapes, poisson))
     compliance = -np.einsum("cni,cnj->ij", loads, displacement)
@@ -87,14 +113,13 @@ def contact_patch(
     nodal = recovery(displacement)
     # Seen from above the depth axis is turned over, and with it the sign of the shear.
     nodal[2] *= -1
-    return ContactPatch(
-        poisson=poisson,
-        knots=shapes.knots,
-        compliance=(compliance + compliance.T) / 2,
-        points=points,
-        stress=nodal,
-        dofs=body.dof_count,
-    )
+    return {
+        "knots": shapes.knots,
+        "compliance": (compliance + compliance.T) / 2,
+        "points": points,
+        "stress": nodal,
+        "dofs": np.array(body.dof_count),
+    }
 
 
 def _far_displacement(points: Array, shapes: PressureShapes, poisson: float) -> Array:
