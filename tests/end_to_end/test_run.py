@@ -1,0 +1,204 @@
+"""The whole road on a small case: folder, verdict, resumption, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from geometry.errors import ResultError
+from pipeline import results
+from pipeline.case import Case, load_case_file
+from pipeline.progress import Silent
+from pipeline.run import run_case
+
+ROOT = Path(__file__).resolve().parents[2]
+POSITIONS = 180  # two pieces of the contact per trial
+
+
+class Recorder(Silent):
+    """Remembers the stages; stops the run as Ctrl-C does after some pieces of contact."""
+
+    def __init__(self, stop_after: int | None = None) -> None:
+        self.stages: list[str] = []
+        self._left = stop_after
+
+    def stage(self, name: str) -> None:
+        self.stages.append(name)
+
+    def advance(self, k: int, total: int) -> None:
+        if self._left is not None and self.stages[-1].endswith("contact"):
+            self._left -= 1
+            if self._left == 0:
+                raise KeyboardInterrupt
+
+
+def small(folder: Path, **changes: str) -> Case:
+    """The GX120 case with few positions and one certified angle, lines replaced by key."""
+    text = (ROOT / "cases" / "gx120.toml").read_text(encoding="utf-8")
+    wanted = {"positions": str(POSITIONS), "certificate_positions": "1"} | changes
+    for key, value in wanted.items():
+        text, count = re.subn(rf"(?m)^{key} = .*$", f"{key} = {value}", text, count=1)
+        assert count == 1, key
+    path = folder / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    return load_case_file(path)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, Path, dict[str, Any]]:
+    """The GX120 run, interrupted in its second trial and resumed."""
+    folder = tmp_path_factory.mktemp("run")
+    case, out = small(folder), folder / "out"
+    with pytest.raises(KeyboardInterrupt):
+        run_case(case, out, progress=Recorder(stop_after=3))
+    assert not out.exists()
+    return case, out, run_case(case, out, resume=True, jobs=1, progress=Silent())
+
+
+@pytest.fixture(scope="module")
+def straight(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same run without interruption."""
+    folder = tmp_path_factory.mktemp("straight")
+    run_case(small(folder), folder / "out", jobs=1, progress=Silent())
+    return folder / "out"
+
+
+def test_resumed_run_equals_a_straight_one_to_the_byte(
+    finished: tuple[Case, Path, dict[str, Any]], straight: Path
+) -> None:
+    _, out, summary = finished
+    for trial in range(1, summary["trials"] + 1):
+        for name in ("2_lift.csv", "3_contour.csv", "5_cycle.csv", "6_checks.json", "4_mesh.msh"):
+            assert (out / f"trial_{trial}" / name).read_bytes() == (
+                straight / f"trial_{trial}" / name
+            ).read_bytes(), name
+
+
+def test_run_folder_holds_what_was_promised(
+    finished: tuple[Case, Path, dict[str, Any]],
+) -> None:
+    case, out, summary = finished
+    assert summary == json.loads((out / "run.json").read_text())
+    assert set(results.HEADLINE) <= set(summary["headline"])
+    assert all(value is not None for value in summary["headline"].values())
+    stages = {"torque", "lift", "contour", "mesh", "cycle", "checks", "report", "total"}
+    assert stages <= set(summary["timings_s"])
+    assert summary["input_sha256"] == case.sha256
+    assert summary["mesh_quality"]["edges_across_half_width"] >= 7.9
+    for name in ("case.toml", "1_torque.csv", "8_report.html", "fields/contact_worst.vtu",
+                 "fields/cam_cycle.pvd"):  # fmt: skip
+        assert (out / name).stat().st_size > 0, name
+    assert not [entry.name for entry in out.iterdir() if entry.name.startswith(".")]
+    found = results.load_run(out)
+    cycle = found.final.cycle
+    assert len(cycle) == POSITIONS
+    assert [column.header for column in results.CYCLE if not column.optional] == [
+        name for name in cycle.columns if not name.startswith("torque_")
+    ]
+    np.testing.assert_array_equal(cycle["load_case"], "idle")
+
+
+def test_case_file_in_the_folder_repeats_the_run(
+    finished: tuple[Case, Path, dict[str, Any]],
+) -> None:
+    case, out, _ = finished
+    assert load_case_file(out / "case.toml").sha256 == case.sha256
+
+
+def test_published_design_fails_where_it_must(
+    finished: tuple[Case, Path, dict[str, Any]],
+) -> None:
+    _, out, summary = finished
+    found = results.load_run(out)
+    first = {check["id"]: check for check in found.trials[0].checks}
+    for name in ("roller_static", "pressure_angle", "bush_pv_A", "shakedown"):
+        assert first[name]["status"] == "fail", name
+    assert summary["verdict"] == "fail"
+    assert "roller_static" in summary["binding"]
+    assert "roller_static" in summary["statement"]
+    assert summary["trials"] <= 6
+    last = {check["id"]: check for check in found.final.checks}
+    assert last["torque_reduction"]["status"] == "pass"
+    assert last["certificate_spread"]["status"] == "pass"
+    # Cardoso et al. (2025): the design is in the range its reconstruction leaves open.
+    assert 25.0 < first["pressure_angle"]["limit"] < first["pressure_angle"]["demand"] < 48.0
+
+
+def test_columns_agree_with_one_another(finished: tuple[Case, Path, dict[str, Any]]) -> None:
+    case, out, summary = finished
+    cycle = results.load_run(out).final.cycle
+    # Hertz from the columns themselves: E* of steel on steel, 1/R = 1/r_r + 1/r_c.
+    modulus = 210e3 / (2 * (1 - 0.3**2))
+    radius = 1 / (1 / 8.0 + 1 / cycle["contour_radius_of_curvature_mm"])
+    p0 = np.sqrt(cycle["line_load_N_per_mm"] * modulus / (np.pi * radius))
+    np.testing.assert_allclose(cycle["p0_hertz_MPa"], p0, rtol=1e-9)
+    # The finite elements are their own; on so large a relative radius they differ little.
+    np.testing.assert_allclose(cycle["p0_fe_MPa"], p0, rtol=2e-3)
+    assert np.abs(cycle["p0_fe_MPa"] / p0 - 1).max() > 0
+    after = cycle["torque_before_Nm"] - cycle["cam_torque_Nm"] / case.mechanism.gear_ratio
+    np.testing.assert_allclose(cycle["torque_after_Nm"], after, atol=1e-9)
+    assert summary["headline"]["torque_std_after_Nm"] == pytest.approx(after.std(), rel=1e-9)
+
+
+def test_report_can_be_rebuilt_from_the_folder(
+    finished: tuple[Case, Path, dict[str, Any]],
+) -> None:
+    _, out, _ = finished
+    page = (out / "8_report.html").read_text(encoding="utf-8")
+    assert "FAIL" in page
+    assert "http://" not in re.sub(r"http://www\.w3\.org/\S+", "", page)
+
+
+def test_folder_of_another_case_is_refused(
+    finished: tuple[Case, Path, dict[str, Any]], tmp_path: Path
+) -> None:
+    _, out, summary = finished
+    other = small(tmp_path, preload='"250 N"')
+    with pytest.raises(ResultError, match="holds the run of"):
+        run_case(other, out, progress=Silent())
+    assert json.loads((out / "run.json").read_text()) == summary
+
+
+def test_undercut_is_a_verdict(tmp_path: Path) -> None:
+    case = small(tmp_path, radius='"20 mm"', pitch_base_radius='"34 mm"')
+    text = (tmp_path / "case.toml").read_text().replace('kind = "moving_average"', 'kind = "none"')
+    (tmp_path / "case.toml").write_text(text)
+    case = load_case_file(tmp_path / "case.toml")
+    summary = run_case(case, tmp_path / "out", progress=Silent())
+    assert summary["verdict"] == "fail"
+    assert "undercut" in summary["binding"]
+    assert "contact_pressure" in summary["binding"], "an unknown contact must not pass"
+    assert summary["headline"]["p0_max_MPa"] is None
+    found = results.load_run(tmp_path / "out")
+    assert np.isnan(found.final.cycle["p0_fe_MPa"]).all()
+    assert (tmp_path / "out" / "8_report.html").is_file()
+
+
+def test_road_may_begin_at_the_lift(tmp_path: Path) -> None:
+    """An eccentric: its curvature, and with it the relative radius, is that of a circle."""
+    base, eccentricity = 30e-3, 6e-3
+    angle = np.arange(0.0, 360.0, 2.0)
+    along = eccentricity * np.cos(np.radians(angle))
+    across = eccentricity * np.sin(np.radians(angle))
+    radius = base + eccentricity
+    lift = along + np.sqrt(radius**2 - across**2) - base
+    rows = "\n".join(f"{a},{1e3 * s!r}" for a, s in zip(angle, lift.tolist(), strict=True))
+    (tmp_path / "lift.csv").write_text(f"cam_angle_deg,lift_mm\n{rows}\n")
+    case = small(tmp_path, pitch_base_radius='"30 mm"')
+    text = (tmp_path / "case.toml").read_text()
+    engine = re.search(r"(?ms)^\[engine\]\n.*?^\[mechanism\]", text)
+    assert engine is not None
+    text = text.replace(engine.group(), '[lift]\nfile = "lift.csv"\n\n[mechanism]')
+    (tmp_path / "case.toml").write_text(text)
+    case = load_case_file(tmp_path / "case.toml")
+    summary = run_case(case, tmp_path / "out", jobs=1, progress=Silent())
+    assert not (tmp_path / "out" / "1_torque.csv").exists()
+    assert summary["headline"]["torque_std_before_Nm"] is None
+    cycle = results.load_run(tmp_path / "out").final.cycle
+    assert "torque_before_Nm" not in cycle
+    np.testing.assert_allclose(cycle["pitch_radius_mm"], 1e3 * radius, rtol=1e-6)
