@@ -26,7 +26,7 @@ from reports.sheet import Turn, figures
 from reports.verdict import governing_load_case, verdict
 
 PAGE = "8_report.html"
-LONG = 400
+LONG = 700
 UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 FIELD = Path("fields") / "contact_worst.vtu"
 GROUPS = (

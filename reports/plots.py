@@ -102,7 +102,7 @@ def themed(svg: str, figure_id: str) -> str:
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
     svg = re.sub(r'<g id="[^"]*"', "<g", svg)
     svg = re.sub(r'id="(image|legend)[^"]*"', "", svg)
-    svg = re.sub(r"(\d\.\d\d)\d+", r"\1", svg)
+    svg = re.sub(r"<[^>]+>", lambda tag: re.sub(r"(\d\.\d\d)\d+", r"\1", tag.group()), svg)
     svg = re.sub(r"<!--.*?-->", "", svg, flags=re.DOTALL)
     svg = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", svg, count=1)
     svg = re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", svg, count=1)
@@ -224,8 +224,8 @@ def _limits(ax: Axes, panel: Panel, low: float, high: float) -> None:
             line.value, color=COLOURS["fail"], linewidth=0.9, linestyle=(0, (6, 2)), zorder=2.5
         )
         crowded = following is not None and following.value - line.value < 0.09 * (high - low)
-        near_top = line.value > low + 0.9 * (high - low)
-        above = line.value >= 0 and not crowded and not near_top
+        height = (line.value - low) / (high - low)
+        above = height < 0.12 or (line.value >= 0 and not crowded and height < 0.78)
         ax.annotate(
             _limit_text(line, panel.unit), (1.0, line.value), xycoords=("axes fraction", "data"),
             xytext=(-2, 2 if above else -2), textcoords="offset points", ha="right",

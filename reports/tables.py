@@ -29,6 +29,7 @@ HEADLINES = {
     "torque_std_after_Nm": ("Torque ripple after, standard deviation", "N m"),
     "torque_p2p_before_Nm": ("Torque before, peak to peak", "N m"),
     "torque_p2p_after_Nm": ("Torque after, peak to peak", "N m"),
+    "torque_mean_removed_Nm": ("Mean torque, removed", "N m"),
     "lift_max_mm": ("Greatest lift", "mm"),
     "pressure_angle_max_deg": ("Greatest pressure angle", "deg"),
     "pitch_radius_min_mm": ("Least convex radius of the pitch curve", "mm"),

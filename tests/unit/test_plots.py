@@ -103,6 +103,14 @@ def test_the_svg_is_well_formed_themed_and_free_of_clashing_ids():
     assert used <= set(ids[0])
 
 
+def test_trimming_coordinates_leaves_numbers_to_read_alone():
+    small = Panel("depth", "mm", (Curve("", 0.004 + 0.004 * WAVE),), (LimitLine(0.0075, "limit"),))
+    svg = plots.svg_and_png(figure(small))
+    assert re.search(r">0\.00\d+<", svg)
+    assert "limit 0.0075 mm" in svg
+    assert not re.search(r'"[^"<>]*\d\.\d{3}', svg)
+
+
 def test_the_same_figure_gives_the_same_bytes(tmp_path):
     first = plots.svg_and_png(figure(), tmp_path / "a.png")
     second = plots.svg_and_png(figure(), tmp_path / "b.png")
