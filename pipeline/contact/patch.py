@@ -28,7 +28,7 @@ from pipeline.contact.surface import ContactFrame, normal_loads
 
 _RADIUS = 40.0
 _WINDOW = 1.4
-_STRESS_REACH = 1.6
+STRESS_REACH = 1.6
 _ELEMENTS_PER_HALF_WIDTH = 16
 # The modules whose text decides a template: a change in one of them makes a new one.
 RECIPE = (
@@ -80,7 +80,8 @@ def contact_patch(
         lambda: _computed(poisson, elements_per_half_width),
         RECIPE,
     )
-    return ContactPatch(poisson, **{**arrays, "dofs": int(arrays["dofs"])})
+    kept = {name: arrays[name] for name in ("knots", "compliance", "points", "stress")}
+    return ContactPatch(poisson, **kept, dofs=int(arrays["dofs"]))
 
 
 def patch_body(
@@ -108,7 +109,7 @@ def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
     loads = normal_loads(mesh, "top", frame, shapes)
     displacement = body.displacement(-loads, _far_displacement(mesh.points, shapes, poisson))
     compliance = -np.einsum("cni,cnj->ij", loads, displacement)
-    recovery = StressRecovery(body, elements_near(body, frame.origin, _STRESS_REACH))
+    recovery = StressRecovery(body, elements_near(body, frame.origin, STRESS_REACH))
     points = mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]])
     nodal = recovery(displacement)
     # Seen from above the depth axis is turned over, and with it the sign of the shear.

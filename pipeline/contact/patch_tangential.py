@@ -1,0 +1,77 @@
+"""The contact patch under tractions along its surface: stress by finite elements.
+
+The same half disc as the pressure's template, with linear traction shapes on the same knots and
+the half-plane's motion under them on its arc. Pressure and traction of bodies of one material
+do not disturb each other, so the two templates are simply added.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from geometry.arrays import Array, freeze
+from pipeline import cache
+from pipeline.contact import patch
+from pipeline.contact.elastic_body import StressRecovery, elements_near
+from pipeline.contact.halfplane import point_force_displacement
+from pipeline.contact.pressure import PressureShapes
+from pipeline.contact.surface import normal_loads
+
+
+@dataclass(frozen=True, eq=False)
+class TangentialPatch:
+    """Half-plane under unit linear tractions along +x, for one Poisson ratio.
+
+    points (2, m) along and depth, in half-widths; stress (3, m, n) over the traction, with
+    `points` and the knots those of `pipeline.contact.patch.ContactPatch`.
+    """
+
+    poisson: float
+    points: Array
+    stress: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, points=self.points, stress=self.stress)
+
+
+@lru_cache(maxsize=8)
+def tangential_patch(poisson: float, elements_per_half_width: int = 16) -> TangentialPatch:
+    """The template for a material, kept between runs."""
+    arrays = cache.kept(
+        "traction",
+        (float(poisson), int(elements_per_half_width)),
+        lambda: _computed(poisson, elements_per_half_width),
+        (__name__, *patch.RECIPE),
+    )
+    return TangentialPatch(poisson, **arrays)
+
+
+def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
+    body, frame, shapes = patch.patch_body(poisson, elements_per_half_width)
+    upward = normal_loads(body.mesh, "top", frame, shapes)
+    loads = np.stack([upward[1], np.zeros_like(upward[1])])
+    held = _arc_displacement(body.mesh.points, body.mesh.boundary_nodes("arc"), shapes, poisson)
+    recovery = StressRecovery(body, elements_near(body, frame.origin, patch.STRESS_REACH))
+    nodal = recovery(body.displacement(loads, held))
+    # As in the pressure's template: the depth axis is turned over, and with it the shear.
+    nodal[2] *= -1
+    points = body.mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]])
+    return {"points": points, "stress": nodal}
+
+
+def _arc_displacement(points: Array, arc: Array, shapes: PressureShapes, poisson: float) -> Array:
+    """Half-plane displacement (2, nodes, n) of the arc under each traction shape.
+
+    The field of a force depends on the angle from its line alone, whichever way the surface
+    runs: the normal force's field, turned by a quarter, is that of a tangential one.
+    """
+    xi, weights = shapes.quadrature()
+    x, depth = points[0, arc], -points[1, arc]
+    sideways = np.broadcast_to(depth[:, None], (arc.size, xi.size))
+    into, along = point_force_displacement(sideways, x[:, None] - xi, poisson)
+    field = np.zeros((2, points.shape[1], shapes.centres.size))
+    field[:, arc] = np.stack([along, -into]) @ (shapes.values(xi) * weights).T
+    return field

@@ -1,0 +1,91 @@
+"""Tractions against closed forms, published figures and independent kernels."""
+
+import numpy as np
+import pytest
+
+from pipeline.contact import hertz, tangential
+from pipeline.contact.halfplane import settlement
+from pipeline.contact.patch import contact_patch
+from pipeline.contact.patch_tangential import tangential_patch
+from pipeline.contact.stress import shear_in_plane, von_mises
+
+# Peak in-plane shear and von Mises stress over p0 under sliding (nu = 0.3), from the field of
+# McEwen evaluated to 1e-9.
+SLIDING = [
+    (0.05, 0.30141, 0.55949),
+    (0.10, 0.30483, 0.56545),
+    (0.15, 0.31063, 0.57553),
+    (0.20, 0.31899, 0.58999),
+    (0.25, 0.33022, 0.60926),
+    (0.30, 0.34488, 0.66663),
+]
+
+
+def test_carter_of_the_published_example():
+    """Vollebregt, user guide of CONTACT, 2D Carter: G = 82 GPa, nu = 0.28, R = 500 mm, a = 1 mm."""
+    E = 2 * 82e9 * 1.28
+    modulus = hertz.contact_modulus(E, 0.28, E, 0.28)
+    half_width, p0 = hertz.line_contact(178.90e3, 0.5, modulus)
+    assert half_width == pytest.approx(1e-3, rel=1e-4)
+    assert p0 == pytest.approx(113.89e6, rel=1e-4)
+    assert tangential.stick_half_width(0.64) == pytest.approx(0.6, rel=1e-12)
+    assert tangential.creepage(0.64, 0.3, half_width, 0.5) == pytest.approx(2.4e-4, rel=1e-3)
+
+
+def test_bentall_johnson_of_the_published_example():
+    """Same guide: Al and steel rollers of 50 mm, a = 0.1 mm, theory 5.259e-4 without friction."""
+    shear, nu = np.array([23.0e9, 82.0e9]), np.array([0.31, 0.28])
+    E = 2 * shear * (1 + nu)
+    modulus = hertz.contact_modulus(E[0], nu[0], E[1], nu[1])
+    half_width, p0 = hertz.line_contact(16.20e3, 0.025, modulus)
+    assert half_width == pytest.approx(0.1e-3, rel=1e-3)
+    found = tangential.free_rolling_creepage(tuple(E), tuple(nu), float(p0))
+    assert found == pytest.approx(5.259e-4, rel=1e-2)  # the guide prints its factor to 0.1 %
+
+
+def test_like_rollers_roll_freely_without_creep():
+    assert tangential.free_rolling_creepage((2e11, 2e11), (0.3, 0.3), 1e9) == 0
+
+
+@pytest.mark.parametrize("ratio", [0.2, 0.64, 0.9])
+@pytest.mark.parametrize("law", ["rolling", "static"])
+def test_stick_zones_stick(law, ratio):
+    """Both surfaces stretch alike where they stick, by the half-plane's own kernel.
+
+    Static: not at all; rolling: by the creepage. Knots at a 1/400 leave 1 % of the full slip's.
+    """
+    knots = np.linspace(-1, 1, 801)
+    traction = getattr(tangential, f"{law}_traction")(knots[1:-1], ratio)
+    stick = float(tangential.stick_half_width(ratio))
+    centre = stick - 1 if law == "rolling" else 0.0
+    x = centre + 0.85 * stick * np.linspace(-1, 1, 41)
+    # A tangential load moves the surface along as a normal one moves it down; two bodies.
+    moved = 2 * traction @ settlement(x, knots)
+    slope = np.diff(moved) / np.diff(x)
+    # In units of mu p0 / E'; p0 / E' is a / (4 R) for like bodies, so creep is 4 (1 - stick).
+    creep = 4 * (1 - stick) if law == "rolling" else 0.0
+    assert np.abs(slope) == pytest.approx(np.full(40, creep), abs=0.02)
+
+
+@pytest.mark.parametrize(("friction", "shear", "mises"), SLIDING)
+def test_sliding_stress_of_the_template(friction, shear, mises):
+    """0.2 % at sixteen edges to the half-width, as without friction."""
+    normal, along = contact_patch(0.3), tangential_patch(0.3)
+    assert np.array_equal(normal.points, along.points)
+    pressure = np.sqrt(np.maximum(1 - normal.shapes.centres**2, 0))
+    field = ((normal.stress + friction * along.stress) @ pressure)[:, :, None]
+    found, _ = normal.peaks(shear_in_plane(field))
+    assert found[0] == pytest.approx(shear, rel=2e-3)
+    found, place = normal.peaks(von_mises(field, 0.3))
+    assert found[0] == pytest.approx(mises, rel=2e-3)
+    assert (place[1, 0] < 0.02) == (friction > 0.26283)
+
+
+def test_sliding_field_of_the_template():
+    normal, along = contact_patch(0.3), tangential_patch(0.3)
+    pressure = np.sqrt(np.maximum(1 - normal.shapes.centres**2, 0))
+    x, depth = along.points
+    exact = hertz.subsurface_stress(x, depth, 1.0) - hertz.subsurface_stress(x, depth)
+    inside = (np.hypot(x, depth) < 1.5) & (depth > 0.2)
+    # The recovered stress of a quarter half-width of surface carries the kink of the edge.
+    assert np.abs(along.stress @ pressure - exact)[:, inside].max() < 0.006
