@@ -210,7 +210,15 @@ def test_resolved_case_with_its_inputs_is_the_same_case(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["/etc/passwd", "../torque.csv", "a/../../torque.csv", "link.csv", "..\\torque.csv"]
+    "name",
+    [
+        "/etc/passwd",
+        "../torque.csv",
+        "a/../../torque.csv",
+        "a/../in.csv",
+        "link.csv",
+        "..\\torque.csv",
+    ],
 )
 def test_includes_stay_in_the_folder(tmp_path: Path, name: str) -> None:
     (tmp_path / "torque.csv").write_text("x")

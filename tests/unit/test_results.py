@@ -41,12 +41,12 @@ def test_cycle_columns_are_the_promised_ones() -> None:
 
 
 def test_table_turns_si_into_the_unit_of_the_column() -> None:
-    given = values(results.LIFT)
-    given["lift"] = np.full(ROWS, 0.0335)
-    given["cam_angle"] = np.arange(ROWS) * 2.0 * np.pi / 720.0
+    given = values(results.LIFT, 720)
+    given["lift"] = np.full(720, 0.0335)
+    given["cam_angle"] = np.arange(720) * (2.0 * np.pi / 720.0)
     made = results.table(results.LIFT, given)
-    assert made["lift_mm"].tolist() == [33.5] * ROWS
-    assert made["cam_angle_deg"].tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
+    assert made["lift_mm"].tolist() == [33.5] * 720
+    assert made["cam_angle_deg"].tolist() == [0.5 * k for k in range(720)]  # no 0.49999999999999994
     with pytest.raises(ValueError, match="read-only"):
         made["lift_mm"][0] = 1.0
 

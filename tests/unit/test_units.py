@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from geometry.errors import InputError
@@ -82,6 +82,7 @@ def test_a_frequency_is_no_angular_speed(text: str) -> None:
 
 
 @pytest.mark.parametrize("unit", ["mm", "GPa", "deg", "rpm", "kN/m", "K", "MPa m/s", "kg mm^2"])
+@settings(deadline=None)
 @given(value=st.floats(1e-9, 1e9, allow_subnormal=False))
 def test_written_values_read_back_bit_for_bit(unit: str, value: float) -> None:
     assert units.parse(units.format(value, unit), unit, "field") == value
