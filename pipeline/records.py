@@ -53,6 +53,16 @@ def contour_columns(case: Case, contour: Contour) -> dict[str, Array]:
     }
 
 
+def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
+    """Arrays of ``5_pressure.npz``: rows as in ``5_cycle.csv``, a column per knot."""
+    return {
+        "load_case": np.concatenate([np.full(c.theta.size, c.load_case) for c in cycles]),
+        "cam_angle_deg": np.degrees(np.concatenate([c.theta for c in cycles])),
+        "xi_mm": _MM * np.concatenate([c.contact.pressure_xi for c in cycles]),
+        "pressure_MPa": _MPA * np.concatenate([c.contact.pressure for c in cycles]),
+    }
+
+
 def headline(case: Case, torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | None]:
     """Figures of the final trial in millimetres, newtons and megapascals; null: not applicable."""
     first, contour = trial.cycles[0], trial.contour

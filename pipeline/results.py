@@ -286,7 +286,7 @@ def hash_inputs(case_text: str, included: Mapping[str, bytes]) -> str:
 
 def file_hashes(path: Path) -> dict[str, str]:
     """SHA-256 of the tables, checks and meshes of a run; pictures and pages can be redrawn."""
-    kept = (".csv", ".json", ".msh")
+    kept = (".csv", ".json", ".msh", ".npz")
     return {
         file.relative_to(path).as_posix(): _sha256(file)
         for file in sorted(path.rglob("*"))

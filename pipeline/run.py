@@ -23,7 +23,7 @@ from pipeline.cycle import Cycle, Turn, contact_pair, finished
 from pipeline.engine.torque import Torque
 from pipeline.fields import write_contact, write_turn
 from pipeline.progress import Progress
-from pipeline.records import contour_columns, headline, lift_columns, trial_record
+from pipeline.records import contour_columns, headline, lift_columns, pressure_arrays, trial_record
 from pipeline.run_folder import RunFolder
 from pipeline.smoothing.gentler import Next, Stop, next_smoother
 from pipeline.smoothing.outlook import Attempt
@@ -214,6 +214,7 @@ def _write_cycles(journey: Journey, number: int, cycles: tuple[Cycle, ...]) -> N
     journey.folder.write_cycle(
         number, {name: np.concatenate([t[name] for t in tables]) for name in tables[0]}
     )
+    journey.folder.write_pressure(number, pressure_arrays(cycles))
 
 
 def _write_fields(journey: Journey, final: Trial) -> None:

@@ -135,6 +135,10 @@ class RunFolder:
         """``5_cycle.csv`` from SI values by the names of `results.CYCLE`, all load cases."""
         self._write_table(f"trial_{trial}/5_cycle.csv", results.CYCLE, values)
 
+    def write_pressure(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
+        """``5_pressure.npz``: contact pressure at every position of every load case."""
+        write_atomic(self._file(f"trial_{trial}/5_pressure.npz"), _npz(arrays))
+
     def write_checks(self, trial: int, records: Iterable[Mapping[str, Any]]) -> None:
         """``6_checks.json``"""
         text = results.json_text([dict(record) for record in records])
@@ -212,10 +216,8 @@ class RunFolder:
         self, trial: int, load_case: str, index: int, arrays: Mapping[str, ArrayLike], key: str = ""
     ) -> None:
         """Keep a piece of the cycle; `key` says what it was computed from."""
-        buffer = io.BytesIO()
-        named: dict[str, Any] = {f"a_{name}": np.asarray(a) for name, a in arrays.items()}
-        np.savez(buffer, key=np.array(key), **named)
-        write_atomic(self._chunk_folder(trial, load_case) / f"{index:06d}.npz", buffer.getvalue())
+        named = {f"a_{name}": a for name, a in arrays.items()} | {"key": np.array(key)}
+        write_atomic(self._chunk_folder(trial, load_case) / f"{index:06d}.npz", _npz(named))
 
     def load_chunks(self, trial: int, load_case: str, key: str = "") -> dict[int, dict[str, Array]]:
         """Pieces of the cycle by index; those of another `key` are left out."""
@@ -340,6 +342,14 @@ def set_aside(out: Path, case: Case) -> Iterator[None]:
         if moved and not out.exists():
             aside.rename(out)
         shutil.rmtree(aside, ignore_errors=True)
+
+
+def _npz(arrays: Mapping[str, ArrayLike]) -> bytes:
+    """Arrays by name as numpy keeps them, the same bytes for the same numbers."""
+    buffer = io.BytesIO()
+    named: dict[str, Any] = {name: np.asarray(values) for name, values in arrays.items()}
+    np.savez_compressed(buffer, **named)
+    return buffer.getvalue()
 
 
 def _holds_only_a_run(out: Path) -> bool:

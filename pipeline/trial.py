@@ -186,8 +186,9 @@ def joined(chunks: Mapping[int, Mapping[str, Array]]) -> ContactHistory:
 def unknown_contact(given: Turn) -> ContactHistory:
     """The contact of a contour that is no body: not a number anywhere, so that no check passes."""
     names = [f.name for f in fields(ContactHistory) if f.name != "method"]
-    nothing = np.full(given.theta.size, np.nan)
-    return ContactHistory(**dict.fromkeys(names, nothing), method="none: the contour is no body")
+    unknown = dict.fromkeys(names, np.full(given.theta.size, np.nan))
+    unknown |= dict.fromkeys(("pressure", "pressure_xi"), np.full((given.theta.size, 1), np.nan))
+    return ContactHistory(**unknown, method="none: the contour is no body")
 
 
 def _as_arrays(history: ContactHistory) -> dict[str, Array]:

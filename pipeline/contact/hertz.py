@@ -20,6 +20,9 @@ from pipeline.contact.stress import von_mises
 # the root of the axis field carried to more digits than are printed there.
 SHEAR_MAX = 0.300283106
 SHEAR_MAX_DEPTH = 0.786151366
+# The pressure over the contact, p/p0 at x/a, as far as straight lines can draw it.
+ELLIPSE_XI = np.cos(np.linspace(np.pi, 0.0, 65))
+ELLIPSE = np.sqrt(1 - ELLIPSE_XI**2)
 
 
 def contact_modulus(
@@ -121,24 +124,71 @@ def subsurface_stress(x: ArrayLike, depth: ArrayLike, friction: float = 0.0) -> 
 def von_mises_peak(poisson: float) -> tuple[float, float]:
     """Largest von Mises stress under a frictionless contact over p0, and its depth over a.
 
-    On the axis in plane strain, where for nu > 0.19 the maximum lies.
+    Sought on the axis, from the surface down: for small nu the surface itself is the place.
     """
 
     def falling(depth: float) -> float:
         return -float(von_mises(subsurface_stress(0.0, depth), poisson))
 
-    found = minimize_scalar(falling, bounds=(0.0, 2.0), method="bounded", options={"xatol": 1e-10})
+    found = minimize_scalar(falling, bounds=(0.3, 2.0), method="bounded", options={"xatol": 1e-10})
+    # The field has two hills: one below, and one at the surface that wins for small nu.
+    if falling(0.0) <= found.fun:
+        return -falling(0.0), 0.0
     return -float(found.fun), float(found.x)
 
 
-def disc_correction(line_load: ArrayLike, radius: ArrayLike) -> Array:
-    """What a diametrically loaded disc adds to the half-plane's in-plane shear near a contact (Pa).
+def curved_surface_stress(x: ArrayLike, depth: ArrayLike) -> Array:
+    """First-order stress that the curvature of the loaded surface adds under a Hertz pressure.
 
-    The far load and the free rim add ``sigma_xx = P'/(pi r)`` along the surface and nothing
-    along the load, to first order in half-width over radius: half of it is shear.
+    The half-plane puts all of the pressure on one straight line; on a convex body the outer
+    parts of it act lower. Multiply by p0 times half-width times the body's curvature (1/R,
+    convex positive). Pressures act along the common normal at the centre of the contact.
+
+    Parameters
+    ----------
+    x, depth : array (...)   in half-widths; depth is counted from the curved surface
+
+    Returns
+    -------
+    array (3, ...)   sigma_xx, sigma_zz, tau_xz over ``p0 a / R``; tension positive
 
     References
     ----------
-    Johnson, Contact Mechanics (1985), eq. 5.55 (disc compressed along a diameter).
+    Derived here: the half-plane field with every pressure element lowered by its ``xi^2/(2R)``,
+    to first order, with the complex potential ``pi (w - sqrt(w^2 - 1))``, ``w = x + i z``, of
+    the Hertz pressure (Johnson, Contact Mechanics (1985), sec. 2.8 and 4.2).
     """
-    return np.asarray(line_load) / (2 * np.pi * np.asarray(radius))
+    x, z = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(depth, dtype=float))
+    w = x + 1j * np.maximum(z, 1e-9)
+    root = np.sqrt(w - 1) * np.sqrt(w + 1)
+    potential, first, second = np.pi * (w - root), np.pi * (1 - w / root), np.pi / root**3
+    # The pressure times xi^2 has the potential w^2 F - pi w / 2.
+    slope = x**2 * first - (2 * w * potential + w**2 * first - np.pi / 2)
+    bend = x**2 * second - (2 * potential + 4 * w * first + w**2 * second)
+    total = slope.real / np.pi
+    difference = -(slope.real - z * bend.imag) / np.pi
+    shear = -(slope.imag + z * bend.real) / (2 * np.pi)
+    return np.stack([(total - difference) / 2, (total + difference) / 2, shear])
+
+
+def disc_correction(line_load: ArrayLike, radius: ArrayLike) -> Array:
+    """What a disc pressed along a diameter adds to the half-plane's largest in-plane shear (Pa).
+
+    To first order in half-width over radius. The far load and the free rim add
+    ``sigma_xx = P'/(pi R)`` along the surface and nothing along the load, and half of that is
+    shear; the curvature of the surface takes a quarter of it away again.
+
+    Parameters
+    ----------
+    line_load : array (...)   P', N/m
+    radius : array (...)      of the disc itself, m, not the relative one
+
+    References
+    ----------
+    Timoshenko and Goodier, Theory of Elasticity (1970), art. 41 (disc under two opposite
+    forces), with `curved_surface_stress`.
+    """
+    xx, zz, _ = curved_surface_stress(0.0, SHEAR_MAX_DEPTH)
+    # p0 a = 2 P' / pi
+    share = 1 / (2 * np.pi) + (xx - zz) / np.pi
+    return share * np.asarray(line_load, dtype=float) / np.asarray(radius, dtype=float)

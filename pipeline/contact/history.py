@@ -16,7 +16,8 @@ class ContactHistory:
 
     line_load N/m; relative_radius m; p0_hertz, p0 Pa; half_width_hertz, half_width m; tau_max
     (largest shear in the plane) and von_mises in the cam, Pa, with their depths, m;
-    residual_equilibrium, residual_complementarity, relative; method in words.
+    residual_equilibrium, residual_complementarity, relative; pressure (n, k) Pa at the places
+    pressure_xi (n, k) m along the contact's tangent, straight lines between them; method in words.
     """
 
     line_load: Array
@@ -31,6 +32,8 @@ class ContactHistory:
     von_mises_depth: Array
     residual_equilibrium: Array
     residual_complementarity: Array
+    pressure: Array
+    pressure_xi: Array
     method: str
 
     def __post_init__(self) -> None:

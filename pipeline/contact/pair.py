@@ -135,6 +135,8 @@ def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) ->
         von_mises_depth=depth * half_width,
         residual_equilibrium=nothing,
         residual_complementarity=nothing,
+        pressure=p0[:, None] * hertz.ELLIPSE,
+        pressure_xi=half_width[:, None] * hertz.ELLIPSE_XI,
         method="closed form: Hertz line contact",
     )
 
@@ -163,6 +165,9 @@ def pair_history(
             "residual_equilibrium", "residual_complementarity",
         )
     }  # fmt: skip
+    knots = contact_patch(pair.cam.poisson).shapes.centres
+    results["pressure"] = np.zeros((theta.size, knots.size))
+    results["pressure_xi"] = half_width[:, None] * knots
     if on.any():
         if (half_width / radius > _FLAT_LIMIT).any():
             raise ContactError(
@@ -209,10 +214,13 @@ def _loaded_positions(
         patches, (shares[0], shares[1]), gap * (2 * radius / half_width**2)[:, None]
     )
 
-    near = np.einsum("cmj,kj->cmk", patches[0].stress, contacts.pressure) * p0
-    total = near + (cam.stress * load)[:, None, :]
-    shear, shear_at = patches[0].peaks(stress.shear_in_plane(total))
-    mises, mises_at = patches[0].peaks(stress.von_mises(total, pair.cam.poisson))
+    patch = patches[0]
+    total = np.tensordot(patch.stress, contacts.pressure * p0[:, None], axes=(2, 1))
+    total[0] += cam.along * load
+    bulge = p0 * half_width * pair.contour.curvature(theta)
+    total += hertz.curved_surface_stress(*patch.points)[:, :, None] * bulge
+    shear, shear_at = patch.peaks(stress.shear_in_plane(total))
+    mises, mises_at = patch.peaks(stress.von_mises(total, pair.cam.poisson))
     return {
         "p0": contacts.p0 * p0,
         "half_width": contacts.half_width * half_width,
@@ -222,4 +230,5 @@ def _loaded_positions(
         "von_mises_depth": mises_at[1] * half_width,
         "residual_equilibrium": contacts.residual_equilibrium,
         "residual_complementarity": contacts.residual_complementarity,
+        "pressure": contacts.pressure * p0[:, None],
     }

@@ -73,7 +73,8 @@ def test_resumed_run_equals_a_straight_one_to_the_byte(
 ) -> None:
     _, out, summary = finished
     for trial in range(1, summary["trials"] + 1):
-        for name in ("2_lift.csv", "3_contour.csv", "5_cycle.csv", "6_checks.json", "4_mesh.msh"):
+        for name in ("2_lift.csv", "3_contour.csv", "5_cycle.csv", "6_checks.json", "4_mesh.msh",
+                     "5_pressure.npz"):  # fmt: skip
             assert (out / f"trial_{trial}" / name).read_bytes() == (
                 straight / f"trial_{trial}" / name
             ).read_bytes(), name
@@ -143,6 +144,20 @@ def test_columns_agree_with_one_another(finished: tuple[Case, Path, dict[str, An
     after = cycle["torque_before_Nm"] - cycle["cam_torque_Nm"] / case.mechanism.gear_ratio
     np.testing.assert_allclose(cycle["torque_after_Nm"], after, atol=1e-9)
     assert summary["headline"]["torque_std_after_Nm"] == pytest.approx(after.std(), rel=1e-9)
+
+
+def test_pressure_of_every_position_carries_the_load(
+    finished: tuple[Case, Path, dict[str, Any]],
+) -> None:
+    _, out, _ = finished
+    cycle = results.load_run(out).final.cycle
+    with np.load(out / "trial_1" / "5_pressure.npz") as stored:
+        assert stored["pressure_MPa"].shape == stored["xi_mm"].shape
+    with np.load(results.load_run(out).final.path / "5_pressure.npz") as stored:
+        carried = np.trapezoid(stored["pressure_MPa"], stored["xi_mm"], axis=1)
+        assert (stored["pressure_MPa"] >= 0).all()
+        # The end knots carry nothing, so straight lines between the knots hold it all.
+        np.testing.assert_allclose(carried, cycle["line_load_N_per_mm"], rtol=1e-9)
 
 
 def test_report_can_be_rebuilt_from_the_folder(
