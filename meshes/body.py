@@ -333,7 +333,7 @@ def cam_mesh(
     InputError
         If a dimension is out of bounds or the contact point is not on the contour.
     GeometryError
-        If the contour is undercut, or bore or keyway reach it.
+        If the contour is undercut or crosses itself, or bore or keyway reach it.
     MeshError
         If the region cannot be meshed.
     """

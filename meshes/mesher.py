@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.arrays import Array
-from geometry.errors import MeshError
-from meshes.outline import Facets
+from geometry.errors import GeometryError, MeshError
+from meshes.outline import Facets, crossing
 from meshes.sizing import MILLIMETRE, SizeField
 
 Index = NDArray[np.int64]
@@ -92,10 +92,17 @@ def triangulate(loops: Sequence[Sequence[Facets]], size: SizeField) -> Triangula
 
     Raises
     ------
+    GeometryError
+        If the outline crosses itself.
     MeshError
         If gmsh cannot fill the region.
     """
     corners, rings = _ring_nodes(loops)
+    following = np.hstack([np.roll(ring, -1) for ring in rings])
+    crossed = crossing(corners, corners[:, following])
+    if crossed is not None:  # gmsh would search for ever
+        x, y = crossed / MILLIMETRE
+        raise GeometryError(f"outline crosses itself at ({x:.3f}, {y:.3f}) mm, cannot be meshed")
     try:
         with session() as gmsh:
             points, triangles = _fill(gmsh, corners, rings, size)

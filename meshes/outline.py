@@ -17,6 +17,8 @@ from meshes.sizing import SizeField
 
 _SAMPLES = 4001  # of the size along a piece of outline; clusters at its ends come on top
 
+_CROSSING_BLOCK = 256  # segments compared with all others at a time
+
 
 @dataclass(frozen=True, eq=False)
 class Zone:
@@ -64,7 +66,7 @@ def facets(piece: Piece, size: SizeField) -> Facets:
     """
     at, zone, length = piece.at, piece.zone, piece.length
     if zone is None:
-        ends = _graded(at, 0.0, length, size, least=3 if piece.closed else 1)
+        ends = _graded(at, 0.0, length, size)
     elif 2 * zone.steps * zone.step > 0.9 * length:
         raise MeshError(
             f"contact zone on '{piece.name}' = {2 * zone.steps * zone.step:.3g} m, "
@@ -87,9 +89,7 @@ def facets(piece: Piece, size: SizeField) -> Facets:
     return Facets(piece.name, points, at(0.5 * (ends[1:] + ends[:-1])))
 
 
-def _graded(
-    at: Callable[[Array], Array], start: float, stop: float, size: SizeField, least: int = 1
-) -> Array:
+def _graded(at: Callable[[Array], Array], start: float, stop: float, size: SizeField) -> Array:
     """Arc lengths from `start` to `stop`, both included, as far apart as `size` asks."""
     span = stop - start
     if not span > 1e-3 * float(size(at(np.array([start])))[0]):
@@ -99,8 +99,37 @@ def _graded(
     u = np.unique(np.r_[np.linspace(0.0, 1.0, _SAMPLES), near, 1.0 - near])
     density = span / size(at(start + span * u))
     count = np.r_[0.0, np.cumsum(np.diff(u) * 0.5 * (density[1:] + density[:-1]))]
-    edges = max(least, int(np.ceil(count[-1] - 1e-6)))
+    edges = max(1, int(np.ceil(count[-1] - 1e-6)))
     return start + span * np.interp(np.linspace(0.0, count[-1], edges + 1), count, u)
+
+
+def crossing(starts: Array, ends: Array) -> Array | None:
+    """A point (2,) where two of the segments from `starts` to `ends`, each (2, n), cross.
+
+    Segments that merely share an end do not cross. None if there is no crossing.
+    """
+    low, high = np.minimum(starts, ends), np.maximum(starts, ends)
+    for first in range(0, starts.shape[1], _CROSSING_BLOCK):
+        rows = slice(first, first + _CROSSING_BLOCK)
+        boxes_meet = (low[:, rows, None] < high[:, None, first:]).all(axis=0) & (
+            high[:, rows, None] > low[:, None, first:]
+        ).all(axis=0)
+        i, j = np.nonzero(np.triu(boxes_meet, k=1))
+        a, b, c, d = (
+            starts[:, i + first],
+            ends[:, i + first],
+            starts[:, j + first],
+            ends[:, j + first],
+        )
+        apart = (_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0)
+        if apart.any():
+            return 0.5 * (a[:, apart] + b[:, apart])[:, 0]
+    return None
+
+
+def _side(a: Array, b: Array, p: Array) -> Array:
+    """Positive where `p` lies left of the line from `a` to `b`."""
+    return np.sign((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]))
 
 
 def line(name: str, start: Array, stop: Array, zone: Zone | None = None) -> Piece:

@@ -103,7 +103,6 @@ def longest_facet(mesh: BodyMesh, contact_point: ArrayLike, half_width: float) -
     length = np.hypot(*(middle - start)) + np.hypot(*(end - middle))
     apart = np.hypot(*(middle - point[:, None])) - 0.5 * length
     inside = apart < max(half_width * (1 - 1e-9), float(apart.min()) * (1 + 1e-9))
-    inside[int(np.argmin(apart))] = True
     return float(length[inside].max())
 
 

@@ -171,6 +171,64 @@ def test_curved_nose_gets_smaller_facets():
     assert facet_lengths(mesh, "contour").max() > 2e-3
 
 
+class Circle:
+    """A circular contour about a centre on the x axis."""
+
+    def __init__(self, radius, centre):
+        self.radius, self.centre = radius, centre
+
+    def points(self, theta):
+        return self.radius * self.normal(theta) + [[self.centre], [0.0]]
+
+    def normal(self, theta):
+        return np.array([np.cos(theta), np.sin(theta)])
+
+    def curvature(self, theta):
+        return np.full(np.shape(theta), 1 / self.radius)
+
+
+class Limacon(Circle):
+    """A curve with an inner loop, which crosses itself at the origin without turning back."""
+
+    def points(self, theta):
+        return (0.03 + 0.06 * np.cos(theta)) * super().normal(theta) + [[-0.045], [0.0]]
+
+    def normal(self, theta):
+        step = 1e-6
+        tangent = self.points(theta + step) - self.points(theta - step)
+        return np.array([tangent[1], -tangent[0]]) / np.hypot(*tangent)
+
+
+def test_contour_that_does_not_go_round_the_bore_is_refused():
+    with pytest.raises(GeometryError, match="least wall"):
+        cam_mesh(Circle(0.03, 0.05), BORE, None, Sizing(far_size=3e-3))
+
+
+def test_contour_that_crosses_itself_is_refused_with_the_place():
+    """gmsh would search for ever."""
+    with pytest.raises(GeometryError, match=r"crosses itself at \(-4\d\.\d+, -?\d\.\d+\) mm"):
+        cam_mesh(Limacon(0.03, 0.0), 2e-3, None, Sizing(far_size=3e-3))
+
+
+def test_thin_wall_gets_two_elements_across():
+    mesh = cam_mesh(Circle(0.02, 9e-3), BORE, None, Sizing(far_size=4e-3))
+    wall = 0.02 - 9e-3 - BORE
+    for name, x in (("contour", 9e-3 - 0.02), ("bore", -BORE)):
+        start = mesh.points[:, mesh.facet_triples(name)[0]]
+        nearest = np.argmin(np.hypot(start[0] - x, start[1]))
+        assert facet_lengths(mesh, name)[nearest] < 0.5 * wall * 1.3
+    assert quality(mesh).min_angle_deg > 25
+
+
+def test_keyway_and_fillets_are_resolved():
+    sharp = cam_mesh(CONTOUR, BORE, Keyway(6e-3, 3e-3), Sizing(far_size=4e-3))
+    assert facet_lengths(sharp, "keyway").max() < 1e-3 * 1.05
+    rounded = cam_mesh(CONTOUR, BORE, Keyway(6e-3, 3e-3, 0.0, 5e-4), Sizing(far_size=4e-3))
+    x, y = rounded.points[:, rounded.facet_triples("keyway")[0]]
+    on_fillet = (x > 0.013 - 5e-4 - 1e-9) & (y > 3e-3 - 5e-4 - 1e-9)
+    assert on_fillet.sum() >= 5  # four facets on the quarter circle
+
+
 def test_transformed_turns_then_shifts(cam):
     moved = cam.transformed(np.pi / 2, (1.0, 2.0))
     x, y = cam.points

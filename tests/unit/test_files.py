@@ -59,6 +59,9 @@ def test_msh_is_format_4_1_and_repeats_bit_for_bit(tmp_path, bodies):
     text = (tmp_path / "a.msh").read_bytes()
     assert text.startswith(b"$MeshFormat\n4.1 0 8\n")
     assert text == (tmp_path / "b.msh").read_bytes()
+    nodes = sum(mesh.points.shape[1] for mesh in bodies.values())
+    entities = sum(1 + len(mesh.boundaries) for mesh in bodies.values())
+    assert f"$Nodes\n{entities} {nodes} 1 {nodes}\n".encode() in text  # each node once
 
 
 def test_vtu_keeps_fields_units_and_curved_triangles(tmp_path, bodies):
