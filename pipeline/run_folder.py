@@ -264,12 +264,11 @@ class RunFolder:
             raise ResultError(f"{self.path}: in the way, and not the start of a run")
         self._take_lock()
         if resume and state.is_file():
-            found = results.read_json(state)
-            for name, value in self._identity().items():
-                if not isinstance(found, dict) or found.get(name) != value:
-                    raise ResultError(
-                        f"{self.path}: cannot be resumed, its {name} differ; run without --resume"
-                    )
+            differ = _differing(results.read_json(state), self._identity())
+            if differ:
+                raise ResultError(
+                    f"{self.path}: cannot be resumed: {differ} differ; run without --resume"
+                )
             self.resumed = True
             return
         for entry in self.path.iterdir():
@@ -283,8 +282,7 @@ class RunFolder:
             write_atomic(self.path / name, content)
 
     def _identity(self) -> dict[str, Any]:
-        positions = self.case.solver.positions
-        return {"input": self.case.sha256, "versions": self.versions, "positions": positions}
+        return {"input": self.case.sha256, "versions": self.versions}
 
     def _take_lock(self) -> None:
         """Hold the folder for this process; the system lets go when the process ends."""
@@ -319,6 +317,17 @@ class RunFolder:
         self, name: str, columns: Iterable[results.Column], values: Mapping[str, ArrayLike]
     ) -> None:
         write_atomic(self._file(name), results.table(columns, values).to_csv())
+
+
+def _differing(found: Any, wanted: Mapping[str, Any]) -> str:
+    """What an interrupted run was made of that is not so now, in words; empty when all is."""
+    found = found if isinstance(found, dict) else {}
+    if found.get("input") != wanted["input"]:
+        return "its input"
+    then, now = found.get("versions"), wanted["versions"]
+    then = then if isinstance(then, dict) else {}
+    names = [name for name in {**then, **now} if then.get(name) != now.get(name)]
+    return f"its versions ({', '.join(names)})" if names else ""
 
 
 @contextmanager

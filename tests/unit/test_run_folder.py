@@ -139,11 +139,12 @@ def test_resume_refuses_another_input_or_other_versions(
 ) -> None:
     out = tmp_path / "run"
     interrupted(out)
-    with pytest.raises(ResultError, match="cannot be resumed, its input differ"):
+    with pytest.raises(ResultError, match="cannot be resumed: its input differ"):
         RunFolder(out, other_case(), resume=True)
     with monkeypatch.context() as patch:
-        patch.setattr(run_folder, "versions", lambda: {"camwright": "9"})
-        with pytest.raises(ResultError, match="its versions differ"):
+        now = run_folder.versions()
+        patch.setattr(run_folder, "versions", lambda: now | {"numpy": "0", "source": "changed"})
+        with pytest.raises(ResultError, match=r"its versions \(source, numpy\) differ"):
             RunFolder(out, small_case(), resume=True)
     assert RunFolder(out, small_case(), resume=True).resumed
 
