@@ -46,7 +46,11 @@ class Complementarity:
 
 
 def solve(
-    compliance: ArrayLike, gap: ArrayLike, shape_integrals: ArrayLike, force: ArrayLike
+    compliance: ArrayLike,
+    gap: ArrayLike,
+    shape_integrals: ArrayLike,
+    force: ArrayLike,
+    guess: ArrayLike | None = None,
 ) -> Complementarity:
     """Pressures under given forces, by primal-dual active sets.
 
@@ -56,6 +60,8 @@ def solve(
     gap : array (count, n)              weighted initial gap
     shape_integrals : array (count, n) or (n,)
     force : array (count,)              > 0
+    guess : array (n,) of bool          pressures that may act, to begin with; the answer does
+                                        not depend on it
 
     Raises
     ------
@@ -79,7 +85,8 @@ def solve(
     g = g / gap_scale[:, None]
     weight = m / m.sum(axis=1, keepdims=True)
 
-    p, d = _batched(C, g, weight)
+    start = np.ones(size, dtype=bool) if guess is None else np.asarray(guess, dtype=bool)
+    p, d = _batched(C, g, weight, start)
     residual_gap = np.einsum("kij,kj->ki", C, p) + g - d[:, None] * weight
     largest = np.maximum(p.max(axis=1), 1e-300)
     gap_largest = np.maximum(np.abs(residual_gap).max(axis=1), 1e-300)
@@ -104,12 +111,12 @@ def solve(
     )
 
 
-def _batched(C: Array, g: Array, m: Array) -> tuple[Array, Array]:
+def _batched(C: Array, g: Array, m: Array, start: NDArray[np.bool_]) -> tuple[Array, Array]:
     """Active-set sweeps over all problems at once; stragglers go to the primal method."""
     count, size = g.shape
     pressures, approaches = np.zeros((count, size)), np.zeros(count)
     open_cases = np.arange(count)
-    active = np.ones((count, size), dtype=bool)
+    active = np.tile(start if start.any() else np.ones_like(start), (count, 1))
     seen: list[set[bytes]] = [set() for _ in range(count)]
     stragglers: list[int] = []
     for _ in range(_SWEEPS):

@@ -17,31 +17,32 @@ import numpy as np
 from scipy import sparse
 
 from geometry.arrays import Array, freeze
-from pipeline.contact.elastic_body import ElasticBody, StressRecovery
+from pipeline.contact.elastic_body import CondensedBody, ElasticBody, StressRecovery
 from pipeline.contact.halfplane import point_force_displacement
 from pipeline.contact.hertz import subsurface_stress
 
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 _BLIND_SHARE = 0.05
-# Right-hand sides solved together: enough to keep SuperLU busy, few enough to stay small.
+# Contacts worked on together: few enough to stay small.
 _BATCH = 180
+# Surface nodes about a contact that its stress and bending are read from.
+_NEIGHBOURS = 10
 
 
 @dataclass(frozen=True, eq=False)
 class Correction:
     """Correction field of a body per unit line load, at `count` contact points.
 
-    displacement (2, nodes, count) m per N/m; stress (3, count) in the contact's own frame
-    (along the surface, into the body, shear of both), Pa per N/m; bend (count,) second
-    derivative of the outward displacement along the surface, 1/m per N/m.
+    along (count,) stress along the surface, Pa per N/m, the only one there as the surface is
+    free; bend (count,) second derivative of the outward displacement along the surface, 1/m per
+    N/m.
     """
 
-    displacement: Array
-    stress: Array
+    along: Array
     bend: Array
 
     def __post_init__(self) -> None:
-        freeze(self, **{n: getattr(self, n) for n in ("displacement", "stress", "bend")})
+        freeze(self, along=self.along, bend=self.bend)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,15 +88,24 @@ class LoadedBody:
 
     def correction(self, contacts: Array, normals: Array) -> Correction:
         """Correction at contact points (2, count) with outward normals (2, count)."""
-        parts = [
-            self._correction(contacts[:, k : k + _BATCH], normals[:, k : k + _BATCH])
-            for k in range(0, contacts.shape[1], _BATCH)
-        ]
-        return Correction(
-            displacement=np.concatenate([p.displacement for p in parts], axis=2),
-            stress=np.concatenate([p.stress for p in parts], axis=1),
-            bend=np.concatenate([p.bend for p in parts]),
-        )
+        condensed = self._condensed
+        parts = []
+        for start in range(0, contacts.shape[1], _BATCH):
+            at, up = contacts[:, start : start + _BATCH], normals[:, start : start + _BATCH]
+            loads, held = self._cancelling(at, up)
+            moved = condensed.displacement(loads[:, condensed.nodes], held)
+            parts.append(self._at_contacts(moved, at, up))
+        slope, bend = np.concatenate(parts, axis=1)
+        return Correction(along=self._plane_strain_modulus * slope, bend=bend)
+
+    @cached_property
+    def _condensed(self) -> CondensedBody:
+        nodes = np.union1d(np.unique(self._free_facets), self.body.beside_held)
+        return self.body.condensed(nodes)
+
+    @property
+    def _plane_strain_modulus(self) -> float:
+        return self.body.modulus / (1 - self.body.poisson**2)
 
     def field(
         self, contact: Array, normal: Array, line_load: float, half_width: float
@@ -104,7 +114,8 @@ class LoadedBody:
 
         contact, normal (2, 1); the half-plane part is that of a Hertz pressure, in closed form.
         """
-        moved = self.correction(contact, normal).displacement
+        loads, held = self._cancelling(contact, normal)
+        moved = self.body.displacement(loads, held)
         nodal = np.zeros((3, self.body.mesh.points.shape[1]))
         nodal[:, self._everywhere.nodes] = self._everywhere(moved)[:, :, 0]
         if line_load <= 0:
@@ -134,10 +145,11 @@ class LoadedBody:
         return StressRecovery(self.body, np.arange(self.body.mesh.triangles.shape[1]))
 
     def _unit_displacement(self, x: Array, depth: Array) -> Array:
-        modulus = self.body.modulus / (1 - self.body.poisson**2)
-        return point_force_displacement(x, depth, self.body.poisson) / modulus
+        unit = point_force_displacement(x, depth, self.body.poisson)
+        return unit / self._plane_strain_modulus
 
-    def _correction(self, contacts: Array, normals: Array) -> Correction:
+    def _cancelling(self, contacts: Array, normals: Array) -> tuple[Array, Array]:
+        """Nodal forces and displacements (2, nodes, count) that take the half-plane's away."""
         points, outward, operator = self._quadrature
         arm = points[:, :, None] - contacts[:, None, :]
         depth = -np.einsum("cqk,ck->qk", arm, normals)
@@ -149,15 +161,12 @@ class LoadedBody:
         intensity = np.where(near, 0.0, 2 / np.pi * depth * flux / np.where(near, 1, square) ** 2)
         traction = arm * intensity
         loads = np.stack([operator @ component for component in traction])
-        held = self._half_plane_displacement(contacts, normals)
-        displacement = self.body.displacement(loads, -held)
-        stress = self._stress_at(displacement, contacts, normals)
-        return Correction(displacement, stress, self._bend(displacement, contacts, normals))
+        return loads, -self._half_plane_displacement(contacts, normals)
 
     def _half_plane_displacement(self, contacts: Array, normals: Array) -> Array:
         """Displacement (2, nodes, count) of the half-plane field on the held boundary."""
         mesh, body = self.body.mesh, self.body
-        nodes = mesh.boundary_nodes(body.held)
+        nodes = body.held_nodes
         arm = mesh.points[:, nodes, None] - contacts[:, None, :]
         tangents = np.stack([normals[1], -normals[0]])
         x = np.einsum("cqk,ck->qk", arm, tangents)
@@ -167,52 +176,29 @@ class LoadedBody:
         field[:, nodes] = along * tangents[:, None, :] - into * normals[:, None, :]
         return field
 
-    @cached_property
-    def _recovery(self) -> StressRecovery:
-        triples = self.body.mesh.facet_triples(self.surface)
-        on_surface = np.zeros(self.body.mesh.points.shape[1], dtype=bool)
-        on_surface[triples] = True
-        touching = on_surface[self.body.mesh.triangles[:3]].any(axis=0)
-        return StressRecovery(self.body, np.flatnonzero(touching))
+    def _at_contacts(self, moved: Array, contacts: Array, normals: Array) -> Array:
+        """Slope of the tangential, bend of the outward displacement (2, count) at contacts.
 
-    @cached_property
-    def _surface_nodes(self) -> Array:
-        return np.unique(self.body.mesh.facet_triples(self.surface))
-
-    def _nearest(self, contacts: Array, count: int) -> Array:
-        """The `count` surface nodes nearest to each contact (count, contacts)."""
-        surface = self.body.mesh.points[:, self._surface_nodes]
-        distance = np.hypot(*(surface[:, :, None] - contacts[:, None, :]))
-        return self._surface_nodes[np.argpartition(distance, count, axis=0)[:count]]
-
-    def _stress_at(self, displacement: Array, contacts: Array, normals: Array) -> Array:
-        """Recovered stress (3, count) at the contacts, fitted along the surface nodes."""
-        nodal = self._recovery(displacement)
-        row = np.full(self.body.mesh.points.shape[1], -1)
-        row[self._recovery.nodes] = np.arange(self._recovery.nodes.size)
-        near = self._nearest(contacts, 7)
-        column = np.arange(contacts.shape[1])
-        values = nodal[:, row[near], column]
-        fitted = self._fit(near, contacts, normals, values)[:, 0]
-        xx, yy, xy = fitted
-        t, n = np.stack([normals[1], -normals[0]]), normals
-        along = xx * t[0] ** 2 + yy * t[1] ** 2 + 2 * xy * t[0] * t[1]
-        into = xx * n[0] ** 2 + yy * n[1] ** 2 + 2 * xy * n[0] * n[1]
-        shear = -(xx * t[0] * n[0] + yy * t[1] * n[1] + xy * (t[0] * n[1] + t[1] * n[0]))
-        return np.stack([along, into, shear])
-
-    def _bend(self, displacement: Array, contacts: Array, normals: Array) -> Array:
-        near = self._nearest(contacts, 7)
-        column = np.arange(contacts.shape[1])
-        outward = np.einsum("cmk,ck->mk", displacement[:, near, column], normals)
-        return 2 * self._fit(near, contacts, normals, outward[None])[0, 2]
-
-    def _fit(self, near: Array, contacts: Array, normals: Array, values: Array) -> Array:
-        """Quadratics along the tangent (values, 3, count) through values at nearby nodes."""
-        arm = self.body.mesh.points[:, near] - contacts[:, None, :]
-        x = arm[0] * normals[1] - arm[1] * normals[0]
-        scale = np.abs(x).max(axis=0)
-        terms = np.stack([np.ones_like(x), x / scale, (x / scale) ** 2], axis=-1)
-        inverse = np.linalg.pinv(terms.transpose(1, 0, 2))
-        powers = np.stack([np.ones_like(scale), 1 / scale, 1 / scale**2])
-        return np.einsum("kij,vjk->vik", inverse, values) * powers
+        moved (2, m, count) at the condensed nodes. A cubic is fitted to the surface nodes
+        about each contact, with weights that fade out, so that nothing jumps when the contact
+        passes a node.
+        """
+        mesh, condensed = self.body.mesh, self._condensed
+        surface = np.searchsorted(condensed.nodes, mesh.boundary_nodes(self.surface))
+        points = mesh.points[:, condensed.nodes[surface]]
+        distance = np.hypot(*(points[:, :, None] - contacts[:, None, :]))
+        nearest = np.argpartition(distance, _NEIGHBOURS, axis=0)[: _NEIGHBOURS + 1]
+        distance = np.take_along_axis(distance, nearest, axis=0)
+        reach = distance.max(axis=0)
+        arm = points[:, nearest] - contacts[:, None, :]
+        tangents = np.stack([normals[1], -normals[0]])
+        x = np.einsum("cmk,ck->mk", arm, tangents) / reach
+        weights = (1 - (distance / reach) ** 2) ** 2
+        terms = np.stack([np.ones_like(x), x, x**2, x**3], axis=-1).transpose(1, 0, 2)
+        inverse = np.linalg.pinv(terms * weights.T[:, :, None])
+        near = moved[:, surface[nearest], np.arange(contacts.shape[1])]
+        sideways = np.einsum("cmk,ck->km", near, tangents) * weights.T
+        outward = np.einsum("cmk,ck->km", near, normals) * weights.T
+        slope = np.einsum("km,km->k", inverse[:, 1], sideways) / reach
+        bend = 2 * np.einsum("km,km->k", inverse[:, 2], outward) / reach**2
+        return np.stack([slope, bend])

@@ -15,7 +15,12 @@ import numpy as np
 from geometry.arrays import Array, freeze
 from geometry.errors import ContactError, InputError
 from pipeline.contact import active_set
-from pipeline.contact.elastic_body import ElasticBody, StressRecovery, elements_near
+from pipeline.contact.elastic_body import (
+    CondensedBody,
+    ElasticBody,
+    StressRecovery,
+    elements_near,
+)
 from pipeline.contact.pressure import PressureShapes, fitted_ellipses
 from pipeline.contact.stress import PeakFinder, shear_in_plane, von_mises
 from pipeline.contact.surface import ContactFrame, knots_of, normal_loads
@@ -23,7 +28,7 @@ from pipeline.contact.surface import ContactFrame, knots_of, normal_loads
 # Pressures are sought within this many half-widths of the centre.
 _WINDOW = 1.4
 # Stresses are recovered within this many half-widths of the contact.
-_STRESS_REACH = 2.6
+_STRESS_REACH = 2.0
 _EQUILIBRIUM = 1e-8
 
 
@@ -98,22 +103,20 @@ def solve_contact(
     chosen = sides[pressure_on]
     reach = _WINDOW * half_width
     shapes = PressureShapes(knots_of(chosen.body.mesh, chosen.surface, frame, reach))
-    loads: list[Array] = []
-    unit: list[Array] = []
-    compliance = np.zeros((shapes.centres.size, shapes.centres.size))
-    for side in sides:
-        loads.append(normal_loads(side.body.mesh, side.surface, frame, shapes))
-        unit.append(side.body.displacement(loads[-1]))
-        compliance += np.einsum("cni,cnj->ij", loads[-1], unit[-1])
-    compliance = (compliance + compliance.T) / 2
+    seen = [_LoadedNodes.of(side, frame, shapes) for side in sides]
+    compliance = seen[0].compliance + seen[1].compliance
     xi, weights = shapes.quadrature()
     solution = active_set.solve(
-        compliance, shapes.integrated(gap(xi), xi, weights), shapes.integrals, [line_load]
+        compliance,
+        shapes.integrated(gap(xi), xi, weights),
+        shapes.integrals,
+        [line_load],
+        guess=np.abs(shapes.centres) < half_width,
     )
     pressure = solution.pressure[0]
     if pressure[0] > 0 or pressure[-1] > 0:
         raise ContactError("the contact is wider than the window it was sought in")
-    displacements = (-unit[0] @ pressure, unit[1] @ pressure)
+    displacements = (seen[0].displacement(-pressure), seen[1].displacement(pressure))
     support = sides[0].body.reaction(displacements[0]) - line_load * frame.normal
     equilibrium = max(float(solution.equilibrium[0]), float(np.linalg.norm(support)) / line_load)
     if not equilibrium <= _EQUILIBRIUM:
@@ -137,6 +140,30 @@ def solve_contact(
         residual_complementarity=float(solution.complementarity[0]),
         dofs=sum(side.body.dof_count for side in sides),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _LoadedNodes:
+    """A body condensed to the nodes under the pressures, with their loads (2, m, n)."""
+
+    body: CondensedBody
+    loads: Array
+
+    @classmethod
+    def of(cls, side: ContactSide, frame: ContactFrame, shapes: PressureShapes) -> _LoadedNodes:
+        loads = normal_loads(side.body.mesh, side.surface, frame, shapes)
+        nodes = np.flatnonzero((loads != 0).any(axis=(0, 2)))
+        return cls(side.body.condensed(nodes), loads[:, nodes])
+
+    @property
+    def compliance(self) -> Array:
+        """Weighted surface displacement (n, n) per pressure."""
+        found = np.tensordot(self.loads, self.body.displacement(self.loads), axes=([0, 1], [0, 1]))
+        return (found + found.T) / 2
+
+    def displacement(self, pressure: Array) -> Array:
+        """Displacement (2, nodes) of the whole body."""
+        return self.body.everywhere((self.loads @ pressure)[:, :, None])[:, :, 0]
 
 
 def _peak_stress(

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
-from scipy.sparse.linalg import splu
 from skfem import Basis, ElementTriP2, ElementVector
-from skfem.models.elasticity import linear_elasticity
 
 from geometry.arrays import Array
-from geometry.errors import MeshError
+from geometry.errors import InputError
 from meshes.body import BodyMesh
+from pipeline.contact.factor import Condensed, factorised
 
 
 def lame_parameters(modulus: float, poisson: float) -> tuple[float, float]:
@@ -25,32 +24,19 @@ def lame_parameters(modulus: float, poisson: float) -> tuple[float, float]:
     return modulus * poisson / ((1 + poisson) * (1 - 2 * poisson)), shear
 
 
-def factorised(matrix: sparse.spmatrix) -> Callable[[Array], Array]:
-    """Solver of a sparse symmetric positive definite matrix.
-
-    Minimum degree on A + A^T without pivoting is legitimate for such a matrix and about three
-    times faster than the default of SuperLU.
-    """
-    factor = splu(
-        sparse.csc_matrix(matrix),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    return factor.solve
-
-
 @dataclass(frozen=True, eq=False)
 class ElasticBody:
-    """Second-order finite elements on curved triangles, held on one named boundary.
+    """Second-order finite elements on curved triangles, held on named boundaries.
 
+    `held` names the boundary held fully, or maps boundaries to the components held there:
+    ``{"bottom": "y", "left": "x"}`` rolls on the bottom and along the left.
     Displacements are arrays (2, nodes, ...) in the node order of the mesh.
     """
 
     mesh: BodyMesh
     modulus: float
     poisson: float
-    held: str
+    held: str | Mapping[str, str]
 
     @cached_property
     def basis(self) -> Any:
@@ -63,17 +49,65 @@ class ElasticBody:
 
     @cached_property
     def stiffness(self) -> Any:
-        form = linear_elasticity(*lame_parameters(self.modulus, self.poisson))
-        return form.assemble(self.basis).tocsc()
+        """Stiffness matrix, that of skfem's form for linear elasticity, put together faster."""
+        scalar = self.basis.with_element(ElementTriP2())
+        slopes = np.stack([shape[0].grad for shape in scalar.basis])  # (6, 2, elements, points)
+        count = slopes.shape[2]
+        slopes = slopes.reshape(12, count, -1).transpose(1, 0, 2)
+        products = (slopes * np.asarray(scalar.dx)[:, None, :]) @ slopes.transpose(0, 2, 1)
+        products = products.reshape(count, 6, 2, 6, 2)
+        lam, shear = lame_parameters(self.modulus, self.poisson)
+        local = lam * products + shear * products.transpose(0, 1, 4, 3, 2)
+        both = shear * (products[:, :, 0, :, 0] + products[:, :, 1, :, 1])
+        for component in range(2):
+            local[:, :, component, :, component] += both
+        dofs = self.basis.element_dofs.T
+        rows = np.broadcast_to(dofs[:, :, None], (count, 12, 12))
+        columns = np.broadcast_to(dofs[:, None, :], rows.shape)
+        entries: Any = (local.ravel(), (rows.ravel(), columns.ravel()))
+        return sparse.coo_matrix(entries, shape=(self.basis.N, self.basis.N)).tocsc()
 
     @cached_property
-    def _partition(self) -> tuple[Any, Any, Any]:
-        held = np.unique(self.dofs[:, self.mesh.boundary_nodes(self.held)])
-        if held.size == 0:
-            raise MeshError(f"the mesh has no boundary named {self.held}")
-        free = np.setdiff1d(np.arange(self.basis.N), held)
-        rows = self.stiffness[free]
-        return held, free, (factorised(rows[:, free]), rows[:, held])
+    def held_dofs(self) -> NDArray[np.int64]:
+        """Held degrees of freedom.
+
+        Raises
+        ------
+        MeshError
+            If the mesh has no such boundary.
+        InputError
+            If a held component is neither x nor y.
+        """
+        held = {self.held: "xy"} if isinstance(self.held, str) else self.held
+        parts = []
+        for name, components in held.items():
+            if not components or set(components) - {"x", "y"}:
+                raise InputError(f"held.{name}", components, "x, y or xy")
+            nodes = self.mesh.boundary_nodes(name)
+            parts += [self.dofs["xy".index(component), nodes] for component in components]
+        return np.unique(np.concatenate(parts))
+
+    @cached_property
+    def free_dofs(self) -> NDArray[np.int64]:
+        return np.setdiff1d(np.arange(self.basis.N), self.held_dofs)
+
+    @property
+    def held_nodes(self) -> NDArray[np.int64]:
+        """Nodes held in one component at least."""
+        return np.flatnonzero(np.isin(self.dofs, self.held_dofs).any(axis=0))
+
+    @cached_property
+    def beside_held(self) -> NDArray[np.int64]:
+        """Nodes that feel a displacement of what is held."""
+        felt = np.zeros(self.basis.N, dtype=bool)
+        coupling = self.stiffness[:, self.held_dofs].tocsr()
+        felt[self.free_dofs] = np.diff(coupling.indptr)[self.free_dofs] > 0
+        return np.flatnonzero(felt[self.dofs].any(axis=0))
+
+    @cached_property
+    def _solver(self) -> tuple[Callable[[Array], Array], Any]:
+        rows = self.stiffness[self.free_dofs]
+        return factorised(rows[:, self.free_dofs]), rows[:, self.held_dofs]
 
     @property
     def dof_count(self) -> int:
@@ -82,28 +116,81 @@ class ElasticBody:
     def displacement(self, loads: ArrayLike, held_at: ArrayLike | None = None) -> Array:
         """Displacement (2, nodes, k) under nodal forces (2, nodes, k), N/m.
 
-        `held_at` (2, nodes, k) gives the displacement of the held boundary; zero without it.
+        `held_at` (2, nodes, k) gives the displacement of what is held; zero without it.
         """
         forces = np.asarray(loads, dtype=float)
-        count = forces.shape[2]
-        held, free, (solve, coupling) = self._partition
-        right = np.zeros((self.basis.N, count))
+        held, free = self.held_dofs, self.free_dofs
+        solve, coupling = self._solver
+        right = np.zeros((self.basis.N, forces.shape[2]))
         right[self.dofs] = forces
         solution = np.zeros_like(right)
         if held_at is not None:
-            given = np.zeros_like(right)
-            given[self.dofs] = np.asarray(held_at, dtype=float)
-            solution[held] = given[held]
+            solution[self.dofs] = np.asarray(held_at, dtype=float)
+            solution[free] = 0.0
             right[free] -= coupling @ solution[held]
         solution[free] = solve(right[free])
         return solution[self.dofs]
 
+    def condensed(self, nodes: ArrayLike) -> CondensedBody:
+        """The body as seen from some of its nodes."""
+        return CondensedBody(self, nodes)
+
     def reaction(self, displacement: Array) -> Array:
-        """Resultant force (2,) of the held boundary on the body, N/m."""
+        """Resultant force (2,) of what holds the body on the body, N/m."""
         flat = np.zeros(self.basis.N)
         flat[self.dofs] = displacement
-        forces = (self.stiffness @ flat)[self.dofs]
-        return forces[:, self.mesh.boundary_nodes(self.held)].sum(axis=1)
+        forces = np.zeros(self.basis.N)
+        forces[self.held_dofs] = self.stiffness[self.held_dofs] @ flat
+        return forces[self.dofs].sum(axis=1)
+
+
+class CondensedBody:
+    """A body that is loaded, and looked at, on a few nodes only.
+
+    Parameters
+    ----------
+    body : ElasticBody
+    nodes : array (m,)   node numbers; held components of them do not move
+    """
+
+    def __init__(self, body: ElasticBody, nodes: ArrayLike) -> None:
+        self.body, self.nodes = body, np.asarray(nodes, dtype=int)
+        row = np.full(body.basis.N, -1)
+        row[body.free_dofs] = np.arange(body.free_dofs.size)
+        pairs = row[body.dofs]
+        seen = pairs[:, self.nodes].ravel()
+        self._kept = seen >= 0
+        stiffness = body.stiffness[body.free_dofs][:, body.free_dofs]
+        self._matrix = Condensed(stiffness, pairs[:, (pairs >= 0).all(axis=0)], seen[self._kept])
+
+    def displacement(self, loads: ArrayLike, held_at: ArrayLike | None = None) -> Array:
+        """Displacement (2, m, k) of the nodes under forces (2, m, k) on them.
+
+        `held_at` (2, all nodes, k) moves what is held; the nodes must then include the body's
+        `beside_held`.
+        """
+        forces = np.asarray(loads, dtype=float)
+        right = forces.reshape(-1, forces.shape[2]).copy()
+        found = np.zeros_like(right)
+        seen = self.body.dofs[:, self.nodes].ravel()
+        if held_at is not None:
+            given = np.zeros((self.body.basis.N, forces.shape[2]))
+            given[self.body.dofs] = np.asarray(held_at, dtype=float)
+            held = self.body.held_dofs
+            right -= self.body.stiffness[seen][:, held] @ given[held]
+            found[~self._kept] = given[seen[~self._kept]]
+        found[self._kept] = self._matrix.solve_last(right[self._kept])
+        return found.reshape(forces.shape)
+
+    def everywhere(self, loads: ArrayLike) -> Array:
+        """Displacement (2, all nodes, k) of the body under forces (2, m, k) on the nodes."""
+        forces = np.asarray(loads, dtype=float)
+        body = self.body
+        right = np.zeros((body.basis.N, forces.shape[2]))
+        right[body.dofs[:, self.nodes]] = forces
+        solution = np.zeros_like(right)
+        solution[body.free_dofs] = self._matrix.solve(right[body.free_dofs])
+        return solution[body.dofs]
 
 
 def elements_near(body: ElasticBody, point: ArrayLike, reach: float) -> Any:

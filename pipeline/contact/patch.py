@@ -34,7 +34,10 @@ _ELEMENTS_PER_HALF_WIDTH = 16
 RECIPE = (
     __name__,
     *(f"meshes.{name}" for name in ("body", "mesher", "sizing", "outline")),
-    *(f"pipeline.contact.{name}" for name in ("elastic_body", "halfplane", "pressure", "surface")),
+    *(
+        f"pipeline.contact.{name}"
+        for name in ("elastic_body", "factor", "halfplane", "pressure", "surface")
+    ),
 )
 
 
@@ -174,7 +177,11 @@ def solve_patches(
     weighted_gap = (np.asarray(gap) * weights) @ shapes.values(xi).T
     count = weighted_gap.shape[0]
     solution = active_set.solve(
-        compliance, weighted_gap, shapes.integrals, np.full(count, np.pi / 2)
+        compliance,
+        weighted_gap,
+        shapes.integrals,
+        np.full(count, np.pi / 2),
+        guess=np.abs(shapes.centres) < 1,
     )
     outside = (solution.pressure[:, 0] > 0) | (solution.pressure[:, -1] > 0)
     if outside.any():

@@ -44,10 +44,14 @@ class PeakFinder:
         found: Any = tree.query(self._points.T, self._NEIGHBOURS)
         distance, self._near = found
         self._reach = distance[:, self._NEIGHBOURS // 2]
-        local = (self._points[:, self._near] - self._points[:, :, None]) / self._reach[:, None]
-        x, y = local
+
+    def _fits(self, nodes: Array) -> Array:
+        """Operators (k, 6, neighbours) from values about `nodes` (k,) to a quadric's terms."""
+        found, where = np.unique(nodes, return_inverse=True)
+        arms = self._points[:, self._near[found]] - self._points[:, found, None]
+        x, y = arms / self._reach[found, None]
         terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-1)
-        self._fit = np.linalg.pinv(terms)
+        return np.linalg.pinv(terms)[where]
 
     def __call__(self, values: ArrayLike) -> tuple[Array, Array]:
         """Peak values (k,) and their places (2, k) of fields (m, k)."""
@@ -56,7 +60,7 @@ class PeakFinder:
         node = np.asarray(fields.argmax(axis=0))
         largest = fields[node, column]
         around = fields[self._near[node], column[:, None]]
-        c = np.einsum("kij,kj->ki", self._fit[node], around)
+        c = np.einsum("kij,kj->ki", self._fits(node), around)
         hessian = np.stack([2 * c[:, 3], c[:, 4], c[:, 4], 2 * c[:, 5]], axis=1).reshape(-1, 2, 2)
         determinant = np.linalg.det(hessian)
         peaked = (determinant > 0) & (hessian[:, 0, 0] < 0)
