@@ -1,0 +1,278 @@
+"""The helical compression spring: rate, stress, fatigue, space, buckling, surge."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geometry.arrays import Array, finite
+from geometry.errors import InputError
+
+DEAD_COILS = 2.0  # squared and ground ends
+SHEAR_STRENGTH_SHARE = 0.67  # S_su over R_m
+ZIMMERLI = {False: (241e6, 379e6), True: (398e6, 534e6)}  # S_sa, S_sm by peened, Pa
+BUCKLING = 2.63  # free length over mean diameter and end factor, steel
+
+
+@dataclass(frozen=True)
+class Wire:
+    """Spring steel: R_m = strength_at_1mm (d / 1 mm)^-exponent.
+
+    Parameters
+    ----------
+    shear_modulus : float      G, Pa
+    density : float            kg/m3
+    strength_at_1mm : float    Pa
+    exponent : float           >= 0
+    peened : bool              shot peened
+    """
+
+    shear_modulus: float
+    density: float
+    strength_at_1mm: float
+    exponent: float
+    peened: bool = False
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("shear_modulus", "density", "strength_at_1mm"):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise InputError(f"spring.wire.{name}", getattr(self, name), "> 0")
+        if not 0.0 <= self.exponent < 1.0:
+            raise InputError("spring.wire.exponent", self.exponent, ">= 0 and < 1")
+
+    def tensile_strength(self, diameter: float) -> float:
+        """R_m of a wire, Pa."""
+        return float(self.strength_at_1mm * (diameter / 1e-3) ** -self.exponent)
+
+
+@dataclass(frozen=True)
+class HelicalSpring:
+    """A cylindrical spring of round wire, ends squared and ground.
+
+    Parameters
+    ----------
+    wire_diameter, mean_diameter : float   d and D, m; D/d from 3 to 20
+    coils : float                          active ones, >= 1.5
+    free_length : float                    L0, m, longer than solid
+    wire : Wire
+    end_factor : float                     1 pivoted at both ends, 0.707 pivoted and fixed, 0.5 flat
+
+    Raises
+    ------
+    InputError
+        If a value is out of these bounds. A spring that goes solid under its load is no such
+        error: see `solid_clearance`.
+    """
+
+    wire_diameter: float
+    mean_diameter: float
+    coils: float
+    free_length: float
+    wire: Wire
+    end_factor: float = 0.5
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.wire_diameter < np.inf:
+            raise InputError("spring.wire_diameter", self.wire_diameter, "> 0 m")
+        if not 3.0 <= self.mean_diameter / self.wire_diameter <= 20.0:
+            limit = "3 to 20 wire diameters, which can be coiled"
+            raise InputError("spring.mean_diameter", self.mean_diameter, limit)
+        if not 1.5 <= self.coils < np.inf:
+            raise InputError("spring.coils", self.coils, ">= 1.5")
+        if not self.solid_length < self.free_length < np.inf:
+            limit = f"> {self.solid_length:g} m, the solid length"
+            raise InputError("spring.free_length", self.free_length, limit)
+        if not 0.0 < self.end_factor <= 2.0:
+            raise InputError("spring.end_factor", self.end_factor, "> 0 and <= 2")
+
+    @property
+    def index(self) -> float:
+        """C = D/d."""
+        return self.mean_diameter / self.wire_diameter
+
+    @property
+    def rate(self) -> float:
+        """k = G d^4 / (8 D^3 n), N/m."""
+        bend = self.wire.shear_modulus * self.wire_diameter**4
+        return bend / (8.0 * self.mean_diameter**3 * self.coils)
+
+    @property
+    def active_mass(self) -> float:
+        """Mass of the coils that move, kg."""
+        return self._mass(self.coils)
+
+    @property
+    def mass(self) -> float:
+        """Mass with the ends, kg."""
+        return self._mass(self.coils + DEAD_COILS)
+
+    def _mass(self, coils: float) -> float:
+        section = 0.25 * np.pi * self.wire_diameter**2
+        return float(self.wire.density * section * np.pi * self.mean_diameter * coils)
+
+    @property
+    def solid_length(self) -> float:
+        """Length with all coils closed, m."""
+        return self.wire_diameter * (self.coils + DEAD_COILS)
+
+    @property
+    def wahl_factor(self) -> float:
+        """(4C - 1)/(4C - 4) + 0.615/C: curvature and direct shear."""
+        C = self.index
+        return (4.0 * C - 1.0) / (4.0 * C - 4.0) + 0.615 / C
+
+    @property
+    def surge_frequency(self) -> float:
+        """First natural frequency between flat ends, sqrt(k/m)/2, Hz."""
+        return 0.5 * float(np.sqrt(self.rate / self.active_mass))
+
+    def stress(self, force: ArrayLike) -> Array:
+        """Greatest shear stress of the wire, Wahl's factor included, Pa."""
+        plain = 8.0 * self.mean_diameter / (np.pi * self.wire_diameter**3)
+        return self.wahl_factor * plain * finite("spring.force", force)
+
+    def deflection(self, force: float) -> float:
+        """From the free length, m."""
+        return force / self.rate
+
+    def solid_clearance(self, preload: float, travel: float) -> float:
+        """Way left to the solid length at full lift, over the largest deflection.
+
+        Negative: the spring goes solid.
+        """
+        deflection = self.deflection(preload) + travel
+        return (self.free_length - self.solid_length - deflection) / deflection
+
+    def static_use(self, force: float) -> float:
+        """Shear stress over 0.56 R_m.
+
+        References
+        ----------
+        EN 13906-1 (recalled, verify); Shigley's Mechanical Engineering Design, ch. 10.
+        """
+        strength = 0.56 * self.wire.tensile_strength(self.wire_diameter)
+        return float(self.stress(force)) / strength
+
+    def fatigue_safety(self, force_min: float, force_max: float) -> float:
+        """Factor on the alternating stress at the given mean: Goodman through Zimmerli's point.
+
+        The line goes from the shear strength 0.67 R_m on the axis of mean stress through the
+        amplitude Zimmerli found for infinite life; infinite without an alternating stress.
+
+        References
+        ----------
+        Shigley's Mechanical Engineering Design, ch. 10: Zimmerli's data, torsional Goodman.
+        """
+        if not 0.0 <= force_min <= force_max:
+            raise InputError("spring.force", force_min, "0 <= least <= greatest, N")
+        low, high = float(self.stress(force_min)), float(self.stress(force_max))
+        amplitude, mean = 0.5 * (high - low), 0.5 * (high + low)
+        shear_strength = SHEAR_STRENGTH_SHARE * self.wire.tensile_strength(self.wire_diameter)
+        zimmerli_amplitude, zimmerli_mean = ZIMMERLI[self.wire.peened]
+        endurance = zimmerli_amplitude / (1.0 - zimmerli_mean / shear_strength)
+        if not endurance > 0.0:
+            raise InputError("spring.wire.strength", shear_strength, "above Zimmerli's mean stress")
+        use = amplitude / endurance + mean / shear_strength
+        return 1.0 / use if use > 0.0 else np.inf
+
+    @property
+    def buckling_use(self) -> float:
+        """Free length over that at which the spring stays straight at any deflection.
+
+        References
+        ----------
+        Shigley's Mechanical Engineering Design, ch. 10: L0 < 2.63 D/alpha for steel.
+        """
+        return self.free_length * self.end_factor / (BUCKLING * self.mean_diameter)
+
+
+def spring_wire(case: Any) -> HelicalSpring | None:
+    """The spring of a case; None where the case tells the rate alone."""
+    given = case.spring
+    if getattr(given, "design", None) is None:
+        return None
+    design = given.design
+    wire = Wire(
+        design.shear_modulus,
+        design.density,
+        design.strength_at_1mm,
+        design.strength_exponent,
+        design.peened,
+    )
+    return HelicalSpring(
+        design.wire_diameter,
+        design.mean_diameter,
+        design.coils,
+        design.free_length,
+        wire,
+        design.end_factor,
+    )
+
+
+def surge_harmonics(
+    lift_values: Array, cam_speed: float, frequency: float, share: float = 0.01
+) -> tuple[int, float, float]:
+    """Highest strong harmonic of the lift, and the margins of a spring's surge.
+
+    Parameters
+    ----------
+    lift_values : array (n,)   at equal angles, m
+    cam_speed : float          rad/s, > 0
+    frequency : float          first natural frequency of the spring, Hz
+    share : float              of the largest harmonic of the acceleration that counts as strong
+
+    Returns
+    -------
+    strongest : int       the highest strong harmonic
+    ratio : float         frequency over that of the cam's turning
+    margin : float        frequency over that of the highest strong harmonic
+    """
+    harmonics = np.abs(np.fft.rfft(finite("lift", lift_values)))
+    order = np.arange(harmonics.size)
+    acceleration = harmonics * order**2
+    strong = np.flatnonzero(acceleration >= share * max(acceleration.max(), 1e-300))
+    highest = int(strong[-1]) if acceleration.max() > 0.0 else 0
+    ratio = frequency * 2.0 * np.pi / cam_speed
+    return highest, ratio, ratio / highest if highest else np.inf
+
+
+def surge_force(
+    lift_values: Array,
+    cam_speed: float,
+    rate: float,
+    frequency: float,
+    damping: float = 0.01,
+    modes: int = 8,
+) -> Array:
+    """Force that the spring's own vibration adds at its fixed end, (n,), N.
+
+    One end follows the lift, the other stands still; between them the coils move as
+    s (1 - x) + sum q_j sin(j pi x), each mode driven by -2/(j pi) of the acceleration.
+
+    Parameters
+    ----------
+    lift_values : array (n,)   at equal angles of one turn, m
+    cam_speed : float          rad/s
+    rate : float               k, N/m
+    frequency : float          of the first mode, Hz
+    damping : float            of each mode, of critical
+    modes : int
+
+    References
+    ----------
+    Norton, Cam Design and Manufacturing Handbook (2009), ch. 15: spring surge.
+    """
+    spectrum = np.fft.rfft(finite("lift", lift_values))
+    drive = np.arange(spectrum.size) * cam_speed
+    force = np.zeros_like(spectrum)
+    for j in range(1, modes + 1):
+        own = 2.0 * np.pi * frequency * j
+        response = own**2 - drive**2 + 2.0j * damping * own * drive
+        q = 2.0 / (j * np.pi) * drive**2 * spectrum / response
+        force -= rate * j * np.pi * (-1.0) ** j * q
+    return np.fft.irfft(force, len(lift_values))

@@ -1,0 +1,127 @@
+"""A catalogue of springs in TOML, and the lightest in it that will do."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from geometry.errors import InputError
+from pipeline import units
+from pipeline.follower.spring import HelicalSpring, Wire
+
+CATALOGUE = Path(__file__).parent / "cards" / "springs.toml"
+
+_SPRING = {
+    "wire_diameter": "mm",
+    "mean_diameter": "mm",
+    "free_length": "mm",
+}
+_WIRE = {"shear_modulus": "GPa", "density": "kg/m^3", "strength_at_1mm": "MPa"}
+
+
+@dataclass(frozen=True)
+class SpringDemand:
+    """What a spring has to meet.
+
+    Parameters
+    ----------
+    rate : float               N/m
+    rate_tolerance : float     share by which the rate may miss
+    preload : float            N, at zero lift
+    travel : float             m, to the largest lift
+    fatigue_safety : float     Goodman and Zimmerli
+    solid_clearance : float    share of the largest deflection
+    mean_diameter_max : float  m
+    """
+
+    rate: float
+    preload: float
+    travel: float
+    rate_tolerance: float = 0.05
+    fatigue_safety: float = 1.2
+    solid_clearance: float = 0.1
+    mean_diameter_max: float = float("inf")
+
+    def shortfalls(self, spring: HelicalSpring) -> tuple[str, ...]:
+        """What keeps a spring from meeting the demand, in words; empty when it does."""
+        greatest = self.preload + spring.rate * self.travel
+        found = []
+        if abs(spring.rate / self.rate - 1.0) > self.rate_tolerance:
+            found.append("rate")
+        if spring.solid_clearance(self.preload, self.travel) < self.solid_clearance:
+            found.append("goes solid")
+        if spring.static_use(greatest) > 1.0:
+            found.append("shear stress")
+        if spring.fatigue_safety(self.preload, greatest) < self.fatigue_safety:
+            found.append("fatigue")
+        if spring.buckling_use > 1.0:
+            found.append("buckling")
+        if spring.mean_diameter > self.mean_diameter_max:
+            found.append("too wide")
+        return tuple(found)
+
+
+def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
+    """Springs of a catalogue file: ``[wires.NAME]`` and ``[[spring]]`` tables.
+
+    Raises
+    ------
+    InputError
+        For a file that is not TOML, an unknown or missing key, or a spring that cannot be.
+    """
+    try:
+        given = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError(
+            "catalogue", " ".join(str(error).split()), "a readable TOML file"
+        ) from None
+    wires = {name: _wire(name, entry) for name, entry in given.get("wires", {}).items()}
+    return tuple(_spring(k, entry, wires) for k, entry in enumerate(given.get("spring", ())))
+
+
+def lightest(
+    catalogue: tuple[HelicalSpring, ...], demand: SpringDemand
+) -> tuple[HelicalSpring | None, dict[str, tuple[str, ...]]]:
+    """The lightest spring that meets the demand (None: there is none), and why others do not."""
+    reasons = {spring.name: demand.shortfalls(spring) for spring in catalogue}
+    fit = [spring for spring in catalogue if not reasons[spring.name]]
+    best = min(fit, key=lambda spring: spring.mass, default=None)
+    return best, {name: reason for name, reason in reasons.items() if reason}
+
+
+def _wire(name: str, entry: dict[str, Any]) -> Wire:
+    field = f"catalogue.wires.{name}"
+    keys = {*_WIRE, "exponent", "peened", "source"}
+    _known(field, entry, keys, {*_WIRE, "exponent", "source"})
+    values = {key: units.parse(entry[key], unit, f"{field}.{key}") for key, unit in _WIRE.items()}
+    return Wire(
+        **values,
+        exponent=float(entry["exponent"]),
+        peened=bool(entry.get("peened", False)),
+        source=str(entry["source"]),
+    )
+
+
+def _spring(index: int, entry: dict[str, Any], wires: dict[str, Wire]) -> HelicalSpring:
+    field = f"catalogue.spring[{index}]"
+    keys = {*_SPRING, "name", "coils", "wire", "end_factor"}
+    _known(field, entry, keys, keys - {"end_factor"})
+    if entry["wire"] not in wires:
+        raise InputError(f"{field}.wire", entry["wire"], f"one of: {', '.join(sorted(wires))}")
+    values = {k: units.parse(entry[k], unit, f"{field}.{k}") for k, unit in _SPRING.items()}
+    return HelicalSpring(
+        **values,
+        coils=float(entry["coils"]),
+        wire=wires[entry["wire"]],
+        end_factor=float(entry.get("end_factor", 0.5)),
+        name=str(entry["name"]),
+    )
+
+
+def _known(field: str, entry: dict[str, Any], known: set[str], required: set[str]) -> None:
+    for key in sorted(set(entry) - known):
+        raise InputError(f"{field}.{key}", "unknown key", f"one of: {', '.join(sorted(known))}")
+    for key in sorted(required - set(entry)):
+        raise InputError(f"{field}.{key}", "missing", "given")

@@ -1,0 +1,143 @@
+"""The helical spring against hand calculation, and the search of a catalogue."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.errors import InputError
+from pipeline.follower.spring import HelicalSpring, Wire, surge_force, surge_harmonics
+from pipeline.follower.spring_catalogue import SpringDemand, lightest, read_catalogue
+
+WIRE = Wire(80e9, 7850.0, 2000e6, 0.1)
+SPRING = HelicalSpring(5e-3, 30e-3, 9.0, 0.11, WIRE)
+
+
+def test_rate_mass_and_lengths():
+    assert SPRING.rate == pytest.approx(80e9 * 5e-3**4 / (8 * 30e-3**3 * 9), rel=1e-14)
+    assert SPRING.active_mass == pytest.approx(
+        7850 * np.pi / 4 * 25e-6 * np.pi * 30e-3 * 9, rel=1e-14
+    )
+    assert SPRING.mass / SPRING.active_mass == pytest.approx(11 / 9)
+    assert SPRING.solid_length == pytest.approx(55e-3)
+
+
+def test_wahl_factor_and_stress():
+    """C = 6: 23/20 + 0.1025 = 1.2525; 1000 N gives 1.2525 * 8 * 30 / (pi 0.125) MPa."""
+    assert SPRING.wahl_factor == pytest.approx(1.2525, rel=1e-12)
+    assert SPRING.stress(1000.0) == pytest.approx(
+        1.2525 * 8 * 1000 * 0.03 / (np.pi * 1.25e-7), rel=1e-12
+    )
+    strength = 0.56 * 2000e6 * 5**-0.1
+    assert SPRING.static_use(1000.0) == pytest.approx(float(SPRING.stress(1000.0)) / strength)
+
+
+def test_fatigue_meets_zimmerlis_point():
+    """At Zimmerli's own mean and amplitude the safety is 1; below it rises as 1/force."""
+    for peened, (amplitude, mean) in {False: (241e6, 379e6), True: (398e6, 534e6)}.items():
+        spring = replace(SPRING, wire=replace(WIRE, peened=peened))
+        per_newton = float(spring.stress(1.0))
+        low, high = (mean - amplitude) / per_newton, (mean + amplitude) / per_newton
+        assert spring.fatigue_safety(low, high) == pytest.approx(1.0, rel=1e-12)
+        assert spring.fatigue_safety(low / 2, high / 2) == pytest.approx(2.0, rel=1e-12)
+    assert SPRING.fatigue_safety(0.0, 0.0) == np.inf
+    steady = 0.67 * WIRE.tensile_strength(5e-3) / float(SPRING.stress(500.0))
+    assert SPRING.fatigue_safety(500.0, 500.0) == pytest.approx(steady)
+
+
+def test_goes_solid_without_an_exception():
+    room = SPRING.free_length - SPRING.solid_length
+    preload = SPRING.rate * 0.01
+    assert SPRING.solid_clearance(preload, room - 0.01) == pytest.approx(0.0, abs=1e-12)
+    assert SPRING.solid_clearance(preload, 2 * room) < 0.0
+    assert "goes solid" in SpringDemand(SPRING.rate, preload, 2 * room).shortfalls(SPRING)
+
+
+def test_buckling_and_surge():
+    """Flat ends: L0 < 5.26 D; sqrt(k/m)/2."""
+    assert replace(SPRING, free_length=5.26 * 0.03).buckling_use == pytest.approx(1.0)
+    assert SPRING.surge_frequency == pytest.approx(0.5 * np.sqrt(SPRING.rate / SPRING.active_mass))
+
+
+def test_surge_resonates_where_a_harmonic_meets_a_mode():
+    """The third harmonic drives the first mode: at resonance 1/(2 zeta) of the slow amplitude."""
+    theta = 2 * np.pi * np.arange(128) / 128
+    lift = 1e-3 * np.cos(3 * theta)
+    frequency, damping = 300.0, 0.01
+    at = 2 * np.pi * frequency / 3
+    peak = np.ptp(surge_force(lift, at, 24e3, frequency, damping, modes=1)) / 2
+    # k j pi q_j = k pi (2/pi) s / (2 zeta)
+    assert peak == pytest.approx(24e3 * 2 * 1e-3 / (2 * damping), rel=1e-9)
+    for off in (0.97, 1.03):
+        assert np.ptp(surge_force(lift, off * at, 24e3, frequency, damping, modes=1)) < peak
+    highest, ratio, margin = surge_harmonics(lift, at, frequency)
+    assert (highest, ratio, margin) == (3, pytest.approx(3.0), pytest.approx(1.0))
+
+
+def test_surge_vanishes_slowly():
+    theta = 2 * np.pi * np.arange(64) / 64
+    lift = 1e-3 * np.cos(theta)
+    slow, slower = (np.abs(surge_force(lift, w, 24e3, 300.0)).max() for w in (10.0, 5.0))
+    assert slow / slower == pytest.approx(4.0, rel=1e-3)
+    assert surge_harmonics(np.ones(16), 1.0, 300.0)[2] == np.inf
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"wire_diameter": 0.0}, "wire_diameter"),
+        ({"mean_diameter": 0.01}, "mean_diameter"),
+        ({"coils": 1.0}, "coils"),
+        ({"coils": float("nan")}, "coils"),
+        ({"free_length": 0.05}, "free_length"),
+        ({"end_factor": 0.0}, "end_factor"),
+    ],
+)
+def test_refusals(change, field):
+    with pytest.raises(InputError, match=f"spring.{field}"):
+        replace(SPRING, **change)
+
+
+def test_refuses_forces_out_of_order():
+    with pytest.raises(InputError, match="force"):
+        SPRING.fatigue_safety(2.0, 1.0)
+    with pytest.raises(InputError, match="density"):
+        replace(WIRE, density=-1.0)
+
+
+def test_lightest_of_the_shipped_catalogue():
+    """The published spring: 24.2 kN/m, 242 N; 25 mm of travel. The winner meets every demand."""
+    catalogue = read_catalogue()
+    demand = SpringDemand(24.2e3, 242.0, 25e-3, rate_tolerance=0.06)
+    best, reasons = lightest(catalogue, demand)
+    assert best is not None
+    assert not demand.shortfalls(best)
+    fit = [spring for spring in catalogue if spring.name not in reasons]
+    assert len(fit) >= 2
+    assert best.mass == min(spring.mass for spring in fit)
+    assert any("fatigue" in reason for reason in reasons.values())
+    none, why = lightest(catalogue, replace(demand, travel=0.5))
+    assert none is None
+    assert len(why) == len(catalogue)
+
+
+@pytest.mark.parametrize(
+    ("text", "match"),
+    [
+        ("nonsense", "TOML"),
+        ("[wires.a]\nexponent = 0.1", "missing"),
+        ("[[spring]]\nname = 'a'\ncolour = 'red'", "unknown key"),
+        (
+            "[[spring]]\nname='a'\nwire='b'\nwire_diameter='1 mm'\nmean_diameter='5 mm'\n"
+            "coils=3\nfree_length='30 mm'",
+            "one of",
+        ),
+    ],
+)
+def test_refuses_a_bad_catalogue(tmp_path, text, match):
+    path = tmp_path / "springs.toml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=match):
+        read_catalogue(path)
+    with pytest.raises(InputError, match="catalogue"):
+        read_catalogue(tmp_path / "absent.toml")
