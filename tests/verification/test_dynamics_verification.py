@@ -1,0 +1,174 @@
+"""The elastic follower: limits, resonance, energy, jump and landing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.arrays import uniform_turn
+from geometry.errors import InputError
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from pipeline.follower.dynamics import (
+    ElasticFollower,
+    bounce,
+    collocation_response,
+    elastic_jump_speed,
+    harmonic_response,
+    quasi_static,
+)
+from pipeline.follower.forces import FollowerSystem, jump_speed
+
+THETA = uniform_turn(360)
+HIGH = 12e-3
+LIFT = Lift(THETA, 0.5 * HIGH * (1 - np.cos(THETA)) + 0.05 * HIGH * (1 - np.cos(3 * THETA)))
+S = LIFT.values
+PLAIN = ElasticFollower(0.175, 2e6, 24.2e3, 242.0)
+DAMPED = replace(PLAIN, damping=40.0, guide_damping=5.0)
+
+
+def test_stiff_stem_is_the_rigid_follower():
+    """x misses s by F/K and the force the rigid one by as much again: both fall with 1/K."""
+    rigid = 242.0 + 24.2e3 * S + 0.175 * 100.0**2 * LIFT(THETA, 2)
+    misses = []
+    for K in (1e8, 1e9, 1e10):
+        found = harmonic_response(S, 100.0, replace(PLAIN, stiffness=K))
+        misses.append(np.abs(found.contact_force - rigid).max() / rigid.max())
+        np.testing.assert_allclose(found.position, S, atol=2 * rigid.max() / K)
+    assert misses[2] < 1e-5
+    assert misses[1] / misses[2] == pytest.approx(10.0, rel=0.05)
+
+
+def test_slow_cam_is_quasi_static():
+    """At 0.1 rad/s inertia is 1e-6 of the stem's way and less."""
+    found = harmonic_response(S, 0.1, PLAIN)
+    np.testing.assert_allclose(found.position, quasi_static(S, PLAIN), rtol=0, atol=1e-6 * HIGH)
+    np.testing.assert_allclose(
+        quasi_static(S, PLAIN), (2e6 * S - 242.0) / (2e6 + 24.2e3), rtol=1e-14
+    )
+
+
+def test_one_mode_resonates_at_its_speed():
+    """The third harmonic alone, 1 % damping: the peak lies at sqrt((K + k)/m) / 3."""
+    lift = 1e-4 * np.cos(3 * THETA)
+    own = PLAIN.natural_frequency / 3.0
+    light = ElasticFollower.with_damping_ratio(0.175, 2e6, 24.2e3, 242.0, 0.01)
+    speeds = own * np.linspace(0.95, 1.05, 401)
+    size = [np.ptp(harmonic_response(lift, w, light).position) for w in speeds]
+    assert speeds[np.argmax(size)] == pytest.approx(own, rel=5e-4)
+    assert max(size) / 2e-4 == pytest.approx(1 / 0.02, rel=0.02)
+    with pytest.raises(InputError, match="resonance"):
+        harmonic_response(lift, own, PLAIN)
+
+
+def test_energy_balance_with_damping():
+    """What the cam gives over a turn is what the dampers take: 1e-9, sums being spectral."""
+    found = harmonic_response(S, 150.0, DAMPED)
+    foot = 150.0 * LIFT(THETA, 1)
+    given = np.mean(found.contact_force * foot)
+    taken = np.mean(40.0 * (foot - found.velocity) ** 2 + 5.0 * found.velocity**2)
+    assert taken > 0.0
+    assert given == pytest.approx(taken, rel=1e-9)
+
+
+@pytest.mark.parametrize("count", [120, 121])
+def test_collocation_is_harmonic_balance_at_constant_speed(count):
+    s = LIFT(uniform_turn(count))
+    one = harmonic_response(s, 150.0, DAMPED)
+    two = collocation_response(s, np.full(count, 150.0), DAMPED)
+    np.testing.assert_allclose(two.position, one.position, atol=1e-9 * HIGH)
+    np.testing.assert_allclose(two.contact_force, one.contact_force, rtol=1e-6)
+
+
+def test_varying_speed_agrees_with_integration():
+    """Three per cent of ripple, against a Runge-Kutta run that has forgotten its start."""
+    from scipy.integrate import solve_ivp
+
+    count = 181
+    theta = uniform_turn(count)
+    f = replace(PLAIN, damping=400.0)
+
+    def speed(t):
+        return 150.0 * (1 + 0.03 * np.cos(2 * t))
+
+    found = collocation_response(LIFT(theta), speed(theta), f)
+
+    def rates(t, y):
+        angle, x, v = y
+        s, slope = LIFT.derivatives(angle, 1)
+        push = f.stiffness * (s - x) + f.damping * (slope * speed(angle) - v)
+        return [speed(angle), v, (push - f.spring_rate * x - f.preload) / f.mass]
+
+    def turned(_, y):
+        return y[0] - 4 * np.pi
+
+    turned.terminal = True
+    start = [0.0, found.position[0], found.velocity[0]]
+    run = solve_ivp(rates, (0, 1), start, "DOP853", events=turned, rtol=1e-9, atol=1e-13)
+    assert run.y[1, -1] == pytest.approx(found.position[0], abs=1e-6 * HIGH)
+    assert run.y[2, -1] == pytest.approx(found.velocity[0], abs=1e-5)
+
+
+def test_no_jump_where_the_contact_holds():
+    """Without loss the integration stays on the harmonic balance."""
+    steady = harmonic_response(S, 150.0, DAMPED)
+    assert not steady.lost
+    start = (steady.position[0], steady.velocity[0])
+    run = bounce(LIFT, 150.0, DAMPED, 1.0, start)
+    assert not run.flights
+    assert run.position[-1] == pytest.approx(start[0], abs=1e-8 * HIGH)
+    assert run.energy_error < 1e-8
+
+
+def test_energy_is_kept_through_jump_and_landing():
+    """Free of losses, to 1e-6, over flights and impacts."""
+    run = bounce(LIFT, 420.0, PLAIN, 1.0)
+    assert run.flights
+    assert run.energy_error < 1e-6
+    assert run.contact_force.min() > -1e-3
+    first = run.flights[0]
+    assert first.landing > first.jump
+    assert first.height > 0.0
+    assert first.landing_speed > 0.0
+
+
+def test_flight_is_that_of_a_mass_on_the_spring():
+    """Between jump and landing m x'' + k x + P = 0 has a closed form."""
+    run = bounce(LIFT, 420.0, PLAIN, 1.0)
+    first = run.flights[0]
+    t0, t1 = first.jump / 420.0, first.landing / 420.0
+    part = (run.time >= t0 - 1e-12) & (run.time <= t1 + 1e-12)
+    inside = np.flatnonzero(part)[1:-1]
+    t = run.time[inside] - run.time[inside[0]]
+    own = np.sqrt(24.2e3 / 0.175)
+    rest = -242.0 / 24.2e3
+    x0, v0 = run.position[inside[0]], run.velocity[inside[0]]
+    exact = rest + (x0 - rest) * np.cos(own * t) + v0 / own * np.sin(own * t)
+    np.testing.assert_allclose(run.position[inside], exact, atol=1e-9)
+
+
+def test_jump_speed_tends_to_the_rigid_one():
+    system = FollowerSystem(0.175, 24.2e3, 242.0, 0.08, 0.03, 0.0, 0.0)
+    rigid, _ = jump_speed(PitchCurve(LIFT, 0.05), system, THETA)
+    stiff = replace(PLAIN, stiffness=1e11)
+    assert elastic_jump_speed(S, stiff, 1.5 * rigid) == pytest.approx(rigid, rel=2e-3)
+    soft = elastic_jump_speed(S, replace(PLAIN, stiffness=5e5), 1.5 * rigid)
+    assert soft < rigid
+    assert elastic_jump_speed(S, stiff, 0.5 * rigid) == np.inf
+
+
+@pytest.mark.parametrize("name", ["mass", "stiffness", "damping", "preload"])
+def test_refusals(name):
+    with pytest.raises(InputError, match=name):
+        replace(PLAIN, **{name: -1.0})
+    with pytest.raises(InputError, match=name):
+        replace(PLAIN, **{name: float("nan")})
+
+
+def test_refuses_speeds():
+    with pytest.raises(InputError, match="cam_speed"):
+        bounce(LIFT, 0.0, PLAIN)
+    with pytest.raises(InputError, match="cam_speed"):
+        collocation_response(S, np.zeros(360), PLAIN)
+    with pytest.raises(InputError, match="shape"):
+        collocation_response(S, np.ones(3), PLAIN)
