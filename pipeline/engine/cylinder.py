@@ -226,6 +226,18 @@ class CylinderEngine:
         """Derivative of the gas volume by the crank angle, m3/rad."""
         return np.asarray(self.piston_area * self.linkage.travel_rate(theta))
 
+    def inertia_torque(self, theta: ArrayLike, crank_speed: float) -> Array:
+        """Torque of one reciprocating mass on the crank at constant speed, exact, N m."""
+        acceleration = crank_speed**2 * self.linkage.travel_acceleration(theta)
+        force = -self.reciprocating_mass * acceleration
+        return np.asarray(force * self.linkage.travel_rate(theta))
+
+    def reciprocating_inertia(self, theta: ArrayLike) -> Array:
+        """m x'^2 of all reciprocating masses, what they add to the crank's inertia, kg m2."""
+        at = np.asarray(theta, dtype=float)
+        rates = [self.linkage.travel_rate(at - offset) for offset in self.firing_offsets]
+        return np.asarray(self.reciprocating_mass * sum(rate**2 for rate in rates))
+
 
 def _guard_lift_table(field: str, table: LiftTable) -> None:
     """Refuse a lift table that does not open from the seat and close upon it again."""

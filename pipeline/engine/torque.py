@@ -43,7 +43,7 @@ class Torque:
         theta = finite("torque.theta_crank", self.theta_crank)
         if theta.ndim != 1 or theta.size < 12:
             raise InputError("torque.theta_crank", f"{theta.shape} angles", "(12 or more,)")
-        if not np.allclose(theta, _uniform_cycle(theta.size), rtol=0.0, atol=1e-9):
+        if not np.allclose(theta, uniform_cycle(theta.size), rtol=0.0, atol=1e-9):
             raise InputError("torque.theta_crank", "angles", "uniform over [0, 4 pi) rad")
         if not self.components:
             raise InputError("torque.components", "nothing", "one component or more")
@@ -91,12 +91,13 @@ class Torque:
         """The same torque at `n` angles, by a periodic cubic spline through each component."""
         if n == self.theta_crank.size:
             return self
-        theta = _uniform_cycle(n)
+        theta = uniform_cycle(n)
         parts = {name: _periodic(part, theta) for name, part in self.components.items()}
         return Torque(theta, parts)
 
 
-def _uniform_cycle(count: int) -> Array:
+def uniform_cycle(count: int) -> Array:
+    """`count` equal crank angles of one cycle, from 0, the end left out (rad)."""
     return np.arange(float(count)) * (CYCLE_ANGLE / count)
 
 
@@ -118,14 +119,19 @@ def torque_from_cycle(cycle: CylinderCycle) -> Torque:
     }
     if cycle.engine.dipper_area == 0.0:
         del parts["dipper"]
-    offsets = cycle.engine.firing_offsets
-    if offsets != (0.0,):
-        shifted = [cycle.theta - offset for offset in offsets]
-        parts = {
-            name: np.asarray(sum(_periodic(part, theta) for theta in shifted))
-            for name, part in parts.items()
-        }
-    return Torque(cycle.theta, parts)
+    return Torque(cycle.theta, all_cylinders(parts, cycle.theta, cycle.engine.firing_offsets))
+
+
+def all_cylinders(
+    parts: Mapping[str, Array], theta: Array, offsets: tuple[float, ...]
+) -> dict[str, Array]:
+    """Torques (n,) of one cylinder summed over cylinders that lag by their firing offsets."""
+    if offsets == (0.0,):
+        return dict(parts)
+    shifted = [theta - offset for offset in offsets]
+    return {
+        name: np.asarray(sum(_periodic(part, at) for at in shifted)) for name, part in parts.items()
+    }
 
 
 def torque_from_cylinder(engine: CylinderEngine, crank_speed: float) -> Torque:
@@ -153,4 +159,4 @@ def torque_from_csv(path: str | Path, column: str | None = None) -> Torque:
         If the file is not one clean cycle; see `read_trace`.
     """
     trace = read_trace(path, "torque", column=column)
-    return Torque(_uniform_cycle(SAMPLES), {"measured": trace.uniform(SAMPLES)})
+    return Torque(uniform_cycle(SAMPLES), {"measured": trace.uniform(SAMPLES)})

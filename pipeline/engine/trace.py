@@ -18,6 +18,7 @@ from pipeline.engine.trace_file import (
     angle_column,
     number_table,
     split_cells,
+    table_delimiter,
     text_lines,
     value_column,
 )
@@ -140,32 +141,57 @@ def read_trace(
         raise InputError("quantity", quantity, "one of " + ", ".join(QUANTITY_UNITS))
     lines = text_lines(path)
     head_line, head = lines[0]
-    delimiter = next((mark for mark in ";\t," if mark in head), None)
-    if delimiter is None:
-        limit = "a header of columns parted by semicolon, tab or comma"
-        raise InputError(f"{path.name} line {head_line}", head, limit)
+    delimiter = table_delimiter(path.name, head_line, head)
     header = [cell.strip() for cell in split_cells(head, delimiter)]
     angle_at, angle_factor = angle_column(path.name, header)
     value_at, value_factor = value_column(path.name, header, quantity, column)
     table = number_table(path.name, lines[1:], header, delimiter, (angle_at, value_at))
     numbers = [number for number, _ in lines[1:]]
-    angle, values = table[:, 0] * angle_factor, table[:, 1] * value_factor
-    if angle.size < ROWS_MIN:
-        raise InputError(path.name, f"{angle.size} rows", f"{ROWS_MIN} rows or more")
-    _guard_order(path.name, numbers, table[:, 0], header[angle_at])
-    _guard_span(path.name, angle, angle_factor, period)
+    angle = table[:, 0] * angle_factor
+    guard_order(path.name, numbers, table[:, 0], header[angle_at])
+    guard_span(path.name, angle, angle_factor, period)
+    values = table[:, 1] * value_factor
+    return one_period(path.name, quantity, header[value_at], numbers, angle, values, period)
+
+
+def one_period(
+    name: str,
+    quantity: str,
+    column: str,
+    lines: Sequence[int],
+    angle: Array,
+    values: Array,
+    period: float = CYCLE_ANGLE,
+    gap_max: float = GAP_MAX,
+) -> Trace:
+    """The trace of one column whose order and span are known to be right.
+
+    Parameters
+    ----------
+    lines : sequence (n,)   line of each row in the file
+    angle : array (n,)      rad; a row at the end of the period is averaged with the first
+    values : array (n,)     SI
+    gap_max : float         rad, the widest stretch without a row
+
+    Raises
+    ------
+    InputError
+        If a gap is wider, or above 5 times the usual spacing.
+    """
     difference = 0.0
     if period - (angle[-1] - angle[0]) <= END_TOLERANCE * np.median(np.diff(angle)):
         difference = float(values[-1] - values[0])
-        values[0] = 0.5 * (values[0] + values[-1])
-        angle, values = angle[:-1], values[:-1]
-    trace = Trace(path.name, quantity, header[value_at], angle, values, period, difference)
-    _guard_gaps(trace, numbers)
+        values = np.append(0.5 * (values[0] + values[-1]), values[1:-1])
+        angle = angle[:-1]
+    trace = Trace(name, quantity, column, angle, values, period, difference)
+    _guard_gaps(trace, lines, gap_max)
     return trace
 
 
-def _guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> None:
-    """Refuse angles that repeat or fall, as the file wrote them."""
+def guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> None:
+    """Refuse too few rows, and angles that repeat or fall, as the file wrote them."""
+    if angle.size < ROWS_MIN:
+        raise InputError(name, f"{angle.size} rows", f"{ROWS_MIN} rows or more")
     steps = np.diff(angle)
     if (steps > 0.0).all():
         return
@@ -175,12 +201,14 @@ def _guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> 
     raise InputError(f"{name} line {lines[at]}, {header}", value, "above the row before")
 
 
-def _guard_span(name: str, angle: Array, factor: float, period: float) -> None:
+def guard_span(
+    name: str, angle: Array, factor: float, period: float, gap_max: float = GAP_MAX
+) -> None:
     """Refuse a trace that is not one period long, with a hint where the unit seems wrong."""
     spacing = float(np.median(np.diff(angle)))
     span = float(angle[-1] - angle[0])
     excess = span - period
-    if excess <= END_TOLERANCE * spacing and -excess <= _gap_limit(spacing):
+    if excess <= END_TOLERANCE * spacing and -excess <= _gap_limit(spacing, gap_max):
         return
     written = span / factor
     in_degrees = factor != 1.0 and abs(written / period - 1.0) < 0.1
@@ -196,14 +224,16 @@ def _guard_span(name: str, angle: Array, factor: float, period: float) -> None:
     raise InputError(f"{name} span", value, f"one cycle of {np.degrees(period):g} deg")
 
 
-def _gap_limit(spacing: float) -> float:
-    """The widest gap let through beside a usual spacing, rad."""
-    return min(float(GAP_MAX), GAP_OVER_MEDIAN_MAX * spacing) * (1.0 + 1e-9)
+def _gap_limit(spacing: float, gap_max: float) -> float:
+    """The widest gap let through beside a usual spacing, rad; one asked for is taken as it is."""
+    if gap_max > GAP_MAX:
+        return float(gap_max) * (1.0 + 1e-9)
+    return min(float(gap_max), GAP_OVER_MEDIAN_MAX * spacing) * (1.0 + 1e-9)
 
 
-def _guard_gaps(trace: Trace, lines: Sequence[int]) -> None:
+def _guard_gaps(trace: Trace, lines: Sequence[int], gap_max: float) -> None:
     """Refuse a trace with a stretch too long to be guessed."""
-    limit = _gap_limit(float(np.median(trace.spacing)))
+    limit = _gap_limit(float(np.median(trace.spacing)), gap_max)
     widest = int(np.argmax(trace.spacing))
     if trace.spacing[widest] > limit:
         gap, start = np.degrees(trace.spacing[widest]), np.degrees(trace.angle[widest])

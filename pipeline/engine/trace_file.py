@@ -67,6 +67,8 @@ QUANTITY_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "speed": {
             "rad/s": 1.0,
             "rads1": 1.0,
+            "rads": 1.0,
+            "radpers": 1.0,
             "rpm": pi / 30.0,
             "r/min": pi / 30.0,
             "1/min": pi / 30.0,
@@ -74,6 +76,8 @@ QUANTITY_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
             "deg/s": pi / 180.0,
             "°/s": pi / 180.0,
         },
+        "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9},
+        "voltage": {"V": 1.0, "mV": 1e-3},
     }
 )
 
@@ -154,6 +158,21 @@ def _unit(header: str, units: Mapping[str, float]) -> float | None:
     return None
 
 
+def columns_of(header: Sequence[str], quantity: str, prefix: str = "") -> dict[int, float]:
+    """All columns of a quantity whose header begins so, and their factors to SI."""
+    factors = _with_unit(header, QUANTITY_UNITS[quantity])
+    return {at: f for at, f in factors.items() if header[at].lower().startswith(prefix.lower())}
+
+
+def table_delimiter(name: str, number: int, line: str, *, blanks: bool = False) -> str:
+    """What parts the columns of a file, by its first line."""
+    found = next((mark for mark in ";\t," if mark in line), " " if blanks else None)
+    if found is None:
+        limit = "a header of columns parted by semicolon, tab or comma"
+        raise InputError(f"{name} line {number}", line, limit)
+    return found
+
+
 def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, float]:
     """Columns whose header ends with one of the units, and the factor to SI."""
     factors = {at: _unit(text, units) for at, text in enumerate(header)}
@@ -196,9 +215,9 @@ def number_table(
     lines: Sequence[tuple[int, str]],
     header: Sequence[str],
     delimiter: str,
-    columns: tuple[int, int],
+    columns: Sequence[int],
 ) -> Array:
-    """The cells of two columns as numbers, (rows, 2)."""
+    """The cells of some columns as numbers, (rows, columns)."""
     table = np.empty((len(lines), len(columns)))
     for row, (number, line) in enumerate(lines):
         cells = [cell.strip() for cell in split_cells(line, delimiter)]

@@ -90,10 +90,7 @@ class CylinderCycle:
     @property
     def inertia_torque(self) -> Array:
         """Torque of the reciprocating mass on the crank at constant speed, exact, N m."""
-        linkage = self.engine.linkage
-        acceleration = self.crank_speed**2 * linkage.travel_acceleration(self.theta)
-        force = -self.engine.reciprocating_mass * acceleration
-        return np.asarray(force * linkage.travel_rate(self.theta))
+        return self.engine.inertia_torque(self.theta, self.crank_speed)
 
     @property
     def valve_train_torque(self) -> Array:

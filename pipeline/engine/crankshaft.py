@@ -1,0 +1,328 @@
+"""Crank speed over a cycle: what the torques leave of it, by work and kinetic energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from geometry.arrays import Array, finite, freeze, positive, readonly
+from geometry.errors import CamError, InputError
+
+CYCLE_ANGLE = 4.0 * pi
+SETTLED = 1e-13  # of the mean speed, between two passes
+PASSES_MAX = 200
+
+# Crank torque (n,) of a mechanism without the inertia of its moving parts, N m, from crank
+# speed (n,), rad/s, and crank acceleration (n,), rad/s2.
+MechanismTorque = Callable[[Array, Array], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Inertia:
+    """What turns with the crank: a constant part and what the linkages add at each angle.
+
+    Parameters
+    ----------
+    constant : float       kg m2, >= 0, of everything that turns at a fixed ratio
+    varying : array (n,)   kg m2, >= 0, at equal crank angles over the cycle from 0: of parts
+                           of mass m and transmission x'(theta) = dx/dtheta it is m x'^2
+
+    Raises
+    ------
+    InputError
+        If a part is negative, or nothing is left that could keep the crank turning.
+    """
+
+    constant: float
+    varying: Array
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.constant < np.inf:
+            raise InputError("crankshaft.inertia", self.constant, ">= 0 kg m^2")
+        varying = finite("crankshaft.varying_inertia", self.varying)
+        if varying.ndim != 1 or varying.size < 12 or not varying.min() >= 0.0:
+            raise InputError("crankshaft.varying_inertia", varying.shape, "12 values or more, >= 0")
+        freeze(self, varying=varying)
+        positive("crankshaft.inertia", self.total, "kg m^2")
+
+    @classmethod
+    def constant_only(cls, value: float, count: int = 720) -> Inertia:
+        """An inertia that is the same at every one of `count` angles."""
+        return cls(value, np.zeros(count))
+
+    @property
+    def total(self) -> Array:
+        return readonly(self.constant + self.varying)
+
+    @property
+    def mean(self) -> float:
+        return float(self.total.mean())
+
+    def plus(self, constant: float, varying: ArrayLike = 0.0) -> Inertia:
+        """The same with more turning along."""
+        return Inertia(self.constant + constant, self.varying + np.asarray(varying, dtype=float))
+
+
+@dataclass(frozen=True)
+class Load:
+    """What the crank drives: T = T0 (omega / mean omega)^exponent, T0 closing the balance.
+
+    Parameters
+    ----------
+    exponent : float    0 a constant torque, 1 viscous drag, 2 a fan
+    """
+
+    exponent: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.exponent <= 4.0:
+            raise InputError("crankshaft.load_exponent", self.exponent, "from 0 to 4")
+
+
+@dataclass(frozen=True, eq=False)
+class CrankMotion:
+    """Periodic motion of the crank.
+
+    Parameters
+    ----------
+    theta : array (n,)          crank angle, rad, uniform over [0, 4 pi)
+    speed : array (n,)          rad/s
+    acceleration : array (n,)   rad/s2
+    load_torque : array (n,)    N m, taken from the crank
+    mechanism_torque : array (n,)    N m, on the crank, inertia of its parts left out
+    net_torque : array (n,)     N m, what changes the kinetic energy
+    closure : float             work of the net torque over the cycle, by the loads at the speed
+                                found, over the mean kinetic energy
+    passes : int                until loads and speed agreed
+    """
+
+    theta: Array
+    speed: Array
+    acceleration: Array
+    load_torque: Array
+    mechanism_torque: Array
+    net_torque: Array
+    closure: float
+    passes: int
+
+    def __post_init__(self) -> None:
+        names = ("theta", "speed", "acceleration", "load_torque", "mechanism_torque", "net_torque")
+        freeze(self, **{name: finite(f"motion.{name}", getattr(self, name)) for name in names})
+
+    @property
+    def statistics(self) -> SpeedStatistics:
+        return speed_statistics(self.speed)
+
+
+@dataclass(frozen=True)
+class SpeedStatistics:
+    """Ripple of a crank speed given at equal crank angles; rad/s, angles in rad."""
+
+    mean: float  # over the time of the cycle: what a tachometer shows
+    std: float  # over the crank angle, about the mean over the angle
+    peak_to_peak: float
+    minimum: float
+    minimum_angle: float
+    maximum: float
+    maximum_angle: float
+
+    @property
+    def fluctuation(self) -> float:
+        """Coefficient of fluctuation, (max - min) / mean."""
+        return self.peak_to_peak / self.mean
+
+
+def speed_statistics(speed: ArrayLike) -> SpeedStatistics:
+    """Ripple of a speed (rad/s) at equal crank angles over the cycle."""
+    omega = positive("speed", speed, "rad/s")
+    step = CYCLE_ANGLE / omega.size
+    return SpeedStatistics(
+        mean=_time_mean(omega),
+        std=float(omega.std()),
+        peak_to_peak=float(np.ptp(omega)),
+        minimum=float(omega.min()),
+        minimum_angle=float(omega.argmin() * step),
+        maximum=float(omega.max()),
+        maximum_angle=float(omega.argmax() * step),
+    )
+
+
+def crank_motion(
+    engine_torque: ArrayLike,
+    inertia: Inertia,
+    mean_speed: float,
+    *,
+    load: Load = Load(),
+    mechanism: MechanismTorque | None = None,
+) -> CrankMotion:
+    r"""The periodic solution of J omega domega/dtheta + omega^2 J'/2 = T_engine + T_mech - T_load.
+
+    In the form of work and kinetic energy, d(J omega^2 / 2)/dtheta = T, the speed at each angle
+    follows from the integral of the torques alone, and the cycle closes when their mean is zero:
+    the level of the load is found so. The integral is that of the trigonometric interpolant.
+    Loads that depend on the motion are found by going round until both agree.
+
+    Parameters
+    ----------
+    engine_torque : array (n,)   N m at equal crank angles over [0, 4 pi); without the inertia of
+                                 parts that `inertia` holds
+    inertia : Inertia            at the same angles
+    mean_speed : float           rad/s over the time of the cycle
+    load : Load
+    mechanism : function, optional
+
+    Raises
+    ------
+    InputError
+        If lengths differ or a value is out of bounds.
+    CamError
+        If the torques would stop the crank within the cycle, or nothing settles.
+
+    References
+    ----------
+    Uicker, Pennock and Shigley, Theory of Machines and Mechanisms, ch. on flywheels.
+    """
+    torque, total = finite("engine_torque", engine_torque), inertia.total
+    if torque.shape != total.shape:
+        raise InputError("engine_torque", torque.shape, f"{total.shape}, as the inertia")
+    if not 0.0 < mean_speed < np.inf:
+        raise InputError("mean_speed", mean_speed, "> 0 rad/s")
+    slope = _derivative(total)
+    speed, acceleration = np.full_like(torque, mean_speed), np.zeros_like(torque)
+    for passes in range(1, PASSES_MAX + 1):  # noqa: B007 - told in the result
+        mechanical = np.zeros_like(torque) if mechanism is None else mechanism(speed, acceleration)
+        driven = torque + mechanical
+        loaded = _closing_load(driven, speed, load)
+        net = driven - loaded
+        found = _speed(_integral(net), total, mean_speed)
+        moved = float(np.abs(found - speed).max()) / mean_speed
+        speed, acceleration = found, (net - 0.5 * found**2 * slope) / total
+        if moved < SETTLED:
+            break
+    else:
+        text = f"the crank speed did not settle within {PASSES_MAX} passes"
+        raise CamError(f"{text}: it still moves by {moved:.1e} of its mean")
+    again = mechanical if mechanism is None else mechanism(speed, acceleration)
+    level = float(loaded.mean())
+    loaded_again = level * _shape(speed, load)
+    work = CYCLE_ANGLE * float((torque + again - loaded_again).mean())
+    return CrankMotion(
+        theta=readonly(np.arange(torque.size) * (CYCLE_ANGLE / torque.size)),
+        speed=speed,
+        acceleration=acceleration,
+        load_torque=loaded,
+        mechanism_torque=mechanical,
+        net_torque=net,
+        closure=abs(work) / float((0.5 * total * speed**2).mean()),
+        passes=passes,
+    )
+
+
+def equivalent_inertia(engine_torque: ArrayLike, mean_speed: float, speed_std: float) -> float:
+    """Constant inertia with which a torque alone gives a speed ripple, kg m2.
+
+    Parameters
+    ----------
+    engine_torque : array (n,)   N m at equal crank angles over the cycle
+    mean_speed : float           rad/s
+    speed_std : float            rad/s, of the ripple wanted, > 0
+
+    Raises
+    ------
+    InputError
+        If the ripple is not positive, or the torque is constant.
+    """
+    torque = finite("engine_torque", engine_torque)
+    if not 0.0 < speed_std < mean_speed:
+        raise InputError("speed_std", speed_std, f"> 0 and < {mean_speed:g} rad/s")
+    energy = _integral(torque - torque.mean())
+    guess = float(energy.std()) / (mean_speed * speed_std)
+    if not guess > 0.0:
+        raise InputError("engine_torque", "constant", "a torque that varies over the cycle")
+
+    def excess(inertia: float) -> float:
+        total = np.full_like(torque, inertia)
+        return float(_speed(energy, total, mean_speed).std()) - speed_std
+
+    low = guess
+    while excess(low) < 0.0:
+        low *= 0.9
+    return float(brentq(excess, low, 2.0 * guess, xtol=1e-14 * guess, rtol=1e-12))
+
+
+def energy_swing(torque: ArrayLike) -> Array:
+    """Integral of a torque about its mean over the crank angle, J, of zero mean.
+
+    Parameters
+    ----------
+    torque : array (n,)   N m at equal crank angles over the cycle
+    """
+    values = finite("torque", torque)
+    return readonly(_integral(values - values.mean()))
+
+
+def torque_of_motion(speed: ArrayLike, inertia: float) -> Array:
+    """J omega domega/dtheta of a speed at equal crank angles over the cycle, N m."""
+    return readonly(inertia * _derivative(0.5 * positive("speed", speed, "rad/s") ** 2))
+
+
+def _closing_load(driven: Array, speed: Array, load: Load) -> Array:
+    """Load that takes as much work over the cycle as is given."""
+    shape = _shape(speed, load)
+    return np.asarray(float(driven.mean()) * shape)
+
+
+def _shape(speed: Array, load: Load) -> Array:
+    shape = (speed / speed.mean()) ** load.exponent
+    return np.asarray(shape / shape.mean())
+
+
+def _speed(energy: Array, inertia: Array, mean_speed: float) -> Array:
+    """Speed of the kinetic energy `energy` + constant whose mean over time is given."""
+
+    def speed(floor: float) -> Array:
+        return np.asarray(np.sqrt(2.0 * (energy + floor) / inertia))
+
+    least = -float(energy.min())
+    # Where the speed is no less than 1 % of the mean everywhere; a slower crank is called stalled.
+    low = least + float((0.5 * inertia).max()) * (0.01 * mean_speed) ** 2
+    if _time_mean(speed(low)) > mean_speed:
+        swing = float(np.ptp(energy))
+        text = f"the engine would stall within the cycle: its torque swings {swing:.3g} J"
+        stored = 0.5 * float(inertia.mean()) * mean_speed**2
+        raise CamError(f"{text} of the {stored:.3g} J that turn at {mean_speed:.4g} rad/s")
+    high = low + float(inertia.max()) * mean_speed**2 + float(np.ptp(energy))
+    floor = brentq(
+        lambda level: _time_mean(speed(level)) - mean_speed, low, high, xtol=1e-300, rtol=1e-15
+    )
+    return speed(float(floor))
+
+
+def _time_mean(speed: Array) -> float:
+    return float(1.0 / (1.0 / speed).mean())
+
+
+def _orders(count: int) -> Array:
+    """Order of each harmonic per crank radian."""
+    return np.arange(count // 2 + 1, dtype=float) * (2.0 * pi / CYCLE_ANGLE)
+
+
+def _integral(values: Array) -> Array:
+    """Integral over the cycle of values of zero mean, itself of zero mean."""
+    spectrum, order = np.fft.rfft(values), _orders(values.size)
+    spectrum[0] = 0.0
+    spectrum[1:] /= 1j * order[1:]
+    return np.asarray(np.fft.irfft(spectrum, n=values.size), dtype=float)
+
+
+def _derivative(values: Array) -> Array:
+    """Derivative by the crank angle of values over the cycle."""
+    spectrum = np.fft.rfft(values) * 1j * _orders(values.size)
+    if values.size % 2 == 0:
+        spectrum[-1] = 0.0  # the highest harmonic of an even count has no slope at the samples
+    return np.asarray(np.fft.irfft(spectrum, n=values.size), dtype=float)

@@ -1,0 +1,408 @@
+"""Cylinder pressure as measured: cycles, their scatter, where zero and dead centre lie."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import pi
+from pathlib import Path
+from typing import Literal, get_args
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from geometry.arrays import Array, finite, freeze
+from geometry.errors import InputError
+from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from pipeline.engine.torque import SAMPLES, Torque, all_cylinders, uniform_cycle
+from pipeline.engine.trace import GAP_MAX, Trace, guard_order, guard_span, one_period
+from pipeline.engine.trace_file import (
+    ANGLE_UNITS,
+    QUANTITY_UNITS,
+    angle_column,
+    columns_of,
+    number_table,
+    split_cells,
+    table_delimiter,
+    text_lines,
+)
+
+DeadCentre = Literal["given", "symmetry", "loss_angle"]
+
+PEAK_RANGE = (1.2e5, 4.0e7)  # Pa, of the peak of any engine that compresses
+FIRING_WINDOW = np.radians((300.0, 480.0))  # where the peak of a cycle is found
+BOTTOM_WINDOW = np.radians((170.0, 190.0))  # where the cylinder is taken to be at intake pressure
+COMPRESSION_WINDOW = np.radians((270.0, 320.0))
+POLYTROPIC_EXPONENT = 1.32
+SCALE_MAX = 2.2  # measured over expected rise in compression; a wrong unit is 10 or more
+LOSS_ANGLE = float(np.radians(0.6))  # by which a motored peak leads the dead centre, typical
+
+
+@dataclass(frozen=True, eq=False)
+class PressureTrace:
+    """Cylinder pressure of one cycle or more at equal crank angles.
+
+    Parameters
+    ----------
+    source : str            name of the file
+    cycles : array (m, n)   Pa, absolute once pegged; angle 0 the TDC of intake
+    pegging : array (m,)    Pa, added to each cycle to bring it to intake pressure; 0: not pegged
+    offset : float          rad, by which the angles of the file were shifted
+    """
+
+    source: str
+    cycles: Array
+    pegging: Array
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        cycles = finite(f"{self.source} pressure", self.cycles)
+        if cycles.ndim != 2 or cycles.shape[1] < 12:
+            raise InputError(f"{self.source} pressure", cycles.shape, "(cycles, 12 angles or more)")
+        freeze(self, cycles=cycles, pegging=self.pegging)
+
+    @property
+    def theta(self) -> Array:
+        return uniform_cycle(self.cycles.shape[1])
+
+    @property
+    def mean(self) -> Array:
+        """Mean over the cycles at each angle, Pa."""
+        return np.asarray(self.cycles.mean(axis=0))
+
+    @property
+    def scatter(self) -> Array:
+        """Standard deviation over the cycles at each angle, Pa; zero for one cycle."""
+        if self.cycles.shape[0] < 2:
+            return np.zeros(self.cycles.shape[1])
+        return np.asarray(self.cycles.std(axis=0, ddof=1))
+
+    def pegged(self, intake_pressure: float) -> PressureTrace:
+        """Each cycle moved so that about the bottom dead centre of intake it is at intake pressure.
+
+        References
+        ----------
+        Randolph, SAE 900170 (1990): inlet manifold pressure referencing.
+        """
+        if not 0.0 < intake_pressure < np.inf:
+            raise InputError("engine.intake_pressure", intake_pressure, "> 0 Pa")
+        low, high = BOTTOM_WINDOW
+        near = (self.theta >= low - 1e-9) & (self.theta <= high + 1e-9)
+        shift = intake_pressure - self.cycles[:, near].mean(axis=1)
+        return replace(
+            self, cycles=self.cycles + shift[:, None], pegging=np.asarray(self.pegging) + shift
+        )
+
+    def turned(self, offset: float) -> PressureTrace:
+        """The same with its angles shifted by `offset` (rad)."""
+        if offset == 0.0:
+            return self
+        order = np.arange(self.cycles.shape[1] // 2 + 1) * (2.0 * pi / CYCLE_ANGLE)
+        spectrum = np.fft.rfft(self.cycles, axis=1) * np.exp(-1j * order * offset)
+        turned = np.fft.irfft(spectrum, n=self.cycles.shape[1], axis=1)
+        return replace(self, cycles=turned, offset=self.offset + offset)
+
+    def guarded(self) -> PressureTrace:
+        """The same, refused where it cannot be the pressure of an engine.
+
+        Raises
+        ------
+        InputError
+            If the mean cycle is not above zero, its peak is beyond any engine's, with the unit
+            that would fit, or does not lie about firing TDC.
+        """
+        mean, name = self.mean, f"{self.source} pressure"
+        if not mean.min() > 0.0:
+            at = np.degrees(self.theta[mean.argmin()])
+            hint = "> 0 Pa, absolute; give engine.intake_pressure to peg a relative trace"
+            raise InputError(f"{name} at {at:.4g} deg", f"{mean.min():.4g} Pa", hint)
+        peak = float(mean.max())
+        if not PEAK_RANGE[0] <= peak <= PEAK_RANGE[1]:
+            limit = f"from {PEAK_RANGE[0]:g} to {PEAK_RANGE[1]:g} Pa{_unit_hint(peak)}"
+            raise InputError(f"{name} peak", f"{peak:.4g} Pa", limit)
+        at = float(self.theta[mean.argmax()])
+        if not FIRING_WINDOW[0] <= at <= FIRING_WINDOW[1]:
+            limit = "from 300 to 480 deg; set engine.firing_angle to where the file fires"
+            raise InputError(f"{name} peak angle", f"{np.degrees(at):.4g} deg", limit)
+        return self
+
+    def scale(self, engine: CylinderEngine) -> float:
+        """Rise in compression over that of a polytropic from intake pressure; near 1 when right."""
+        low, high = COMPRESSION_WINDOW
+        ends = np.interp([low, high], self.theta, self.mean)
+        volumes = engine.volume(np.array([pi, low, high]))
+        share = (volumes[0] / volumes[1:]) ** POLYTROPIC_EXPONENT
+        expected = engine.intake_pressure * (share[1] - share[0])
+        return float((ends[1] - ends[0]) / expected)
+
+    def guard_scale(self, engine: CylinderEngine) -> None:
+        """Refuse pressures whose rise in compression does not fit the engine.
+
+        Raises
+        ------
+        InputError
+            With the unit that would fit, where one does.
+        """
+        scale = self.scale(engine)
+        if 1.0 / SCALE_MAX <= scale <= SCALE_MAX:
+            return
+        limit = f"from {1 / SCALE_MAX:.2g} to {SCALE_MAX:g} times that of a polytropic"
+        known = {10.0: "bar, not MPa", 0.1: "MPa, not bar", 1e5: "Pa, not bar", 1e-5: "bar, not Pa"}
+        for factor, words in known.items():
+            if 1.0 / SCALE_MAX <= scale / factor <= SCALE_MAX:
+                limit += f"; the values look like {words}"
+        field = f"{self.source} pressure rise in compression"
+        raise InputError(field, f"{scale:.3g} of the expected", limit)
+
+
+def _unit_hint(peak: float) -> str:
+    """What the values may be where their peak is beyond any engine's."""
+    typical = (4e5, 2e7)
+    for factor, words in ((1e5, "bar"), (1e6, "MPa"), (1e-5, "Pa"), (1e3, "kPa"), (1e-6, "Pa")):
+        if typical[0] <= peak * factor <= typical[1]:
+            return f"; the values look like {words}"
+    return ""
+
+
+@dataclass(frozen=True, eq=False)
+class CycleStatistics:
+    """Cycle-to-cycle figures; arrays (m,) of each cycle."""
+
+    imep: Array  # Pa, net, all four strokes
+    peak: Array  # Pa
+    peak_angle: Array  # rad
+
+    def __post_init__(self) -> None:
+        freeze(self, imep=self.imep, peak=self.peak, peak_angle=self.peak_angle)
+
+    @property
+    def imep_std(self) -> float:
+        return float(self.imep.std(ddof=1)) if self.imep.size > 1 else 0.0
+
+    @property
+    def imep_variation(self) -> float:
+        """Coefficient of variation (COV) of the net IMEP, std / mean.
+
+        References
+        ----------
+        Heywood, Internal Combustion Engine Fundamentals (1988), sec. 9.4.2.
+        """
+        return self.imep_std / abs(float(self.imep.mean()))
+
+
+def cycle_statistics(trace: PressureTrace, engine: CylinderEngine) -> CycleStatistics:
+    """Net IMEP, peak pressure and its angle of each cycle."""
+    step = CYCLE_ANGLE / trace.cycles.shape[1]
+    work = trace.cycles @ engine.volume_rate(trace.theta) * step
+    return CycleStatistics(
+        imep=work / engine.displacement,
+        peak=trace.cycles.max(axis=1),
+        peak_angle=trace.theta[trace.cycles.argmax(axis=1)],
+    )
+
+
+def dead_centre_offset(
+    motored: PressureTrace, method: DeadCentre, loss_angle: float = LOSS_ANGLE
+) -> float:
+    """Shift (rad) that brings the dead centre of a motored trace to 360 deg.
+
+    By `symmetry`, the axis about which both flanks within 60 deg agree best is the dead centre;
+    heat and leakage pull it ahead by some tenths of a degree. By `loss_angle`, the peak of the
+    mean cycle plus a stated loss angle is.
+
+    Parameters
+    ----------
+    motored : PressureTrace    without combustion
+    method : str               "symmetry" or "loss_angle"
+    loss_angle : float         rad
+
+    References
+    ----------
+    Hohenberg, Definition und Eigenschaften des thermodynamischen Verlustwinkels, TU Graz (1976),
+    as cited by Pischinger, Klell and Sams, Thermodynamik der Verbrennungskraftmaschine: verify.
+    """
+    if method not in get_args(DeadCentre) or method == "given":
+        raise InputError("engine.dead_centre", method, "symmetry or loss_angle")
+    mean, theta = motored.mean, motored.theta
+    order = np.arange(mean.size // 2 + 1) * (2.0 * pi / CYCLE_ANGLE)
+    spectrum = np.fft.rfft(mean) / mean.size
+    spectrum[1:] *= 2.0
+    kept = order <= 60.0  # above lies noise; a compression has nothing there
+    spectrum, order = spectrum[kept], order[kept]
+
+    def pressure(angle: Array) -> Array:
+        return np.asarray((np.exp(1j * np.outer(angle, order)) @ spectrum).real)
+
+    start = float(theta[mean.argmax()])
+    reach = np.radians(np.arange(2.0, 60.5, 1.0))
+    step = float(np.radians(8.0))
+
+    def skew(axis: float) -> float:
+        return float(((pressure(axis + reach) - pressure(axis - reach)) ** 2).sum())
+
+    def below(axis: float) -> float:
+        return -float(pressure(np.array([axis]))[0])
+
+    cost = skew if method == "symmetry" else below
+    found = minimize_scalar(
+        cost, bounds=(start - step, start + step), method="bounded", options={"xatol": 1e-7}
+    )
+    axis = float(found.x) + (loss_angle if method == "loss_angle" else 0.0)
+    return 2.0 * pi - axis
+
+
+def pressure_from_csv(
+    path: str | Path,
+    *,
+    column: str = "",
+    units: tuple[str, str] | None = None,
+    firing_angle: float = 2.0 * pi,
+    gap_max: float = GAP_MAX,
+) -> PressureTrace:
+    """Pressure against crank angle: a column a cycle, or cycles one below the other.
+
+    Angles run on from cycle to cycle or start again with each.
+
+    Parameters
+    ----------
+    path : path
+    column : str                what the headers of the pressure columns begin with
+    units : (angle, pressure)   of a file without a header, whose first column is the angle
+    firing_angle : float        rad, of firing TDC in the file's angles
+    gap_max : float             rad, the widest stretch without a row
+
+    Raises
+    ------
+    InputError
+        As `read_trace`; for a last cycle that is short; for what `PressureTrace.guarded` refuses
+        only the caller can tell, once the trace is pegged.
+    """
+    name, header, lines, delimiter = _opened(Path(path), units)
+    angle_at, angle_factor = angle_column(name, header) if units is None else _bare_angle(units)
+    if units is None:
+        wanted = columns_of(header, "pressure", column)
+    else:
+        unit = QUANTITY_UNITS["pressure"].get(units[1])
+        if unit is None:
+            limit = f"one of {', '.join(QUANTITY_UNITS['pressure'])}"
+            raise InputError("engine.pressure_unit", units[1], limit)
+        wanted = dict.fromkeys(range(1, len(header)), unit)
+    if not wanted:
+        limit = f"a column of pressure with its unit ({', '.join(QUANTITY_UNITS['pressure'])})"
+        raise InputError(f"{name} header", ", ".join(header), limit)
+    table = number_table(name, lines, header, delimiter, (angle_at, *wanted))
+    numbers = [number for number, _ in lines]
+    values = table[:, 1:] * np.array(list(wanted.values()))
+    labels = [header[at] for at in wanted]
+    traces = _cycles(name, numbers, table[:, 0], angle_factor, values, labels, gap_max)
+    spacing = float(np.median(traces[0].spacing))
+    count = max(SAMPLES, round(CYCLE_ANGLE / spacing))
+    cycles = np.array([trace.uniform(count) for trace in traces])
+    return PressureTrace(name, cycles, np.zeros(len(cycles))).turned(2.0 * pi - firing_angle)
+
+
+def _opened(
+    path: Path, units: tuple[str, str] | None
+) -> tuple[str, list[str], list[tuple[int, str]], str]:
+    """Name, header, rows and delimiter of a file; without units given it has a header."""
+    lines = text_lines(path)
+    number, head = lines[0]
+    delimiter = table_delimiter(path.name, number, head, blanks=units is not None)
+    if units is not None:
+        lines = [(at, line.rstrip(f"{delimiter} ")) for at, line in lines]
+        head = lines[0][1]
+    header = [cell.strip() for cell in split_cells(head, delimiter)]
+    if units is None:
+        return path.name, header, lines[1:], delimiter
+    return path.name, [f"column {at + 1}" for at in range(len(header))], lines, delimiter
+
+
+def _bare_angle(units: tuple[str, str]) -> tuple[int, float]:
+    factor = ANGLE_UNITS.get(units[0])
+    if factor is None:
+        raise InputError("engine.angle_unit", units[0], f"one of {', '.join(ANGLE_UNITS)}")
+    return 0, factor
+
+
+def _cycles(
+    name: str,
+    lines: Sequence[int],
+    written: Array,
+    factor: float,
+    values: Array,
+    labels: Sequence[str],
+    gap_max: float,
+) -> list[Trace]:
+    """One trace per cycle and column."""
+    angle = _unwrapped(written * factor)
+    guard_order(name, lines, angle / factor, "crank angle")
+    spacing = float(np.median(np.diff(angle)))
+    count = round((angle[-1] - angle[0] + spacing) / CYCLE_ANGLE)
+    if count < 2:
+        guard_span(name, angle, factor, CYCLE_ANGLE, gap_max)
+        return [
+            one_period(name, "pressure", label, lines, angle, values[:, k], gap_max=gap_max)
+            for k, label in enumerate(labels)
+        ]
+    traces = []
+    for k in range(count):
+        start = angle[0] + k * CYCLE_ANGLE - 1e-6
+        inside = (angle >= start) & (angle < start + CYCLE_ANGLE)
+        part = angle[inside] - k * CYCLE_ANGLE
+        span = part[-1] - part[0] + spacing if part.size else 0.0
+        if abs(span - CYCLE_ANGLE) > max(1.5 * spacing, 1e-9):
+            field = f"{name} cycle {k + 1} of {count}"
+            raise InputError(field, f"{np.degrees(span):.6g} deg long", "720 deg, as every cycle")
+        rows = [line for line, held in zip(lines, inside, strict=True) if held]
+        traces += [
+            one_period(name, "pressure", label, rows, part, values[inside, j], gap_max=gap_max)
+            for j, label in enumerate(labels)
+        ]
+    left = angle[-1] - (angle[0] + count * CYCLE_ANGLE)
+    if left > 1.5 * spacing:
+        field = f"{name} after cycle {count}"
+        raise InputError(field, f"{np.degrees(left):.4g} deg more", "whole cycles of 720 deg")
+    return traces
+
+
+def _unwrapped(angle: Array) -> Array:
+    """Angles that start again with each cycle, running on instead."""
+    steps = np.diff(angle)
+    spacing = float(np.median(steps))
+    back = np.abs(steps + CYCLE_ANGLE - spacing) <= 1.5 * abs(spacing)
+    return np.asarray(angle + np.concatenate([[0.0], np.cumsum(back)]) * CYCLE_ANGLE)
+
+
+def torque_from_pressure(
+    trace: PressureTrace, engine: CylinderEngine, crank_speed: float
+) -> Torque:
+    """Torque of an engine whose cylinders all run the mean of the measured cycles.
+
+    Parts are the gas, the inertia of the reciprocating masses at constant speed, and friction,
+    as the engine states it: a mean effective pressure, or what closes the balance.
+
+    Raises
+    ------
+    InputError
+        If friction should close the balance of a trace that drives nothing.
+    """
+    theta = trace.theta
+    gas = (trace.mean - engine.crankcase_pressure) * engine.volume_rate(theta)
+    inertia = engine.inertia_torque(theta, crank_speed)
+    if engine.friction == "closing":
+        mean = float(gas.mean())
+        if mean < 0.0:
+            limit = f"a pressure, for the trace itself needs {-mean:.3g} N m to turn"
+            raise InputError("engine.friction", "closing", limit)
+    else:
+        mean = float(engine.friction) * engine.displacement / CYCLE_ANGLE
+    parts = {"gas": gas, "inertia": inertia, "friction": np.full_like(theta, -mean)}
+    coarse = uniform_cycle(SAMPLES)
+    parts = {name: _thinned(part) for name, part in parts.items()}
+    return Torque(coarse, all_cylinders(parts, coarse, engine.firing_offsets))
+
+
+def _thinned(values: Array) -> Array:
+    """Values at the angles of a torque; the harmonics they cannot carry are left out."""
+    spectrum = np.fft.rfft(values)[: SAMPLES // 2 + 1]
+    return np.asarray(np.fft.irfft(spectrum, n=SAMPLES) * (SAMPLES / values.size))

@@ -1,0 +1,405 @@
+"""Crank speed as measured tooth by tooth, and the torque it tells of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import pi
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geometry.arrays import Array, finite, freeze, positive, readonly
+from geometry.errors import InputError
+from pipeline.engine.crankshaft import SpeedStatistics, speed_statistics, torque_of_motion
+from pipeline.engine.cylinder import CYCLE_ANGLE
+from pipeline.engine.torque import SAMPLES, Torque, uniform_cycle
+from pipeline.engine.trace import guard_order, guard_span
+from pipeline.engine.trace_file import (
+    QUANTITY_UNITS,
+    angle_column,
+    columns_of,
+    number_table,
+    split_cells,
+    table_delimiter,
+    text_lines,
+)
+from pipeline.engine.trigger_wheel import Edges, TriggerWheel, counted, learned_wheel
+
+HARMONICS = 20  # of the cycle, 10 per crank turn: where noise of 0.2 rad/s costs least
+TAPER = 0.25
+SPEED_RANGE = (5.0, 3000.0)  # rad/s, of a crank
+
+
+@dataclass(frozen=True)
+class Filter:
+    """Harmonics of the cycle kept of a speed, with a cosine edge from 1 - taper to 1 + taper.
+
+    Parameters
+    ----------
+    harmonics : int    where the edge is half way, the bandwidth; 2 are one per crank turn
+    taper : float      half-width of the edge as a share, 0 cuts hard
+    """
+
+    harmonics: int = HARMONICS
+    taper: float = TAPER
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.harmonics <= SAMPLES // 4:
+            raise InputError("engine.harmonics", self.harmonics, f"from 1 to {SAMPLES // 4}")
+        if not 0.0 <= self.taper <= 1.0:
+            raise InputError("engine.taper", self.taper, "from 0 to 1")
+
+    @property
+    def last(self) -> int:
+        """The highest harmonic that is not zero."""
+        return int(np.floor(self.harmonics * (1.0 + self.taper) + 1e-9))
+
+    @property
+    def weights(self) -> Array:
+        """Factor on harmonics 0 to `last`."""
+        share = np.arange(self.last + 1) / self.harmonics
+        if self.taper == 0.0:
+            return np.ones_like(share)
+        edge = np.clip((share - 1.0) / self.taper, -1.0, 1.0)
+        return np.asarray(0.5 * (1.0 - np.sin(0.5 * pi * edge)))
+
+    def bandwidth(self, mean_speed: float) -> float:
+        """Frequency (Hz) at which the filter lets one half pass, at a crank speed (rad/s)."""
+        return self.harmonics * mean_speed / CYCLE_ANGLE
+
+
+@dataclass(frozen=True, eq=False)
+class SpeedTrace:
+    """Crank speed over a cycle, of several cycles or runs, band limited.
+
+    Parameters
+    ----------
+    source : str               name of the file
+    speeds : array (m, 720)    rad/s at equal crank angles, of each cycle of each run
+    filter : Filter
+    noise : float              rad/s, standard deviation of a single tooth's speed about the curve
+    slope_gain : float         1/rad, standard deviation of domega/dtheta per unit of `noise`
+    """
+
+    source: str
+    speeds: Array
+    filter: Filter
+    noise: float
+    slope_gain: float
+
+    def __post_init__(self) -> None:
+        speeds = finite(f"{self.source} speed", self.speeds)
+        low, high = SPEED_RANGE
+        if not low <= float(speeds.min()) <= float(speeds.max()) <= high:
+            worst = float(speeds.min() if speeds.min() < low else speeds.max())
+            limit = f"from {low:g} to {high:g} rad/s; check unit, teeth and edges"
+            raise InputError(f"{self.source} speed", f"{worst:.4g} rad/s", limit)
+        freeze(self, speeds=speeds)
+
+    @property
+    def theta(self) -> Array:
+        return uniform_cycle(self.speeds.shape[1])
+
+    @property
+    def count(self) -> int:
+        """Cycles averaged."""
+        return int(self.speeds.shape[0])
+
+    @property
+    def mean(self) -> Array:
+        """Mean over the cycles at each angle, rad/s."""
+        return np.asarray(self.speeds.mean(axis=0))
+
+    @property
+    def scatter(self) -> Array:
+        """Standard deviation over the cycles at each angle, rad/s; zero for one cycle."""
+        if self.count < 2:
+            return np.zeros(self.speeds.shape[1])
+        return np.asarray(self.speeds.std(axis=0, ddof=1))
+
+    @property
+    def statistics(self) -> SpeedStatistics:
+        return speed_statistics(self.mean)
+
+    @property
+    def bandwidth(self) -> float:
+        """Hz, to which the speed is followed."""
+        return self.filter.bandwidth(self.statistics.mean)
+
+    def noise_amplification(self, inertia: float) -> float:
+        """Torque noise of one cycle per speed noise of one tooth, N m per rad/s."""
+        return inertia * self.statistics.mean * self.slope_gain
+
+    def noise_floor(self, inertia: float) -> float:
+        """Standard deviation of the torque of the mean cycle that noise alone makes, N m."""
+        return self.noise_amplification(inertia) * self.noise / float(np.sqrt(self.count))
+
+    def torque(self, inertia: float) -> Torque:
+        """J omega domega/dtheta of the mean speed, its one component `measured`.
+
+        That is the torque of the gas and of all else about its mean, inertia of the reciprocating
+        parts included.
+
+        Parameters
+        ----------
+        inertia : float    J, kg m2, of all that turns with the crank, > 0
+        """
+        if not 0.0 < inertia < np.inf:
+            raise InputError("engine.inertia", inertia, "> 0 kg m^2")
+        return Torque(self.theta, {"measured": torque_of_motion(self.mean, inertia)})
+
+    def with_firing(self) -> SpeedTrace:
+        """The same, each cycle turned by a crank turn if it else gained speed in its intake.
+
+        A crank wheel does not tell the two turns of a cycle apart; the expansion does.
+        """
+        energy = self.speeds**2
+        quarter = self.speeds.shape[1] // 4
+        fired = energy[:, 3 * quarter] - energy[:, 2 * quarter]
+        turned = np.roll(self.speeds, 2 * quarter, axis=1)
+        right = fired >= energy[:, quarter] - energy[:, 0]
+        return replace(self, speeds=np.where(right[:, None], self.speeds, turned))
+
+
+def speed_from_edges(
+    source: str, runs: Sequence[Sequence[Edges]], wheel: TriggerWheel, band: Filter
+) -> SpeedTrace:
+    """Speed from the times at which edges passed.
+
+    The slowness 1/omega is a band-limited series over the cycle whose integral from edge to edge
+    of one kind is the time between them, by least squares. So neither the width of a tooth nor
+    the length of an interval, a gap included, distorts the speed.
+
+    Parameters
+    ----------
+    runs : sequence of runs    each the edges of `counted`
+    wheel : TriggerWheel
+    band : Filter
+
+    Raises
+    ------
+    InputError
+        If no run holds a whole cycle, or the teeth are too few for the filter.
+    """
+    starts, ends, times = _cycles_of(source, runs, wheel)
+    width = ends - starts
+    matrix = _integrals(starts, ends, band.last)
+    fit, gain = _fit(source, matrix, width, band)
+    slowness = times @ fit.T
+    if not slowness.min() > 0.0:
+        raise InputError(f"{source} speed", "below zero", "edges in order; check teeth and edges")
+    mean_speed = float(width.sum() / times.sum(axis=1).mean())
+    noise = _noise(times, matrix) / width.mean() * mean_speed**2
+    return SpeedTrace(source, 1.0 / slowness, band, noise, gain)
+
+
+def speed_from_teeth(
+    source: str, angle: ArrayLike, speeds: ArrayLike, band: Filter, width: float = 0.0
+) -> SpeedTrace:
+    """Speed from values of it at given crank angles.
+
+    Parameters
+    ----------
+    angle : array (n,)        rad, over one cycle
+    speeds : array (m, n)     rad/s, a row a cycle or run
+    band : Filter
+    width : float             rad, of the angle over which each value is a mean; 0: a point
+
+    Raises
+    ------
+    InputError
+        If a speed is not positive, or the values are too few for the filter.
+    """
+    at, values = finite(source, angle), positive(f"{source} speed", speeds, "rad/s")
+    if not 0.0 <= width <= np.radians(60.0):
+        raise InputError("engine.averaged_over", f"{np.degrees(width):g} deg", "from 0 to 60 deg")
+    ends = at + 0.5 * width
+    matrix = (
+        _integrals(at - 0.5 * width, ends, band.last) / width if width else _points(at, band.last)
+    )
+    fit, gain = _fit(source, matrix, np.ones_like(at), band)
+    return SpeedTrace(source, values @ fit.T, band, _noise(values, matrix), gain)
+
+
+def _fit(source: str, matrix: Array, weight: Array, band: Filter) -> tuple[Array, float]:
+    """Values at the angles of a torque per observation, and the gain of their slope.
+
+    Returns
+    -------
+    fit : array (720, n)   of the filtered series
+    gain : float           rms over the angle of the slope's standard deviation per unit of noise
+    """
+    if matrix.shape[1] > 0.95 * matrix.shape[0]:
+        most = int((0.475 * matrix.shape[0] - 0.5) / (1.0 + band.taper))
+        limit = f"<= {max(most, 1)} for {matrix.shape[0]} intervals in a cycle"
+        raise InputError(f"{source}: engine.harmonics", band.harmonics, limit)
+    weights = band.weights
+    solve = np.linalg.pinv(matrix) * np.concatenate([weights, weights[1:]])[:, None]
+    theta = uniform_cycle(SAMPLES)
+    slope = _points(theta, band.last, derivative=True) @ solve * weight
+    gain = float(np.sqrt((slope**2).sum(axis=1).mean()))
+    return readonly(_points(theta, band.last) @ solve), gain
+
+
+def _noise(values: Array, matrix: Array) -> float:
+    """Standard deviation of one observation, from its scatter over cycles or about the fit."""
+    if values.shape[0] > 1:
+        return float(np.sqrt(values.var(axis=0, ddof=1).mean()))
+    left = values[0] - matrix @ (np.linalg.pinv(matrix) @ values[0])
+    return float(np.sqrt((left**2).sum() / (matrix.shape[0] - matrix.shape[1])))
+
+
+def _points(angle: Array, last: int, derivative: bool = False) -> Array:
+    """Constant, cosines and sines of harmonics 1 to `last`, or their slopes, (n, 2 last + 1)."""
+    order = np.arange(1, last + 1) * (2.0 * pi / CYCLE_ANGLE)
+    phase = np.outer(angle, order)
+    if derivative:
+        return np.hstack([np.zeros((angle.size, 1)), -order * np.sin(phase), order * np.cos(phase)])
+    return np.hstack([np.ones((angle.size, 1)), np.cos(phase), np.sin(phase)])
+
+
+def _integrals(start: Array, end: Array, last: int) -> Array:
+    """Integrals of the same from `start` to `end`."""
+    order = np.arange(1, last + 1) * (2.0 * pi / CYCLE_ANGLE)
+    from_, to = np.outer(start, order), np.outer(end, order)
+    cosines, sines = (np.sin(to) - np.sin(from_)) / order, (np.cos(from_) - np.cos(to)) / order
+    return np.hstack([(end - start)[:, None], cosines, sines])
+
+
+def _cycles_of(
+    source: str, runs: Sequence[Sequence[Edges]], wheel: TriggerWheel
+) -> tuple[Array, Array, Array]:
+    """Intervals of a cycle and how long they took in each: angles (n,), (n,), times (m, n)."""
+    found: list[Array] = []
+    spans: tuple[Array, Array] | None = None
+    for run in runs:
+        first = float(run[0].places[0])
+        from_ = np.concatenate([wheel.angle(e.places[:-1], e.falling) for e in run])
+        to = np.concatenate([wheel.angle(e.places[1:], e.falling) for e in run])
+        lasted = np.concatenate([np.diff(edges.times) for edges in run])
+        start = np.concatenate([edges.places[:-1] for edges in run])
+        cycle = np.floor((start - first) / (2 * wheel.teeth))
+        for k in range(int(cycle.max()) + 1):
+            inside = cycle == k
+            covered = float((to - from_)[inside].sum())
+            if not np.isclose(covered, len(run) * CYCLE_ANGLE, rtol=0.0, atol=1e-6):
+                continue  # begun or ended within the cycle
+            begin = np.mod(from_[inside], CYCLE_ANGLE)
+            order = np.argsort(begin, kind="stable")
+            span = begin[order], begin[order] + (to - from_)[inside][order]
+            if spans is None:
+                spans = span
+            elif span[0].shape != spans[0].shape or not np.allclose(span, spans, atol=1e-6):
+                continue  # edges of another kind, or a run that began elsewhere on the wheel
+            found.append(lasted[inside][order])
+    if spans is None:
+        held = max(sum(edges.times.size for edges in run) for run in runs)
+        limit = f"a whole cycle, {len(runs[0]) * (2 * wheel.present + 1)} edges or more"
+        raise InputError(source, f"{held} edges", limit)
+    return spans[0], spans[1], np.array(found)
+
+
+def tooth_times(path: str | Path, column: str = "") -> tuple[str, Array]:
+    """Times of edges from a CSV file, one column a run: array (runs, edges), s.
+
+    Raises
+    ------
+    InputError
+        As `read_trace`.
+    """
+    name, header, lines, delimiter = _opened(Path(path))
+    wanted = columns_of(header, "time", column)
+    if not wanted:
+        limit = f"a column of time with its unit ({', '.join(QUANTITY_UNITS['time'])})"
+        raise InputError(f"{name} header", ", ".join(header), limit)
+    table = number_table(name, lines, header, delimiter, tuple(wanted))
+    return name, np.asarray((table * np.array(list(wanted.values()))).T)
+
+
+def _opened(path: Path) -> tuple[str, list[str], list[tuple[int, str]], str]:
+    lines = text_lines(path)
+    number, head = lines[0]
+    delimiter = ";" if ";" in head else "\t" if "\t" in head else ","
+    if len(lines) > 1 and delimiter == "," and "," not in head:
+        delimiter = table_delimiter(path.name, number, head) if "," in lines[1][1] else ";"
+    return path.name, [cell.strip() for cell in split_cells(head, delimiter)], lines[1:], delimiter
+
+
+def speed_from_csv(
+    path: str | Path,
+    wheel: TriggerWheel,
+    band: Filter,
+    *,
+    both_edges: bool = True,
+    column: str = "",
+    unit: str = "",
+    averaged_over: float = 0.0,
+    reference: str | Path | None = None,
+) -> SpeedTrace:
+    """Crank speed from a CSV file: tooth times, or speed per tooth against crank angle.
+
+    A file with a column of crank angle holds speeds, one column a run; any other holds the times
+    at which edges passed, one column a run. Without a gap the cycle begins with the record; which
+    of its turns fires is told by the speed itself.
+
+    Parameters
+    ----------
+    wheel : TriggerWheel
+    band : Filter
+    both_edges : bool         times: every second edge is a falling one
+    column : str              what the headers of the columns wanted begin with
+    unit : str                speeds: the unit of columns that name none
+    averaged_over : float     speeds: rad over which each is a mean
+    reference : path          times: steady turns from which the places of the teeth are learned
+
+    Raises
+    ------
+    InputError
+        As `read_trace`, `counted` and `speed_from_edges`.
+    """
+    name, header, lines, delimiter = _opened(Path(path))
+    if not columns_of(header, "time", column):
+        angle, speeds = _speed_table(name, header, lines, delimiter, column, unit)
+        return speed_from_teeth(name, angle, speeds, band, averaged_over)
+    if reference is not None:
+        label, steady = tooth_times(reference)
+        known = [counted(f"{label} run {k + 1}", run, wheel, both_edges)
+                 for k, run in enumerate(steady)]  # fmt: skip
+        wheel = learned_wheel(wheel, known)
+    name, runs = tooth_times(path, column)
+    edges = [counted(f"{name} run {k + 1}", run, wheel, both_edges) for k, run in enumerate(runs)]
+    return speed_from_edges(name, edges, wheel, band).with_firing()
+
+
+def _speed_table(
+    name: str,
+    header: list[str],
+    lines: list[tuple[int, str]],
+    delimiter: str,
+    column: str,
+    unit: str,
+) -> tuple[Array, Array]:
+    """Angles (n,), rad, and speeds (m, n), rad/s, of one cycle."""
+    at, factor = angle_column(name, header)
+    wanted = columns_of(header, "speed", column)
+    if unit:
+        if unit not in QUANTITY_UNITS["speed"]:
+            raise InputError(
+                "engine.speed_unit", unit, f"one of {', '.join(QUANTITY_UNITS['speed'])}"
+            )
+        bare = [k for k, text in enumerate(header) if text.lower().startswith(column.lower())]
+        wanted = {k: QUANTITY_UNITS["speed"][unit] for k in bare if k != at} | wanted
+    if not wanted:
+        limit = (
+            f"a column of speed with its unit ({', '.join(QUANTITY_UNITS['speed'])}), or of time"
+        )
+        raise InputError(f"{name} header", ", ".join(header), limit)
+    table = number_table(name, lines, header, delimiter, (at, *wanted))
+    guard_order(name, [number for number, _ in lines], table[:, 0], header[at])
+    angle, values = table[:, 0] * factor, table[:, 1:] * np.array(list(wanted.values()))
+    guard_span(name, angle, factor, CYCLE_ANGLE)
+    if CYCLE_ANGLE - (angle[-1] - angle[0]) < 0.25 * float(np.median(np.diff(angle))):
+        angle, values = angle[:-1], np.vstack([0.5 * (values[0] + values[-1]), values[1:-1]])
+    return angle, np.asarray(values.T)

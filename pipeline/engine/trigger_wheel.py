@@ -1,0 +1,211 @@
+"""A trigger wheel on the crank: which edge passed when, and where the edges really are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geometry.arrays import Array, finite, freeze, readonly
+from geometry.errors import InputError
+
+FULL_TURN = 2.0 * pi
+NEIGHBOURS = 9  # intervals, of whose median a regular one is a share
+REGULAR = (0.6, 1.4)  # of that median: a crank within its cycle stays well inside
+
+
+@dataclass(frozen=True, eq=False)
+class TriggerWheel:
+    """A wheel of `teeth` equal places of which the last `missing` are left empty.
+
+    Parameters
+    ----------
+    teeth : int                n, places for teeth
+    missing : int              m, empty ones; 0: no gap, no reference
+    reference_angle : float    rad, crank angle of the first rising edge after a gap, of the first
+                               gap recorded; without a gap that of the first edge recorded
+    tooth_share : float        of the pitch, from the rising to the falling edge
+    rising, falling : array (n - m,), optional   rad from the reference, in place of equal pitches
+    """
+
+    teeth: int = 36
+    missing: int = 0
+    reference_angle: float = 0.0
+    tooth_share: float = 0.5
+    rising: Array | None = None
+    falling: Array | None = None
+
+    def __post_init__(self) -> None:
+        if not 4 <= self.teeth <= 720:
+            raise InputError("engine.teeth", self.teeth, "from 4 to 720")
+        if not 0 <= self.missing <= self.teeth // 4:
+            raise InputError("engine.missing_teeth", self.missing, "from 0 to a quarter of them")
+        if not 0.0 < self.tooth_share < 1.0:
+            raise InputError("engine.tooth_share", self.tooth_share, "from 0 to 1")
+        finite("engine.reference_angle", self.reference_angle)
+        for name in ("rising", "falling"):
+            given = getattr(self, name)
+            if given is not None:
+                freeze(self, **{name: finite(f"wheel.{name}", given)})
+
+    @property
+    def pitch(self) -> float:
+        return FULL_TURN / self.teeth
+
+    @property
+    def present(self) -> int:
+        return self.teeth - self.missing
+
+    def angle(self, place: Array, falling: bool) -> Array:
+        """Crank angle (rad) of an edge of the teeth counted from the reference, missing or not."""
+        turn, tooth = np.divmod(place, self.teeth)
+        known = self.falling if falling else self.rising
+        at = tooth * self.pitch + (self.tooth_share * self.pitch if falling else 0.0)
+        if known is not None:
+            at = known[np.minimum(tooth, self.present - 1)]
+        return np.asarray(self.reference_angle + turn * FULL_TURN + at)
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """Edges of one kind that passed: times (n,), s, and the places (n,) of their teeth, counted
+    from the reference on, gaps included."""
+
+    times: Array
+    places: Array
+    falling: bool
+
+    def __post_init__(self) -> None:
+        freeze(self, times=self.times, places=self.places)
+
+
+def counted(field: str, times: ArrayLike, wheel: TriggerWheel, both: bool) -> tuple[Edges, ...]:
+    """Edges of a run with the places of their teeth.
+
+    Parameters
+    ----------
+    field : str          names the run in messages
+    times : array (n,)   s, rising; every edge, the first a rising one, where `both`
+    wheel : TriggerWheel
+
+    Raises
+    ------
+    InputError
+        If the times do not rise, the record is shorter than a turn, a tooth is missing
+        elsewhere than in the gap, or the gap does not recur after n - m teeth.
+    """
+    at = finite(field, times)
+    if at.ndim != 1 or at.size < wheel.present + 2:
+        raise InputError(field, f"{at.size} edges", f"more than a turn of {wheel.present} teeth")
+    falls = np.flatnonzero(~(np.diff(at) > 0.0))
+    if falls.size:
+        k = int(falls[0]) + 1
+        raise InputError(f"{field} edge {k + 1}", f"{at[k]:.9g} s", f"after {at[k - 1]:.9g} s")
+    rising = at[::2] if both else at
+    places = tooth_places(field, rising, wheel)
+    found = [Edges(rising, places, False)]
+    if both:
+        found.append(Edges(at[1::2], places[: at[1::2].size], True))
+    return tuple(found)
+
+
+def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
+    """Places (n,) of the teeth whose edges of one kind passed at `times`.
+
+    Raises
+    ------
+    InputError
+        As `counted`.
+    """
+    intervals = np.diff(times)
+    share = intervals / _local_median(intervals)
+    expected = np.ones_like(share)
+    if wheel.missing:
+        expected[share > 1.0 + 0.5 * wheel.missing] = 1.0 + wheel.missing
+    off = (share / expected < REGULAR[0]) | (share / expected > REGULAR[1])
+    if off.any():
+        k = int(np.flatnonzero(off)[0])
+        what = "a missing tooth" if share[k] > 1.0 else "an edge too many"
+        value = f"{share[k]:.3g} times its neighbours ({what})"
+        limit = f"1, or {1 + wheel.missing} in the gap" if wheel.missing else "near 1"
+        raise InputError(f"{field} interval after {times[k]:.6g} s", value, limit)
+    gaps = [int(k) for k in np.flatnonzero(expected > 1.0)]
+    if wheel.missing:
+        _guard_gaps(field, times, gaps, wheel)
+    steps = np.concatenate([[0.0], np.cumsum(expected)])
+    origin = steps[gaps[0] + 1] if wheel.missing else 0.0
+    return np.asarray(steps - origin)
+
+
+def _local_median(intervals: Array) -> Array:
+    reach = NEIGHBOURS // 2
+    padded = np.pad(intervals, reach, mode="reflect" if intervals.size > reach else "edge")
+    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, NEIGHBOURS), 1))
+
+
+def _guard_gaps(field: str, times: Array, gaps: list[int], wheel: TriggerWheel) -> None:
+    """Refuse a gap that does not come back after every n - m teeth."""
+    if not gaps:
+        limit = f"a gap of {wheel.missing} missing teeth in every turn"
+        raise InputError(field, "no gap", limit)
+    ends = np.diff(gaps)
+    wrong = np.flatnonzero(ends != wheel.present)
+    first, last = gaps[0] + 1, times.size - 1 - gaps[-1]
+    if wrong.size or first > wheel.present or last > wheel.present:
+        k = int(wrong[0]) if wrong.size else 0
+        number = int(ends[k]) if wrong.size else int(max(first, last))
+        where = f"{field} between gaps from {times[gaps[k]]:.6g} s"
+        raise InputError(where, f"{number} teeth", f"{wheel.present} of {wheel.teeth} places")
+
+
+def learned_wheel(
+    wheel: TriggerWheel, runs: Sequence[Sequence[Edges]], turns_min: int = 3
+) -> TriggerWheel:
+    """The wheel with the angles of its edges as reference turns at steady speed show them.
+
+    Each turn is cut into the shares of its time that the edges take; a speed that drifts
+    linearly from turn to turn is allowed for. What is left is averaged over all turns.
+
+    Parameters
+    ----------
+    runs : sequence of runs     each the edges of `counted`, motored or coasting without firing
+    turns_min : int             whole turns needed
+
+    Raises
+    ------
+    InputError
+        If there are fewer turns.
+
+    References
+    ----------
+    Kiencke and Nielsen, Automotive Control Systems (2005), ch. on crankshaft speed: adaptation
+    of the sensor wheel, cited from memory: verify.
+    """
+    found: dict[bool, list[Array]] = {False: [], True: []}
+    for run in runs:
+        rising = next(edges for edges in run if not edges.falling)
+        starts = rising.times[np.mod(rising.places, wheel.teeth) == 0.0]
+        for edges in run:
+            found[edges.falling] += _shares(edges, starts, wheel)
+    if len(found[False]) < turns_min:
+        raise InputError("engine.reference_file", f"{len(found[False])} whole turns", ">= 3")
+    rising = FULL_TURN * np.mean(found[False], axis=0)
+    falling = FULL_TURN * np.mean(found[True], axis=0) if found[True] else None
+    return replace(wheel, rising=readonly(rising), falling=falling)
+
+
+def _shares(edges: Edges, starts: Array, wheel: TriggerWheel) -> list[Array]:
+    """For each turn with one before and one after it, the share at which its edges stand."""
+    lengths = np.diff(starts)
+    shares = []
+    for k in range(1, lengths.size - 1):
+        inside = (edges.times >= starts[k]) & (edges.times < starts[k + 1])
+        if np.count_nonzero(inside) != wheel.present:
+            continue
+        drift = (lengths[k + 1] - lengths[k - 1]) / (4.0 * lengths[k])
+        share = (edges.times[inside] - starts[k]) / lengths[k]
+        shares.append(share + drift * share * (1.0 - share))
+    return shares
