@@ -44,6 +44,9 @@ _err = Console(stderr=True, highlight=False, soft_wrap=True)
 
 CaseArgument = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
 DirArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Run folder.")]
+NoCacheOption = Annotated[
+    bool, typer.Option("--no-cache", help="Neither read nor write what is kept between runs.")
+]
 
 
 def main() -> NoReturn:
@@ -127,10 +130,12 @@ def run(
     replace: Annotated[
         bool, typer.Option("--replace", help="Write over an earlier run of a case of this name.")
     ] = False,
+    no_cache: NoCacheOption = False,
 ) -> int:
     """Run a case: torque, lift, contour, mesh, contact, checks, report."""
     from pipeline.case import load_case_file
 
+    _use_cache(not no_cache)
     if jobs is not None and not 1 <= jobs <= 256:
         raise InputError("--jobs", jobs, ">= 1 and <= 256")
     design = load_case_file(case)
@@ -174,6 +179,44 @@ def check(
 
 
 @app.command()
+def contact(
+    r1: Annotated[str, typer.Option(help="Radius of body 1, mm; inf: flat, negative: hollow.")],
+    r2: Annotated[str, typer.Option(help="Radius of body 2, likewise.")],
+    e1: Annotated[str, typer.Option(help="Young's modulus of body 1, MPa.")],
+    nu1: Annotated[float, typer.Option(help="Poisson ratio of body 1.")],
+    e2: Annotated[str | None, typer.Option(help="Of body 2; that of body 1 by default.")] = None,
+    nu2: Annotated[float | None, typer.Option(help="Of body 2; likewise.")] = None,
+    line_load: Annotated[str | None, typer.Option(help="Load over width, N/mm.")] = None,
+    load: Annotated[str | None, typer.Option(help="Load, N, with --width.")] = None,
+    width: Annotated[str | None, typer.Option(help="Width of the contact, mm.")] = None,
+    friction: Annotated[float, typer.Option(help="Of full sliding, over the pressure.")] = 0.0,
+    approach: Annotated[bool, typer.Option("--approach", help="Of the centres as well.")] = False,
+    depth1: Annotated[str | None, typer.Option(help="Approach of this depth, mm.")] = None,
+    depth2: Annotated[str | None, typer.Option(help="Likewise, in body 2.")] = None,
+    field: Annotated[
+        Path | None, typer.Option(metavar="FILE.vtu", help="Write the stress of body 1.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="The figures as JSON.")] = False,
+    no_cache: NoCacheOption = False,
+) -> int:
+    """Two cylinders in line contact: Hertz beside finite elements with an error bar.
+
+    Every quantity may carry a unit, such as "12.5 mm", "210 GPa", "80 kN/m".
+    """
+    from pipeline.contact_command import Asked, lines, solved
+
+    _use_cache(not no_cache)
+    asked = Asked(r1, r2, e1, e2, nu1, nu2, line_load, load, width, friction, depth1, depth2)
+    document = solved(asked, with_approach=approach, field=field)
+    if as_json:
+        print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - not to be wrapped
+    else:
+        for line in lines(document):
+            _out.print(line, markup=False)
+    return PASSED
+
+
+@app.command()
 def report(
     folder: DirArgument,
 ) -> int:
@@ -202,6 +245,13 @@ def init(
         raise ResultError(f"{path}: exists already and is left as it is") from None
     _out.print(f"wrote {path}; next: camwright run {path} --out runs/{name}", markup=False)
     return PASSED
+
+
+def _use_cache(wanted: bool) -> None:
+    from pipeline import cache
+
+    if not wanted:
+        cache.switch_off()
 
 
 def _load(folder: Path) -> Run:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -62,7 +63,7 @@ def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
     return {"points": points, "stress": nodal}
 
 
-def _arc_displacement(points: Array, arc: Array, shapes: PressureShapes, poisson: float) -> Array:
+def _arc_displacement(points: Array, arc: Any, shapes: PressureShapes, poisson: float) -> Array:
     """Half-plane displacement (2, nodes, n) of the arc under each traction shape.
 
     The field of a force depends on the angle from its line alone, whichever way the surface
