@@ -163,7 +163,9 @@ def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollowe
     total = np.eye(s.size) * (f.stiffness + f.spring_rate)
     system: Array = f.mass * rate @ rate + (f.damping + f.guide_damping) * rate + total
     foot_speed = rate @ s
-    x: Array = np.linalg.solve(system, f.stiffness * s + f.damping * foot_speed - f.preload)
+    x = np.asarray(
+        np.linalg.solve(system, f.stiffness * s + f.damping * foot_speed - f.preload), dtype=float
+    )
     v = rate @ x
     return Response(
         theta=uniform_turn(s.size),

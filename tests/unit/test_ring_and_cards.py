@@ -1,0 +1,181 @@
+"""Outer ring, pin, skidding roller and bearing cards against hand calculation."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.errors import InputError
+from pipeline.follower.bearing_cards import CARDS, BearingCard, read_cards
+from pipeline.follower.ring import (
+    Ring,
+    pin_bending_stress,
+    ring_bending,
+    ring_moments,
+    ring_stiffness,
+)
+from pipeline.follower.roller import traction_demand
+from pipeline.follower.skid import skid
+
+RING = Ring(7.5e-3, 1e-3, 5e-3, 210e9, 6, 1e8)
+
+
+def test_ring_under_two_opposite_forces():
+    """Moments F r/pi and F r (1/pi - 1/2); deflection with the stretch of the middle line.
+
+    The chords of 240 elements miss the arc by 1e-4.
+    """
+    nodes = 240
+    push = np.zeros(3 * nodes)
+    push[[0, 3 * (nodes // 2)]] = -1.0
+    motion = np.linalg.lstsq(ring_stiffness(RING, nodes), push, rcond=1e-12)[0]
+    moment = ring_moments(RING, motion)
+    r = RING.radius
+    assert moment[0] / r == pytest.approx(1 / np.pi, rel=2e-4)
+    assert moment[nodes // 4] / r == pytest.approx(1 / np.pi - 0.5, rel=5e-4)
+    area = RING.modulus * RING.width * RING.thickness
+    closing = (np.pi / 4 - 2 / np.pi) * r**3 / RING.bending_stiffness + np.pi / 4 * r / area
+    assert -(motion[0] + motion[3 * (nodes // 2)]) == pytest.approx(closing, rel=3e-4)
+
+
+def test_ring_moves_freely_as_a_body():
+    nodes = 48
+    phi = 2 * np.pi * np.arange(nodes) / nodes
+    stiffness = ring_stiffness(RING, nodes)
+    shift, turn = np.zeros(3 * nodes), np.zeros(3 * nodes)
+    shift[0::3], shift[1::3] = np.cos(phi), -np.sin(phi)
+    turn[1::3], turn[2::3] = RING.radius, 1.0
+    for motion in (shift, turn):
+        assert np.abs(stiffness @ motion).max() < 1e-12 * np.abs(stiffness).max()
+
+
+def test_balls_carry_the_push():
+    found = ring_bending(RING)
+    at = found.phase[:, None] + 2 * np.pi * np.arange(RING.balls) / RING.balls
+    np.testing.assert_allclose((found.ball_load * np.cos(at)).sum(axis=1), 1.0, rtol=1e-6)
+    np.testing.assert_allclose((found.ball_load * np.sin(at)).sum(axis=1), 0.0, atol=1e-6)
+    assert (found.ball_load >= 0.0).all()
+    assert found.ball_load[0].argmax() == 0  # the ball right below carries most
+    assert found.greatest_ball_load(1000.0) == pytest.approx(1000 * found.ball_load.max())
+
+
+def test_a_thick_ring_bends_less():
+    thin, thick = ring_bending(RING), ring_bending(replace(RING, thickness=2e-3))
+    assert (thick.compliance < thin.compliance).all()
+    assert thick.stress_range(replace(RING, thickness=2e-3), 1e3) < thin.stress_range(RING, 1e3)
+    assert thin.stress_range(RING, 2e3) == pytest.approx(2 * thin.stress_range(RING, 1e3))
+
+
+def test_stiff_ring_loads_balls_as_a_rigid_one():
+    """Linear balls below a rigid ring carry shares in proportion to cos: 2/Z cos/sum."""
+    rigid = ring_bending(replace(RING, modulus=210e15, balls=12))  # stiffer by 1e6
+    at = 2 * np.pi * np.arange(12) / 12
+    share = np.maximum(np.cos(at), 0.0)
+    np.testing.assert_allclose(rigid.ball_load[0], share / (share @ np.cos(at)), atol=2e-5)
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [({"thickness": 4e-3}, "thickness"), ({"balls": 2}, "balls"), ({"radius": -1.0}, "radius")],
+)
+def test_ring_refusals(change, name):
+    with pytest.raises(InputError, match=f"ring.{name}"):
+        replace(RING, **change)
+
+
+def test_pin_bending():
+    """Straddled: F (span/4 - width/8); overhung: F times the arm; 32 M/(pi d^3)."""
+    scale = 32 / (np.pi * 5e-3**3)
+    assert pin_bending_stress(1000.0, 5e-3, 5e-3, 9e-3) == pytest.approx(
+        scale * 1000 * (9e-3 / 4 - 5e-3 / 8)
+    )
+    assert pin_bending_stress(1000.0, 5e-3, 5e-3, 4e-3, overhung=True) == pytest.approx(scale * 4.0)
+    with pytest.raises(InputError, match="pin_span"):
+        pin_bending_stress(1.0, 5e-3, 5e-3, 4e-3)
+    with pytest.raises(InputError, match="pin_diameter"):
+        pin_bending_stress(1.0, 0.0, 5e-3, 9e-3)
+    with pytest.raises(InputError, match="force"):
+        pin_bending_stress(np.nan, 5e-3, 5e-3, 9e-3)
+
+
+N = 720
+ANGLE = 2 * np.pi * np.arange(N) / N
+SPIN = 600.0 + 100.0 * np.sin(ANGLE)
+ACCELERATION = 75.0 * 100.0 * np.cos(ANGLE)
+INERTIA, RADIUS = 1.2e-7, 8e-3
+
+
+def test_enough_traction_rolls():
+    found = skid(np.full(N, 500.0), SPIN, 75.0, INERTIA, RADIUS, 0.05, drag=1e-3)
+    assert found.share == 0.0
+    assert found.heat == 0.0
+    np.testing.assert_allclose(found.spin, SPIN, rtol=1e-12)
+    needed = (INERTIA * ACCELERATION + 1e-3) / RADIUS
+    np.testing.assert_allclose(found.traction, needed, atol=0.01 * np.abs(needed).max())
+
+
+def test_too_little_traction_slips():
+    """Slip begins where the demand for traction passes mu, and is bound by mu N."""
+    demand = traction_demand(np.full(N, 0.5), ACCELERATION, INERTIA, RADIUS)
+    mu = 0.6 * demand.max()
+    found = skid(np.full(N, 0.5), SPIN, 75.0, INERTIA, RADIUS, mu)
+    assert 0.0 < found.share < 1.0
+    assert np.abs(found.traction).max() <= mu * 0.5 * (1 + 1e-12)
+    assert np.ptp(found.spin) < np.ptp(SPIN)
+    assert found.heat > 0.0
+    held = skid(np.full(N, 0.5), SPIN, 75.0, INERTIA, RADIUS, 1.02 * demand.max())
+    assert held.share == 0.0
+
+
+def test_drag_beyond_the_grip_stops_the_roller():
+    found = skid(np.full(N, 10.0), SPIN, 75.0, INERTIA, RADIUS, 0.01, drag=2e-3)
+    assert found.spin.max() < 0.05 * SPIN.max()
+
+
+def test_skid_refusals():
+    for bad in ({"inertia": 0.0}, {"radius": -1.0}, {"friction": -0.1}):
+        given = {"inertia": INERTIA, "radius": RADIUS, "friction": 0.1} | bad
+        with pytest.raises(InputError, match=next(iter(bad))):
+            skid(np.ones(N), SPIN, 75.0, **given)
+    with pytest.raises(InputError, match="normal_force"):
+        skid(-np.ones(N), SPIN, 75.0, INERTIA, RADIUS, 0.1)
+
+
+def test_shipped_cards():
+    """Makers differ: at least two ratings of the 625, each with its source."""
+    cards = read_cards()
+    sizes = {(c.bore, c.outer_diameter, c.width) for c in cards.values()}
+    assert sizes == {(5e-3, 16e-3, 5e-3)}
+    assert {c.C0 for c in cards.values()} >= {380.0, 670.0}
+    assert all(card.source for card in cards.values())
+    assert all(card.to_verify for card in cards.values())
+    assert all(isinstance(card, BearingCard) for card in cards.values())
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "match"),
+    [
+        ('C0 = "0.38 kN"\n', "", r"C0 = missing"),
+        ('C0 = "0.38 kN"', "C0 = 380", "a number with a unit"),
+        ("balls = 6 ", "balls = 6.5 ", "a whole number"),
+        ("balls = 6 ", "balls = 2 ", ">= 3"),
+        ('width = "5 mm"', 'width = "5 mm"\ncolour = "red"', "unknown key"),
+        ('ring_thickness = "1.0 mm"', 'ring_thickness = "4 mm"', "outside the pitch circle"),
+        ('pitch_diameter = "10.5 mm"', 'pitch_diameter = "20 mm"', "between bore and outside"),
+    ],
+)
+def test_refuses_a_bad_card(tmp_path, old, new, match):
+    path = tmp_path / "cards.toml"
+    path.write_text(CARDS.read_text(encoding="utf-8").replace(old, new))
+    with pytest.raises(InputError, match=match):
+        read_cards(path)
+
+
+def test_refuses_what_is_no_card(tmp_path):
+    path = tmp_path / "cards.toml"
+    path.write_text("a = 1")
+    with pytest.raises(InputError, match="a table"):
+        read_cards(path)
+    path.write_text("a = ")
+    with pytest.raises(InputError, match="TOML"):
+        read_cards(path)
