@@ -13,7 +13,7 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from geometry.errors import InputError
 from pipeline.case_fields import (
     Cam,
-    Engine,
+    Cylinder,
     Follower,
     Guides,
     LiftTable,
@@ -28,10 +28,18 @@ from pipeline.case_fields import (
     Solver,
     Spring,
     Text,
-    TorqueTable,
     Waiver,
 )
 from pipeline.case_text import to_toml
+from pipeline.engine_fields import (
+    KINDS,
+    Crankshaft,
+    Engine,
+    PressureTable,
+    SpeedTable,
+    VoltageTable,
+    engine_files,
+)
 from pipeline.results import hash_inputs
 
 CASE_BYTES = 256 * 1024
@@ -48,6 +56,7 @@ class Case(Section):
     title: Text = ""
     notes: Text = ""
     engine: Engine | None = None
+    crankshaft: Crankshaft | None = None
     lift: LiftTable | None = None
     mechanism: Mechanism = Mechanism()
     spring: Spring
@@ -140,8 +149,7 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
 
 def includes(case: Case) -> Iterator[tuple[str, str]]:
     """Dotted field and file name of every file a case draws in."""
-    if isinstance(case.engine, TorqueTable):
-        yield "engine.file", case.engine.file
+    yield from engine_files(case.engine)
     if case.lift is not None:
         yield "lift.file", case.lift.file
     for k, load_case in enumerate(case.load_cases):
@@ -216,7 +224,9 @@ def _check_road(case: Case) -> None:
     if case.engine is not None and ratio != 2.0:
         raise InputError("mechanism.gear_ratio", ratio, "2 with an engine: a cam turn is 720 deg")
     engine = case.engine
-    if engine is not None and not isinstance(engine, TorqueTable):
+    if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is None:
+        raise InputError("crankshaft.inertia", "missing", "given, to draw torque from a speed")
+    if isinstance(engine, (Cylinder, PressureTable)):
         throw = engine.crank_radius + abs(engine.pin_offset)
         _require(
             "engine.rod_length",
@@ -309,7 +319,7 @@ _WORDS = {
     "model_attributes_type": "a table",
     "tuple_type": "an array of tables",
     "date_type": "a date such as 2025-06-30",
-    "union_tag_not_found": 'a table with kind = "cylinder" or "table"',
+    "union_tag_not_found": "a table with kind = " + " or ".join(f'"{kind}"' for kind in KINDS),
     "too_short": "at least {min_length} long",
     "too_long": "at most {max_length} long",
     "string_too_short": "at least {min_length} characters",
@@ -347,7 +357,7 @@ def _dotted(location: tuple[int | str, ...]) -> str:
     """``("load_case", 0, "speed")`` as ``load_case[0].speed``; the tag of a union is left out."""
     text = ""
     for position, part in enumerate(location):
-        if position == 1 and location[0] == "engine" and part in ("cylinder", "table"):
+        if position == 1 and location[0] == "engine" and part in KINDS:
             continue
         text += f"[{part}]" if isinstance(part, int) else f".{part}"
     return text.lstrip(".")

@@ -137,6 +137,16 @@ def _suggestion(word: str, known: Iterable[str]) -> str:
     return f"; did you mean {close[0]}?" if close else f": {', '.join(known)}"
 
 
+class LiftPoint(Section):
+    """One row of a valve's lift table, at the valve."""
+
+    angle: Angle
+    lift: Annotated[float, In("mm", at_least=0, at_most=1000)]
+
+
+LiftRows = Annotated[tuple[LiftPoint, ...], Field(strict=False, max_length=720)]
+
+
 class TorqueTable(Section):
     """Engine torque over one cycle, from a file: crank angle column, torque column."""
 
@@ -156,12 +166,15 @@ class Cylinder(Section):
     rod_mass: Mass
     pin_offset: Annotated[float, In("mm", above=-1000, below=1000)] = 0.0
     rod_big_end_share: Share = 2.0 / 3.0
+    firing_offsets: Annotated[tuple[Angle, ...], Field(strict=False, min_length=1)] = (0.0,)
 
     intake_valve_open: Angle = 0.0
     intake_valve_close: Angle = radians(220.0)
     exhaust_valve_open: Angle = radians(470.0)
     exhaust_valve_close: Angle = radians(720.0)
     valve_lift: Length = 0.0055
+    intake_lift_table: LiftRows = ()
+    exhaust_lift_table: LiftRows = ()
     intake_valve_diameter: Length = 0.025
     exhaust_valve_diameter: Length = 0.022
     valve_discharge_coefficient: Fraction = 0.6
@@ -202,12 +215,13 @@ class Cylinder(Section):
         """The engine as the cycle model takes it; no friction pressure means the closing one."""
         from pipeline.engine.cylinder import CylinderEngine
 
-        values = self.model_dump(exclude={"kind", "friction_pressure"})
+        tables = ("intake_lift_table", "exhaust_lift_table")
+        values = self.model_dump(exclude={"kind", "friction_pressure", *tables})
+        for name in tables:
+            rows = tuple((row.angle, row.lift) for row in getattr(self, name))
+            values[name] = rows or None
         pressure = self.friction_pressure
         return CylinderEngine(**values, friction="closing" if pressure is None else pressure)
-
-
-Engine = Annotated[TorqueTable | Cylinder, Field(discriminator="kind")]
 
 
 class LiftTable(Section):

@@ -28,12 +28,15 @@ def _table(model: BaseModel, path: tuple[str, ...], renamed: Mapping[str, str]) 
         key, value = field.alias or name, getattr(model, name)
         if value is None or value in ((), {}):
             continue
-        if isinstance(value, (BaseModel, dict, tuple)):
+        unit = _unit_of(field.annotation, field.metadata)
+        if isinstance(value, tuple) and isinstance(value[0], float):
+            yield f"{key} = [{', '.join(_value(each, unit) for each in value)}]"
+        elif isinstance(value, (BaseModel, dict, tuple)):
             tables.append((key, value))
         else:
-            if key in ("file", "torque"):
+            if key in ("file", "torque", "motored_file", "reference_file"):
                 value = renamed[value]
-            yield f"{key} = {_value(value, _unit_of(field.annotation, field.metadata))}"
+            yield f"{key} = {_value(value, unit)}"
     for key, value in tables:
         yield from _subtable(value, (*path, key), renamed)
 

@@ -20,7 +20,6 @@ from meshes.files import write_msh
 from meshes.quality import Quality, gate, quality
 from pipeline import cycle as cycles
 from pipeline.case import Case
-from pipeline.case_fields import TorqueTable
 from pipeline.checks.check import Check
 from pipeline.checks.everything import all_checks, design_checks
 from pipeline.checks.trial import TrialEvidence
@@ -34,8 +33,9 @@ from pipeline.contact.pair import (
 )
 from pipeline.contact.pair_certificate import EDGES, contact_meshes
 from pipeline.cycle import Cycle, Turn
-from pipeline.engine.torque import Torque, torque_from_csv, torque_from_cylinder
+from pipeline.engine.torque import Torque
 from pipeline.engine.trace import read_trace
+from pipeline.measured import engine_torque
 from pipeline.smoothing.smoothers import Smoother, smoothed
 
 # Positions solved together: what an interruption may cost, and the grain of the progress bar.
@@ -77,15 +77,7 @@ def engine_torques(case: Case) -> dict[str, Torque]:
     """Engine torque of each load case by name; empty for a case that starts at the lift."""
     if case.engine is None:
         return {}
-    found = {}
-    for state in case.load_cases:
-        if state.torque is not None:
-            found[state.name] = torque_from_csv(case.path(state.torque))
-        elif isinstance(case.engine, TorqueTable):
-            found[state.name] = torque_from_csv(case.path(case.engine.file))
-        else:
-            found[state.name] = torque_from_cylinder(case.engine.build(), state.speed)
-    return found
+    return {state.name: engine_torque(case, state) for state in case.load_cases}
 
 
 def designed_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None) -> Lift:

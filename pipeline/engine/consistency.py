@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +11,6 @@ from geometry.arrays import finite
 from geometry.errors import InputError
 from pipeline.engine.crankshaft import energy_swing
 
-CYCLE_ANGLE = 4.0 * pi
 FLAG_ABOVE = 0.10
 
 
@@ -25,7 +23,6 @@ class Finding:
     id, title, unit : str
     given, implied : float    in `unit`
     how : str                 where the implied value comes from
-    scale : float             in `unit`, of which the difference is a share; 0: of the given value
     """
 
     id: str
@@ -34,15 +31,14 @@ class Finding:
     implied: float
     unit: str
     how: str
-    scale: float = 0.0
 
     @property
     def difference(self) -> float:
-        """(implied - given) over the scale; infinite where that is zero and they differ."""
-        off, scale = self.implied - self.given, abs(self.scale or self.given)
-        if scale == 0.0:
+        """(implied - given) / given; infinite where that is zero and they differ."""
+        off = self.implied - self.given
+        if self.given == 0.0:
             return 0.0 if off == 0.0 else float(np.copysign(np.inf, off))
-        return off / scale
+        return off / abs(self.given)
 
     @property
     def flagged(self) -> bool:
@@ -97,26 +93,26 @@ def inertia_finding(
     )
 
 
-def power_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: float) -> Finding:
-    """Power that alternates in the cam against that the crank gives up to it.
+def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: float) -> Finding:
+    """Torque at the cam over the torque at the crank that it balances, against the gear ratio.
 
-    Speeds stand as 1 to the gear ratio, so the cam's torque must be that of the crank times the
-    ratio: both have the same power at every angle. Compared by their root mean square.
+    Speeds stand as 1 to the gear ratio, so for equal power at every angle the cam's torque must be
+    that of the crank times the ratio. What smoothing took away shows here too.
 
     Parameters
     ----------
     crank_torque : array (n,)   N m about its mean, that the cam should balance
-    cam_torque : array (n,)     N m, that the cam delivers
+    cam_torque : array (n,)     N m, that the spring gives the cam at the same angles
     gear_ratio : float          crank turns per cam turn
     """
     crank, cam = finite("crank_torque", crank_torque), finite("cam_torque", cam_torque)
     return Finding(
         "power",
-        "torque at the cam over torque at the crank",
+        "power balance, crank to cam: torque ratio",
         gear_ratio,
-        float(np.sqrt((cam @ crank) ** 2) / (crank @ crank)),
+        float(cam @ crank) / float(crank @ crank),
         "-",
-        "regression of the cam's torque on the crank's about its mean; the gear ratio by power",
+        "regression of the cam's torque on the crank's about its mean, against the gear ratio",
     )
 
 
@@ -131,11 +127,13 @@ def energy_finding(
     )  # fmt: skip
 
 
-def work_finding(torque: ArrayLike, load_torque: float) -> Finding:
-    """Work of the engine per cycle against that of a stated load, J."""
-    work = CYCLE_ANGLE * float(finite("torque", torque).mean())
+def work_finding(friction_loss: float, crank_work: float) -> Finding:
+    """Work the crank gives the mechanism per cycle against the heat of its guides, J."""
     return Finding(
-        "work", "work per cycle", CYCLE_ANGLE * load_torque, work, "J",
-        "mean torque over 4 pi against the load's",
-        scale=float(np.abs(finite("torque", torque)).mean()) * CYCLE_ANGLE,
-    )  # fmt: skip
+        "work",
+        "work of the mechanism per cycle",
+        friction_loss,
+        crank_work,
+        "J",
+        "work taken from the crank at its varying speed against guide friction at constant speed",
+    )

@@ -1,0 +1,211 @@
+"""Crank speed of a case with and without its mechanism, and whether its inputs agree."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Array, uniform_turn
+from geometry.pitch_curve import PitchCurve
+from pipeline.case import Case
+from pipeline.case_fields import Cylinder
+from pipeline.engine.consistency import (
+    Finding,
+    energy_finding,
+    inertia_finding,
+    ratio_finding,
+    work_finding,
+)
+from pipeline.engine.crankshaft import (
+    CrankMotion,
+    Inertia,
+    Load,
+    MechanismTorque,
+    crank_motion,
+    equivalent_inertia,
+)
+from pipeline.engine.torque import Torque
+from pipeline.engine_fields import PressureTable
+from pipeline.follower.forces import FollowerSystem, follower_loads
+
+POSITIONS = 720
+
+
+@dataclass(frozen=True, eq=False)
+class SpeedStudy:
+    """Three motions of one crank under one torque.
+
+    Parameters
+    ----------
+    before : CrankMotion           the engine alone
+    inertia_alone : CrankMotion    with the mechanism mounted and its follower held off the cam
+    after : CrankMotion            with the mechanism at work
+    added_inertia : float          kg m2, of a flywheel that would steady the crank of the engine
+                                   alone as much as the mechanism does
+    """
+
+    before: CrankMotion
+    inertia_alone: CrankMotion
+    after: CrankMotion
+    added_inertia: float
+
+    @property
+    def columns(self) -> Mapping[str, Array]:
+        """SI values of ``1_speed.csv``."""
+        return {
+            "crank_angle": self.before.theta,
+            "speed_before": self.before.speed,
+            "speed_inertia_alone": self.inertia_alone.speed,
+            "speed_after": self.after.speed,
+        }
+
+    def flywheel_masses(self, outer_radius: float) -> tuple[float, float]:
+        """Mass (kg) of that flywheel as a plain disc and as a thin rim of an outer radius (m)."""
+        return 2.0 * self.added_inertia / outer_radius**2, self.added_inertia / outer_radius**2
+
+
+def follower_inertia(pitch: PitchCurve, mass: float, gear_ratio: float, count: int) -> Array:
+    """m (ds/dtheta_crank)^2 at equal angles of the cam turn, kg m2."""
+    slope = pitch.lift(uniform_turn(count), 1) / gear_ratio
+    return np.asarray(mass * slope**2)
+
+
+def mechanism_torque(
+    pitch: PitchCurve, system: FollowerSystem, gear_ratio: float, count: int
+) -> MechanismTorque:
+    """Torque of spring and friction on the crank; the follower's inertia is left to J(theta).
+
+    Friction depends on the cam's push and so on the follower's acceleration at the speed and
+    the acceleration of the crank.
+    """
+    theta = uniform_turn(count)
+
+    def torque(speed: Array, acceleration: Array) -> Array:
+        loads = follower_loads(pitch, system, speed / gear_ratio, theta, acceleration / gear_ratio)
+        return np.asarray((loads.inertia_force * loads.lift_slope - loads.cam_torque) / gear_ratio)
+
+    return torque
+
+
+def speed_study(
+    torque: Array,
+    inertia: Inertia,
+    mean_speed: float,
+    pitch: PitchCurve,
+    system: FollowerSystem,
+    *,
+    gear_ratio: float = 2.0,
+    mechanism_inertia: float = 0.0,
+    load: Load = Load(),  # noqa: B008 - frozen
+) -> SpeedStudy:
+    """Crank speed without, with the inertia of, and with a balancing cam.
+
+    Parameters
+    ----------
+    torque : array (n,)          N m at equal crank angles, without the inertia that `inertia` holds
+    inertia : Inertia            of the engine, at the same angles
+    mean_speed : float           rad/s
+    mechanism_inertia : float    kg m2, of what turns in the mechanism, at the crank
+
+    Raises
+    ------
+    CamError
+        If the engine would stall.
+    """
+    count = torque.size
+    moved = follower_inertia(pitch, system.mass, gear_ratio, count)
+    before = crank_motion(torque, inertia, mean_speed, load=load)
+    mounted = inertia.plus(mechanism_inertia)
+    alone = crank_motion(torque, mounted, mean_speed, load=load)
+    after = crank_motion(
+        torque,
+        mounted.plus(0.0, moved),
+        mean_speed,
+        load=load,
+        mechanism=mechanism_torque(pitch, system, gear_ratio, count),
+    )
+    wanted = after.statistics.std
+    needed = equivalent_inertia(before.net_torque, mean_speed, wanted) if wanted > 0 else np.inf
+    return SpeedStudy(before, alone, after, needed - inertia.mean)
+
+
+def study_of(case: Case, torque: Torque, speed: float, pitch: PitchCurve) -> SpeedStudy | None:
+    """The study of one load case; None where the case tells nothing of its crankshaft.
+
+    Where the engine states its reciprocating masses they are part of J(theta), and the torque
+    of their inertia at constant speed is taken out.
+    """
+    shaft = case.crankshaft
+    if shaft is None:
+        return None
+    values, varying = torque.total, np.zeros(torque.theta_crank.size)
+    if isinstance(case.engine, (Cylinder, PressureTable)) and "inertia" in torque.components:
+        values = values - torque.components["inertia"]
+        varying = case.engine.build().reciprocating_inertia(torque.theta_crank)
+    return speed_study(
+        values,
+        Inertia(shaft.inertia, varying),
+        speed,
+        pitch,
+        FollowerSystem.from_case(case),
+        gear_ratio=case.mechanism.gear_ratio,
+        mechanism_inertia=shaft.mechanism_inertia,
+        load=Load(shaft.load_exponent),
+    )
+
+
+def speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:
+    """Contents of ``speed`` in ``run.json`` for one load case; radius (m) of the cam."""
+    found: dict[str, Any] = {}
+    for name in ("before", "inertia_alone", "after"):
+        motion: CrankMotion = getattr(study, name)
+        ripple = motion.statistics
+        found[name] = {
+            "mean_rad_per_s": ripple.mean,
+            "std_rad_per_s": ripple.std,
+            "p2p_rad_per_s": ripple.peak_to_peak,
+            "fluctuation": ripple.fluctuation,
+            "minimum_rad_per_s": ripple.minimum,
+            "minimum_crank_angle_deg": float(np.degrees(ripple.minimum_angle)),
+            "maximum_rad_per_s": ripple.maximum,
+            "maximum_crank_angle_deg": float(np.degrees(ripple.maximum_angle)),
+            "load_mean_Nm": float(motion.load_torque.mean()),
+            "closure": motion.closure,
+        }
+    disc, rim = study.flywheel_masses(radius)
+    return found | {
+        "flywheel_for_the_same_std": {
+            "added_inertia_kg_m2": study.added_inertia,
+            "outer_radius_mm": 1e3 * radius,
+            "disc_mass_kg": disc,
+            "rim_mass_kg": rim,
+        }
+    }
+
+
+def consistency(
+    case: Case, torque: Torque, speed: float, pitch: PitchCurve, study: SpeedStudy | None
+) -> tuple[Finding, ...]:
+    """What the inputs of a case say of one another."""
+    ratio, system = case.mechanism.gear_ratio, FollowerSystem.from_case(case)
+    theta = uniform_turn(torque.theta_crank.size)
+    loads = follower_loads(pitch, system, speed / ratio, theta)
+    balanced = torque.without_mean().total
+    spring_torque = loads.spring_force * loads.lift_slope
+    stroke = pitch.lift.stroke
+    stored = stroke * (system.preload + 0.5 * system.spring_rate * stroke)
+    found = [
+        ratio_finding(balanced, spring_torque, ratio),
+        energy_finding(balanced, stored),
+    ]
+    if study is not None:
+        taken = -4.0 * pi * float(study.after.mechanism_torque.mean())
+        found.append(work_finding(loads.friction_loss, taken))
+    shaft = case.crankshaft
+    if shaft is not None and shaft.measured_speed_std is not None:
+        found.append(inertia_finding(shaft.inertia, balanced, speed, shaft.measured_speed_std))
+    return tuple(found)
