@@ -68,6 +68,9 @@ def _columns(text: str) -> tuple[Column, ...]:
 
 
 CRANK = (Column("crank_angle", "deg"),)
+SPEED = _columns(
+    "crank_angle [deg]; speed_before [rad/s]; speed_inertia_alone [rad/s]; speed_after [rad/s]"
+)
 LIFT = _columns(
     "cam_angle [deg]; crank_angle [deg]; lift [mm]; lift_d1 [mm/rad]; lift_d2 [mm/rad^2];"
     "lift_d3 [mm/rad^3]"
@@ -200,6 +203,7 @@ class Run:
     summary: Mapping[str, Any]
     torque: Table | None
     trials: tuple[TrialRecord, ...]
+    speed: Table | None = None
 
     @property
     def final(self) -> TrialRecord:
@@ -221,13 +225,14 @@ def load_run(path: str | Path) -> Run:
     """
     path = Path(path)
     summary = read_summary(path)
-    torque = path / "1_torque.csv"
+    torque, speed = path / "1_torque.csv", path / "1_speed.csv"
     run = Run(
         path=path,
         case_text=read_text(path / "case.toml"),
         summary=summary,
         torque=read_table(torque) if torque.exists() else None,
         trials=tuple(_read_trial(path, k + 1) for k in range(summary["trials"])),
+        speed=read_table(speed) if speed.exists() else None,
     )
     if run.verdict != summary["verdict"]:
         said, found = summary["verdict"], run.verdict

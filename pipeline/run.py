@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.errors import CamError
 from geometry.contour import Contour
 from pipeline import trial as road
 from pipeline.case import Case
@@ -22,12 +23,14 @@ from pipeline.contact.pair_certificate import solve_pair
 from pipeline.cycle import Cycle, Turn, contact_pair, finished
 from pipeline.engine.torque import Torque
 from pipeline.fields import write_contact, write_turn
+from pipeline.measured import measurement_record
 from pipeline.progress import Progress
 from pipeline.records import contour_columns, headline, lift_columns, pressure_arrays, trial_record
 from pipeline.run_folder import RunFolder
 from pipeline.smoothing.gentler import Next, Stop, next_smoother
 from pipeline.smoothing.outlook import Attempt
 from pipeline.smoothing.smoothers import Smoother
+from pipeline.speed import consistency, speed_record, study_of
 from pipeline.trial import Trial
 
 _FIELD_STEP_DEG = 5.0
@@ -205,6 +208,29 @@ def _write_torque(folder: RunFolder, case: Case, torques: Mapping[str, Torque]) 
     design = torques[case.load_cases[0].name]
     parts = {"total": design.total, **design.components}
     folder.write_torque(design.theta_crank, parts)
+
+
+def _crank_speed(
+    folder: RunFolder, case: Case, torques: Mapping[str, Torque], final: Trial
+) -> dict[str, Any]:
+    """Ripple of the crank with the final cam, whether the inputs agree, what was measured."""
+    pitch, ripple, findings = final.contour.pitch, {}, []
+    for number, state in enumerate(case.load_cases if torques else ()):
+        torque = torques[state.name]
+        study = None
+        try:
+            study = study_of(case, torque, state.speed, pitch)
+        except CamError as error:  # a crank that stalls contradicts the case, not the cam
+            ripple[state.name] = {"refused": str(error)}
+        if study is not None:
+            radius = final.contour.radius_max().value
+            ripple[state.name] = speed_record(study, radius)
+            if number == 0:
+                folder.write_speed(study.columns)
+        found = consistency(case, torque, state.speed, pitch, study)
+        findings += [{"load_case": state.name, **one.as_record()} for one in found]
+    measured = measurement_record(case)
+    return {"speed": ripple or None, "consistency": findings, "measurement": measured}
 
 
 def _write_cycles(journey: Journey, number: int, cycles: tuple[Cycle, ...]) -> None:

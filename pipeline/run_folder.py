@@ -119,6 +119,10 @@ class RunFolder:
         columns = (*results.CRANK, *(results.Column(name, "N m") for name in torques))
         self._write_table("1_torque.csv", columns, {"crank_angle": crank_angle, **torques})
 
+    def write_speed(self, values: Mapping[str, ArrayLike]) -> None:
+        """``1_speed.csv`` from SI values by the names of `results.SPEED`."""
+        self._write_table("1_speed.csv", results.SPEED, values)
+
     def write_lift(self, trial: int, values: Mapping[str, ArrayLike]) -> None:
         """``2_lift.csv`` from SI values by the names of `results.LIFT`."""
         self._write_table(f"trial_{trial}/2_lift.csv", results.LIFT, values)
