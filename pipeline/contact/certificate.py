@@ -3,6 +3,9 @@
 Second-order bodies, continuous linear pressure on the facets of one surface, integrals split at
 the knots and facets of both, the gap from the true shapes and not from the facets, the bodies
 condensed to a compliance of the pressures, complementarity solved exactly under the given load.
+
+Frictionless: the surfaces may slide past each other, also where unlike materials would drag each
+other along (Dundurs' beta is not felt), and pressures act along the one normal of the frame.
 """
 
 from __future__ import annotations
@@ -77,6 +80,7 @@ def solve_contact(
     half_width: float,
     *,
     pressure_on: int = 0,
+    shapes: PressureShapes | None = None,
 ) -> ContactSolution:
     """Contact pressures, stresses and displacements of two bodies.
 
@@ -87,7 +91,8 @@ def solve_contact(
     gap : function xi -> array     distance of the undeformed surfaces along the normal, m
     line_load : float              N/m, > 0
     half_width : float             Hertz half-width that sets the window, m
-    pressure_on : int              the side whose facet ends are the pressure knots
+    pressure_on : int              the side whose surface nodes are the pressure knots
+    shapes : PressureShapes        knots of the caller's choice instead
 
     Raises
     ------
@@ -100,9 +105,10 @@ def solve_contact(
     for name, value, si in (("line_load", line_load, "N/m"), ("half_width", half_width, "m")):
         if not value > 0:
             raise InputError(name, value, f"> 0 {si}")
-    chosen = sides[pressure_on]
-    reach = _WINDOW * half_width
-    shapes = PressureShapes(knots_of(chosen.body.mesh, chosen.surface, frame, reach))
+    if shapes is None:
+        chosen = sides[pressure_on]
+        reach = _WINDOW * half_width
+        shapes = PressureShapes(knots_of(chosen.body.mesh, chosen.surface, frame, reach))
     seen = [_LoadedNodes.of(side, frame, shapes) for side in sides]
     compliance = seen[0].compliance + seen[1].compliance
     xi, weights = shapes.quadrature()
@@ -114,7 +120,7 @@ def solve_contact(
         guess=np.abs(shapes.centres) < half_width,
     )
     pressure = solution.pressure[0]
-    if pressure[0] > 0 or pressure[-1] > 0:
+    if not shapes.open_ends and (pressure[0] > 0 or pressure[-1] > 0):
         raise ContactError("the contact is wider than the window it was sought in")
     displacements = (seen[0].displacement(-pressure), seen[1].displacement(pressure))
     support = sides[0].body.reaction(displacements[0]) - line_load * frame.normal

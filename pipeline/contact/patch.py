@@ -3,7 +3,8 @@
 A half-disc in units of the half-width, forty half-widths across, so that its compliance and
 stresses serve any size and load. Its arc moves as the half-plane does, which leaves nothing to
 truncate. What the real body adds (its own boundary, bore and support) is smooth and is put on
-by `pipeline.contact.bodies`.
+by `pipeline.contact.bodies`. Normal pressures only: what the tangential stiffness of unlike
+materials (Dundurs' beta) would add is left out, here as in the certificate.
 """
 
 from __future__ import annotations

@@ -1,0 +1,49 @@
+"""Three meshes of one quantity."""
+
+import numpy as np
+import pytest
+
+from geometry.errors import InputError
+from pipeline.contact.convergence import converged
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0, 3.0])
+def test_a_power_law_gives_its_limit_and_its_order(order):
+    sizes = np.array([4.0, 2.0, 1.0])
+    found = converged(10 + 0.02 * sizes**order, 2.0)
+    np.testing.assert_allclose(found.extrapolated, 10, rtol=1e-12)
+    np.testing.assert_allclose(found.order, order, rtol=1e-9)
+    # 1.25 times the distance of the finest value from the limit.
+    np.testing.assert_allclose(found.gci, 1.25 * 0.02 / found.values[2], rtol=1e-9)
+
+
+def test_a_falling_power_law_does_so_too():
+    found = converged(10 - 0.3 * np.array([16.0, 4.0, 1.0]), 2.0)
+    np.testing.assert_allclose(found.extrapolated, 10, rtol=1e-12)
+
+
+def test_an_order_above_three_is_not_trusted_for_the_error_bar():
+    found = converged((1.0 + 0.32, 1.0 + 0.02, 1.0), 2.0)
+    assert found.order == pytest.approx(np.log2(15))
+    assert found.gci == pytest.approx(1.25 * 0.02 / 7)
+
+
+@pytest.mark.parametrize(
+    "values", [(1.0, 1.02, 1.01), (1.0, 1.01, 1.03), (1.0, 1.0001, 1.00015), (2.0, 2.0, 2.0)]
+)
+def test_scatter_has_no_order_and_three_times_its_spread_as_error_bar(values):
+    found = converged(values, 2.0)
+    assert found.order is None
+    assert found.extrapolated == values[2]
+    assert found.gci == pytest.approx(3 * (max(values) - min(values)) / values[2])
+
+
+@pytest.mark.parametrize("values", [(1.0, 2.0), (1.0, np.nan, 2.0), (1.0, 2.0, 3.0, 4.0)])
+def test_anything_but_three_finite_values_is_refused(values):
+    with pytest.raises(InputError):
+        converged(values, 2.0)
+
+
+def test_a_ratio_too_small_to_tell_anything_is_refused():
+    with pytest.raises(InputError):
+        converged((3.0, 2.0, 1.0), 1.05)
