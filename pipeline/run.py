@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.errors import CamError
 from geometry.contour import Contour
+from geometry.errors import CamError
 from pipeline import trial as road
 from pipeline.case import Case
 from pipeline.certify import certified, positions_to_certify
