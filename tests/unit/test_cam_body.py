@@ -1,0 +1,143 @@
+"""Key, gear, shaft bearings and unbalance against hand calculation."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.errors import GeometryError, InputError
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from pipeline.follower.cam_body import (
+    Camshaft,
+    counter_hole,
+    key_stress,
+    shaft_loads,
+    torque_reversals,
+    unbalance,
+)
+
+THETA = uniform_turn(720)
+ECCENTRICITY, DISC, ROLLER = 2e-3, 40e-3, 8e-3
+DENSITY, WIDTH = 7850.0, 5e-3
+
+
+def eccentric():
+    """A disc of radius 40 mm out of centre by 2 mm: pitch curve a circle of 48 mm."""
+    far = DISC + ROLLER
+    d = ECCENTRICITY * np.cos(THETA) + np.sqrt(far**2 - (ECCENTRICITY * np.sin(THETA)) ** 2)
+    return Contour(PitchCurve(Lift(THETA, d - d.min()), float(d.min())), ROLLER)
+
+
+def test_key():
+    found = key_stress(np.array([20.0, -10.0]), 17e-3, 5e-3, 5e-3, 5e-3)
+    np.testing.assert_allclose(
+        found.pressure, [4 * 20 / (17e-3 * 25e-6), -4 * 10 / (17e-3 * 25e-6)]
+    )
+    np.testing.assert_allclose(found.shear, found.pressure / 2)  # square key
+    with pytest.raises(InputError, match="length"):
+        key_stress(1.0, 17e-3, 5e-3, 5e-3, 0.0)
+
+
+def test_reversals():
+    found = torque_reversals(THETA, 10 * np.sin(2 * THETA + 0.3))
+    assert len(found) == 4
+    np.testing.assert_allclose(
+        [r.theta for r in found], (np.pi * np.arange(1, 5) - 0.3) / 2, atol=1e-6
+    )
+    np.testing.assert_allclose([r.slope for r in found], [-20, 20, -20, 20], rtol=1e-4)
+
+
+def test_drag_holds_the_flanks_together():
+    assert torque_reversals(THETA, 10 * np.sin(THETA), drag=10.5) == ()
+    assert len(torque_reversals(THETA, 10 * np.sin(THETA), drag=9.5)) == 2
+
+
+def test_a_dwell_is_one_reversal():
+    torque = np.where(np.abs(THETA - np.pi) < 1.0, 0.0, np.sign(np.pi - THETA))
+    assert len(torque_reversals(THETA, torque)) == 2  # the dwell, and the turn's end
+    assert torque_reversals(THETA, np.zeros(720)) == ()
+
+
+SHAFT = Camshaft(0.06, 0.02, -0.015, 0.02)
+
+
+def test_shaft_is_in_equilibrium():
+    rng = np.random.default_rng(1)
+    along, across, torque = rng.normal(size=(3, 50)) * 500
+    found = shaft_loads(along, across, torque, SHAFT)
+    total = found.cam + found.gear + found.bearing_1 + found.bearing_2
+    np.testing.assert_allclose(total, 0.0, atol=1e-9)
+    moment = 0.02 * found.cam - 0.015 * found.gear + 0.06 * found.bearing_2
+    np.testing.assert_allclose(moment, 0.0, atol=1e-9)
+    # the gear's force turns the shaft with the cam's torque: mesh at (-r, 0)
+    np.testing.assert_allclose(-SHAFT.gear_radius * found.gear[1], torque, rtol=1e-12)
+    assert (found.load_1 >= 0).all()
+    assert (found.load_2 >= 0).all()
+
+
+def test_gear_presses_the_wheels_apart():
+    found = shaft_loads(np.zeros(2), np.zeros(2), np.array([5.0, -5.0]), SHAFT)
+    assert (found.gear[0] > 0).all()  # away from the mesh at the left, whichever way it turns
+    np.testing.assert_allclose(found.gear[0], 250 * np.tan(np.radians(20)))
+
+
+@pytest.mark.parametrize(
+    ("values", "name"),
+    [((0.0, 0.1, 0.1, 0.1), "bearing_spacing"), ((0.1, np.nan, 0.1, 0.1), "cam_position")],
+)
+def test_shaft_refusals(values, name):
+    with pytest.raises(InputError, match=name):
+        Camshaft(*values)
+
+
+def test_unbalance_of_an_eccentric_disc():
+    """Area pi R^2, first moment e pi R^2: to 1e-9, the lift being a spline of 720 knots."""
+    found = unbalance(eccentric(), 8.5e-3, None, WIDTH, DENSITY)
+    full = np.pi * DISC**2
+    assert found.area == pytest.approx(full - np.pi * 8.5e-3**2, rel=1e-9)
+    np.testing.assert_allclose(found.moment, [ECCENTRICITY * full, 0.0], atol=1e-9 * full * DISC)
+    assert found.angle == pytest.approx(0.0, abs=1e-8)
+    assert found.mass == pytest.approx(DENSITY * WIDTH * found.area)
+    assert found.force(80.0) == pytest.approx(DENSITY * WIDTH * ECCENTRICITY * full * 6400)
+    assert found.eccentricity == pytest.approx(ECCENTRICITY * full / found.area)
+
+
+def test_keyway_is_taken_off_exactly():
+    """Against a sum over a fine grid."""
+    key = SimpleNamespace(width=5e-3, depth=2.3e-3, angle=2.0)
+    with_key = unbalance(eccentric(), 8.5e-3, key, WIDTH, DENSITY)
+    without = unbalance(eccentric(), 8.5e-3, None, WIDTH, DENSITY)
+    y = (np.arange(4000) + 0.5) / 4000 * 5e-3 - 2.5e-3
+    inner = np.sqrt(8.5e-3**2 - y**2)
+    area = np.mean(10.8e-3 - inner) * 5e-3
+    arm = np.mean(0.5 * (10.8e-3**2 - inner**2)) * 5e-3
+    assert without.area - with_key.area == pytest.approx(area, rel=1e-6)
+    np.testing.assert_allclose(
+        without.moment - with_key.moment, arm * np.array([np.cos(2.0), np.sin(2.0)]), rtol=1e-6
+    )
+
+
+def test_counter_hole_removes_the_unbalance():
+    contour = eccentric()
+    found = unbalance(contour, 8.5e-3, None, WIDTH, DENSITY)
+    wall = 3e-3
+    hole = counter_hole(contour, found, 8.5e-3, wall)
+    left = found.moment - np.pi * hole.radius**2 * hole.centre
+    assert np.hypot(*left) < 1e-9 * np.hypot(*found.moment)
+    to_contour = DISC - np.hypot(hole.centre[0] - ECCENTRICITY, hole.centre[1]) - hole.radius
+    assert to_contour == pytest.approx(wall, abs=1e-5)  # as far out as allowed; chords of 0.25 deg
+    assert np.hypot(*hole.centre) - hole.radius - 8.5e-3 >= wall
+
+
+def test_counter_hole_refuses_what_does_not_fit():
+    contour = eccentric()
+    found = unbalance(contour, 8.5e-3, None, WIDTH, DENSITY)
+    with pytest.raises(GeometryError, match="no counter-hole"):
+        counter_hole(contour, found, 8.5e-3, 15e-3)
+    with pytest.raises(InputError, match="wall"):
+        counter_hole(contour, found, 8.5e-3, 0.0)
+    with pytest.raises(InputError, match="density"):
+        unbalance(contour, 8.5e-3, None, WIDTH, np.nan)
