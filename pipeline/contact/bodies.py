@@ -107,6 +107,10 @@ class LoadedBody:
     def _plane_strain_modulus(self) -> float:
         return self.body.modulus / (1 - self.body.poisson**2)
 
+    def moved(self, contacts: Array, normals: Array) -> Array:
+        """Correction's displacement (2, nodes, count) of the whole body, m per N/m."""
+        return self.body.displacement(*self._cancelling(contacts, normals))
+
     def field(
         self, contact: Array, normal: Array, line_load: float, half_width: float
     ) -> tuple[Array, Array]:
@@ -114,8 +118,7 @@ class LoadedBody:
 
         contact, normal (2, 1); the half-plane part is that of a Hertz pressure, in closed form.
         """
-        loads, held = self._cancelling(contact, normal)
-        moved = self.body.displacement(loads, held)
+        moved = self.moved(contact, normal)
         nodal = np.zeros((3, self.body.mesh.points.shape[1]))
         nodal[:, self._everywhere.nodes] = self._everywhere(moved)[:, :, 0]
         if line_load <= 0:

@@ -1,0 +1,105 @@
+"""Stress at the bore and the keyway of the cam, at every angle of the turn.
+
+The shaft fills the bore and is rigid: the bore does not move. Where the keyway opens into it,
+held and free surface meet at an edge and the exact stress has no bound; what a mesh shows there
+grows with refinement. Such places are counted as any other, and named.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.arrays import Array, freeze
+from pipeline.contact import stress
+from pipeline.contact.bodies import LoadedBody
+from pipeline.contact.elastic_body import StressRecovery
+from pipeline.contact.halfplane import point_force_stress
+
+_BATCH = 90
+
+
+@dataclass(frozen=True, eq=False)
+class BoreStress:
+    """Greatest von Mises stress (n,), Pa, on bore and keyway, and where.
+
+    x, y (n,) m in the cam's frame; at_edge (n,) 1 where the place is, to an element, an edge of
+    the keyway at the bore; away_from_edges (n,) Pa, the greatest elsewhere.
+    """
+
+    von_mises: Array
+    x: Array
+    y: Array
+    at_edge: Array
+    away_from_edges: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+
+
+def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Array) -> BoreStress:
+    """Stress under contacts at points (2, n) with outward normals (2, n), loads (n,) N/m.
+
+    The contact acts as a line force: the bore lies many half-widths below it.
+    """
+    nodes, by_edge, recovery = _holes(cam)
+    rows = _rows(recovery, nodes)
+    points = cam.body.mesh.points[:, nodes]
+    measured = np.empty((nodes.size, contacts.shape[1]))
+    for start in range(0, contacts.shape[1], _BATCH):
+        part = slice(start, start + _BATCH)
+        own = recovery(cam.moved(contacts[:, part], normals[:, part]))[:, rows]
+        far = _half_plane(points, contacts[:, part], normals[:, part])
+        measured[:, part] = stress.von_mises((own + far) * line_load[part], cam.body.poisson)
+    worst = measured.argmax(axis=0)
+    regular = measured[~by_edge].max(axis=0)
+    return BoreStress(
+        von_mises=measured.max(axis=0),
+        x=points[0, worst],
+        y=points[1, worst],
+        at_edge=by_edge[worst].astype(float),
+        away_from_edges=regular,
+    )
+
+
+def _holes(cam: LoadedBody) -> tuple[Array, Array, StressRecovery]:
+    """Nodes (m,) of bore and keyway, which of them lie by an edge, and their stress recovery."""
+    mesh = cam.body.mesh
+    bore = mesh.boundary_nodes("bore")
+    nodes, by_edge = bore, np.zeros(bore.size, dtype=bool)
+    if "keyway" in mesh.boundaries:
+        keyway = mesh.boundary_nodes("keyway")
+        nodes = np.union1d(bore, keyway)
+        edges = mesh.points[:, np.intersect1d(bore, keyway)]
+        start, end, _ = mesh.facet_triples("keyway")
+        length = np.hypot(*(mesh.points[:, end] - mesh.points[:, start])).max()
+        arm = mesh.points[:, nodes, None] - edges[:, None, :]
+        by_edge = (np.hypot(*arm) < 1.5 * length).any(axis=1)
+    held = np.zeros(mesh.points.shape[1], dtype=bool)
+    held[nodes] = True
+    return (
+        nodes,
+        by_edge,
+        StressRecovery(cam.body, np.flatnonzero(held[mesh.triangles].any(axis=0))),
+    )
+
+
+def _half_plane(points: Array, contacts: Array, normals: Array) -> Array:
+    """Half-plane stress (3, m, k) at points (2, m) under unit forces, in the body's frame."""
+    arm = points[:, :, None] - contacts[:, None, :]
+    t, n = np.stack([normals[1], -normals[0]]), normals
+    x, depth = np.einsum("cmk,ck->mk", arm, t), -np.einsum("cmk,ck->mk", arm, n)
+    along, into, shear = point_force_stress(x, depth)
+    return np.stack(
+        [
+            along * t[0] ** 2 + into * n[0] ** 2 - 2 * shear * t[0] * n[0],
+            along * t[1] ** 2 + into * n[1] ** 2 - 2 * shear * t[1] * n[1],
+            along * t[0] * t[1] + into * n[0] * n[1] - shear * (t[0] * n[1] + t[1] * n[0]),
+        ]
+    )
+
+
+def _rows(recovery: StressRecovery, nodes: Array) -> Array:
+    order = np.argsort(recovery.nodes)
+    return order[np.searchsorted(recovery.nodes, nodes, sorter=order)]
