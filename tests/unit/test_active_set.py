@@ -1,0 +1,126 @@
+"""The complementarity problem: against every possible active set, and at its edges."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from geometry.errors import ContactError
+from pipeline.contact import active_set
+
+
+def problem(seed, size=6):
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(size, size))
+    return root @ root.T + 0.1 * np.eye(size), rng.normal(size=size), rng.uniform(0.5, 2, size)
+
+
+def by_trying_all_sets(compliance, gap, integrals, force):
+    """The one set of pressures whose signs and gaps are right."""
+    size = gap.size
+    for chosen in product([False, True], repeat=size):
+        active = np.array(chosen)
+        if not active.any():
+            continue
+        count = int(active.sum())
+        system = np.zeros((count + 1, count + 1))
+        system[:count, :count] = compliance[np.ix_(active, active)]
+        system[:count, count] = -integrals[active]
+        system[count, :count] = integrals[active]
+        found = np.linalg.solve(system, np.append(-gap[active], force))
+        pressure = np.zeros(size)
+        pressure[active] = found[:count]
+        gaps = compliance @ pressure + gap - found[count] * integrals
+        if pressure.min() >= -1e-12 and gaps[~active].min(initial=0.0) >= -1e-12:
+            return pressure, found[count]
+    raise AssertionError("no set fits")
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_answer_is_the_one_that_trying_every_set_gives(seed):
+    compliance, gap, integrals = problem(seed)
+    expected, approach = by_trying_all_sets(compliance, gap, integrals, 0.7)
+    found = active_set.solve(compliance, gap, integrals, [0.7])
+    np.testing.assert_allclose(found.pressure[0], expected, atol=1e-10 * expected.max())
+    np.testing.assert_allclose(found.approach, approach, rtol=1e-9, atol=1e-11)
+    assert found.equilibrium[0] < 1e-12
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_guess_does_not_change_the_answer(seed):
+    compliance, gap, integrals = problem(seed)
+    found = active_set.solve(compliance, gap, integrals, [0.7]).pressure
+    for guess in ([True] + 5 * [False], [False] * 6, [True, False] * 3):
+        other = active_set.solve(compliance, gap, integrals, [0.7], guess=guess).pressure
+        np.testing.assert_allclose(other, found, atol=1e-11 * found.max())
+
+
+def test_problems_solved_together_are_those_solved_alone():
+    parts = [problem(seed) for seed in range(8)]
+    compliance, gap, integrals = (np.stack(values) for values in zip(*parts, strict=True))
+    force = np.geomspace(1e-6, 1e3, 8)
+    together = active_set.solve(compliance, gap, integrals, force).pressure
+    for k in range(8):
+        alone = active_set.solve(compliance[k], gap[k], integrals[k], force[k : k + 1])
+        np.testing.assert_allclose(together[k], alone.pressure[0], atol=1e-11 * together[k].max())
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_method_that_cannot_cycle_agrees(seed):
+    compliance, gap, integrals = problem(seed)
+    weight = integrals / integrals.sum()
+    expected, _ = by_trying_all_sets(compliance, gap, weight, 1.0)
+    found, _ = active_set._primal(compliance, gap, weight)
+    np.testing.assert_allclose(found, expected, atol=1e-10 * expected.max())
+
+
+def test_a_set_met_twice_goes_to_the_method_that_cannot_cycle(monkeypatch):
+    # No sweep allowed: every problem is a straggler.
+    monkeypatch.setattr(active_set, "_SWEEPS", 0)
+    compliance, gap, integrals = problem(0)
+    expected, _ = by_trying_all_sets(compliance, gap, integrals, 0.7)
+    found = active_set.solve(compliance, gap, integrals, [0.7])
+    np.testing.assert_allclose(found.pressure[0], expected, atol=1e-10 * expected.max())
+
+
+def test_units_do_not_matter():
+    compliance, gap, integrals = problem(4)
+    base = active_set.solve(compliance, gap, integrals, [0.7])
+    # Metres and pascals of a steel contact instead of numbers around one.
+    length, pressure = 1e-4, 1e9
+    scaled = active_set.solve(
+        compliance * length / pressure, gap * length, integrals, [0.7 * pressure]
+    )
+    np.testing.assert_allclose(scaled.pressure, base.pressure * pressure, rtol=1e-10)
+    np.testing.assert_allclose(scaled.approach, base.approach * length, rtol=1e-10)
+
+
+def test_contact_at_every_knot_leaves_no_gap_and_no_violation():
+    compliance, _, integrals = problem(3)
+    pressure = np.linspace(1.0, 2.0, 6)
+    gap = -compliance @ pressure
+    found = active_set.solve(compliance, gap, integrals, [integrals @ pressure])
+    np.testing.assert_allclose(found.pressure[0], pressure, rtol=1e-9)
+    assert found.complementarity[0] < 1e-9
+
+
+def test_residual_is_that_of_signs_and_products():
+    compliance, gap, integrals = problem(2)
+    found = active_set.solve(compliance, gap, integrals, [0.7])
+    gaps = compliance @ found.pressure[0] + gap - found.approach[0] * integrals
+    np.testing.assert_allclose(found.gap[0], gaps, atol=1e-12 * abs(gaps).max())
+    assert (found.pressure >= 0).all()
+    assert abs(found.pressure * found.gap).max() < 1e-10
+    assert found.complementarity[0] < 1e-10
+
+
+def test_a_compliance_without_an_inverse_is_refused():
+    with pytest.raises(ContactError):
+        active_set.solve(np.ones((3, 3)), np.zeros(3), np.ones(3), [1.0])
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_not_a_number_is_no_answer():
+    compliance, gap, integrals = problem(1)
+    with pytest.raises(ContactError):
+        active_set.solve(compliance, gap * np.nan, integrals, [1.0])
