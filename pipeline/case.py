@@ -13,6 +13,7 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from geometry.errors import InputError
 from pipeline.case_fields import (
     Cam,
+    Camshaft,
     Cylinder,
     Follower,
     Guides,
@@ -22,6 +23,7 @@ from pipeline.case_fields import (
     Material,
     Mechanism,
     Name,
+    Oil,
     Roller,
     Section,
     Smoothing,
@@ -61,9 +63,11 @@ class Case(Section):
     mechanism: Mechanism = Mechanism()
     spring: Spring
     cam: Cam
+    camshaft: Camshaft | None = None
     roller: Roller
     follower: Follower
     guides: Guides
+    lubricant: Oil | None = None
     materials: Annotated[dict[Name, Material], Field(min_length=1, max_length=64)]
     smoothing: Smoothing = Smoothing()
     limits: Limits = Limits()
@@ -300,6 +304,7 @@ def _check_names(case: Case) -> None:
         ("follower.stem_material", case.follower.stem_material),
         ("guides.a.material", case.guides.a.material),
         ("guides.b.material", case.guides.b.material),
+        *((("roller.pin.material", case.roller.pin.material),) if case.roller.pin else ()),
     ):
         if name not in case.materials:
             raise InputError(field, name, f"one of the materials: {known}")
