@@ -1,0 +1,162 @@
+"""What rolling does beside pressing: traction, creep, film, fatigue, stress at the bore."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.arrays import FULL_TURN, Array, freeze, uniform_turn
+from pipeline.case import Case
+from pipeline.case_fields import Oil
+from pipeline.contact.bore import BoreStress, bore_stress
+from pipeline.contact.envelope import STATIONS, Envelope, FatigueLimits, rolling_pass, swept
+from pipeline.contact.film import (
+    LineFilm,
+    Lubricant,
+    entrainment_speed,
+    lambda_ratio,
+    minimum_film,
+)
+from pipeline.contact.history import ContactHistory
+from pipeline.contact.pair import ContactPair, CycleBodies
+from pipeline.contact.tangential import Drag, RollingContact, ring_inertia, rolling_contact
+from pipeline.follower.forces import FollowerSystem, follower_loads
+from pipeline.follower.roller import RollerMotion, roller_motion
+
+
+@dataclass(frozen=True, eq=False)
+class RollingHistory:
+    """One turn, arrays (n,) SI; None where the case does not say what it takes.
+
+    traction_demand, tangential over normal force that rolling without slip asks for, NaN where
+    the contact is open; shear_range of the shear along the surface, in the cam; envelope, the map
+    of greatest stresses; contact, with creep and skid; film m and its lambda ratio.
+    """
+
+    traction_demand: Array
+    shear_range: Array
+    bore: BoreStress
+    envelope: Envelope
+    contact: RollingContact | None = None
+    film: Array | None = None
+    film_ratio: Array | None = None
+
+    def __post_init__(self) -> None:
+        freeze(self, traction_demand=self.traction_demand, shear_range=self.shear_range)
+
+    def columns(self) -> Mapping[str, Array]:
+        """SI values by the names of the columns of ``5_cycle.csv``."""
+        found = {
+            "traction_demand": self.traction_demand,
+            "shear_range": self.shear_range,
+            "bore_stress": self.bore.von_mises,
+            "bore_stress_at_edge": self.bore.at_edge,
+            "bore_stress_off_edges": self.bore.away_from_edges,
+        }
+        if self.contact is not None:
+            skid = self.contact.utilisation
+            found |= {
+                "creepage": self.contact.creepage,
+                "slip": self.contact.slip,
+                "skid": np.where(np.isfinite(skid), skid, np.nan),
+            }
+        if self.film is not None:
+            found["film_thickness"] = self.film
+        if self.film_ratio is not None:
+            found["lambda_ratio"] = self.film_ratio
+        return found
+
+
+def rolling_history(
+    case: Case,
+    pair: ContactPair,
+    bodies: CycleBodies,
+    theta: Array,
+    normal_force: Array,
+    contact: ContactHistory,
+    cam_speed: float,
+) -> RollingHistory:
+    """The turn at cam angles theta (n,) rad, normal forces (n,) N, cam speed rad/s."""
+    contour = pair.contour
+    motion = roller_motion(contour.pitch, contour.roller_radius, cam_speed, theta)
+    # Without friction given the roller holds: a limit that nothing reaches.
+    given = case.roller.friction
+    driven = _driven(case, motion, normal_force, contact, cam_speed, given or np.inf)
+    loaded = normal_force > 0
+    demand = np.abs(driven.demand) / np.where(loaded, normal_force, np.nan)
+    film = ratio = None
+    if case.lubricant is not None:
+        slip = driven.slip if given is not None else 0.0
+        film = _film(case.lubricant, pair, contact, entrainment_speed(motion.rolling_speed, slip))
+        if case.cam.roughness is not None and case.roller.roughness is not None:
+            ratio = lambda_ratio(film, case.cam.roughness, case.roller.roughness)
+    reach = rolling_pass(pair.cam.poisson).shear_range.max()
+    return RollingHistory(
+        traction_demand=demand,
+        shear_range=reach * contact.p0,
+        bore=bore_stress(
+            bodies.cam, contour.points(theta), contour.normal(theta), contact.line_load
+        ),
+        envelope=_envelope(case, pair, theta, contact, cam_speed),
+        contact=driven if given is not None else None,
+        film=film,
+        film_ratio=ratio,
+    )
+
+
+def _driven(
+    case: Case,
+    motion: RollerMotion,
+    normal_force: Array,
+    contact: ContactHistory,
+    cam_speed: float,
+    friction: float,
+) -> RollingContact:
+    roller = case.roller
+    inertia = roller.inertia
+    if inertia is None:
+        density = case.material(roller.material).density
+        inertia = ring_inertia(roller.radius, roller.hub_radius, roller.width, density)
+    return rolling_contact(
+        normal_force,
+        motion.spin,
+        motion.rolling_speed,
+        contact.half_width,
+        contact.relative_radius,
+        drag=Drag(
+            inertia=inertia,
+            friction=min(friction, 1e6),
+            torque=roller.bearing.drag_torque or 0.0,
+            bearing_friction=roller.bearing.friction or 0.0,
+            pin_radius=roller.hub_radius,
+        ),
+        radius=roller.radius,
+        period=FULL_TURN / cam_speed,
+    )
+
+
+def _film(oil: Oil, pair: ContactPair, contact: ContactHistory, speed: Array) -> Array:
+    groups = LineFilm.of(
+        contact.line_load,
+        contact.relative_radius,
+        pair.contact_modulus,
+        speed,
+        Lubricant(oil.viscosity, oil.pressure_viscosity),
+    )
+    return minimum_film(groups)
+
+
+def _envelope(
+    case: Case, pair: ContactPair, theta: Array, contact: ContactHistory, cam_speed: float
+) -> Envelope:
+    """The map at stations of its own, under the loads there."""
+    stations = uniform_turn(STATIONS)
+    loads = follower_loads(pair.contour.pitch, FollowerSystem.from_case(case), cam_speed, stations)
+    card = case.material(case.cam.material)
+    limits = None
+    if card.fatigue_torsion is not None and card.fatigue_bending is not None:
+        limits = FatigueLimits(card.fatigue_torsion, card.fatigue_bending)
+    load = np.maximum(loads.normal_force, 0.0) / pair.width
+    return swept(pair, theta, contact, stations, load, limits=limits)
