@@ -96,6 +96,7 @@ def _heat_mismatch(evidence: TrialEvidence, cycle: Cycle) -> float:
     loads = cycle.loads
     slope = np.where(loads.normal_force > 0, loads.lift_slope, 0.0)  # apart, nothing rubs
     friction = np.abs(loads.friction_force_a) + np.abs(loads.friction_force_b)
+    friction = friction + np.abs(loads.viscous_force)
     spent = loads.cam_torque - (loads.spring_force + loads.inertia_force) * slope
     step = FULL_TURN / len(slope)
     loss, heat = step * float(np.sum(spent)), step * float(np.sum(friction * np.abs(slope)))

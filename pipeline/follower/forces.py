@@ -28,6 +28,7 @@ class FollowerSystem:
     overhang_at_max_lift : float    a, roller centre to centre of A at the largest lift, m, >= 0
     friction_a, friction_b : float  Coulomb coefficients, >= 0
     gravity_along_axis : float      the part of g that presses the follower on the cam, m/s2
+    viscous_damping : float         c3 of the guides, N s/m, >= 0
 
     Raises
     ------
@@ -43,6 +44,7 @@ class FollowerSystem:
     friction_a: float
     friction_b: float
     gravity_along_axis: float = 0.0
+    viscous_damping: float = 0.0
 
     def __post_init__(self) -> None:
         for name, unit in (("spring_rate", "N/m"), ("guide_spacing", "m")):
@@ -54,6 +56,7 @@ class FollowerSystem:
             ("overhang_at_max_lift", "m"),
             ("friction_a", ""),
             ("friction_b", ""),
+            ("viscous_damping", "N s/m"),
         ):
             if not 0.0 <= getattr(self, name) < np.inf:
                 raise InputError(f"follower.{name}", getattr(self, name), f">= 0 {unit}".rstrip())
@@ -70,6 +73,7 @@ class FollowerSystem:
             overhang_at_max_lift=case.follower.overhang_at_max_lift,
             friction_a=case.guides.a.friction,
             friction_b=case.guides.b.friction,
+            viscous_damping=case.follower.viscous_damping,
         )
 
     def guide_factors(self, overhang: ArrayLike) -> tuple[Array, Array]:
@@ -94,7 +98,7 @@ class Loads:
 
     `tangential_force` is the side force on the stem, signed like the pressure angle; the
     reactions carry its sign although A pushes against it and B with it. The friction forces are
-    magnitudes and oppose `velocity`. `jam_index` is c |tan alpha|; where the follower moves
+    magnitudes and oppose `velocity`; `viscous_force` is signed like it and opposes it too. `jam_index` is c |tan alpha|; where the follower moves
     outward it must stay below 1, elsewhere it tells of a cam that is turned backwards.
     """
 
@@ -117,6 +121,7 @@ class Loads:
     jam_index: Array
     friction_power: Array
     lift_slope: Array
+    viscous_force: Array
 
     def __post_init__(self) -> None:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
@@ -139,7 +144,8 @@ class Loads:
     @property
     def friction_loss(self) -> float:
         """Heat of both guides over one cam turn, J."""
-        return turn_integral(self.theta, self.friction_force * np.abs(self.lift_slope))
+        rubbing = self.friction_force * np.abs(self.lift_slope)
+        return turn_integral(self.theta, rubbing + self.viscous_force * self.lift_slope)
 
     @property
     def cam_work(self) -> float:
@@ -211,7 +217,7 @@ def follower_loads(
 
         F_a = F + sign(v) c |F_t|    hence    F_a = F / (1 - sign(v) c |tan(alpha)|)
 
-    with F = P + k s + m (a + g). With an offset the side force and the motion have independent
+    with F = P + k s + m (a + g) + c3 v. With an offset the side force and the motion have independent
     signs; in a dwell friction is taken as zero. F <= 0 means that the roller has left the cam:
     every cam and guide force is then zero, and the spring and inertia forces tell of the motion
     the cam asks for. Close to jamming the denominator is held at `JAM_FLOOR`, so that the
@@ -238,7 +244,8 @@ def follower_loads(
     References
     ----------
     Cardoso et al., Energies 18 (2025) 3256, eqs 11-14, with friction made implicit;
-    Rothbart, Cam Design Handbook (2004), ch. 6.
+    Rothbart, Cam Design Handbook (2004), ch. 6; Energy loss comparison between kinematically
+    equivalent mechanisms: slider-crank and eccentric cam (2024), eq. 40 for c3.
     """
     theta = finite("theta", theta)
     speed = np.broadcast_to(finite("cam_speed", cam_speed), theta.shape)
@@ -248,7 +255,9 @@ def follower_loads(
     acceleration = bend * speed**2 + slope * finite("cam_acceleration", cam_acceleration)
     spring_force = system.preload + system.spring_rate * lift
     inertia_force = system.mass * acceleration
-    demand = spring_force + inertia_force + system.mass * system.gravity_along_axis
+    viscous_force = system.viscous_damping * slope * speed
+    weight = system.mass * system.gravity_along_axis
+    demand = spring_force + inertia_force + weight + viscous_force
 
     pressure_angle = pitch.pressure_angle(theta)
     overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
@@ -278,5 +287,6 @@ def follower_loads(
         reaction_b=side_force * factor_b,
         cam_torque=axial_force * slope,
         jam_index=jam_index,
-        friction_power=(friction_a + friction_b) * np.abs(slope) * speed,
+        friction_power=((friction_a + friction_b) * np.abs(slope) + viscous_force * slope) * speed,
+        viscous_force=viscous_force,
     )

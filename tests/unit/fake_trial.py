@@ -27,7 +27,15 @@ def contour(stroke: float = STROKE, base: float = BASE, roller: float = ROLLER) 
 
 def case(**changes):
     """A case all of whose limits are met by `evidence()`."""
-    steel = SimpleNamespace(yield_strength=600e6, endurance_pressure=1000e6, source="a card")
+    steel = SimpleNamespace(
+        yield_strength=600e6,
+        endurance_pressure=1000e6,
+        fatigue_torsion=300e6,
+        fatigue_bending=400e6,
+        case_depth=1e-3,
+        core_yield_strength=400e6,
+        source="a card",
+    )
     hard = SimpleNamespace(yield_strength=1500e6, endurance_pressure=None, source="another")
     guide = SimpleNamespace(
         length=0.02,
@@ -41,9 +49,12 @@ def case(**changes):
         "limits": SimpleNamespace(sources={}),
         "mechanism": SimpleNamespace(gear_ratio=2.0),
         "spring": SimpleNamespace(rate=RATE, preload=PRELOAD, travel_max=0.02),
-        "cam": SimpleNamespace(material="steel", bore_radius=0.0085, keyway=None),
+        "cam": SimpleNamespace(material="steel", bore_radius=0.0085, keyway=None, roughness=3e-7),
+        "lubricant": SimpleNamespace(viscosity=0.03, pressure_viscosity=2e-8),
         "roller": SimpleNamespace(
             material="hard",
+            friction=0.1,
+            roughness=1e-7,
             bearing=SimpleNamespace(name="625", C=1140.0, C0=600.0, speed_limit=1500.0, source="c"),
         ),
         "follower": SimpleNamespace(mass=MASS),
@@ -75,6 +86,7 @@ def cycle(shape: Contour | None = None, load_case: str = "idle", scale: float = 
             inertia_force=inertia,
             friction_force_a=rub,
             friction_force_b=rub,
+            viscous_force=np.zeros(POSITIONS),
             cam_torque=(spring + inertia) * slope + 2.0 * rub * np.abs(slope),
             jam_index=0.2 + 0.1 * wave,
         ),
@@ -88,8 +100,19 @@ def cycle(shape: Contour | None = None, load_case: str = "idle", scale: float = 
         "guides": SimpleNamespace(
             reaction_a=-500.0 * wave,
             reaction_b=-200.0 * wave,
+            rubbing_load_a=np.abs(500.0 * wave),
+            rubbing_load_b=np.abs(200.0 * wave),
             force_residual=np.full(POSITIONS, 1e-13),
             moment_residual=np.full(POSITIONS, 1e-12),
+        ),
+        "rolling": SimpleNamespace(
+            traction_demand=0.02 + 0.01 * wave,
+            film_ratio=2.0 + 0.5 * wave,
+            envelope=SimpleNamespace(
+                crossland=np.array([[150e6, 200e6]]),
+                depth=np.array([[0.0, 0.5e-3]]),
+                von_mises=np.array([[300e6, 400e6]]),
+            ),
         ),
     }
     return SimpleNamespace(**(plain | changes))

@@ -1,0 +1,115 @@
+"""Friction between bounds, viscous drag, heat and PV of the guides."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.arrays import uniform_turn
+from geometry.errors import InputError
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from pipeline.follower.forces import FollowerSystem, follower_loads
+from pipeline.follower.friction import (
+    NYLON_PV,
+    bush_resistance,
+    friction_bounds,
+    guide_heat,
+    pressure_velocity,
+)
+
+THETA = uniform_turn(360)
+PITCH = PitchCurve(Lift(THETA, 0.01 * (1 - np.cos(THETA))), 0.05)
+SYSTEM = FollowerSystem(0.175, 24.2e3, 242.0, 0.08, 0.03, 0.04, 0.2)
+SPEED = 75.0
+
+
+def test_force_lies_between_the_bounds():
+    found = friction_bounds(PITCH, SYSTEM, (0.02, 0.1), (0.1, 0.3), SPEED, THETA)
+    middle = found.nominal.normal_force
+    assert (found.normal_force_min <= middle * (1 + 1e-12)).all()
+    assert (found.normal_force_max >= middle * (1 - 1e-12)).all()
+    rise = found.nominal.lift_slope > 1e-6
+    fall = found.nominal.lift_slope < -1e-6
+    np.testing.assert_array_equal(found.normal_force_max[rise], found.greatest.normal_force[rise])
+    np.testing.assert_array_equal(found.normal_force_max[fall], found.least.normal_force[fall])
+    top = np.argmax(found.nominal.lift)  # a dwell of no length: friction has no say
+    assert found.normal_force_max[top] == pytest.approx(found.normal_force_min[top], rel=1e-9)
+
+
+def test_jam_margin_is_the_factor_to_locking():
+    """At that many times the worst friction the index is 1."""
+    found = friction_bounds(PITCH, SYSTEM, (0.0, 0.0), (0.1, 0.3), SPEED, THETA)
+    locked = replace(SYSTEM, friction_a=0.1 * found.jam_margin, friction_b=0.3 * found.jam_margin)
+    loads = follower_loads(PITCH, locked, SPEED, THETA)
+    assert loads.jam_index[loads.lift_slope > 0].max() == pytest.approx(1.0, rel=1e-12)
+    free = replace(SYSTEM, friction_a=0.0, friction_b=0.0)
+    none = friction_bounds(PITCH, free, (0.0, 0.0), (0.0, 0.0), SPEED, THETA)
+    assert none.jam_margin == np.inf
+
+
+def test_bounds_must_enclose_the_nominal():
+    with pytest.raises(InputError, match="guides.b.friction"):
+        friction_bounds(PITCH, SYSTEM, (0.02, 0.21), (0.1, 0.3), SPEED, THETA)
+
+
+def test_viscous_drag_follows_the_speed():
+    """c3 v on the axial force where Coulomb friction is none: the loss is c3 v^2 over the turn."""
+    free = replace(SYSTEM, friction_a=0.0, friction_b=0.0)
+    thick = replace(free, viscous_damping=30.0)
+    plain, drag = (follower_loads(PITCH, s, SPEED, THETA) for s in (free, thick))
+    np.testing.assert_allclose(
+        drag.axial_force - plain.axial_force, 30.0 * plain.velocity, atol=1e-9
+    )
+    # s' = 0.01 sin: the integral of c3 w s'^2 over the turn is c3 w pi 1e-4
+    assert drag.friction_loss == pytest.approx(30.0 * SPEED * np.pi * 1e-4, rel=1e-9)
+    assert drag.cam_work == pytest.approx(drag.friction_loss, rel=1e-9)
+    faster = follower_loads(PITCH, thick, 2 * SPEED, THETA)
+    assert faster.friction_loss == pytest.approx(2 * drag.friction_loss, rel=1e-12)
+    np.testing.assert_allclose(drag.friction_power, 30.0 * drag.velocity**2, atol=1e-12)
+
+
+def test_viscous_drag_and_rubbing_together():
+    """Work of the cam is heat, both frictions on."""
+    loads = follower_loads(PITCH, replace(SYSTEM, viscous_damping=30.0), SPEED, THETA)
+    assert loads.cam_work == pytest.approx(loads.friction_loss, rel=1e-9)
+    with pytest.raises(InputError, match="viscous_damping"):
+        replace(SYSTEM, viscous_damping=-1.0)
+
+
+def test_heat_and_temperature():
+    """mu R v in the mean, and its way out."""
+    found = guide_heat(np.full(4, 100.0), np.array([1.0, -1.0, 2.0, 0.0]), 0.1, 5.0, 300.0)
+    np.testing.assert_allclose(found.power, [10.0, 10.0, 20.0, 0.0])
+    assert found.mean_power == pytest.approx(10.0)
+    assert found.temperature == pytest.approx(350.0)
+    assert np.isnan(guide_heat([1.0], [1.0], 0.1, None, 300.0).temperature)
+
+
+def test_heat_of_the_guides_is_the_cycle_s_friction():
+    """With point supports the rubbing loads are the reactions: the same power."""
+    loads = follower_loads(PITCH, SYSTEM, SPEED, THETA)
+    both = [
+        guide_heat(np.abs(reaction), loads.velocity, mu, None, 300.0).power
+        for reaction, mu in ((loads.reaction_a, 0.04), (loads.reaction_b, 0.2))
+    ]
+    np.testing.assert_allclose(sum(both), loads.friction_power, rtol=1e-12, atol=1e-12)
+
+
+def test_resistance_of_a_wall():
+    """A quarter of the bore thick: ln(1.5)/(2 pi lambda l)."""
+    assert bush_resistance(0.01, 0.02, 0.25) == pytest.approx(np.log(1.5) / (0.01 * np.pi))
+    with pytest.raises(InputError, match="conductivity"):
+        bush_resistance(0.01, 0.02, 0.0)
+
+
+def test_pressure_velocity():
+    assert pressure_velocity([200.0, 200.0], [1.0, -3.0], 0.01, 0.02) == pytest.approx(2e6)
+    assert list(NYLON_PV.values()) == sorted(NYLON_PV.values())
+
+
+def test_heat_refusals():
+    with pytest.raises(InputError, match="rubbing_load"):
+        guide_heat([-1.0], [1.0], 0.1, 5.0, 300.0)
+    with pytest.raises(InputError, match="friction"):
+        guide_heat([1.0], [1.0], np.nan, 5.0, 300.0)
