@@ -26,6 +26,7 @@ from pipeline.fields import write_contact, write_turn
 from pipeline.measured import measurement_record
 from pipeline.progress import Progress
 from pipeline.records import contour_columns, headline, lift_columns, pressure_arrays, trial_record
+from pipeline.rolling import rolling_history
 from pipeline.run_folder import RunFolder
 from pipeline.smoothing.gentler import Next, Stop, next_smoother
 from pipeline.smoothing.outlook import Attempt
@@ -113,6 +114,7 @@ def run_case(
             "statement": stop.reason,
             "headline": headline(case, torques, final),
             "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
+            **_crank_speed(folder, case, torques, final),
         }
         with watch.stage("report"):
             progress.stage("report")
@@ -187,7 +189,14 @@ def _cycle(journey: Journey, number: int, contour: Contour, given: Turn) -> Cycl
         if index not in known:
             journey.folder.save_chunk(number, given.load_case, index, arrays, key)
         journey.progress.advance(index + 1, total)
-    return finished(journey.case, contour, given, road.joined(pieces))
+    contact = road.joined(pieces)
+    done = finished(journey.case, contour, given, contact)
+    speed = given.crank_speed / journey.case.mechanism.gear_ratio
+    force = given.loads.normal_force
+    return replace(
+        done,
+        rolling=rolling_history(journey.case, pair, bodies, given.theta, force, contact, speed),
+    )
 
 
 def _certified(journey: Journey, final: Trial, jobs: int | None) -> Trial:

@@ -20,6 +20,7 @@ from pipeline.engine.trace_file import (
     QUANTITY_UNITS,
     angle_column,
     columns_of,
+    has_angle,
     number_table,
     split_cells,
     table_delimiter,
@@ -360,7 +361,7 @@ def speed_from_csv(
         As `read_trace`, `counted` and `speed_from_edges`.
     """
     name, header, lines, delimiter = _opened(Path(path))
-    if not columns_of(header, "time", column):
+    if has_angle(header):
         angle, speeds = _speed_table(name, header, lines, delimiter, column, unit)
         return speed_from_teeth(name, angle, speeds, band, averaged_over)
     if reference is not None:

@@ -164,6 +164,11 @@ def columns_of(header: Sequence[str], quantity: str, prefix: str = "") -> dict[i
     return {at: f for at, f in factors.items() if header[at].lower().startswith(prefix.lower())}
 
 
+def has_angle(header: Sequence[str]) -> bool:
+    """Whether a column is one of angle."""
+    return bool(_with_unit(header, ANGLE_UNITS))
+
+
 def table_delimiter(name: str, number: int, line: str, *, blanks: bool = False) -> str:
     """What parts the columns of a file, by its first line."""
     found = next((mark for mark in ";\t," if mark in line), " " if blanks else None)

@@ -65,7 +65,7 @@ class TriggerWheel:
         known = self.falling if falling else self.rising
         at = tooth * self.pitch + (self.tooth_share * self.pitch if falling else 0.0)
         if known is not None:
-            at = known[np.minimum(tooth, self.present - 1)]
+            at = known[np.minimum(tooth, self.present - 1).astype(int)]
         return np.asarray(self.reference_angle + turn * FULL_TURN + at)
 
 

@@ -1,0 +1,149 @@
+"""A case takes its engine from a measured file; what does not fit is refused by its name."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from crank_traces import CYCLE, noisy_times, tooth_angles, voltage
+
+from geometry.errors import InputError
+from pipeline import trial as road
+from pipeline.case import load_case_file, parse_case
+from pipeline.measured import engine_torque, measurement_record
+from pipeline.smoothing.smoothers import Smoother
+from pipeline.speed import consistency, speed_record, study_of
+
+ROOT = Path(__file__).resolve().parents[2]
+GX120 = (ROOT / "cases" / "gx120.toml").read_text(encoding="utf-8")
+GEAR = (
+    'bore = "60 mm"\ncrank_radius = "21 mm"\nrod_length = "73 mm"\ncompression_ratio = 8.5\n'
+    'piston_mass = "144 g"\nrod_mass = "123 g"\n'
+)
+THETA = np.arange(720) * CYCLE / 720
+SPEED = 151.0 - 5.0 * np.cos(THETA / 2 - 3.0) + 2.0 * np.sin(THETA)
+
+
+def case_text(engine):
+    return re.sub(r"\[engine\].*?(?=\n\[crankshaft\])", f"[engine]\n{engine}", GX120, flags=re.S)
+
+
+def measured(folder, engine, name, columns, header):
+    rows = "\n".join(",".join(repr(float(v)) for v in row) for row in np.column_stack(columns))
+    (folder / name).write_text(f"{header}\n{rows}\n", encoding="utf-8")
+    (folder / "case.toml").write_text(case_text(engine), encoding="utf-8")
+    return load_case_file(folder / "case.toml")
+
+
+def test_cylinder_pressure(tmp_path):
+    pressure = 0.4 + 7.0 * np.exp(-(((THETA - 6.6) / 0.5) ** 2))
+    engine = f'kind = "pressure"\nfile = "p.csv"\n{GEAR}'
+    case = measured(tmp_path, engine, "p.csv", [np.degrees(THETA), pressure], "angle_deg,p_bar")
+    torque = engine_torque(case, case.load_cases[0])
+    assert set(torque.components) == {"gas", "inertia", "friction"}
+    record = measurement_record(case)
+    assert record is not None
+    assert record["cycles"] == 1
+    json.dumps(record)
+    again = parse_case(case.to_toml().replace("inputs/", ""), tmp_path)
+    assert again.engine == case.engine
+
+
+def test_tooth_times(tmp_path):
+    angles = tooth_angles(36, 0, 2, 1)
+    runs = [noisy_times(SPEED, angles, 0.2, k, np.radians(10)) for k in range(3)]
+    engine = 'kind = "speed"\nfile = "t.csv"\n'
+    case = measured(tmp_path, engine, "t.csv", runs, "a_s,b_s,c_s")
+    torque = engine_torque(case, case.load_cases[0])
+    assert list(torque.components) == ["measured"]
+    record = measurement_record(case)
+    assert record is not None
+    assert record["cycles"] == 3
+    assert record["tooth_noise_rad_per_s"] == pytest.approx(0.2, rel=0.2)
+    assert record["torque_noise_floor_Nm"] > 0.0
+
+
+def test_sensor_voltage(tmp_path):
+    time, volts = voltage(SPEED, 36, 2, 2, sample=5e-5)
+    engine = 'kind = "voltage"\nfile = "v.csv"\nmissing_teeth = 2\nharmonics = 12\n'
+    case = measured(tmp_path, engine, "v.csv", [time, volts], "time_s,u [V]")
+    record = measurement_record(case)
+    assert record is not None
+    assert record["p2p_rad_per_s"] == pytest.approx(np.ptp(SPEED), rel=0.1)
+    assert engine_torque(case, case.load_cases[0]).std > 1.0
+
+
+PRESSURE = f'kind = "pressure"\nfile = "p.csv"\n{GEAR}'
+REFUSED = {
+    "unit alone": (f'{PRESSURE}angle_unit = "deg"\n', "pressure_unit"),
+    "no motored file": (
+        f'kind = "pressure"\nfile = "p.csv"\ndead_centre = "symmetry"\n{GEAR}', "motored_file"),
+    "another kind": ('kind = "guess"\nfile = "p.csv"', "engine.kind = guess"),
+    "unknown key": ('kind = "speed"\nfile = "p.csv"\nteth = 36', "did you mean teeth"),
+    "three edges": ('kind = "speed"\nfile = "p.csv"\nedges = 3', "engine.edges = 3"),
+    "out of the folder": ('kind = "voltage"\nfile = "../p.csv"', "engine.file"),
+    "a short rod": (PRESSURE.replace("73 mm", "20 mm"), "rod_length"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_bad_engines_are_refused_in_one_line(tmp_path, name):
+    engine, pattern = REFUSED[name]
+    with pytest.raises(InputError, match=pattern) as caught:
+        parse_case(case_text(engine), tmp_path)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_speed_needs_the_inertia(tmp_path):
+    whole = case_text('kind = "speed"\nfile = "t"')
+    text = re.sub(r"\[crankshaft\].*?(?=\n\[mechanism\])", "", whole, flags=re.S)
+    with pytest.raises(InputError, match=r"crankshaft\.inertia = missing"):
+        parse_case(text, tmp_path)
+
+
+def test_two_gigabytes_are_refused_unread(tmp_path):
+    (tmp_path / "case.toml").write_text(case_text('kind = "voltage"\nfile = "v.csv"'))
+    with (tmp_path / "v.csv").open("wb") as file:
+        file.truncate(2 * 2**30)
+    with pytest.raises(InputError, match=r"engine\.file = .*v\.csv is larger, must be at most"):
+        load_case_file(tmp_path / "case.toml")
+
+
+@pytest.fixture(scope="module")
+def gx120():
+    case = parse_case(GX120)
+    torque = road.engine_torques(case)
+    lift = road.designed_lift(case, torque, Smoother.from_case(case.smoothing))
+    return case, torque["idle"], road.cam_contour(case, lift)
+
+
+def test_speed_of_the_published_case(gx120):
+    """Engine alone 3.59 rad/s at 157 rad/s, 3.44 with the mechanism's inertia, 0.40 at work."""
+    case, torque, contour = gx120
+    study = study_of(case, torque, 157.08, contour.pitch)
+    assert study is not None
+    record = speed_record(study, contour.radius_max().value)
+    stds = [record[name]["std_rad_per_s"] for name in ("before", "inertia_alone", "after")]
+    assert stds == pytest.approx([3.59, 3.44, 0.40], rel=0.02)
+    assert max(record[name]["closure"] for name in ("before", "after")) < 1e-10
+    assert record["flywheel_for_the_same_std"]["added_inertia_kg_m2"] == pytest.approx(
+        0.11, rel=0.05
+    )
+    json.dumps(record)
+    assert set(study.columns) == {
+        "crank_angle", "speed_before", "speed_inertia_alone", "speed_after"
+    }  # fmt: skip
+    found = {one.id: one for one in consistency(case, torque, 157.08, contour.pitch, study)}
+    assert set(found) == {"power", "energy", "work", "inertia"}
+    assert not found["work"].flagged
+    assert not found["inertia"].flagged
+    assert found["power"].flagged  # smoothing takes 14 % of the torque away
+
+
+def test_no_crankshaft_no_speed(gx120):
+    case, torque, contour = gx120
+    bare = case.model_copy(update={"crankshaft": None})
+    assert study_of(bare, torque, 157.08, contour.pitch) is None
+    found = {one.id for one in consistency(bare, torque, 157.08, contour.pitch, None)}
+    assert found == {"power", "energy"}
