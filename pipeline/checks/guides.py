@@ -9,6 +9,7 @@ import numpy as np
 from geometry.arrays import Array
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest, worst_case
+from pipeline.follower.friction import NYLON_PV, pressure_velocity
 
 if TYPE_CHECKING:
     from pipeline.case_fields import Guide
@@ -54,10 +55,12 @@ def _pressure(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
 
 def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
     def mean(cycle: Cycle) -> float:
-        return float(np.mean(np.abs(_reaction(cycle, side) * cycle.loads.velocity)) / _area(guide))
+        guides = cycle.guides
+        load = guides.rubbing_load_a if side == "A" else guides.rubbing_load_b
+        return pressure_velocity(load, cycle.loads.velocity, guide.diameter, guide.length)
 
     worst = worst_case(evidence, mean)
-    limit = guide.pv_limit
+    limit = pv_limit(guide)
     return Check(
         id=f"bush_pv_{side}",
         title=f"Pressure times speed in guide {side}",
@@ -65,11 +68,20 @@ def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
         limit=None if limit is None else 1e-6 * limit,
         unit="MPa m/s",
         source=evidence.source(f"bush_pv_{side}", guide.source or f"{guide.material} bush"),
-        method="mean |R v| over the turn by finite elements over diameter x length",
+        method="mean |R v| over the turn by finite elements over diameter x length;"
+        " R sums the pushes of both sides of the bore",
         lift_can_help=True,
         note="" if limit is not None else f"no PV limit is given for guide {side}",
         **worst.place,
     )
+
+
+def pv_limit(guide: Guide) -> float | None:
+    """The limit given, or else that of nylon in the state of lubrication given, Pa m/s."""
+    state = getattr(guide, "lubrication", None)
+    if guide.pv_limit is not None or state is None:
+        return guide.pv_limit
+    return NYLON_PV[state]
 
 
 def _reaction(cycle: Cycle, side: str) -> Array:

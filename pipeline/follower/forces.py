@@ -98,8 +98,9 @@ class Loads:
 
     `tangential_force` is the side force on the stem, signed like the pressure angle; the
     reactions carry its sign although A pushes against it and B with it. The friction forces are
-    magnitudes and oppose `velocity`; `viscous_force` is signed like it and opposes it too. `jam_index` is c |tan alpha|; where the follower moves
-    outward it must stay below 1, elsewhere it tells of a cam that is turned backwards.
+    magnitudes and oppose `velocity`; `viscous_force` is signed like it and opposes it too.
+    `jam_index` is c |tan alpha|; where the follower moves outward it must stay below 1,
+    elsewhere it tells of a cam that is turned backwards.
     """
 
     theta: Array
@@ -217,8 +218,8 @@ def follower_loads(
 
         F_a = F + sign(v) c |F_t|    hence    F_a = F / (1 - sign(v) c |tan(alpha)|)
 
-    with F = P + k s + m (a + g) + c3 v. With an offset the side force and the motion have independent
-    signs; in a dwell friction is taken as zero. F <= 0 means that the roller has left the cam:
+    with F = P + k s + m (a + g) + c3 v. With an offset the side force and the motion have
+    independent signs; in a dwell friction is taken as zero. F <= 0 means that the roller has left the cam:
     every cam and guide force is then zero, and the spring and inertia forces tell of the motion
     the cam asks for. Close to jamming the denominator is held at `JAM_FLOOR`, so that the
     forces stay finite and `jam_index` alone tells of the jam. Small terms left out: the couple

@@ -49,7 +49,7 @@ def test_jam_margin_is_the_factor_to_locking():
 
 
 def test_bounds_must_enclose_the_nominal():
-    with pytest.raises(InputError, match="guides.b.friction"):
+    with pytest.raises(InputError, match=r"guides\.b\.friction"):
         friction_bounds(PITCH, SYSTEM, (0.02, 0.21), (0.1, 0.3), SPEED, THETA)
 
 
