@@ -217,7 +217,7 @@ class StressRecovery:
         column[nodal] = np.arange(nodal.size)
 
         shapes = _stacked(
-            [np.broadcast_to(f[0].value, vector.dx.shape) for f in scalar.basis],
+            [np.broadcast_to(np.asarray(f[0]), vector.dx.shape) for f in scalar.basis],
             column[scalar.element_dofs],
             (points, nodal.size),
         )

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from math import perm
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from geometry.arrays import Array
@@ -25,51 +25,76 @@ def von_mises(stress: ArrayLike, poisson: float) -> Array:
     return np.sqrt(squares / 2 + 3 * xy**2)
 
 
+_POWERS = np.array([(i, j) for i in range(5) for j in range(5 - i)])
+
+
 class PeakFinder:
     """Maximum of fields known at scattered points, found between them.
 
-    A quadric through the points around the largest value gives the peak and its place; the
-    answer never leaves the neighbourhood it was fitted to.
+    A polynomial of fourth degree is fitted about the largest value, over a neighbourhood wide
+    enough to average the scatter of recovered stresses; the answer never leaves the middle of
+    the neighbourhood.
 
     Parameters
     ----------
-    points : array (2, m)   second component is the depth, >= 0
+    points : array (2, m)   second component is the depth, >= 0; unit: the contact half-width
     """
 
-    _NEIGHBOURS = 14
+    _REACH = 0.45
 
     def __init__(self, points: ArrayLike) -> None:
         self._points = np.asarray(points, dtype=float)
-        tree = cKDTree(self._points.T)
-        found: Any = tree.query(self._points.T, self._NEIGHBOURS)
-        distance, self._near = found
-        self._reach = distance[:, self._NEIGHBOURS // 2]
-
-    def _fits(self, nodes: Array) -> Array:
-        """Operators (k, 6, neighbours) from values about `nodes` (k,) to a quadric's terms."""
-        found, where = np.unique(nodes, return_inverse=True)
-        arms = self._points[:, self._near[found]] - self._points[:, found, None]
-        x, y = arms / self._reach[found, None]
-        terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-1)
-        return np.linalg.pinv(terms)[where]
+        self._tree = cKDTree(self._points.T)
 
     def __call__(self, values: ArrayLike) -> tuple[Array, Array]:
         """Peak values (k,) and their places (2, k) of fields (m, k)."""
         fields = np.asarray(values, dtype=float)
-        column = np.arange(fields.shape[1])
-        node = np.asarray(fields.argmax(axis=0))
-        largest = fields[node, column]
-        around = fields[self._near[node], column[:, None]]
-        c = np.einsum("kij,kj->ki", self._fits(node), around)
-        hessian = np.stack([2 * c[:, 3], c[:, 4], c[:, 4], 2 * c[:, 5]], axis=1).reshape(-1, 2, 2)
-        determinant = np.linalg.det(hessian)
-        peaked = (determinant > 0) & (hessian[:, 0, 0] < 0)
-        safe = np.where(peaked[:, None, None], hessian, -np.eye(2))
-        step = np.linalg.solve(safe, -c[:, 1:3, None])[:, :, 0]
-        place = self._points[:, node] + (step * self._reach[node, None]).T
-        trusted = peaked & (np.abs(step) < 1).all(axis=1) & (place[1] >= 0)
-        top = c[:, 0] + 0.5 * (c[:, 1:3] * step).sum(axis=1)
-        return (
-            np.where(trusted, top, largest),
-            np.where(trusted, place, self._points[:, node]),
-        )
+        nodes = fields.argmax(axis=0)
+        top, place = fields.max(axis=0), self._points[:, nodes]
+        for node in np.unique(nodes):
+            centre = self._points[:, node]
+            near = self._tree.query_ball_point(centre, self._REACH)
+            if len(near) < 2 * len(_POWERS):
+                continue
+            columns = np.flatnonzero(nodes == node)
+            arms = (self._points[:, near] - centre[:, None]) / self._REACH
+            fit = np.linalg.pinv(_terms(arms).T) @ fields[np.ix_(near, columns)]
+            height, step, trusted = _summit(fit)
+            found = centre[:, None] + self._REACH * step
+            trusted &= found[1] >= 0
+            top[columns[trusted]] = height[trusted]
+            place[:, columns[trusted]] = found[:, trusted]
+        return top, place
+
+
+def _terms(at: Array, by_x: int = 0, by_y: int = 0) -> Array:
+    """Powers (15, ...) of the polynomial, differentiated, at places (2, ...)."""
+    rows = []
+    for i, j in _POWERS:
+        if i < by_x or j < by_y:
+            rows.append(np.zeros_like(at[0]))
+            continue
+        factor = perm(int(i), by_x) * perm(int(j), by_y)
+        rows.append(factor * at[0] ** (i - by_x) * at[1] ** (j - by_y))
+    return np.stack(rows)
+
+
+def _summit(fit: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Height (k,) and place (2, k) of the summits of polynomials (15, k); whether there is one."""
+
+    def of(by_x: int, by_y: int) -> Array:
+        return (fit * _terms(at, by_x, by_y)).sum(axis=0)
+
+    at = np.zeros((2, fit.shape[1]))
+    trusted = np.ones(fit.shape[1], dtype=bool)
+    for _ in range(8):
+        xx, xy, yy = of(2, 0), of(1, 1), of(0, 2)
+        determinant = xx * yy - xy**2
+        trusted &= (determinant > 0) & (xx < 0)
+        safe = np.where(trusted, determinant, 1.0)
+        x, y = of(1, 0), of(0, 1)
+        step = np.stack([yy * x - xy * y, xx * y - xy * x]) / safe
+        at = at - np.where(trusted, step, 0.0)
+        trusted &= (np.abs(at) < 0.5).all(axis=0)
+        at = np.where(trusted, at, 0.0)
+    return of(0, 0), at, trusted

@@ -118,8 +118,11 @@ def test_three_meshes_settle_with_an_order_near_two():
     solved = [two_discs(edges) for edges in (4, 8, 16)]
     for name in ("p0", "half_width", "tau_max", "von_mises"):
         found = converged([getattr(s, name) for s in solved], 2.0)
-        assert found.order is None or 1.5 <= found.order <= 3.0, (name, found.order)
-    # The half-width and the stresses do settle.
+        # Recovered stresses of quadratic elements may gain half an order; p0 may be within
+        # the scatter of mesh positions already and then has none.
+        most = 3.5 if name in ("tau_max", "von_mises") else 3.0
+        assert found.order is None or 1.5 <= found.order <= most, (name, found.order)
+        assert found.order is not None or found.gci < 2e-3
     widths = converged([s.half_width for s in solved], 2.0)
     assert widths.order is not None
     np.testing.assert_allclose(widths.extrapolated, a, rtol=5e-4)
