@@ -16,6 +16,7 @@ from pipeline.engine.torque import Torque
 from pipeline.follower.forces import FollowerSystem, Loads, follower_loads
 from pipeline.follower.guides import KNOTS, GuidePair, GuideReactions, guide_reactions
 from pipeline.follower.stem import Stem
+from pipeline.rolling import RollingHistory
 
 _FEW_KNOTS = 5
 
@@ -50,6 +51,7 @@ class Cycle(Turn):
     contour_radius: Array
     contact: ContactHistory
     guides: GuideReactions
+    rolling: RollingHistory | None = None
 
     def columns(self, gear_ratio: float) -> Mapping[str, Array]:
         """SI values by the names of the columns of ``5_cycle.csv``."""
@@ -93,7 +95,7 @@ class Cycle(Turn):
         }
         if self.torque_before is not None and self.residual_torque is not None:
             found |= {"torque_before": self.torque_before, "torque_after": self.residual_torque}
-        return found
+        return found if self.rolling is None else found | dict(self.rolling.columns())
 
 
 def contact_width(case: Case) -> float:

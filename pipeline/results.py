@@ -88,7 +88,10 @@ CYCLE = _columns(
     "spring_force [N]; inertia_force [N]; axial_force [N]; tangential_force [N];"
     "friction_A [N]; friction_B [N]; jam_index; velocity [m/s]; cam_torque [N m];"
     "torque_before? [N m]; torque_after? [N m]; residual_equilibrium~; residual_complementarity~;"
-    "residual_guide_force; residual_guide_moment"
+    "residual_guide_force; residual_guide_moment;"
+    "traction_demand?~; creepage?~; slip?~ [m/s]; skid?~; film_thickness?~ [um]; lambda_ratio?~;"
+    "shear_range?~ [MPa]; bore_stress?~ [MPa]; bore_stress_at_edge?~;"
+    "bore_stress_off_edges?~ [MPa]"
 )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from pipeline.checks import contact, evidence, forces, function, geometry, guides, roller
+from pipeline.checks import contact, evidence, forces, function, geometry, guides, roller, rolling
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import in_order
@@ -29,7 +29,7 @@ DESIGN: tuple[CheckFunction, ...] = (
 SLOW = (geometry.self_intersection, geometry.second_contact)
 """Searches over all pairs of places: too slow to foresee a cam not yet chosen."""
 
-ALL: tuple[CheckFunction, ...] = (*DESIGN, *evidence.CHECKS)
+ALL: tuple[CheckFunction, ...] = (*DESIGN, *rolling.CHECKS, *evidence.CHECKS)
 
 
 def all_checks(trial: TrialEvidence) -> tuple[Check, ...]:

@@ -8,6 +8,7 @@ grows with refinement. Such places are counted as any other, and named.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -63,7 +64,7 @@ def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Arr
     )
 
 
-def _holes(cam: LoadedBody) -> tuple[Array, Array, StressRecovery]:
+def _holes(cam: LoadedBody) -> tuple[Any, Any, StressRecovery]:
     """Nodes (m,) of bore and keyway, which of them lie by an edge, and their stress recovery."""
     mesh = cam.body.mesh
     bore = mesh.boundary_nodes("bore")
@@ -100,6 +101,6 @@ def _half_plane(points: Array, contacts: Array, normals: Array) -> Array:
     )
 
 
-def _rows(recovery: StressRecovery, nodes: Array) -> Array:
+def _rows(recovery: StressRecovery, nodes: Any) -> Any:
     order = np.argsort(recovery.nodes)
     return order[np.searchsorted(recovery.nodes, nodes, sorter=order)]

@@ -256,7 +256,7 @@ def test_static_safety_by_hand():
 
 def test_an_unrated_bearing_is_not_evaluated_and_fails():
     bearing = SimpleNamespace(name="plain", C=None, C0=None, speed_limit=None, source="")
-    case = fake.case(roller=SimpleNamespace(material="hard", bearing=bearing))
+    case = fake.case(roller=fake.changed(fake.case().roller, bearing=bearing))
     checks = all_checks(fake.evidence(case=case))
     assert set(binding(checks)) == {"roller_static", "roller_speed"}
     notes = {c.id: c.note for c in checks}
@@ -415,3 +415,73 @@ def test_the_case_s_own_source_is_printed():
 def test_evidence_is_frozen():
     with pytest.raises(AttributeError):
         replace(fake.evidence()).case = None
+
+
+def rolling(name, **changes):
+    return next(c for c in all_checks(fake.evidence(**changes)) if c.id == name)
+
+
+def without_rolling():
+    return {"cycles": (fake.cycle(rolling=None),)}
+
+
+def test_grip_is_half_of_friction():
+    check = rolling("roller_grip")
+    assert check.demand == pytest.approx(0.03)
+    assert check.limit == pytest.approx(0.05)
+    assert not check.must_have
+
+
+def test_grip_counts_where_the_roller_is_loaded():
+    demand = np.full(fake.POSITIONS, np.nan)
+    demand[5] = 0.04
+    parts = fake.changed(fake.cycle().rolling, traction_demand=demand)
+    assert rolling("roller_grip", cycles=(fake.cycle(rolling=parts),)).demand == 0.04
+
+
+def test_film_counts_where_the_roller_is_loaded():
+    ratio = np.full(fake.POSITIONS, np.nan)
+    ratio[5] = 1.3
+    parts = fake.changed(fake.cycle().rolling, film_ratio=ratio)
+    assert rolling("film_ratio", cycles=(fake.cycle(rolling=parts),)).demand == 1.3
+
+
+def test_fatigue_takes_the_greatest_of_the_map():
+    check = rolling("surface_fatigue")
+    assert (check.demand, check.limit) == pytest.approx((200.0, 300.0))
+
+
+def test_case_is_used_most_where_strength_falls_faster_than_stress():
+    """Half way down the case the yield strength is half way from 600 to 400 MPa."""
+    assert rolling("hardened_case").demand == pytest.approx(400 / 500)
+
+
+@pytest.mark.parametrize("name", ["roller_grip", "film_ratio", "surface_fatigue", "hardened_case"])
+def test_rolling_that_was_not_looked_at_is_not_evaluated(name):
+    check = rolling(name, **without_rolling())
+    assert check.status == "not_evaluated"
+    assert not check.blocks
+
+
+@pytest.mark.parametrize(
+    ("name", "section", "field", "word"),
+    [
+        ("roller_grip", "roller", "friction", "no friction"),
+        ("film_ratio", "roller", "roughness", "no roughness of the roller"),
+        ("film_ratio", "cam", "roughness", "no roughness of the cam"),
+    ],
+)
+def test_what_rolling_misses_is_named(name, section, field, word):
+    base = fake.case()
+    part = fake.changed(getattr(base, section), **{field: None})
+    assert word in rolling(name, case=fake.changed(base, **{section: part})).note
+
+
+@pytest.mark.parametrize("field", ["fatigue_torsion", "fatigue_bending", "case_depth"])
+def test_what_the_card_misses_is_named(field):
+    base = fake.case()
+    steel = fake.changed(base.materials["steel"], **{field: None})
+    name = "surface_fatigue" if field.startswith("fatigue") else "hardened_case"
+    check = rolling(name, case=fake.changed(base, materials=base.materials | {"steel": steel}))
+    assert check.status == "not_evaluated"
+    assert "the card of steel" in check.note

@@ -53,6 +53,10 @@ def by_travel(limit: float | None) -> dict[str, Any]:
     return {"case": fake.changed(base, spring=fake.changed(base.spring, travel_max=travel))}
 
 
+def by_case_safety(limit: float | None) -> dict[str, Any]:
+    return {"case": fake.limits(case_safety=None if limit is None else 1.0 / limit)}
+
+
 def hollow() -> Contour:
     """Three lobes on a small base: convex tips and hollow flanks."""
     lift = Lift(fake.THETA, 0.005 * (1.0 - np.cos(3.0 * fake.THETA)))
@@ -94,6 +98,10 @@ CASES: dict[str, tuple[Callable[[float | None], dict[str, Any]], dict[str, Any]]
     "roller_static": (by_limit("roller_static_safety"), {}),
     "roller_life": (by_limit("roller_life", 3600.0), {}),
     "roller_speed": (by_limit("roller_speed_share", np.pi / 30.0 / 1500.0), {}),
+    "roller_grip": (by_limit("skid", 10.0), {}),
+    "film_ratio": (by_limit("film_ratio"), {}),
+    "surface_fatigue": (by_steel("fatigue_torsion", 1e6), {}),
+    "hardened_case": (by_case_safety, {}),
     "bush_pressure_A": (by_guide("a", "pressure_limit"), {}),
     "bush_pressure_B": (by_guide("b", "pressure_limit"), {}),
     "bush_pv_A": (by_guide("a", "pv_limit"), {}),
