@@ -1,0 +1,72 @@
+"""Lifts through points and near noisy tables."""
+
+import numpy as np
+import pytest
+
+from geometry.errors import InputError
+from geometry.lift_fit import fitted_lift, lift_through
+from geometry.motion import Motion, Segment
+
+MOTION = Motion((Segment("polynomial_4567", np.pi, 0.01), Segment("polynomial_4567", np.pi, -0.01)))
+ROWS = np.arange(720) * 2 * np.pi / 720
+NOISE = 5e-6
+
+
+def noisy(noise=NOISE):
+    return MOTION(ROWS) + 1e-4 + np.random.default_rng(7).normal(0, noise, ROWS.size)
+
+
+def test_spline_passes_through_its_points():
+    angle = np.array([0.0, 0.9, 1.7, 2.6, 3.3, 4.4, 5.5])
+    value = np.array([0.004, 0.006, 0.009, 0.01, 0.009, 0.007, 0.005])
+    lift = lift_through(angle, value)
+    np.testing.assert_allclose(lift(angle), value, rtol=0, atol=1e-12)
+    for order in range(4):
+        assert lift(0.0, order) == pytest.approx(lift(2 * np.pi - 1e-9, order), rel=1e-6, abs=1e-8)
+
+
+def test_fit_states_its_residual_and_smooths():
+    table = noisy()
+    fit = fitted_lift(ROWS, table, 1.05 * NOISE)
+    np.testing.assert_array_equal(fit.residual, table - fit.lift(ROWS))
+    assert 0.9 * NOISE < fit.residual_rms < 1.05 * NOISE
+    assert fit.residual_rms < fit.residual_max < 6 * NOISE
+    # the truth is nearer than the noise, and the acceleration no longer drowned
+    assert np.sqrt(np.mean((fit.lift(ROWS) - MOTION(ROWS) - 1e-4) ** 2)) < 0.4 * NOISE
+    worst = np.abs(fit.lift(ROWS, 2) - MOTION(ROWS, 2)).max() / np.abs(MOTION(ROWS, 2)).max()
+    assert worst < 0.05
+
+
+def test_understated_noise_is_refused():
+    with pytest.raises(InputError, match=r"lift\.noise"):
+        fitted_lift(ROWS, noisy(), 0.1 * NOISE)
+
+
+def test_exact_table_is_met_by_few_parts():
+    theta = np.sort(np.random.default_rng(3).uniform(0, 2 * np.pi, 300))
+    fit = fitted_lift(theta, 0.01 * (1 - np.cos(theta)), 1e-6)
+    assert fit.parts < 40
+    assert fit.residual_max < 5e-6
+
+
+@pytest.mark.parametrize("noise", [0.0, -1e-6, np.nan, np.inf])
+def test_noise_must_be_positive(noise):
+    with pytest.raises(InputError, match=r"lift\.noise"):
+        fitted_lift(ROWS, noisy(), noise)
+
+
+def test_bad_tables_are_refused():
+    with pytest.raises(InputError, match="rows"):
+        fitted_lift(ROWS[::40], MOTION(ROWS[::40]), 1e-6)
+    with pytest.raises(InputError, match="points"):
+        lift_through([0.0, 1.0, 2.0], [0.0, 1e-3, 0.0])
+    with pytest.raises(InputError, match="strictly increasing"):
+        lift_through([0.0, 2.0, 1.0, 3.0, 4.0, 5.0, 6.0], np.zeros(7))
+    with pytest.raises(InputError, match="must close"):
+        lift_through(np.linspace(0, 2 * np.pi, 8), np.linspace(0, 1e-3, 8))
+    with pytest.raises(InputError, match="within one turn"):
+        lift_through(np.linspace(0, 7, 8), np.zeros(8))
+    with pytest.raises(InputError, match="as many"):
+        lift_through(np.linspace(0, 6, 8), np.zeros(7))
+    with pytest.raises(InputError, match="finite"):
+        lift_through(np.linspace(0, 6, 8), np.full(8, np.nan))
