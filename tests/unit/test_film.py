@@ -1,0 +1,120 @@
+"""Film thickness, lambda ratio, and the regression that refuses outside its range."""
+
+import numpy as np
+import pytest
+
+from geometry.errors import InputError
+from pipeline.contact.film import (
+    LineFilm,
+    Lubricant,
+    entrainment_speed,
+    lambda_ratio,
+    minimum_film,
+    mixed_film,
+)
+
+OIL = Lubricant(0.03, 2e-8)
+MODULUS = 115.4e9
+
+
+def groups(load=1e5, radius=0.0065, speed=4.0, oil=OIL):
+    return LineFilm.of(load, radius, MODULUS, speed, oil)
+
+
+def test_groups_by_hand():
+    film = groups()
+    assert film.load == pytest.approx(1e5 / (2 * 115.4e9 * 0.0065))
+    assert film.speed == pytest.approx(0.03 * 4 / (2 * 115.4e9 * 0.0065))
+    assert film.material == pytest.approx(2e-8 * 2 * 115.4e9)
+
+
+def test_dowson_higginson_by_hand():
+    U, G, W = 8e-11, 4616.0, 6.7e-5
+    film = LineFilm(np.array(W), np.array(U), G, np.array(0.0065))
+    expected = 2.65 * U**0.7 * G**0.54 * W**-0.13 * 0.0065
+    assert minimum_film(film) == pytest.approx(expected, rel=1e-12)
+    assert 1e-7 < expected < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("change", "power"),
+    [({"speed": 8.0}, 0.70), ({"load": 2e5}, -0.13), ({"oil": Lubricant(0.03, 4e-8)}, 0.54)],
+)
+def test_film_grows_by_its_powers(change, power):
+    assert minimum_film(groups(**change)) / minimum_film(groups()) == pytest.approx(2**power)
+
+
+def test_without_load_there_is_no_film_to_speak_of(recwarn):
+    found = minimum_film(groups(load=np.array([0.0, 1e5])))
+    assert np.isnan(found[0])
+    assert found[1] > 0
+    assert not recwarn.list
+
+
+def test_at_rest_the_film_is_gone():
+    assert minimum_film(groups(speed=0.0)) == 0
+
+
+def test_slip_of_the_roller_slows_the_entrainment():
+    assert entrainment_speed([4.0, -4.0], [1.0, 0.0]).tolist() == [3.5, 4.0]
+
+
+def test_lambda_counts_both_roughnesses():
+    assert lambda_ratio(1e-6, 3e-7, 4e-7) == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [{"load": -1.0}, {"radius": 0.0}, {"speed": np.nan}],
+)
+def test_groups_refuse(bad):
+    with pytest.raises(InputError):
+        groups(**bad)
+
+
+@pytest.mark.parametrize("oil", [(0, 2e-8), (0.03, np.nan), (-0.03, 2e-8)])
+def test_lubricant_refuses(oil):
+    with pytest.raises(InputError):
+        Lubricant(*oil)
+
+
+MIXED = {"W": 1e-4, "U": 2e-11, "G": 4500.0}
+
+
+def mixed(roughness=1e-7, hardness=3e9, **changes):
+    given = MIXED | changes
+    film = LineFilm(np.array(given["W"]), np.array(given["U"]), given["G"], np.array(0.0065))
+    return mixed_film(film, roughness, hardness, MODULUS)
+
+
+def test_the_regression_says_that_its_source_is_unverified():
+    assert "verify" in mixed().source
+
+
+def test_the_regression_within_its_range():
+    found = mixed()
+    assert found.central > found.minimum > 0
+    assert 0 <= found.asperity_share <= 1
+    smooth, rough = mixed(roughness=1e-9), mixed(roughness=3e-7)
+    assert rough.asperity_share > smooth.asperity_share
+    assert smooth.central == pytest.approx(
+        2.691 * 1e-4**-0.135 * 2e-11**0.705 * 4500**0.556 * 0.0065, rel=1e-2
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "group"),
+    [
+        ({"W": 1e-6}, "load"),
+        ({"W": 1e-3}, "load"),
+        ({"U": 5e-13}, "speed"),
+        ({"U": 2e-10}, "speed"),
+        ({"G": 1000.0}, "material"),
+        ({"roughness": 1e-6}, "roughness"),
+        ({"hardness": 1e8}, "hardness"),
+        ({"W": np.nan}, "load"),
+    ],
+)
+def test_the_regression_refuses_outside_its_range(change, group):
+    with pytest.raises(InputError, match=group):
+        mixed(**change)
