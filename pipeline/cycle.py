@@ -16,6 +16,7 @@ from pipeline.engine.torque import Torque
 from pipeline.follower.forces import FollowerSystem, Loads, follower_loads
 from pipeline.follower.guides import KNOTS, GuidePair, GuideReactions, guide_reactions
 from pipeline.follower.stem import Stem
+from pipeline.parts import PartsHistory, parts_history
 from pipeline.rolling import RollingHistory
 
 _FEW_KNOTS = 5
@@ -52,6 +53,7 @@ class Cycle(Turn):
     contact: ContactHistory
     guides: GuideReactions
     rolling: RollingHistory | None = None
+    parts: PartsHistory | None = None
 
     def columns(self, gear_ratio: float) -> Mapping[str, Array]:
         """SI values by the names of the columns of ``5_cycle.csv``."""
@@ -95,7 +97,8 @@ class Cycle(Turn):
         }
         if self.torque_before is not None and self.residual_torque is not None:
             found |= {"torque_before": self.torque_before, "torque_after": self.residual_torque}
-        return found if self.rolling is None else found | dict(self.rolling.columns())
+        found |= {} if self.rolling is None else self.rolling.columns()
+        return found | ({} if self.parts is None else dict(self.parts.columns()))
 
 
 def contact_width(case: Case) -> float:
@@ -141,6 +144,16 @@ def finished(
 ) -> Cycle:
     """The cycle of a turn whose contact is solved; the guides are solved here."""
     loads = given.loads
+    guides = guide_reactions(
+        loads.tangential_force,
+        loads.overhang,
+        Stem.from_case(case),
+        GuidePair.from_case(case),
+        knots=knots,
+    )
+    # A look ahead asks nothing of the parts, and its few knots would not serve them.
+    speed = given.crank_speed / case.mechanism.gear_ratio
+    parts = parts_history(case, contour, loads, guides, speed) if knots == KNOTS else None
     return Cycle(
         load_case=given.load_case,
         crank_speed=given.crank_speed,
@@ -152,13 +165,8 @@ def finished(
         pitch_radius=contour.pitch.radius_of_curvature(given.theta),
         contour_radius=contour.radius_of_curvature(given.theta),
         contact=contact,
-        guides=guide_reactions(
-            loads.tangential_force,
-            loads.overhang,
-            Stem.from_case(case),
-            GuidePair.from_case(case),
-            knots=knots,
-        ),
+        guides=guides,
+        parts=parts,
     )
 
 

@@ -91,7 +91,13 @@ CYCLE = _columns(
     "residual_guide_force; residual_guide_moment;"
     "traction_demand?~; creepage?~; slip?~ [m/s]; skid?~; film_thickness?~ [um]; lambda_ratio?~;"
     "shear_range?~ [MPa]; bore_stress?~ [MPa]; bore_stress_at_edge?~;"
-    "bore_stress_off_edges?~ [MPa]"
+    "bore_stress_off_edges?~ [MPa];"
+    "bush_peak_A? [MPa]; bush_peak_B? [MPa]; rubbing_load_A? [N]; rubbing_load_B? [N];"
+    "friction_heat_A? [W]; friction_heat_B? [W]; viscous_force? [N];"
+    "normal_force_friction_min? [N]; normal_force_friction_max? [N]; jam_index_friction_max?;"
+    "elastic_contact_force? [N]; elastic_deflection? [um]; bore_pressure? [MPa];"
+    "key_pressure? [MPa]; shaft_bearing_1? [N]; shaft_bearing_2? [N]; spring_stress? [MPa];"
+    "spring_surge_force? [N]; pin_stress? [MPa]"
 )
 
 

@@ -219,11 +219,11 @@ def follower_loads(
         F_a = F + sign(v) c |F_t|    hence    F_a = F / (1 - sign(v) c |tan(alpha)|)
 
     with F = P + k s + m (a + g) + c3 v. With an offset the side force and the motion have
-    independent signs; in a dwell friction is taken as zero. F <= 0 means that the roller has left the cam:
-    every cam and guide force is then zero, and the spring and inertia forces tell of the motion
-    the cam asks for. Close to jamming the denominator is held at `JAM_FLOOR`, so that the
-    forces stay finite and `jam_index` alone tells of the jam. Small terms left out: the couple
-    of the friction forces about the stem's axis, rolling friction.
+    independent signs; in a dwell friction is taken as zero. F <= 0 means that the roller has
+    left the cam: every cam and guide force is then zero, and the spring and inertia forces tell
+    of the motion the cam asks for. Close to jamming the denominator is held at `JAM_FLOOR`, so
+    that the forces stay finite and `jam_index` alone tells of the jam. Small terms left out: the
+    couple of the friction forces about the stem's axis, rolling friction.
 
     Parameters
     ----------

@@ -191,18 +191,17 @@ class HelicalSpring:
         return self.free_length * self.end_factor / (BUCKLING * self.mean_diameter)
 
 
-def spring_wire(case: Any) -> HelicalSpring | None:
+def case_spring(case: Any) -> HelicalSpring | None:
     """The spring of a case; None where the case tells the rate alone."""
-    given = case.spring
-    if getattr(given, "design", None) is None:
+    design = case.spring.design
+    if design is None:
         return None
-    design = given.design
     wire = Wire(
         design.shear_modulus,
         design.density,
         design.strength_at_1mm,
         design.strength_exponent,
-        design.peened,
+        design.treatment == "peened",
     )
     return HelicalSpring(
         design.wire_diameter,

@@ -77,7 +77,10 @@ def test_design_checks_need_neither_mesh_nor_residuals():
         plain,
         contact=SimpleNamespace(p0=plain.contact.p0, von_mises=plain.contact.von_mises),
         guides=SimpleNamespace(
-            reaction_a=plain.guides.reaction_a, reaction_b=plain.guides.reaction_b
+            reaction_a=plain.guides.reaction_a,
+            reaction_b=plain.guides.reaction_b,
+            rubbing_load_a=plain.guides.rubbing_load_a,
+            rubbing_load_b=plain.guides.rubbing_load_b,
         ),
     )
     foreseen = {c.id: c.demand for c in design_checks(fake.evidence(cycles=(bare,)))}
@@ -307,7 +310,7 @@ def test_bush_pv_by_hand():
 
 def test_bush_pv_takes_the_size_of_what_slides_either_way():
     plain = fake.cycle()
-    reaction = fake.changed(plain.guides, reaction_a=np.full(fake.POSITIONS, 500.0))
+    reaction = fake.changed(plain.guides, rubbing_load_a=np.full(fake.POSITIONS, 500.0))
     check = guides.bush_pv_a(fake.evidence(cycles=(fake.changed(plain, guides=reaction),)))
     # Mean |sin| over 72 equal steps; 2/pi for many. The signed mean would vanish.
     mean = np.abs(np.sin(fake.THETA)).mean()
