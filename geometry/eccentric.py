@@ -79,13 +79,13 @@ class Eccentric:
     def height_rate(self, phi: ArrayLike) -> Array:
         """d', m/rad."""
         angle = self.rod_angle(phi)
-        return self.crank * np.cos(phi - angle) / np.cos(angle)
+        return self.crank * np.cos(np.subtract(phi, angle)) / np.cos(angle)
 
     def height_rate_slope(self, phi: ArrayLike) -> Array:
         """d'', m/rad^2."""
         angle, rate, bend = self.rod_angle(phi), self.rod_rate(phi), self.rod_rate_slope(phi)
         turning = np.cos(angle) * rate**2 + np.sin(angle) * bend
-        return np.asarray(-self.crank * np.sin(phi) - self.rod * turning)
+        return np.asarray(-self.rod * turning - self.crank * np.sin(phi))
 
     def lift(self, count: int = 1440) -> Lift:
         """s = d - least d, against theta = phi + 90 deg: without offset lowest at theta = 0."""

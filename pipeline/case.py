@@ -17,7 +17,6 @@ from pipeline.case_fields import (
     Cylinder,
     Follower,
     Guides,
-    LiftTable,
     Limits,
     LoadCase,
     Material,
@@ -42,6 +41,8 @@ from pipeline.engine_fields import (
     VoltageTable,
     engine_files,
 )
+from pipeline.given_lift import motion_of
+from pipeline.lift_fields import LIFT_KINDS, GivenLift, LiftSegments, LiftTable
 from pipeline.results import hash_inputs
 
 CASE_BYTES = 256 * 1024
@@ -59,7 +60,7 @@ class Case(Section):
     notes: Text = ""
     engine: Engine | None = None
     crankshaft: Crankshaft | None = None
-    lift: LiftTable | None = None
+    lift: GivenLift | None = None
     mechanism: Mechanism = Mechanism()
     spring: Spring
     cam: Cam
@@ -154,7 +155,7 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
 def includes(case: Case) -> Iterator[tuple[str, str]]:
     """Dotted field and file name of every file a case draws in."""
     yield from engine_files(case.engine)
-    if case.lift is not None:
+    if isinstance(case.lift, LiftTable):
         yield "lift.file", case.lift.file
     for k, load_case in enumerate(case.load_cases):
         if load_case.torque is not None:
@@ -224,6 +225,8 @@ def _check_road(case: Case) -> None:
     if (case.engine is None) == (case.lift is None):
         found = "neither" if case.engine is None else "both"
         raise InputError("engine, lift", found, "exactly one of the two")
+    if isinstance(case.lift, LiftSegments):
+        motion_of(case.lift)
     ratio = case.mechanism.gear_ratio
     if case.engine is not None and ratio != 2.0:
         raise InputError("mechanism.gear_ratio", ratio, "2 with an engine: a cam turn is 720 deg")
@@ -362,7 +365,9 @@ def _dotted(location: tuple[int | str, ...]) -> str:
     """``("load_case", 0, "speed")`` as ``load_case[0].speed``; the tag of a union is left out."""
     text = ""
     for position, part in enumerate(location):
-        if position == 1 and location[0] == "engine" and part in KINDS:
+        if position == 1 and part in {"engine": KINDS, "lift": LIFT_KINDS}.get(
+            str(location[0]), ()
+        ):
             continue
         text += f"[{part}]" if isinstance(part, int) else f".{part}"
     return text.lstrip(".")

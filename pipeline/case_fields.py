@@ -224,12 +224,6 @@ class Cylinder(Section):
         return CylinderEngine(**values, friction="closing" if pressure is None else pressure)
 
 
-class LiftTable(Section):
-    """Lift over one cam turn, from a file: cam angle column, lift column."""
-
-    file: FileName
-
-
 class Mechanism(Section):
     """The drive between crank and cam: crank turns per cam turn."""
 

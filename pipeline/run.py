@@ -23,6 +23,7 @@ from pipeline.contact.pair_certificate import solve_pair
 from pipeline.cycle import Cycle, Turn, contact_pair, finished
 from pipeline.engine.torque import Torque
 from pipeline.fields import write_contact, write_turn
+from pipeline.given_lift import lift_origin
 from pipeline.measured import measurement_record
 from pipeline.progress import Progress
 from pipeline.records import contour_columns, headline, lift_columns, pressure_arrays, trial_record
@@ -127,7 +128,7 @@ def _trials(journey: Journey) -> tuple[list[Trial], Stop]:
     """Trials until one passes or none could do better."""
     case = journey.case
     if case.engine is None:
-        alone = _trial(journey, 1, None, "the lift is given")
+        alone = _trial(journey, 1, None, lift_origin(case))
         found = binding(alone.checks)
         reason = "the given lift passes" if not found else "a given lift is not smoothed"
         return [alone], Stop(reason, found, 1)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import FULL_TURN, Array, uniform_turn
+from geometry.arrays import Array, uniform_turn
 from geometry.contour import Contour
 from geometry.energy import lift_from_torque
 from geometry.errors import GeometryError, ResultError
@@ -34,7 +34,7 @@ from pipeline.contact.pair import (
 from pipeline.contact.pair_certificate import EDGES, contact_meshes
 from pipeline.cycle import Cycle, Turn
 from pipeline.engine.torque import Torque
-from pipeline.engine.trace import read_trace
+from pipeline.given_lift import given_lift
 from pipeline.measured import engine_torque
 from pipeline.smoothing.smoothers import Smoother, smoothed
 
@@ -83,8 +83,7 @@ def engine_torques(case: Case) -> dict[str, Torque]:
 def designed_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None) -> Lift:
     """The lift that balances the first load case's torque, or the one the case gives."""
     if case.lift is not None:
-        trace = read_trace(case.path(case.lift.file), "lift", period=FULL_TURN)
-        return Lift.from_samples(trace.angle, trace.values)
+        return given_lift(case)
     if smoother is None:
         raise ResultError("a cam that balances torque needs a smoother")
     torque = torques[case.load_cases[0].name].without_mean().total

@@ -1,0 +1,86 @@
+"""The lift that a case gives, for a road that starts there and not at the torque."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from geometry.arrays import FULL_TURN
+from geometry.eccentric import Eccentric
+from geometry.errors import InputError
+from geometry.lift import Lift
+from geometry.lift_fit import FittedLift, fitted_lift, lift_through
+from geometry.motion import Motion, Segment
+from pipeline.engine.trace import read_trace
+from pipeline.lift_fields import LiftEccentric, LiftPoints, LiftSegments, LiftTable
+
+if TYPE_CHECKING:
+    from pipeline.case import Case
+
+
+def motion_of(given: LiftSegments) -> Motion:
+    """The segments of a case.
+
+    Raises
+    ------
+    InputError
+        If they do not add up to a turn or do not close.
+    """
+    segments = tuple(Segment(part.law, part.angle, part.stroke) for part in given.segments)
+    return Motion(segments, given.repeat)
+
+
+def eccentric_of(case: Case, given: LiftEccentric) -> Eccentric:
+    """The eccentric disc of a case: the lowest place of its roller is the pitch base radius."""
+    rod = case.cam.pitch_base_radius + given.eccentricity
+    return Eccentric(given.eccentricity, rod, case.cam.offset)
+
+
+def given_lift(case: Case) -> Lift:
+    """The lift of a case that gives one.
+
+    Raises
+    ------
+    InputError
+        For a lift that does not close, leaves gaps or goes below zero.
+    """
+    given = case.lift
+    if isinstance(given, LiftSegments):
+        return motion_of(given).lift()
+    if isinstance(given, LiftPoints):
+        return lift_through(
+            [point.angle for point in given.points], [point.lift for point in given.points]
+        )
+    if isinstance(given, LiftEccentric):
+        return eccentric_of(case, given).lift()
+    if given is None:
+        raise InputError("lift", "missing", "given where the road starts at it")
+    fit = _fitted(case)
+    if fit is not None:
+        return fit.lift
+    trace = read_trace(case.path(given.file), "lift", period=FULL_TURN)
+    return Lift.from_samples(trace.angle, trace.values)
+
+
+def lift_origin(case: Case) -> str:
+    """One line on where a given lift comes from; a fitted table states its residual."""
+    given, fit = case.lift, _fitted(case)
+    if fit is not None:
+        return (
+            f"the lift is fitted to a table: residual {1e6 * fit.residual_rms:.3g} um rms, "
+            f"{1e6 * fit.residual_max:.3g} um at most, by {fit.parts} spline parts"
+        )
+    if isinstance(given, LiftSegments):
+        laws = dict.fromkeys(part.law for part in given.segments)
+        times = f", {given.repeat} times a turn" if given.repeat > 1 else ""
+        return f"the lift is given by segments: {', '.join(laws)}{times}"
+    if isinstance(given, LiftEccentric):
+        return "the lift is that of an eccentric circle"
+    return "the lift is given"
+
+
+def _fitted(case: Case) -> FittedLift | None:
+    given = case.lift
+    if not isinstance(given, LiftTable) or given.noise is None:
+        return None
+    trace = read_trace(case.path(given.file), "lift", period=FULL_TURN)
+    return fitted_lift(trace.angle, trace.values, given.noise)

@@ -1,0 +1,123 @@
+"""Lifts as a case file gives them."""
+
+import numpy as np
+import pytest
+
+from geometry.errors import InputError
+from pipeline.case import Case, load_case_file, parse_case
+from pipeline.case_template import template
+from pipeline.given_lift import given_lift, lift_origin
+
+SEGMENTS = """
+[lift]
+kind = "segments"
+repeat = {repeat}
+
+[[lift.segment]]
+law = "harmonic"
+angle = "{rise} deg"
+stroke = "{stroke} mm"
+
+[[lift.segment]]
+law = "modified_sine"
+angle = "60 deg"
+stroke = "-8 mm"
+"""
+
+
+def with_lift(text: str) -> str:
+    """The template case, its engine replaced by a lift."""
+    head, rest = template("given").split("[engine]")
+    after = rest[rest.index("\n[") :]
+    return head + text + after
+
+
+def case(text: str) -> Case:
+    return parse_case(with_lift(text))
+
+
+def segments(repeat: int = 3, rise: float = 60, stroke: float = 8) -> str:
+    return SEGMENTS.format(repeat=repeat, rise=rise, stroke=stroke)
+
+
+def test_segments_make_the_lift():
+    lift = given_lift(case(segments()))
+    # the spline rounds the jump of acceleration where harmonic meets sine, by some 1e-8 m
+    assert lift.stroke == pytest.approx(0.008, abs=1e-7)
+    assert lift(np.radians([60, 180, 300])) == pytest.approx(0.008, abs=1e-9)
+    assert lift_origin(case(segments())).endswith("harmonic, modified_sine, 3 times a turn")
+
+
+@pytest.mark.parametrize(
+    ("given", "refusal"),
+    [
+        (segments(rise=61), "lift.segment.angle = 121 deg in all, must be 120 deg in all"),
+        (segments(repeat=1), "must be 360 deg in all"),
+        (segments(repeat=0), "lift.repeat"),
+        (segments(stroke=7.9), "the lift must close"),
+        (segments().replace("harmonic", "cosine"), "lift.segment[0].law = cosine"),
+        (segments().replace('"segments"', '"laws"'), "lift.kind = laws"),
+        (segments().replace("[[lift.segment]]", "[[lift.part]]", 2), "lift.part = unknown key"),
+        ('[lift]\nkind = "eccentric"\neccentricity = "0 mm"\n', "lift.eccentricity"),
+        ('[lift]\nkind = "segments"\nsegment = []\n', "lift.segment"),
+    ],
+)
+def test_bad_lift_is_refused_in_one_line(given, refusal):
+    with pytest.raises(InputError) as caught:
+        case(given)
+    assert refusal in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_resolved_case_reads_back_bit_for_bit():
+    first = case(segments())
+    again = parse_case(first.to_toml())
+    assert again.lift == first.lift
+    assert again.to_toml() == first.to_toml()
+
+
+def test_points_make_a_spline():
+    rows = [(0, 0.5), (60, 2.0), (120, 6.0), (180, 8.0), (240, 6.0), (300, 2.0)]
+    text = '[lift]\nkind = "points"\n' + "".join(
+        f'[[lift.point]]\nangle = "{angle} deg"\nlift = "{value} mm"\n' for angle, value in rows
+    )
+    lift = given_lift(case(text))
+    for angle, value in rows:
+        assert lift(np.radians(angle)) == pytest.approx(1e-3 * value, abs=1e-10)
+
+
+def test_eccentric_circle_is_the_pitch_curve():
+    given = case('[lift]\nkind = "eccentric"\neccentricity = "4 mm"\n')
+    assert given_lift(given).stroke == pytest.approx(0.008, rel=1e-9)
+
+
+def table(folder, noise=""):
+    angle = np.arange(0, 360, 1.0)
+    clean = 4 * (1 - np.cos(np.radians(angle)))
+    lift = np.abs(clean + np.random.default_rng(1).normal(0, 0.004, angle.size))
+    rows = "".join(f"{a},{s!r}\n" for a, s in zip(angle, lift.tolist(), strict=True))
+    (folder / "lift.csv").write_text("cam_angle_deg,lift_mm\n" + rows)
+    path = folder / "given.toml"
+    path.write_text(with_lift(f'[lift]\nfile = "lift.csv"\n{noise}'))
+    return load_case_file(path)
+
+
+def test_table_without_a_kind_is_followed_row_by_row(tmp_path):
+    found = table(tmp_path)
+    assert found.lift.kind == "table"
+    assert lift_origin(found) == "the lift is given"
+    assert given_lift(found)(0.0, 0) == pytest.approx(given_lift(found).values[0])
+
+
+def test_noisy_table_is_fitted_and_its_residual_stated(tmp_path):
+    found = table(tmp_path, 'noise = "5 um"\n')
+    assert "residual 3." in lift_origin(found) or "residual 4." in lift_origin(found)
+    lift = given_lift(found)
+    theta = np.linspace(0, 2 * np.pi, 50)
+    np.testing.assert_allclose(lift(theta), 0.004 * (1 - np.cos(theta)), atol=4e-6)
+
+
+def test_understated_noise_is_refused(tmp_path):
+    found = table(tmp_path, 'noise = "0.1 um"\n')
+    with pytest.raises(InputError, match=r"lift\.noise"):
+        given_lift(found)
