@@ -21,6 +21,7 @@ from pipeline.contact.film import (
 )
 from pipeline.contact.history import ContactHistory
 from pipeline.contact.pair import ContactPair, CycleBodies
+from pipeline.contact.patch_tangential import rolling_increase
 from pipeline.contact.tangential import Drag, RollingContact, ring_inertia, rolling_contact
 from pipeline.follower.forces import FollowerSystem, follower_loads
 from pipeline.follower.roller import RollerMotion, roller_motion
@@ -32,7 +33,8 @@ class RollingHistory:
 
     traction_demand, tangential over normal force that rolling without slip asks for, NaN where
     the contact is open; shear_range of the shear along the surface, in the cam; envelope, the map
-    of greatest stresses; contact, with creep and skid; film m and its lambda ratio.
+    of greatest stresses; contact, with creep and skid; tau_max and von_mises in the cam with the
+    traction of rolling added, Pa; film m and its lambda ratio.
     """
 
     traction_demand: Array
@@ -40,6 +42,8 @@ class RollingHistory:
     bore: BoreStress
     envelope: Envelope
     contact: RollingContact | None = None
+    tau_max: Array | None = None
+    von_mises: Array | None = None
     film: Array | None = None
     film_ratio: Array | None = None
 
@@ -62,6 +66,8 @@ class RollingHistory:
                 "slip": self.contact.slip,
                 "skid": np.where(np.isfinite(skid), skid, np.nan),
             }
+        if self.tau_max is not None and self.von_mises is not None:
+            found |= {"tau_max_rolling": self.tau_max, "von_mises_rolling": self.von_mises}
         if self.film is not None:
             found["film_thickness"] = self.film
         if self.film_ratio is not None:
@@ -86,7 +92,11 @@ def rolling_history(
     driven = _driven(case, motion, normal_force, contact, cam_speed, given or np.inf)
     loaded = normal_force > 0
     demand = np.abs(driven.demand) / np.where(loaded, normal_force, np.nan)
-    film = ratio = None
+    shear = mises = film = ratio = None
+    if given is not None:
+        carried = driven.force / np.where(loaded, given * normal_force, 1.0)
+        more = rolling_increase(pair.cam.poisson, given, np.clip(np.abs(carried), 0.0, 1.0))
+        shear, mises = contact.tau_max * more[0], contact.von_mises * more[1]
     if case.lubricant is not None:
         slip = driven.slip if given is not None else 0.0
         film = _film(case.lubricant, pair, contact, entrainment_speed(motion.rolling_speed, slip))
@@ -101,6 +111,8 @@ def rolling_history(
         ),
         envelope=_envelope(case, pair, theta, contact, cam_speed),
         contact=driven if given is not None else None,
+        tau_max=shear,
+        von_mises=mises,
         film=film,
         film_ratio=ratio,
     )

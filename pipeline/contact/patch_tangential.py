@@ -8,7 +8,7 @@ do not disturb each other, so the two templates are simply added.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,13 @@ from pipeline.contact import patch
 from pipeline.contact.elastic_body import StressRecovery, elements_near
 from pipeline.contact.halfplane import point_force_displacement
 from pipeline.contact.pressure import PressureShapes
+from pipeline.contact.stress import PeakFinder, shear_in_plane, von_mises
 from pipeline.contact.surface import normal_loads
+from pipeline.contact.tangential import rolling_traction
+
+_SHARES = 21
+# Traction draws the peak towards the surface, where the stress bends sharply.
+_PEAK_REACH = 0.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +43,11 @@ class TangentialPatch:
     def __post_init__(self) -> None:
         freeze(self, points=self.points, stress=self.stress)
 
+    @cached_property
+    def peaks(self) -> PeakFinder:
+        """Finder of peaks in stress with a share of traction."""
+        return PeakFinder(self.points, _PEAK_REACH)
+
 
 @lru_cache(maxsize=8)
 def tangential_patch(poisson: float, elements_per_half_width: int = 16) -> TangentialPatch:
@@ -48,6 +59,37 @@ def tangential_patch(poisson: float, elements_per_half_width: int = 16) -> Tange
         (__name__, *patch.RECIPE),
     )
     return TangentialPatch(poisson, **arrays)
+
+
+def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Array, Array]:
+    """What Carter's traction makes of the largest in-plane shear and von Mises stress.
+
+    Parameters
+    ----------
+    poisson : float
+    friction : float      coefficient, > 0
+    ratio : array (...)   tangential force over friction times normal force, in [0, 1]
+
+    Returns
+    -------
+    shear, mises : array (...)   over the values without traction
+    """
+    shares, shear, mises = _increase(float(poisson), float(friction))
+    return np.interp(ratio, shares, shear), np.interp(ratio, shares, mises)
+
+
+@lru_cache(maxsize=16)
+def _increase(poisson: float, friction: float) -> tuple[Array, Array, Array]:
+    normal, along = patch.contact_patch(poisson), tangential_patch(poisson)
+    centres = normal.shapes.centres
+    shares = np.linspace(0.0, 1.0, _SHARES)
+    pressure = np.sqrt(np.maximum(1 - centres**2, 0.0))
+    traction = np.stack([rolling_traction(centres, share) for share in shares], axis=1)
+    inside = np.where(np.abs(centres)[:, None] < 1, traction, 0.0)
+    field = (normal.stress @ pressure)[:, :, None] + friction * (along.stress @ inside)
+    shear, _ = along.peaks(shear_in_plane(field))
+    mises, _ = along.peaks(von_mises(field, poisson))
+    return shares, shear / shear[0], mises / mises[0]
 
 
 def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:

@@ -38,11 +38,11 @@ class PeakFinder:
     Parameters
     ----------
     points : array (2, m)   second component is the depth, >= 0; unit: the contact half-width
+    reach : float           of the neighbourhood; the unit is the same
     """
 
-    _REACH = 0.45
-
-    def __init__(self, points: ArrayLike) -> None:
+    def __init__(self, points: ArrayLike, reach: float = 0.45) -> None:
+        self._reach = reach
         self._points = np.asarray(points, dtype=float)
         self._tree = cKDTree(self._points.T)
 
@@ -53,14 +53,14 @@ class PeakFinder:
         top, place = fields.max(axis=0), self._points[:, nodes]
         for node in np.unique(nodes):
             centre = self._points[:, node]
-            near = self._tree.query_ball_point(centre, self._REACH)
+            near = self._tree.query_ball_point(centre, self._reach)
             if len(near) < 2 * len(_POWERS):
                 continue
             columns = np.flatnonzero(nodes == node)
-            arms = (self._points[:, near] - centre[:, None]) / self._REACH
+            arms = (self._points[:, near] - centre[:, None]) / self._reach
             fit = np.linalg.pinv(_terms(arms).T) @ fields[np.ix_(near, columns)]
             height, step, trusted = _summit(fit)
-            found = centre[:, None] + self._REACH * step
+            found = centre[:, None] + self._reach * step
             trusted &= found[1] >= 0
             top[columns[trusted]] = height[trusted]
             place[:, columns[trusted]] = found[:, trusted]

@@ -291,13 +291,13 @@ def _solved(pair: TwoCylinders, elements: int) -> FiniteElementContact:
     contacts = _pressures(pair, (patches[0], patches[1]), half_width)
     field = patches[0].stress @ contacts.pressure[0]
     nu = pair.body_1.poisson
-    if pair.friction > 0:
-        sliding = tangential_patch(nu, elements).stress @ contacts.pressure[0]
-        field = field + pair.friction * sliding
     peaks = patches[0].peaks
+    if pair.friction > 0:
+        sliding = tangential_patch(nu, elements)
+        field = field + pair.friction * (sliding.stress @ contacts.pressure[0])
+        peaks = sliding.peaks
     shear, shear_at = peaks(stress.shear_in_plane(field)[:, None])
     mises, mises_at = peaks(stress.von_mises(field, nu)[:, None])
-    any_plane, _ = peaks(shear_any_plane(field, nu)[:, None])
     figures = LineContact(
         p0=float(contacts.p0[0]) * p0,
         half_width=float(contacts.half_width[0]) * half_width,
@@ -305,10 +305,17 @@ def _solved(pair: TwoCylinders, elements: int) -> FiniteElementContact:
         tau_depth=float(shear_at[1, 0]) * half_width,
         von_mises=float(mises[0]) * p0,
         von_mises_depth=float(mises_at[1, 0]) * half_width,
-        shear_any_plane=float(any_plane[0]) * p0,
+        shear_any_plane=max(float(shear[0]), _beyond(field, nu)) * p0,
     )
     residual = max(contacts.residual_equilibrium[0], contacts.residual_complementarity[0])
     return FiniteElementContact(figures, 0.0, dofs, float(residual), half_width, field * p0)
+
+
+def _beyond(field: Array, poisson: float) -> float:
+    """Largest shear on any plane where it is not the one in the plane, else 0."""
+    anywhere = shear_any_plane(field, poisson)
+    k = int(anywhere.argmax())
+    return float(anywhere[k]) if anywhere[k] > 1.0001 * stress.shear_in_plane(field).max() else 0.0
 
 
 def patch_mesh(poisson: float) -> tuple[BodyMesh, Index]:

@@ -6,7 +6,7 @@ import pytest
 from pipeline.contact import hertz, tangential
 from pipeline.contact.halfplane import settlement
 from pipeline.contact.patch import contact_patch
-from pipeline.contact.patch_tangential import tangential_patch
+from pipeline.contact.patch_tangential import rolling_increase, tangential_patch
 from pipeline.contact.stress import shear_in_plane, von_mises
 
 # Peak in-plane shear and von Mises stress over p0 under sliding (nu = 0.3), from the field of
@@ -74,9 +74,9 @@ def test_sliding_stress_of_the_template(friction, shear, mises):
     assert np.array_equal(normal.points, along.points)
     pressure = np.sqrt(np.maximum(1 - normal.shapes.centres**2, 0))
     field = ((normal.stress + friction * along.stress) @ pressure)[:, :, None]
-    found, _ = normal.peaks(shear_in_plane(field))
+    found, _ = along.peaks(shear_in_plane(field))
     assert found[0] == pytest.approx(shear, rel=2e-3)
-    found, place = normal.peaks(von_mises(field, 0.3))
+    found, place = along.peaks(von_mises(field, 0.3))
     assert found[0] == pytest.approx(mises, rel=2e-3)
     assert (place[1, 0] < 0.02) == (friction > 0.26283)
 
@@ -89,3 +89,48 @@ def test_sliding_field_of_the_template():
     inside = (np.hypot(x, depth) < 1.5) & (depth > 0.2)
     # The recovered stress of a quarter half-width of surface carries the kink of the edge.
     assert np.abs(along.stress @ pressure - exact)[:, inside].max() < 0.006
+
+
+def test_full_traction_of_rolling_is_that_of_sliding():
+    for friction, tau, mises in SLIDING[1::2]:
+        shear, equivalent = rolling_increase(0.3, friction, np.array([0.0, 1.0]))
+        assert shear == pytest.approx([1.0, tau / hertz.SHEAR_MAX], rel=2e-3)
+        assert equivalent == pytest.approx([1.0, mises / 0.557516], rel=2e-3)
+
+
+def test_traction_of_rolling_against_its_two_ellipses():
+    """Carter's traction is an ellipse less a smaller one: the closed form superposed, 0.5 %."""
+    friction, ratio = 0.2, 0.64
+    stick = 0.6
+    x, z = np.meshgrid(np.linspace(-1.5, 1.5, 301), np.linspace(0, 1.5, 151))
+
+    def traction(at, depth):
+        return hertz.subsurface_stress(at, depth, 1.0) - hertz.subsurface_stress(at, depth)
+
+    small = traction((x - (stick - 1)) / stick, z / stick)
+    field = hertz.subsurface_stress(x, z) + friction * (traction(x, z) - stick * small)
+    shear, mises = rolling_increase(0.3, friction, np.array(ratio))
+    assert shear == pytest.approx(shear_in_plane(field).max() / hertz.SHEAR_MAX, rel=5e-3)
+    assert mises == pytest.approx(von_mises(field, 0.3).max() / 0.557516, rel=5e-3)
+
+
+def test_eccentric_cam_that_cannot_roll():
+    """A pin that drags 3.5 N m on a roller of 17.5 mm under 93 N (slider-crank comparison, 2024).
+
+    Rolling would take twice the normal force along the surface, so it slips at any likely
+    friction; the loss is that of sliding, far below that of the drag at full spin.
+    """
+    count, friction = 360, 0.046
+    speed, arm, radius = 37.22, 0.0625, 0.0175
+    spin = np.full(count, arm * speed / radius)
+    torque = 0.026 * float(spin[0])
+    force, ones = np.full(count, 93.0), np.ones(count)
+    found = tangential.rolling_contact(
+        force, spin, spin * radius, 1e-5 * ones, 0.012 * ones,
+        drag=tangential.Drag(2.75e-4, friction, torque), radius=radius, period=2 * np.pi / speed,
+    )  # fmt: skip
+    assert torque == pytest.approx(3.46, rel=0.01)
+    assert found.demand == pytest.approx(np.full(count, 197.5), rel=0.01)
+    assert found.utilisation.min() > 40
+    assert found.skidding.all()
+    assert found.force == pytest.approx(friction * force)
