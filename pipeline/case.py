@@ -273,8 +273,8 @@ def _check_geometry(case: Case) -> None:
         _require(
             "cam.keyway.width",
             cam.keyway.width,
-            cam.keyway.width < 2 * cam.bore_radius,
-            "< the bore's diameter",
+            cam.keyway.width < 1.8 * cam.bore_radius,
+            "< 1.8 bore radii",
         )
     _require(
         "roller.hub_radius", roller.hub_radius, roller.hub_radius < roller.radius, "< roller.radius"
@@ -285,6 +285,10 @@ def _check_geometry(case: Case) -> None:
         2 * roller.chamfer < roller.width,
         "< half of roller.width",
     )
+    pin = case.roller.pin
+    if pin is not None and pin.mounting == "straddled":
+        width = case.roller.width
+        _require("roller.pin.span", pin.span, pin.span >= width, f">= {width:.6g} m, roller.width")
     for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
         _require(
             f"guides.{side}.diameter",

@@ -6,7 +6,18 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from pipeline.checks import contact, evidence, forces, function, geometry, guides, roller, rolling
+from pipeline.checks import (
+    contact,
+    evidence,
+    forces,
+    function,
+    geometry,
+    guides,
+    parts,
+    roller,
+    rolling,
+    spring,
+)
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import in_order
@@ -32,13 +43,17 @@ SLOW = (geometry.self_intersection, geometry.second_contact)
 ALL: tuple[CheckFunction, ...] = (*DESIGN, *rolling.CHECKS, *evidence.CHECKS)
 
 
+PARTS: tuple[CheckFunction, ...] = (*parts.CHECKS, *spring.CHECKS)
+"""Limits of the parts around the cam, which only a trial with its cycles tells of."""
+
+
 def all_checks(trial: TrialEvidence) -> tuple[Check, ...]:
     """Every check of a trial: not evaluated first, then by falling utilisation.
 
     A check that does not apply, such as the torque reduction of a cam without an engine, is
     left out.
     """
-    return _checked(trial, ALL)
+    return _checked(trial, (*ALL, *PARTS))
 
 
 def design_checks(trial: TrialEvidence) -> tuple[Check, ...]:

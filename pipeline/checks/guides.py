@@ -9,7 +9,7 @@ import numpy as np
 from geometry.arrays import Array
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest, worst_case
-from pipeline.follower.friction import NYLON_PV, pressure_velocity
+from pipeline.follower.friction import NYLON_PV
 
 if TYPE_CHECKING:
     from pipeline.case_fields import Guide
@@ -57,7 +57,7 @@ def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
     def mean(cycle: Cycle) -> float:
         guides = cycle.guides
         load = guides.rubbing_load_a if side == "A" else guides.rubbing_load_b
-        return pressure_velocity(load, cycle.loads.velocity, guide.diameter, guide.length)
+        return float(np.mean(np.abs(load * cycle.loads.velocity)) / _area(guide))
 
     worst = worst_case(evidence, mean)
     limit = pv_limit(guide)

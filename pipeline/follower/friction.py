@@ -162,11 +162,3 @@ def bush_resistance(bore: float, length: float, conductivity: float) -> float:
         if not 0.0 < value < np.inf:
             raise InputError(f"guide.{name}", value, "> 0")
     return float(np.log(1.0 + 2.0 * WALL_SHARE) / (2.0 * np.pi * conductivity * length))
-
-
-def pressure_velocity(
-    rubbing_load: ArrayLike, velocity: ArrayLike, diameter: float, length: float
-) -> float:
-    """Mean of |R v| over diameter x length, at equal angles, Pa m/s."""
-    rate = np.abs(finite("guide.rubbing_load", rubbing_load) * finite("velocity", velocity))
-    return float(np.mean(rate)) / (diameter * length)

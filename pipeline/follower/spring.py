@@ -162,7 +162,8 @@ class HelicalSpring:
         """Factor on the alternating stress at the given mean: Goodman through Zimmerli's point.
 
         The line goes from the shear strength 0.67 R_m on the axis of mean stress through the
-        amplitude Zimmerli found for infinite life; infinite without an alternating stress.
+        amplitude Zimmerli found for infinite life. Infinite without a load, 0 for a wire weaker
+        than Zimmerli's mean stress.
 
         References
         ----------
@@ -176,7 +177,7 @@ class HelicalSpring:
         zimmerli_amplitude, zimmerli_mean = ZIMMERLI[self.wire.peened]
         endurance = zimmerli_amplitude / (1.0 - zimmerli_mean / shear_strength)
         if not endurance > 0.0:
-            raise InputError("spring.wire.strength", shear_strength, "above Zimmerli's mean stress")
+            return 0.0
         use = amplitude / endurance + mean / shear_strength
         return 1.0 / use if use > 0.0 else np.inf
 

@@ -1,0 +1,281 @@
+"""Limits of the parts around the cam: bush, stem, spring, pin, key, shaft.
+
+A check is left out (None) where a look ahead has no history of the parts; where the case does
+not describe a part, it is not evaluated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.errors import GeometryError
+from pipeline.checks.check import Check
+from pipeline.checks.trial import TrialEvidence, greatest, least, worst_case
+from pipeline.follower.cam_body import counter_hole, unbalance
+
+if TYPE_CHECKING:
+    from pipeline.case_fields import Guide
+    from pipeline.cycle import Cycle
+    from pipeline.parts import PartsHistory
+
+WALL_OF_A_HOLE = 3e-3  # steel left around a counter-hole, m
+
+
+def _known(evidence: TrialEvidence) -> bool:
+    cycles = evidence.cycles
+    return bool(cycles) and all(getattr(c, "parts", None) is not None for c in cycles)
+
+
+def _parts(cycle: Cycle) -> PartsHistory:
+    parts = cycle.parts
+    if parts is None:  # pragma: no cover - asked of no such cycle
+        raise ValueError("a cycle without parts")
+    return parts
+
+
+def jam_at_worst_friction(evidence: TrialEvidence) -> Check | None:
+    """How near the guides are to locking at the greatest friction."""
+    if not _known(evidence):
+        return None
+    guides = evidence.case.guides
+    bounded = guides.a.friction_max is not None and guides.b.friction_max is not None
+    worst = greatest(evidence, lambda cycle: _parts(cycle).friction.jam_index_max)
+    return Check(
+        id="jam_at_worst_friction",
+        title="Jam index at the greatest friction",
+        demand=worst.value if bounded else None,
+        limit=evidence.limit("jam_index", 0.5),
+        unit="-",
+        source=evidence.source("jam_index", "locks at 1, Rothbart (2004) eq. 6.8; half of it held"),
+        method="greatest c |tan alpha| on the way out at friction_max of both guides",
+        must_have=bounded,
+        lift_can_help=True,
+        note="" if bounded else "no greatest friction is given for both guides",
+        **worst.place,
+    )
+
+
+def elastic_contact(evidence: TrialEvidence) -> Check | None:
+    """Least contact force with an elastic stem."""
+    if not _known(evidence):
+        return None
+    preload = evidence.case.spring.preload
+    worst = least(evidence, lambda cycle: _parts(cycle).elastic.contact_force / preload)
+    flights = sum(len(_parts(cycle).flights) for cycle in evidence.cycles)
+    return Check(
+        id="elastic_contact",
+        title="Least contact force over preload, elastic stem",
+        demand=worst.value,
+        limit=evidence.limit("contact_force_margin", 0.2),
+        unit="-",
+        sense="at_least",
+        source=evidence.source(
+            "contact_force_margin", "0.2 to 0.3 of the preload at the highest speed, Norton (2009)"
+        ),
+        method="harmonic balance of one mass on the stem's stiffness, friction-free",
+        must_have=False,
+        lift_can_help=True,
+        note=f"{flights} losses of contact in a turn" if flights else "",
+        **worst.place,
+    )
+
+
+def bush_peak_a(evidence: TrialEvidence) -> Check | None:
+    """Greatest pressure of the stem in bore A."""
+    return _peak(evidence, "A", evidence.case.guides.a, lambda parts: parts.bush_peak_a)
+
+
+def bush_peak_b(evidence: TrialEvidence) -> Check | None:
+    """Greatest pressure of the stem in bore B."""
+    return _peak(evidence, "B", evidence.case.guides.b, lambda parts: parts.bush_peak_b)
+
+
+def _peak(
+    evidence: TrialEvidence, side: str, guide: Guide, of: Callable[[PartsHistory], Array]
+) -> Check | None:
+    if not _known(evidence):
+        return None
+    worst = greatest(evidence, lambda cycle: of(_parts(cycle)))
+    material = evidence.case.material(guide.material)
+    return Check(
+        id=f"bush_peak_{side}",
+        title=f"Peak pressure at the edge of guide {side}",
+        demand=1e-6 * worst.value,
+        limit=1e-6 * material.yield_strength,
+        unit="MPa",
+        source=f"yield strength of {guide.material}: {material.source}",
+        method="pin in a hole with clearance, bush in a rigid housing, where the beam's line"
+        " pressure is greatest",
+        must_have=False,
+        lift_can_help=True,
+        **worst.place,
+    )
+
+
+def bush_temperature_a(evidence: TrialEvidence) -> Check | None:
+    """Temperature of bush A in steady running."""
+    return _temperature(evidence, "A", evidence.case.guides.a)
+
+
+def bush_temperature_b(evidence: TrialEvidence) -> Check | None:
+    """Temperature of bush B in steady running."""
+    return _temperature(evidence, "B", evidence.case.guides.b)
+
+
+def _temperature(evidence: TrialEvidence, side: str, guide: Guide) -> Check | None:
+    if not _known(evidence):
+        return None
+    material = evidence.case.material(guide.material)
+    worst = worst_case(
+        evidence,
+        lambda c: (_parts(c).heat_a if side == "A" else _parts(c).heat_b).temperature,
+    )
+    missing = []
+    if guide.thermal_resistance is None and material.conductivity is None:
+        missing.append("no way of the heat is given")
+    if material.temperature_limit is None:
+        missing.append(f"no temperature limit of {guide.material} is given")
+    return Check(
+        id=f"bush_temperature_{side}",
+        title=f"Temperature of guide {side}",
+        demand=None if np.isnan(worst.value) else worst.value - 273.15,
+        limit=None if material.temperature_limit is None else material.temperature_limit - 273.15,
+        unit="degC",
+        source=f"{guide.material}: {material.source}",
+        method="heat of friction through the bush's wall (or the resistance given), an estimate",
+        must_have=False,
+        lift_can_help=True,
+        note="; ".join(missing),
+        **worst.place,
+    )
+
+
+def roller_pin(evidence: TrialEvidence) -> Check | None:
+    """Bending of the roller's pin."""
+    if not _known(evidence):
+        return None
+    pin = evidence.case.roller.pin
+    share = evidence.limit("pin_share", 0.6)
+    if pin is None or share is None:
+        return _missing("roller_pin", "Bending of the roller's pin", "MPa", "no pin is given")
+    material = evidence.case.material(pin.material)
+    worst = greatest(evidence, lambda cycle: _given(_parts(cycle).pin_stress))
+    return Check(
+        id="roller_pin",
+        title="Bending of the roller's pin",
+        demand=1e-6 * worst.value,
+        limit=1e-6 * share * material.yield_strength,
+        unit="MPa",
+        source=evidence.source("pin_share", f"{share:g} of the yield strength; {material.source}"),
+        method=f"32 M/(pi d^3), {pin.mounting}, the load spread over the bearing",
+        lift_can_help=True,
+        **worst.place,
+    )
+
+
+def key_pressure(evidence: TrialEvidence) -> Check | None:
+    """Pressure on the flank of the cam's key."""
+    if not _known(evidence):
+        return None
+    if evidence.case.cam.keyway is None:
+        return _missing("key_pressure", "Pressure on the key", "MPa", "no keyway is given")
+    worst = greatest(evidence, lambda cycle: np.abs(_given(_parts(cycle).key_pressure)))
+    limit = evidence.limit("key_pressure", 100e6)
+    return Check(
+        id="key_pressure",
+        title="Pressure on the key",
+        demand=1e-6 * worst.value,
+        limit=None if limit is None else 1e-6 * limit,
+        unit="MPa",
+        source=evidence.source("key_pressure", "100 to 150 MPa static, DIN 6892: verify"),
+        method="4 T/(d h l) at the greatest cam torque, the key's height twice the keyway's depth",
+        must_have=False,
+        lift_can_help=True,
+        **worst.place,
+    )
+
+
+def torque_reversals(evidence: TrialEvidence) -> Check | None:
+    """Whether the gear's and the key's flanks stay together."""
+    if not _known(evidence):
+        return None
+    worst = worst_case(evidence, lambda cycle: float(len(_parts(cycle).reversals)))
+    steepest = max(
+        (abs(r.slope) for cycle in evidence.cycles for r in _parts(cycle).reversals), default=0.0
+    )
+    return Check(
+        id="torque_reversals",
+        title="Reversals of the torque through gear and key in a turn",
+        demand=worst.value,
+        limit=0.0,
+        unit="-",
+        source="crossover shock, Rothbart, Cam Design Handbook (2004)",
+        method="changes of sign of cam torque and drag",
+        must_have=False,
+        note=f"backlash is crossed; steepest {steepest:.1f} N m/rad" if worst.value > 0 else "",
+        **worst.place,
+    )
+
+
+def cam_unbalance(evidence: TrialEvidence) -> Check | None:
+    """Unbalance of the cam, and the hole that would take it away."""
+    if not _known(evidence):
+        return None
+    case = evidence.case
+    key = case.cam.keyway
+    found = unbalance(
+        evidence.contour,
+        case.cam.bore_radius,
+        key,
+        case.cam.width,
+        case.material(case.cam.material).density,
+    )
+    speed = max(evidence.cam_speed(cycle) for cycle in evidence.cycles)
+    note = f"{found.force(speed):.1f} N at {np.degrees(found.angle) % 360:.1f} deg of the cam"
+    try:
+        depth = 0.0 if key is None else key.depth
+        hole = counter_hole(evidence.contour, found, case.cam.bore_radius, WALL_OF_A_HOLE, depth)
+        x, y = 1e3 * hole.centre
+        note += f"; a hole of {2e3 * hole.radius:.2f} mm at ({x:.2f}, {y:.2f}) mm removes it"
+    except GeometryError as error:
+        note += f"; {error}"
+    limit = evidence.limit("unbalance")
+    return Check(
+        id="cam_unbalance",
+        title="Unbalance of the cam",
+        demand=1e3 * found.eccentricity * speed,
+        limit=None if limit is None else 1e3 * limit,
+        unit="mm/s",
+        source=evidence.source("unbalance", "e w of the balance grade, ISO 21940-11: verify"),
+        method="exact first moment of the contour's area, bore and keyway taken off",
+        must_have=False,
+        note=note,
+    )
+
+
+def _given(values: Array | None) -> Array:
+    return np.array([np.nan]) if values is None else values
+
+
+def _missing(name: str, title: str, unit: str, note: str) -> Check:
+    return Check(
+        id=name, title=title, demand=None, limit=None, unit=unit, must_have=False, note=note
+    )
+
+
+CHECKS = (
+    jam_at_worst_friction,
+    elastic_contact,
+    bush_peak_a,
+    bush_peak_b,
+    bush_temperature_a,
+    bush_temperature_b,
+    roller_pin,
+    key_pressure,
+    torque_reversals,
+    cam_unbalance,
+)

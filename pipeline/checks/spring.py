@@ -1,0 +1,184 @@
+"""Limits of the spring as it is wound: left out (None) in a look ahead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from pipeline.checks.check import Check
+from pipeline.checks.trial import TrialEvidence, worst_case
+from pipeline.follower.spring import HelicalSpring, case_spring, surge_harmonics
+
+
+class Work(NamedTuple):
+    """Of the hardest spring the tolerances let through: N, N, and m of travel."""
+
+    preload: float
+    greatest: float
+    travel: float
+
+
+Measure = Callable[[HelicalSpring, Work], float]
+
+
+def spring_stress(evidence: TrialEvidence) -> Check | None:
+    """Shear stress at full lift against the wire's static strength."""
+    return _check(
+        evidence,
+        id="spring_stress",
+        title="Shear stress of the spring over its strength",
+        measure=lambda spring, work: spring.static_use(work.greatest),
+        limit=1.0,
+        source="0.56 R_m, EN 13906-1: verify",
+        method="Wahl's factor, force at full lift",
+    )
+
+
+def spring_fatigue(evidence: TrialEvidence) -> Check | None:
+    """Safety against fatigue of the wire."""
+    return _check(
+        evidence,
+        id="spring_fatigue",
+        title="Fatigue safety of the spring",
+        measure=lambda spring, work: spring.fatigue_safety(work.preload, work.greatest),
+        limit=evidence.limit("spring_fatigue", 1.2),
+        sense="at_least",
+        source="Goodman through Zimmerli's point, infinite life, Shigley ch. 10",
+        method="Wahl's factor, preload to force at full lift",
+    )
+
+
+def spring_solid(evidence: TrialEvidence) -> Check | None:
+    """Way left to the solid length; negative when the spring goes solid."""
+    return _check(
+        evidence,
+        id="spring_solid",
+        title="Clearance of the spring to solid",
+        measure=lambda spring, work: spring.solid_clearance(work.preload, work.travel),
+        limit=evidence.limit("spring_solid", 0.1),
+        sense="at_least",
+        source="10 to 15 % of the greatest working deflection, Shigley ch. 10",
+        method="free length less solid length less deflection at full lift, over that deflection",
+    )
+
+
+def spring_buckling(evidence: TrialEvidence) -> Check | None:
+    """Free length against that which stays straight."""
+    return _check(
+        evidence,
+        id="spring_buckling",
+        title="Free length of the spring over the straight one",
+        measure=lambda spring, _: spring.buckling_use,
+        limit=1.0,
+        source="L0 < 2.63 D over the end factor, Shigley ch. 10",
+        method="closed form",
+        lift_can_help=False,
+    )
+
+
+def spring_rate(evidence: TrialEvidence) -> Check | None:
+    """Whether wire and coils give the rate the case asks for."""
+    asked = evidence.case.spring.rate
+    tolerance = getattr(evidence.case.spring, "rate_tolerance", 0.0) or 0.05
+    return _check(
+        evidence,
+        id="spring_rate",
+        title="Miss of the spring's rate",
+        measure=lambda spring, _: abs(spring.rate / asked - 1.0),
+        limit=tolerance,
+        source="tolerance of the rate in the case, else 5 %",
+        method="G d^4/(8 D^3 n) against spring.rate",
+        lift_can_help=False,
+    )
+
+
+def spring_surge(evidence: TrialEvidence) -> Check | None:
+    """First natural frequency of the spring over the cam's turning."""
+    if not _ahead(evidence):
+        return None
+    spring = case_spring(evidence.case)
+    if spring is None:
+        return _unknown("spring_surge", "Surge frequency over that of the cam")
+    fundamental = spring.surge_frequency
+
+    def ratio(speed: float) -> tuple[int, float, float]:
+        return surge_harmonics(evidence.contour.pitch.lift.values, speed, fundamental)
+
+    worst = worst_case(evidence, lambda c: ratio(evidence.cam_speed(c))[1], at_least=True)
+    highest, _, margin = ratio(max(evidence.cam_speed(cycle) for cycle in evidence.cycles))
+    return Check(
+        id="spring_surge",
+        title="Surge frequency over that of the cam",
+        demand=worst.value,
+        limit=evidence.limit("spring_surge", 13.0),
+        unit="-",
+        sense="at_least",
+        source="13 to 20 times the cam's frequency, Norton (2009), Shigley ch. 10",
+        method="sqrt(k/m)/2 of the active coils",
+        must_have=False,
+        note=f"highest harmonic of at least 1 % of the acceleration: {highest};"
+        f" surge stands {margin:.2f} times above it",
+        **worst.place,
+    )
+
+
+def _check(
+    evidence: TrialEvidence,
+    *,
+    id: str,  # noqa: A002 - as Check has it
+    title: str,
+    measure: Measure,
+    limit: float | None,
+    source: str,
+    method: str,
+    sense: str = "at_most",
+    lift_can_help: bool = True,
+) -> Check | None:
+    if not _ahead(evidence):
+        return None
+    case = evidence.case
+    spring = case_spring(case)
+    if spring is None:
+        return _unknown(id, title)
+    travel = evidence.contour.pitch.lift.highest.value
+    preload = case.spring.preload * (1.0 + case.spring.preload_tolerance)
+    rate = spring.rate * (1.0 + case.spring.rate_tolerance)
+    return Check(
+        id=id,
+        title=title,
+        demand=measure(spring, Work(preload, preload + rate * travel, travel)),
+        limit=limit,
+        unit="-",
+        sense="at_least" if sense == "at_least" else "at_most",
+        source=evidence.source(id, source),
+        method=method,
+        lift_can_help=lift_can_help,
+    )
+
+
+def _unknown(name: str, title: str) -> Check:
+    return Check(
+        id=name,
+        title=title,
+        demand=None,
+        limit=None,
+        unit="-",
+        must_have=False,
+        note="no wire, diameter and coils of the spring are given",
+    )
+
+
+def _ahead(evidence: TrialEvidence) -> bool:
+    """Whether this is a trial, not a look ahead."""
+    cycles = evidence.cycles
+    return bool(cycles) and all(getattr(c, "parts", None) is not None for c in cycles)
+
+
+CHECKS = (
+    spring_stress,
+    spring_fatigue,
+    spring_solid,
+    spring_buckling,
+    spring_rate,
+    spring_surge,
+)

@@ -1,0 +1,238 @@
+"""Checks of the parts around the cam, on the template's case and on one that names every part."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.errors import InputError
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from pipeline.case import parse_case
+from pipeline.case_template import template
+from pipeline.checks import parts as part_checks
+from pipeline.checks import spring as spring_checks
+from pipeline.checks.everything import PARTS, all_checks
+from pipeline.checks.trial import TrialEvidence
+from pipeline.contact.pair import closed_form_history
+from pipeline.cycle import closed_form_cycle, contact_pair, finished, turn
+
+SPRING = """
+[spring.design]
+wire_diameter = "6 mm"
+mean_diameter = "40 mm"
+coils = 8.2
+free_length = "130 mm"
+shear_modulus = "77.2 GPa"
+density = "7850 kg/m^3"
+strength_at_1mm = "1974 MPa"
+strength_exponent = 0.108
+treatment = "peened"
+"""
+PIN = """
+[roller.pin]
+diameter = "5 mm"
+span = "16 mm"
+material = "{material}"
+"""
+KEYWAY = """
+[cam.keyway]
+width = "6 mm"
+depth = "2.8 mm"
+"""
+SHAFT = """
+[camshaft]
+bearing_spacing = "60 mm"
+cam_position = "20 mm"
+gear_position = "-15 mm"
+gear_radius = "20 mm"
+"""
+
+
+def text(extra=""):
+    return template("parts") + extra
+
+
+def full_case():
+    given = parse_case(template("parts"))
+    return parse_case(text(SPRING + PIN.format(material=given.roller.material) + KEYWAY + SHAFT))
+
+
+def evidence(case, look_ahead=False):
+    """A harmonic lift of 20 mm on the template's machine."""
+    theta = uniform_turn(case.solver.positions)
+    lift = Lift(theta, 0.01 * (1 - np.cos(theta)))
+    contour = Contour(PitchCurve(lift, case.cam.pitch_base_radius), case.roller.radius)
+    cycles = []
+    for state in case.load_cases:
+        given = turn(case, contour, None, state.name, 72)
+        pair = contact_pair(case, contour)
+        contact = closed_form_history(pair, given.theta, given.loads.normal_force)
+        done = finished(case, contour, given, contact)
+        cycles.append(closed_form_cycle(case, contour, given) if look_ahead else done)
+    return TrialEvidence(case, contour, tuple(cycles))
+
+
+@pytest.fixture(scope="module")
+def full():
+    return evidence(full_case())
+
+
+@pytest.fixture(scope="module")
+def bare():
+    return evidence(parse_case(template("parts")))
+
+
+def found(given):
+    return {c.id: c for c in (function(given) for function in PARTS) if c is not None}
+
+
+def test_every_part_described_is_evaluated(full):
+    checks = found(full)
+    open_ones = {name for name, check in checks.items() if not check.evaluated}
+    # no friction bounds, no heat path and no balance grade in the case
+    assert open_ones <= {
+        "jam_at_worst_friction",
+        "bush_temperature_A",
+        "bush_temperature_B",
+        "cam_unbalance",
+    }
+    assert all(check.source and check.method for check in checks.values())
+
+
+def test_what_is_not_described_is_not_evaluated_and_blocks_nothing(bare):
+    checks = found(bare)
+    for name in ("spring_stress", "spring_fatigue", "spring_solid", "roller_pin"):
+        assert checks[name].status == "not_evaluated"
+        assert not checks[name].blocks
+        assert checks[name].note
+
+
+def test_a_look_ahead_leaves_the_parts_out():
+    given = evidence(parse_case(template("parts")), look_ahead=True)
+    assert found(given) == {}
+
+
+def test_all_checks_contain_the_parts(bare):
+    assert {check.id for check in all_checks(bare)} >= set(found(bare))
+
+
+def test_spring_by_hand(full):
+    case, checks = full.case, found(full)
+    d, D, n = 6e-3, 40e-3, 8.2
+    rate = 77.2e9 * d**4 / (8 * D**3 * n)
+    top = case.spring.preload + rate * (1 + case.spring.rate_tolerance) * 0.02
+    C = D / d
+    wahl = (4 * C - 1) / (4 * C - 4) + 0.615 / C
+    stress = wahl * 8 * top * D / (np.pi * d**3)
+    strength = 0.56 * 1974e6 * 6**-0.108
+    assert checks["spring_stress"].demand == pytest.approx(stress / strength, rel=1e-9)
+    deflection = case.spring.preload / rate + 0.02
+    room = 0.13 - d * (n + 2) - deflection
+    assert checks["spring_solid"].demand == pytest.approx(room / deflection, rel=1e-9)
+    assert checks["spring_solid"].must_have
+
+
+def test_a_spring_that_goes_solid_fails(full):
+    short = full.case.spring.design.model_copy(update={"free_length": 70e-3})
+    spring = full.case.spring.model_copy(update={"design": short})
+    given = replace(full, case=full.case.model_copy(update={"spring": spring}))
+    check = spring_checks.spring_solid(given)
+    assert check.demand < 0.0
+    assert check.status == "fail"
+    assert check.blocks
+
+
+def test_pin_and_key_by_hand(full):
+    checks, case = found(full), full.case
+    force = max(c.loads.normal_force.max() for c in full.cycles)
+    arm = 16e-3 / 4 - case.roller.width / 8
+    assert checks["roller_pin"].demand == pytest.approx(
+        1e-6 * 32 * force * arm / (np.pi * 5e-3**3), rel=1e-9
+    )
+    assert checks["roller_pin"].must_have
+    torque = max(np.abs(c.loads.cam_torque).max() for c in full.cycles)
+    area = 2 * case.cam.bore_radius * 2 * 2.8e-3 * case.cam.width
+    assert checks["key_pressure"].demand == pytest.approx(4e-6 * torque / area, rel=1e-9)
+
+
+def test_a_pin_span_inside_the_bearing_is_refused():
+    pin = PIN.format(material="hardened_steel").replace("16 mm", "9 mm")
+    with pytest.raises(InputError, match=r"roller\.pin\.span"):
+        parse_case(text(pin))
+
+
+def test_harmonic_cam_reverses_twice(full):
+    check = part_checks.torque_reversals(full)
+    assert check.demand == 2.0
+    assert check.status == "fail"
+    assert not check.must_have
+    assert "N m/rad" in check.note
+
+
+def test_worst_friction_is_a_must_where_it_is_bounded(bare):
+    guides = bare.case.guides
+    rough = {side: getattr(guides, side).model_copy(update={"friction_max": 0.25}) for side in "ab"}
+    case = bare.case.model_copy(update={"guides": guides.model_copy(update=rough)})
+    check = part_checks.jam_at_worst_friction(evidence(case))
+    overhang = bare.cycles[0].loads.overhang
+    tan = np.abs(np.tan(bare.cycles[0].loads.pressure_angle))
+    factor = 0.25 * (1 + 2 * overhang / guides.spacing)
+    rise = bare.cycles[0].loads.lift_slope > 0
+    assert check.demand == pytest.approx((factor * tan)[rise].max(), rel=1e-9)
+    assert check.must_have
+
+
+def test_temperature_with_a_heat_path(bare):
+    case = bare.case
+    guide = case.guides.a.model_copy(update={"thermal_resistance": 2.0})
+    material = case.materials[guide.material].model_copy(update={"temperature_limit": 353.15})
+    hot = case.model_copy(
+        update={
+            "guides": case.guides.model_copy(update={"a": guide}),
+            "materials": case.materials | {guide.material: material},
+        }
+    )
+    given = evidence(hot)
+    check = part_checks.bush_temperature_a(given)
+    power = max(c.parts.heat_a.mean_power for c in given.cycles)
+    assert check.demand == pytest.approx(20.0 + 2.0 * power, rel=1e-9)
+    assert check.limit == pytest.approx(80.0)
+
+
+def test_columns_of_all_parts(full):
+    columns = full.cycles[0].columns(2.0)
+    for name in ("bush_peak_A", "spring_stress", "pin_stress", "shaft_bearing_2", "key_pressure"):
+        assert np.isfinite(columns[name]).all()
+    # the wall of a bush spreads nothing: its peak is above the projected pressure
+    guides = full.cycles[0].guides
+    loaded = guides.pressure_max_a > 0
+    assert (columns["bush_peak_A"][loaded] > guides.pressure_max_a[loaded]).all()
+
+
+def test_a_card_fills_in_what_the_case_leaves_out():
+    rows = template("parts").splitlines()
+    start = next(k for k, row in enumerate(rows) if row.startswith("[roller.bearing]"))
+    end = next(k for k in range(start + 1, len(rows)) if rows[k].startswith("["))
+    head, tail = "\n".join(rows[:start]), "\n".join(rows[end:])
+
+    def case(*lines):
+        return parse_case("\n".join([head, "[roller.bearing]", *lines, tail]))
+
+    bearing = case('card = "maker_2_625"', 'C0 = "0.5 kN"').roller.bearing
+    assert (bearing.C, bearing.C0) == (1730.0, 500.0)
+    assert "verify" in bearing.source
+    again = parse_case(case('card = "maker_2_625"').to_toml())
+    assert again.roller.bearing.C0 == 670.0
+    with pytest.raises(InputError, match="maker_2_625"):
+        case('card = "nobody"')
+
+
+@pytest.mark.parametrize("name", ["friction_min", "friction_max"])
+def test_friction_bounds_out_of_order_are_refused(name):
+    lines = template("parts").replace("friction = 0.04", f"friction = 0.04\n{name} = PUT", 1)
+    value = {"friction_min": "0.05", "friction_max": "0.03"}[name]
+    with pytest.raises(InputError, match="friction"):
+        parse_case(lines.replace("PUT", value))
