@@ -499,7 +499,6 @@ class Solver(Section):
     positions: Annotated[int, Field(ge=36, le=7200)] = 720
     max_trials: Annotated[int, Field(ge=1, le=20)] = 6
     certificate_positions: Annotated[int, Field(ge=1, le=64)] = 8
-    certificate_meshes: Annotated[int, Field(ge=3, le=5)] = 3
 
 
 class Waiver(Section):

@@ -30,7 +30,7 @@ def positions_to_certify(trial: Trial, count: int) -> tuple[tuple[int, int], ...
     wanted: list[tuple[int, int]] = []
 
     def take(case: int, index: int) -> None:
-        loaded = trial.cycles[case].contact.line_load[index] > 0
+        loaded = trial.cycles[case].contact.p0[index] > 0
         near = any(c == case and abs(i - index) < 4 for c, i in wanted)
         if loaded and not near and len(wanted) < count:
             wanted.append((case, index))
@@ -50,12 +50,12 @@ def _change(history: ContactHistory) -> Array:
 
 
 _EXTREMES: tuple[Callable[[ContactHistory], Array], ...] = (
-    lambda h: h.p0,
+    lambda h: np.nan_to_num(h.p0),
     lambda h: h.line_load,
     lambda h: h.relative_radius,
     lambda h: -h.relative_radius,
     _change,
-    lambda h: h.half_width,
+    lambda h: np.nan_to_num(h.half_width),
     lambda h: -np.where(h.line_load > 0, h.line_load, np.inf),
 )
 

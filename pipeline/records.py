@@ -70,10 +70,11 @@ def headline(case: Case, torques: Mapping[str, Torque], trial: Trial) -> dict[st
     design = torques.get(case.load_cases[0].name)
 
     def over(measure: Any) -> float:
-        return float(max(np.max(measure(cycle)) for cycle in trial.cycles))
+        return float(np.max([np.max(measure(cycle)) for cycle in trial.cycles]))
 
     def contact(measure: Any, scale: float) -> float | None:
-        return scale * over(lambda c: measure(c.contact)) if sound else None
+        worst = over(lambda c: measure(c.contact)) if sound else np.nan
+        return scale * worst if np.isfinite(worst) else None
 
     after = first.residual_torque
     return {
@@ -95,20 +96,23 @@ def headline(case: Case, torques: Mapping[str, Torque], trial: Trial) -> dict[st
         "reaction_B_max_N": over(lambda c: np.abs(c.guides.reaction_b)),
         "friction_loss_J_per_cam_turn": float(first.loads.friction_loss),
         "fe_vs_hertz_p0_max_percent": contact(lambda h: np.abs(h.p0_difference), 100.0),
-        "residual_equilibrium_max": _residual_max(trial) if sound else None,
+        "residual_equilibrium_max": _residual_max(trial),
     }
 
 
-def _residual_max(trial: Trial) -> float:
+def _residual_max(trial: Trial) -> float | None:
+    """Worst equilibrium residual of contact and guides; None where the contact is unknown."""
+
     def worst(cycle: Cycle) -> float:
         parts = (
             cycle.contact.residual_equilibrium,
             cycle.guides.force_residual,
             cycle.guides.moment_residual,
         )
-        return float(max(np.abs(part).max() for part in parts))
+        return float(np.max([np.abs(part).max() for part in parts]))
 
-    return max(worst(cycle) for cycle in trial.cycles)
+    found = float(np.max([worst(cycle) for cycle in trial.cycles]))
+    return found if np.isfinite(found) else None
 
 
 def trial_record(case: Case, trial: Trial) -> dict[str, Any]:

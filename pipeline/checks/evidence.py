@@ -75,9 +75,9 @@ def hertz_difference(evidence: TrialEvidence) -> Check:
     """Finite elements beside the closed form; a difference asks for a reason, not for a fix."""
 
     def percent(cycle: Cycle) -> Array:
-        hertz = np.asarray(cycle.contact.p0_hertz)
-        loaded = np.where(hertz > 0, hertz, 1.0)
-        return 100.0 * np.abs(np.where(hertz > 0, cycle.contact.p0 / loaded - 1.0, 0.0))
+        hertz, found = np.asarray(cycle.contact.p0_hertz), np.asarray(cycle.contact.p0)
+        idle = hertz == 0
+        return 100.0 * np.abs(np.where(idle, 0.0, found / np.where(idle, 1.0, hertz) - 1.0))
 
     worst = greatest(evidence, percent)
     return Check(

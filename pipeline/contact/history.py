@@ -44,8 +44,8 @@ class ContactHistory:
     @property
     def p0_difference(self) -> Array:
         """Finite elements over Hertz, less one; zero without load."""
-        loaded = self.p0_hertz > 0
-        return np.where(loaded, self.p0 / np.where(loaded, self.p0_hertz, 1.0) - 1, 0.0)
+        idle = self.p0_hertz == 0
+        return np.where(idle, 0.0, self.p0 / np.where(idle, 1.0, self.p0_hertz) - 1)
 
 
 @dataclass(frozen=True)

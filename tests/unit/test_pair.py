@@ -1,0 +1,60 @@
+"""Cam and roller as a contact pair: what an unloaded or a too wide contact gives."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from pipeline.contact.pair import ContactPair, CycleBodies, Elastic, pair_history
+
+STEEL = Elastic(210e9, 0.3)
+
+
+def round_cam(cam: Elastic = STEEL) -> ContactPair:
+    """A circle of 42 mm under a roller of 8 mm."""
+    theta = uniform_turn(36)
+    contour = Contour(PitchCurve(Lift(theta, np.zeros(36)), 50e-3), 8e-3)
+    return ContactPair(contour, 5e-3, 10e-3, None, 4e-3, cam, STEEL)
+
+
+@pytest.fixture(scope="module")
+def bodies() -> CycleBodies:
+    return CycleBodies.meshed(round_cam())
+
+
+def test_apart_is_an_answer(bodies: CycleBodies) -> None:
+    pair, theta = round_cam(), np.array([0.0, 1.0, 2.0])
+    found = pair_history(pair, bodies, theta, np.array([0.0, 800.0, -5.0]))
+    for name in ("line_load", "p0", "half_width", "tau_max", "von_mises"):
+        values = getattr(found, name)
+        assert values[0] == values[2] == 0.0 < values[1], name
+    np.testing.assert_array_equal(found.pressure[[0, 2]], 0.0)
+    np.testing.assert_array_equal(found.p0_difference[[0, 2]], 0.0)
+
+
+def test_round_cam_is_alike_at_every_angle(bodies: CycleBodies) -> None:
+    theta = np.linspace(0.0, 6.0, 23)
+    found = pair_history(round_cam(), bodies, theta, np.full(theta.size, 800.0))
+    # The contact falls anywhere between the nodes of the body's mesh; 1e-4 is what that moves.
+    for name, rtol in (("p0", 1e-6), ("half_width", 1e-6), ("tau_max", 1e-4), ("von_mises", 1e-4)):
+        values = getattr(found, name)
+        np.testing.assert_allclose(values, values.mean(), rtol=rtol)
+    np.testing.assert_allclose(found.p0, found.p0_hertz, rtol=5e-4)
+
+
+def test_too_wide_a_contact_is_not_a_number() -> None:
+    """A rubber cam under far too great a load."""
+    soft = round_cam(Elastic(0.5e9, 0.45))
+    bodies = CycleBodies.meshed(soft)
+    theta, force = np.array([0.0, 1.0]), np.array([10.0, 1e5])
+    found = pair_history(soft, bodies, theta, force)
+    assert np.isfinite(found.p0[0])
+    assert found.half_width_hertz[1] > 0.1 * found.relative_radius[1]
+    for name in ("p0", "half_width", "tau_max", "von_mises", "residual_equilibrium"):
+        assert np.isnan(getattr(found, name)[1]), name
+    assert np.isnan(found.p0_difference[1])
+    assert np.isfinite(found.p0_hertz[1])
