@@ -229,6 +229,27 @@ def report(
 
 
 @app.command()
+def validate(
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Where the page is to lie.")
+    ] = Path(),
+) -> int:
+    """Run the papers' studies again; write validation.html and validation.json."""
+    from pipeline.results import json_text
+    from pipeline.run_folder import write_atomic
+    from pipeline.validation import validate as studies
+    from reports.validation_page import page
+
+    document = studies()
+    write_atomic(out / "validation.json", json_text(document) + "\n")
+    write_atomic(out / "validation.html", page(document))
+    counts = ", ".join(f"{name} {number}" for name, number in document["counts"].items())
+    _out.print(f"{len(document['rows'])} published figures: {counts}", markup=False)
+    _out.print(f"page: {out / 'validation.html'}", markup=False)
+    return PASSED
+
+
+@app.command()
 def init(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the new case.")],
 ) -> int:
