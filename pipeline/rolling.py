@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +26,9 @@ from pipeline.contact.patch_tangential import rolling_increase
 from pipeline.contact.tangential import Drag, RollingContact, ring_inertia, rolling_contact
 from pipeline.follower.forces import FollowerSystem, follower_loads
 from pipeline.follower.roller import RollerMotion, roller_motion
+
+_MM, _MPA = 1e3, 1e-6
+_MAPS = ("von_mises", "tau_max", "shear_range", "crossland", "dang_van")
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,3 +176,56 @@ def _envelope(
         limits = FatigueLimits(card.fatigue_torsion, card.fatigue_bending)
     load = np.maximum(loads.normal_force, 0.0) / pair.width
     return swept(pair, theta, contact, stations, load, limits=limits)
+
+
+def envelope_arrays(turns: Mapping[str, RollingHistory | None]) -> dict[str, Array]:
+    """Arrays of ``5_envelope.npz`` by load case: a row per station, a column per depth."""
+    found = {}
+    for load_case, turn in turns.items():
+        if turn is None:
+            continue
+        map_ = turn.envelope
+        found[f"{load_case}.cam_angle_deg"] = np.degrees(map_.theta)
+        found[f"{load_case}.arc_mm"] = _MM * map_.arc
+        found[f"{load_case}.depth_mm"] = _MM * map_.depth
+        for name in _MAPS:
+            values = getattr(map_, name)
+            if values is not None:
+                found[f"{load_case}.{name}_MPa"] = _MPA * values
+    return found
+
+
+def rolling_record(turns: Mapping[str, RollingHistory | None]) -> dict[str, Any]:
+    """The turn's worst places by load case, mm and MPa, for ``trial.json``."""
+    return {name: None if turn is None else _worst(turn) for name, turn in turns.items()}
+
+
+def _worst(turn: RollingHistory) -> dict[str, Any]:
+    record: dict[str, Any] = {}
+    for name in _MAPS:
+        if getattr(turn.envelope, name) is not None:
+            value, theta, depth = turn.envelope.worst(name)
+            if not np.isfinite(value):  # somewhere the contact is not known
+                record[name] = None
+                continue
+            record[name] = {
+                "value_MPa": _MPA * value,
+                "cam_angle_deg": float(np.degrees(theta)),
+                "depth_mm": _MM * depth,
+            }
+    bore, k = turn.bore, int(turn.bore.von_mises.argmax())
+    at_edge = bool(bore.at_edge[k])
+    record["bore"] = {
+        "von_mises_MPa": _MPA * float(bore.von_mises[k]),
+        "x_mm": _MM * float(bore.x[k]),
+        "y_mm": _MM * float(bore.y[k]),
+        "away_from_edges_MPa": _MPA * float(bore.away_from_edges.max()),
+        "note": "at an edge of the keyway, where the value grows with refinement"
+        if at_edge
+        else "",
+    }
+    if turn.contact is not None:
+        loss = turn.contact.loss
+        record["sliding_loss_J_per_cam_turn"] = loss if np.isfinite(loss) else None
+        record["skidding_share"] = float(turn.contact.skidding.mean())
+    return record

@@ -27,7 +27,7 @@ from pipeline.given_lift import lift_origin
 from pipeline.measured import measurement_record
 from pipeline.progress import Progress
 from pipeline.records import contour_columns, headline, lift_columns, pressure_arrays, trial_record
-from pipeline.rolling import rolling_history
+from pipeline.rolling import envelope_arrays, rolling_history, rolling_record
 from pipeline.run_folder import RunFolder
 from pipeline.smoothing.gentler import Next, Stop, next_smoother
 from pipeline.smoothing.outlook import Attempt
@@ -105,7 +105,10 @@ def run_case(
         final = _certified(journey, trials[-1], jobs)
         for done in (*trials[:-1], final):
             folder.write_checks(done.number, [check.as_record() for check in done.checks])
-            folder.write_trial(done.number, trial_record(case, done))
+            turns = {cycle.load_case: cycle.rolling for cycle in done.cycles}
+            folder.write_trial(
+                done.number, trial_record(case, done) | {"rolling": rolling_record(turns)}
+            )
         _write_fields(journey, final)
         summary = {
             "timings_s": watch.read(),
@@ -251,6 +254,8 @@ def _write_cycles(journey: Journey, number: int, cycles: tuple[Cycle, ...]) -> N
         number, {name: np.concatenate([t[name] for t in tables]) for name in tables[0]}
     )
     journey.folder.write_pressure(number, pressure_arrays(cycles))
+    turns = {cycle.load_case: cycle.rolling for cycle in cycles}
+    journey.folder.write_envelope(number, envelope_arrays(turns))
 
 
 def _write_fields(journey: Journey, final: Trial) -> None:

@@ -26,12 +26,13 @@ from numpy.typing import ArrayLike
 
 from geometry.arrays import Array, readonly
 from geometry.errors import ResultError
-from pipeline import results
+from pipeline import results, signoff
 from pipeline.case import Case
 
 _STATE, _CHUNKS, _LOCK = ".state.json", ".chunks", ".lock"
 _OURS = re.compile(
-    r"case\.toml|run\.json|inputs|fields|figures|exports|trial_\d+|\d+_\w+\.(csv|html|json)"
+    r"case\.toml|(run|signoff|corners)\.json|inputs|fields|figures|exports|trial_\d+"
+    r"|\d+_\w+\.(csv|html|json)"
 )
 _LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib")
 
@@ -143,6 +144,10 @@ class RunFolder:
         """``5_pressure.npz``: contact pressure at every position of every load case."""
         write_atomic(self._file(f"trial_{trial}/5_pressure.npz"), _npz(arrays))
 
+    def write_envelope(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
+        """``5_envelope.npz``: greatest stresses of a turn in a band under the contour."""
+        write_atomic(self._file(f"trial_{trial}/5_envelope.npz"), _npz(arrays))
+
     def write_checks(self, trial: int, records: Iterable[Mapping[str, Any]]) -> None:
         """``6_checks.json``"""
         text = results.json_text([dict(record) for record in records])
@@ -176,6 +181,7 @@ class RunFolder:
             "case": self.case.name,
             "input_sha256": self.case.sha256,
             "versions": self.versions,
+            "platform": signoff.environment(),
             **summary,
             "files": results.file_hashes(self.path),
         }
@@ -183,10 +189,11 @@ class RunFolder:
         return whole
 
     def finish(self, summary: Mapping[str, Any]) -> dict[str, Any]:
-        """Write the summary and move the folder to its final place."""
+        """Write the summary, sign the whole and move the folder to its final place."""
         shutil.rmtree(self.path / _CHUNKS, ignore_errors=True)
         whole = self.write_summary(summary)
         (self.path / _STATE).unlink(missing_ok=True)
+        signoff.write(self.path)
         old = self.out.with_name(f".{self.out.name}.old")
         try:
             shutil.rmtree(old, ignore_errors=True)

@@ -74,7 +74,7 @@ def test_resumed_run_equals_a_straight_one_to_the_byte(
     _, out, summary = finished
     for trial in range(1, summary["trials"] + 1):
         for name in ("2_lift.csv", "3_contour.csv", "5_cycle.csv", "6_checks.json", "4_mesh.msh",
-                     "5_pressure.npz"):  # fmt: skip
+                     "5_pressure.npz", "5_envelope.npz"):  # fmt: skip
             assert (out / f"trial_{trial}" / name).read_bytes() == (
                 straight / f"trial_{trial}" / name
             ).read_bytes(), name
@@ -98,8 +98,12 @@ def test_run_folder_holds_what_was_promised(
     found = results.load_run(out)
     cycle = found.final.cycle
     assert len(cycle) == POSITIONS
+    optional = {column.header for column in results.CYCLE if column.optional}
+    assert {"torque_after_Nm", "shear_range_MPa", "bore_stress_MPa"} <= optional & set(
+        cycle.columns
+    )
     assert [column.header for column in results.CYCLE if not column.optional] == [
-        name for name in cycle.columns if not name.startswith("torque_")
+        name for name in cycle.columns if name not in optional
     ]
     np.testing.assert_array_equal(cycle["load_case"], "idle")
 
@@ -158,6 +162,26 @@ def test_pressure_of_every_position_carries_the_load(
         assert (stored["pressure_MPa"] >= 0).all()
         # The end knots carry nothing, so straight lines between the knots hold it all.
         np.testing.assert_allclose(carried, cycle["line_load_N_per_mm"], rtol=1e-9)
+
+
+def test_map_of_the_turn_agrees_with_the_angles(
+    finished: tuple[Case, Path, dict[str, Any]],
+) -> None:
+    """Worst stress of the swept load within 1 % of that at the worst angle, and where it is."""
+    _, out, _ = finished
+    trial = results.load_run(out).final
+    worst = json.loads((trial.path / "trial.json").read_text())["rolling"]
+    (name,) = worst
+    with np.load(trial.path / "5_envelope.npz") as stored:
+        for column, key in (("von_mises_MPa", "von_mises"), ("shear_range_MPa", "shear_range")):
+            map_ = stored[f"{name}.{column}"]
+            assert map_.max() == pytest.approx(trial.cycle[column].max(), rel=1e-2)
+            assert worst[name][key]["value_MPa"] == pytest.approx(map_.max())
+        assert stored[f"{name}.depth_mm"].shape == map_.shape
+    # The load is swept: the map may find more than the angles, never much less.
+    assert worst[name]["bore"]["von_mises_MPa"] == pytest.approx(
+        trial.cycle["bore_stress_MPa"].max()
+    )
 
 
 def test_report_can_be_rebuilt_from_the_folder(
