@@ -29,6 +29,7 @@ POINTS = {0: 153.0, 18: 147.0}  # rad/s at 0 and 180 deg
 SLOWEST, FASTEST = 35, 45  # "just before 360 deg", "around 450 deg"
 TORQUE_STD, TORQUE_AMPLITUDE, TORQUE_PEAK = 6.25, 29.79, 25.0
 WEIGHTS = (1.0, 10.0, 100.0, 1000.0, 1e4)  # on the published figures, against the smoothness
+MAX_STEPS = 200  # at each weight
 MISSED_BY = 1e-3  # rad/s or N m, below the last printed digit
 PEAK, TROUGH = 37, 48  # tooth places of the torque, chosen for a smooth curve
 
@@ -64,7 +65,9 @@ def reconstruct() -> Reconstruction:
     """
     unknowns = np.append(_first_guess(), 13.3)  # the inertia in g m2, to be of one size
     for weight in WEIGHTS:
-        found = least_squares(_residuals, unknowns, args=(weight,), x_scale="jac", max_nfev=200)
+        found = least_squares(
+            _residuals, unknowns, args=(weight,), x_scale="jac", max_nfev=MAX_STEPS
+        )
         unknowns = found.x
     if np.abs(_misses(unknowns)).max() > MISSED_BY:
         miss = float(np.abs(_misses(unknowns)).max())
