@@ -363,6 +363,7 @@ class Follower(Section):
 
     mass: Mass
     stem_diameter: Length
+    stem_length: Length | None = None
     stem_material: Name
     overhang_at_max_lift: Length
     viscous_damping: Annotated[float, In("N s/m", at_least=0, at_most=1e6)] = 0.0

@@ -228,7 +228,8 @@ def guide_reactions(
     Raises
     ------
     InputError
-        If the roller would enter guide A, the stem is thicker than a bore, or a value is NaN.
+        If the roller would enter guide A, the stem would leave guide B or is thicker than a
+        bore, or a value is NaN.
     ContactError
         If equilibrium or the contact law is not met to 1e-9.
     """
@@ -300,6 +301,10 @@ def _fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> None:
     if not (overhang >= 0.5 * guides.a.length).all():
         limit = f">= {0.5 * guides.a.length:g} m, or the roller enters guide A"
         raise InputError("follower.overhang", float(overhang.min()), limit)
+    needed = float(overhang.max()) + guides.spacing + 0.5 * guides.b.length
+    if not stem.length >= needed * (1.0 - 1e-12):
+        limit = f">= {needed:g} m, or the stem leaves guide B at the largest overhang"
+        raise InputError("follower.stem_length", stem.length, limit)
 
 
 def _bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine, Array, float]:

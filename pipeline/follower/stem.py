@@ -26,6 +26,7 @@ class Stem:
     poisson_ratio : float     used by the shear flexibility alone, 0 to 0.5
     shear : bool              Timoshenko's beam; else Euler and Bernoulli's
     bore : float              diameter of a hole along the bar, m; 0 for a solid one
+    length : float            from the roller's centre to the far end, m; infinite: long enough
     """
 
     diameter: float
@@ -33,11 +34,14 @@ class Stem:
     poisson_ratio: float = 0.3
     shear: bool = False
     bore: float = 0.0
+    length: float = np.inf
 
     def __post_init__(self) -> None:
         for name, unit in (("diameter", "m"), ("elastic_modulus", "Pa")):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise InputError(f"stem.{name}", getattr(self, name), f"> 0 {unit}")
+        if not self.length > 0.0:
+            raise InputError("stem.length", self.length, "> 0 m")
         if not 0.0 <= self.poisson_ratio <= 0.5:
             raise InputError("stem.poisson_ratio", self.poisson_ratio, "from 0 to 0.5")
         if not 0.0 <= self.bore < self.diameter:
@@ -47,7 +51,9 @@ class Stem:
     def from_case(cls, case: Any) -> Stem:
         """The stem described by the follower table of a case."""
         material = case.materials[case.follower.stem_material]
-        return cls(case.follower.stem_diameter, material.E, material.nu)
+        given = case.follower.stem_length
+        length = np.inf if given is None else given
+        return cls(case.follower.stem_diameter, material.E, material.nu, length=length)
 
     @property
     def bending_stiffness(self) -> float:

@@ -188,6 +188,15 @@ def test_the_roller_stays_outside_guide_a(share, fits):
             guide_reactions([1.0], share * 0.01, STEM, PAIR)
 
 
+def test_a_stem_that_would_leave_guide_b_is_refused():
+    """At the largest overhang, 60 mm, B ends 60 + 80 + 8 mm from the roller."""
+    guide_reactions(FORCE, OVERHANG, replace(STEM, length=0.148), PAIR)
+    with pytest.raises(InputError, match="stem_length"):
+        guide_reactions(FORCE, OVERHANG, replace(STEM, length=0.147), PAIR)
+    with pytest.raises(InputError, match="length"):
+        replace(STEM, length=np.nan)
+
+
 def test_a_stem_thicker_than_the_bore_is_refused():
     with pytest.raises(InputError, match="stem_diameter"):
         guide_reactions([1.0], 0.04, replace(STEM, diameter=0.011), PAIR)
@@ -233,7 +242,7 @@ def test_from_case_takes_the_bush_unless_a_stiffness_is_given():
             "steel": SimpleNamespace(E=210e9, nu=0.3),
             "nylon": SimpleNamespace(E=2.8e9, nu=0.4),
         },
-        follower=SimpleNamespace(stem_diameter=0.01, stem_material="steel"),
+        follower=SimpleNamespace(stem_diameter=0.01, stem_material="steel", stem_length=0.2),
         guides=SimpleNamespace(
             spacing=0.08,
             a=SimpleNamespace(**table, material="nylon", stiffness=None),
