@@ -22,6 +22,8 @@ CLOSURE_TOLERANCE = 1e-9
 
 REPEAT_MAX = 12
 
+_SAMPLED, _ROUNDED = 1440, 2880
+
 _QUARTER = 4.0 * np.pi
 """Frequency of a sine whose quarter wave lasts an eighth of the segment."""
 
@@ -270,10 +272,38 @@ class Motion:
             value[here] = moved + (levels[k] if derivative == 0 else 0.0)
         return value
 
-    def lift(self, count: int = 1440) -> Lift:
-        """The lift as the road takes it: the periodic quintic through `count` equal angles.
+    @property
+    def jumps(self) -> bool:
+        """Whether the acceleration jumps at a joint, as it does with harmonic beside dwell."""
+        ends = [
+            (0.0, 0.0)
+            if part.law == DWELL
+            else tuple(part.stroke / part.angle**2 * LAWS[part.law](np.array([0.0, 1.0]), 2))
+            for part in self.segments
+        ]
+        size = max(abs(value) for pair in ends for value in pair)
+        # the mirrored half of a law meets the first half but for round-off
+        inside = any(part.law == "parabolic" for part in self.segments)
+        before = [pair[1] for pair in ends[-1:] + ends[:-1]]
+        steps = [abs(pair[0] - last) for pair, last in zip(ends, before, strict=True)]
+        return inside or max(steps) > 1e-9 * size
 
-        Where a law's acceleration or jerk jumps, the C4 spline rounds the corner within a few
-        steps; elsewhere it misses the law by order count^-6.
+    def lift(self, count: int | None = None) -> Lift:
+        """The lift as the road takes it, a periodic quintic on `count` equal angles.
+
+        It passes through the law at each of 1440 angles and misses it by order count^-6 between.
+        Where the acceleration jumps such a spline would ring, and show hollows and undercuts that
+        the law has not. There the law's values at 2880 angles are the control points instead:
+        every derivative then stays within the bounds of the law's own, and the lift misses by
+        s'' step^2 / 4, a tenth of a micrometre for a lift of 20 mm in 60 deg.
+
+        References
+        ----------
+        de Boor, A Practical Guide to Splines (1978), ch. XI: Schoenberg's approximation.
         """
-        return Lift(uniform_turn(count), self(uniform_turn(count)), self.closure)
+        count = count or (_ROUNDED if self.jumps else _SAMPLED)
+        values = self(uniform_turn(count))
+        if self.jumps:
+            near, far = (np.roll(values, k) + np.roll(values, -k) for k in (1, 2))
+            values = (66.0 * values + 26.0 * near + far) / 120.0
+        return Lift(uniform_turn(count), values, self.closure)

@@ -135,3 +135,25 @@ def test_sampled_lift_follows_a_smooth_law():
     theta = np.linspace(0, 2 * np.pi, 1001)
     np.testing.assert_allclose(motion.lift(1440)(theta), motion(theta), rtol=0, atol=1e-10)
     assert motion.lift(1440).stroke == pytest.approx(0.01, abs=1e-10)
+
+
+def test_jump_of_acceleration_does_not_ring():
+    stroke, angle = 0.02, np.radians(60)
+    motion = Motion(
+        (Segment("harmonic", angle, stroke), Segment("harmonic", angle, -stroke),
+         Segment("dwell", 2 * np.pi - 2 * angle))
+    )  # fmt: skip
+    lift, theta = motion.lift(), np.linspace(0, 2 * np.pi, 50_000)
+    bound = np.abs(motion(theta, 2)).max()
+    assert np.abs(lift(theta, 2)).max() <= bound * (1 + 1e-9)
+    dwell = theta[(theta > 2 * angle + 0.01) & (theta < 2 * np.pi - 0.01)]
+    assert lift(dwell, 2) == pytest.approx(0, abs=1e-12)
+    step = 2 * np.pi / 2880
+    assert np.abs(lift(theta) - motion(theta)).max() <= 1.01 * bound * step**2 / 4
+
+
+def test_harmonic_without_a_dwell_is_met_exactly():
+    motion = Motion((Segment("harmonic", np.pi, 0.01), Segment("harmonic", np.pi, -0.01)))
+    assert not motion.jumps
+    theta = np.linspace(0, 2 * np.pi, 500)
+    np.testing.assert_allclose(motion.lift()(theta), 0.005 * (1 - np.cos(theta)), atol=1e-15)

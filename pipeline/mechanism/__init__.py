@@ -1,0 +1,1 @@
+"""Whole mechanisms of the papers: valve cams, slider-crank and eccentric cam."""
