@@ -13,6 +13,7 @@ from pipeline.case import Case
 from pipeline.case_fields import Guide
 from pipeline.contact.harmonics import Bush, Pin
 from pipeline.contact.pin_in_hole import peak_pressure
+from pipeline.follower.bearing_cards import read_cards
 from pipeline.follower.cam_body import Camshaft, Reversal, key_stress, shaft_loads, torque_reversals
 from pipeline.follower.dynamics import (
     ElasticFollower,
@@ -30,7 +31,7 @@ from pipeline.follower.friction import (
     guide_heat,
 )
 from pipeline.follower.guides import WALL_SHARE, GuideReactions
-from pipeline.follower.ring import pin_bending_stress
+from pipeline.follower.ring import Ring, ball_stiffness, pin_bending_stress, ring_bending
 from pipeline.follower.spring import HelicalSpring, case_spring, surge_force
 from pipeline.follower.stem import Stem
 
@@ -66,6 +67,7 @@ class PartsHistory:
     spring_stress: Array | None
     surge_force: Array | None
     pin_stress: Array | None
+    ring_stress: Array | None
 
     def __post_init__(self) -> None:
         for name in self.__dataclass_fields__:
@@ -94,6 +96,7 @@ class PartsHistory:
             "spring_stress": self.spring_stress,
             "spring_surge_force": self.surge_force,
             "pin_stress": self.pin_stress,
+            "ring_stress_range": self.ring_stress,
         }
         return {name: values for name, values in found.items() if values is not None}
 
@@ -126,6 +129,7 @@ def parts_history(
         spring_stress=None if spring is None else spring.stress(loads.spring_force),
         surge_force=None if spring is None else _surge(spring, loads, cam_speed),
         pin_stress=_pin(case, loads),
+        ring_stress=_ring(case, loads),
     )
 
 
@@ -233,3 +237,22 @@ def _pin(case: Case, loads: Loads) -> Array | None:
     overhung = pin.mounting == "overhung"
     per_newton = pin_bending_stress(1.0, pin.diameter, case.roller.width, pin.span, overhung)
     return per_newton * loads.normal_force
+
+
+def _ring(case: Case, loads: Loads) -> Array | None:
+    """Range of the bending stress in the outer ring of a bearing taken from a card."""
+    name, force = case.roller.bearing.card, float(loads.normal_force.max())
+    if name is None or not force > 0.0:
+        return None
+    card, steel = read_cards()[name], case.material(case.roller.material)
+    # Between the raceways: what the section leaves beside both rings, near enough for the balls.
+    ball = 0.5 * (card.outer_diameter - card.bore) - 2.0 * card.ring_thickness
+    ring = Ring(
+        radius=0.5 * (card.outer_diameter - card.ring_thickness),
+        thickness=card.ring_thickness,
+        width=card.width,
+        modulus=steel.E,
+        balls=card.balls,
+        ball_stiffness=ball_stiffness(force, ball, steel.E, steel.nu),
+    )
+    return ring_bending(ring).stress_range(ring, 1.0) * loads.normal_force

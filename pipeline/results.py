@@ -97,7 +97,8 @@ CYCLE = _columns(
     "normal_force_friction_min? [N]; normal_force_friction_max? [N]; jam_index_friction_max?;"
     "elastic_contact_force? [N]; elastic_deflection? [um]; bore_pressure? [MPa];"
     "key_pressure? [MPa]; shaft_bearing_1? [N]; shaft_bearing_2? [N]; spring_stress? [MPa];"
-    "spring_surge_force? [N]; pin_stress? [MPa]"
+    "spring_surge_force? [N]; pin_stress? [MPa];"
+    "ring_stress_range? [MPa]"
 )
 
 
@@ -300,11 +301,11 @@ def hash_inputs(case_text: str, included: Mapping[str, bytes]) -> str:
 
 def file_hashes(path: Path) -> dict[str, str]:
     """SHA-256 of the tables, checks and meshes of a run; pictures and pages can be redrawn."""
-    kept = (".csv", ".json", ".msh", ".npz")
+    kept, later = (".csv", ".json", ".msh", ".npz"), ("run.json", "signoff.json")
     return {
         file.relative_to(path).as_posix(): _sha256(file)
         for file in sorted(path.rglob("*"))
-        if file.suffix in kept and file.name != "run.json" and not _hidden(file, path)
+        if file.suffix in kept and file.name not in later and not _hidden(file, path)
     }
 
 

@@ -15,6 +15,7 @@ from geometry.arrays import Array
 from geometry.errors import GeometryError
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest, least, worst_case
+from pipeline.follower.bearing_cards import read_cards
 from pipeline.follower.cam_body import counter_hole, unbalance
 
 if TYPE_CHECKING:
@@ -177,6 +178,32 @@ def roller_pin(evidence: TrialEvidence) -> Check | None:
     )
 
 
+def roller_ring(evidence: TrialEvidence) -> Check | None:
+    """Bending of the bearing's outer ring, which rolls on the cam without a housing."""
+    if not _known(evidence):
+        return None
+    roller, title = evidence.case.roller, "Bending stress range of the roller's outer ring"
+    if roller.bearing.card is None:
+        note = "a plain bearing is rated in a housing; no card tells of balls and ring"
+        return _missing("roller_ring", title, "MPa", note)
+    material = evidence.case.material(roller.material)
+    worst = greatest(evidence, lambda cycle: _given(_parts(cycle).ring_stress))
+    strength = material.fatigue_bending
+    return Check(
+        id="roller_ring",
+        title=title,
+        demand=1e-6 * worst.value,
+        limit=None if strength is None else 2e-6 * strength,
+        unit="MPa",
+        source=f"twice the fatigue strength in bending; {material.source}",
+        method="ring of beam elements on its balls, which only push; all ball positions",
+        must_have=False,
+        lift_can_help=True,
+        note=f"rated in a housing; {read_cards()[roller.bearing.card].source}",
+        **worst.place,
+    )
+
+
 def key_pressure(evidence: TrialEvidence) -> Check | None:
     """Pressure on the flank of the cam's key."""
     if not _known(evidence):
@@ -275,6 +302,7 @@ CHECKS = (
     bush_temperature_a,
     bush_temperature_b,
     roller_pin,
+    roller_ring,
     key_pressure,
     torque_reversals,
     cam_unbalance,

@@ -206,6 +206,24 @@ def _element(ring: Ring, nodes: int) -> tuple[Array, Array]:
     return local, turn
 
 
+def ball_stiffness(force: float, diameter: float, modulus: float, poisson: float) -> float:
+    """Of a ball between two raceways under a force, secant, N/m; an estimate.
+
+    Each contact as that of a ball on a flat, d = (9 F^2/(16 E*^2 R))^(1/3), stiffened by the
+    grooves' osculation by the usual 1.3 (recalled, verify); the ring's bending hardly asks.
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), sec. 4.2(a); Harris and Kotzalas (2007), ch. 6.
+    """
+    for name, value in (("force", force), ("diameter", diameter), ("modulus", modulus)):
+        if not 0.0 < value < np.inf:
+            raise InputError(f"ball.{name}", value, "> 0")
+    contact = modulus / (2.0 * (1.0 - poisson**2))
+    way = (9.0 * force**2 / (16.0 * contact**2 * 0.5 * diameter)) ** (1.0 / 3.0)
+    return 1.3 * force / (2.0 * way)
+
+
 def pin_bending_stress(
     force: float, diameter: float, width: float, span: float, overhung: bool = False
 ) -> float:

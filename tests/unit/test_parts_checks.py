@@ -92,12 +92,13 @@ def found(given):
 def test_every_part_described_is_evaluated(full):
     checks = found(full)
     open_ones = {name for name, check in checks.items() if not check.evaluated}
-    # no friction bounds, no heat path and no balance grade in the case
+    # no friction bounds, heat path, balance grade or bearing card in the case
     assert open_ones <= {
         "jam_at_worst_friction",
         "bush_temperature_A",
         "bush_temperature_B",
         "cam_unbalance",
+        "roller_ring",
     }
     assert all(check.source and check.method for check in checks.values())
 
@@ -228,6 +229,24 @@ def test_a_card_fills_in_what_the_case_leaves_out():
     assert again.roller.bearing.C0 == 670.0
     with pytest.raises(InputError, match="maker_2_625"):
         case('card = "nobody"')
+
+
+def test_ring_of_a_card(full):
+    """The range grows with the load; without a card the ring is flagged as not evaluated."""
+    open_ring = part_checks.roller_ring(full)
+    assert open_ring.status == "not_evaluated"
+    assert "housing" in open_ring.note
+    roller = full.case.roller
+    bearing = roller.bearing.model_copy(update={"card": "maker_1_625_2RS"})
+    case = full.case.model_copy(update={"roller": roller.model_copy(update={"bearing": bearing})})
+    given = evidence(case)
+    cycle = given.cycles[0]
+    ratio = cycle.parts.ring_stress / cycle.loads.normal_force
+    np.testing.assert_allclose(ratio, ratio[0], rtol=1e-12)
+    check = part_checks.roller_ring(given)
+    force = max(c.loads.normal_force.max() for c in given.cycles)
+    assert check.demand == pytest.approx(1e-6 * ratio[0] * force, rel=0.05)
+    assert "verify" in check.note
 
 
 @pytest.mark.parametrize("name", ["friction_min", "friction_max"])
