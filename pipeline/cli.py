@@ -6,7 +6,6 @@ Heavy modules are imported by the command that needs them, so that ``--version``
 from __future__ import annotations
 
 import json
-import math
 import os
 import signal
 import sys
@@ -17,7 +16,6 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
-from rich.table import Table as RichTable
 
 from geometry.errors import CamError, InputError, ResultError
 from pipeline.progress import Bars, Lines, Progress
@@ -148,34 +146,104 @@ def run(
         old = set_aside(out, design) if replace else nullcontext()
         with old, _progress() as progress:
             run_case(design, out, positions=positions, jobs=jobs, resume=resume, progress=progress)
-    _show(_load(out))
+    finished = _load(out)
+    _show(_document(finished), finished)
     return PASSED
 
 
 @app.command()
 def check(
-    folder: DirArgument,
+    target: Annotated[Path, typer.Argument(metavar="DIR|CASE", help="Run folder or case file.")],
     as_json: Annotated[bool, typer.Option("--json", help="The checks as JSON.")] = False,
+    junit: Annotated[
+        Path | None, typer.Option("--junit", metavar="FILE", help="Write JUnit XML for CI.")
+    ] = None,
+    baseline: Annotated[
+        Path | None, typer.Option("--baseline", metavar="DIR", help="Compare with an earlier run.")
+    ] = None,
+    only: Annotated[
+        list[str] | None, typer.Option("--only", help='Ids or patterns such as "bush_*".')
+    ] = None,
+    fail_on: Annotated[
+        str, typer.Option("--fail-on", help="must, open (also not evaluated), any, never.")
+    ] = "must",
+    verify_record: Annotated[
+        bool, typer.Option("--verify-record", help="Compare the files with signoff.json.")
+    ] = False,
 ) -> int:
-    """Verdict of a finished run, from its folder alone: exit 0 passed, 1 failed, 2 error."""
+    """Verdict of a finished run, from its folder alone: exit 0 passed, 1 failed, 2 error.
+
+    Of a case file: its checks by closed forms, a look ahead that never passes.
+    """
+    from pipeline.check_command import failing, selected
+    from pipeline.check_command import junit as junit_text
+
+    if verify_record and not target.is_file() and not _as_signed(target):
+        return FAILED
+    document, found = _checked_case(target) if target.is_file() else _checked_run(target)
+    document["checks"] = list(selected(document["checks"], only or ()))
+    failed = failing(document["checks"], fail_on)
+    if baseline is not None:
+        from pipeline.baseline import changes
+
+        document["changes"] = changes(_load(baseline).final.checks, document["checks"])
+    if junit is not None:
+        from pipeline.run_folder import write_atomic
+
+        write_atomic(junit, junit_text(document["checks"], document["case"], fail_on))
+    if as_json:
+        print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - not to be wrapped
+    else:
+        _show(document, found)
+    return FAILED if failed else PASSED
+
+
+def _as_signed(folder: Path) -> bool:
+    """Whether the files are those that were signed off; names each that is not."""
+    from pipeline import signoff
+
+    changed = signoff.changes(folder)
+    for line in changed:
+        _say(f"{folder / line}")
+    return not changed
+
+
+def _checked_run(folder: Path) -> tuple[dict[str, Any], Run]:
     from pipeline.results import verify_run
 
     verify_run(folder)
     found = _load(folder)
-    if as_json:
-        document = {
-            "case": found.summary["case"],
-            "input_sha256": found.summary["input_sha256"],
-            "verdict": found.verdict,
-            "binding": list(found.final.binding),
-            "trials": found.summary["trials"],
-            "headline": found.summary["headline"],
-            "checks": [dict(record) for record in found.final.checks],
-        }
-        print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - not to be wrapped
-    else:
-        _show(found)
-    return PASSED if found.verdict == "pass" else FAILED
+    return _document(found), found
+
+
+def _document(found: Run) -> dict[str, Any]:
+    return {
+        "case": found.summary["case"],
+        "input_sha256": found.summary["input_sha256"],
+        "verdict": found.verdict,
+        "binding": list(found.final.binding),
+        "trials": found.summary["trials"],
+        "headline": found.summary["headline"],
+        "checks": [dict(record) for record in found.final.checks],
+    }
+
+
+def _checked_case(path: Path) -> tuple[dict[str, Any], None]:
+    from pipeline.case import load_case_file
+    from pipeline.checks.verdict import binding
+    from pipeline.preview import closed_form_checks
+
+    case = load_case_file(path)
+    checks = closed_form_checks(case)
+    document = {
+        "case": case.name,
+        "input_sha256": case.sha256,
+        "verdict": "fail",
+        "binding": list(binding(checks)),
+        "look_ahead": True,
+        "checks": [one.as_record() for one in checks],
+    }
+    return document, None
 
 
 @app.command()
@@ -302,42 +370,29 @@ def _progress() -> Iterator[Progress]:
         yield Lines(lambda text: print(text, file=sys.stderr, flush=True))  # noqa: T201
 
 
-def _show(found: Run) -> None:
-    """Checks by utilisation, then the verdict and where the report is."""
-    table = RichTable(box=None, pad_edge=False, header_style="")
-    for heading, side in (("check", "left"), ("demand", "right"), ("limit", "right"),
-                          ("unit", "left"), ("used", "right"), ("status", "left")):  # fmt: skip
-        table.add_column(heading, justify=side, no_wrap=heading != "check")  # type: ignore[arg-type]
-    for record in sorted(found.final.checks, key=_rank):
-        status = record["status"] + ("" if record.get("must_have", True) else " (optional)")
-        used = record["utilisation"]
-        table.add_row(
-            record["title"],
-            _number(record["demand"]),
-            _number(record["limit"]),
-            record["unit"],
-            "-" if used is None else f"{used:.0%}",
-            status,
-        )
-    _out.print(table)
-    binding = ", ".join(found.final.binding)
-    trials = f"{len(found.trials)} trial{'s' if len(found.trials) > 1 else ''}"
-    _out.print(f"verdict: {found.verdict} after {trials}", markup=False)
-    if found.summary.get("statement"):
-        _out.print(found.summary["statement"], markup=False)
-    if binding:
-        _out.print(f"binding: {binding}", markup=False)
-    _out.print(f"report: {found.path / '8_report.html'}", markup=False)
+def _show(document: dict[str, Any], found: Run | None) -> None:
+    """Checks by utilisation, what else is to be known, then the verdict and the report's place."""
+    from pipeline.check_command import remarks, table
 
+    _out.print(table(document["checks"]))
+    for line in remarks(document["checks"]):
+        _out.print(line, markup=False)
+    if "changes" in document:
+        from pipeline.baseline import lines
 
-def _rank(record: Any) -> tuple[bool, float, str]:
-    """Not evaluated first, then by falling utilisation; one beyond all bounds has no number."""
-    used = record["utilisation"]
-    return record["status"] != "not_evaluated", -(math.inf if used is None else used), record["id"]
-
-
-def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g}"
+        for line in lines(document["changes"]):
+            _out.print(f"baseline: {line}", markup=False)
+    if found is None:
+        _out.print(f"verdict: {document['verdict']}, a look ahead by closed forms", markup=False)
+    else:
+        trials = f"{len(found.trials)} trial{'s' if len(found.trials) > 1 else ''}"
+        _out.print(f"verdict: {found.verdict} after {trials}", markup=False)
+        if found.summary.get("statement"):
+            _out.print(found.summary["statement"], markup=False)
+    if document["binding"]:
+        _out.print(f"binding: {', '.join(document['binding'])}", markup=False)
+    if found is not None:
+        _out.print(f"report: {found.path / '8_report.html'}", markup=False)
 
 
 if __name__ == "__main__":

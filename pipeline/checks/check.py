@@ -27,6 +27,9 @@ class Check:
     lift_can_help : bool     a gentler lift can lower the demand
     waiver : str             name, reason and date; None when nobody waived it
     note : str               what a reader must know besides
+    error_share : float      error bar of the demand over the demand; None: not known
+    corner : str             the tolerance corner where the demand is worst; "" when none was tried
+    corner_demand : float    the demand there; None when none was tried
     """
 
     id: str
@@ -43,6 +46,23 @@ class Check:
     lift_can_help: bool = False
     waiver: str | None = None
     note: str = ""
+    error_share: float | None = None
+    corner: str = ""
+    corner_demand: float | None = None
+
+    @property
+    def error(self) -> float | None:
+        """Half of the demand's error bar, in `unit`; None where nobody knows it."""
+        demand, share = self.demand, self.error_share
+        if demand is None or share is None or not math.isfinite(demand * share):
+            return None
+        return abs(demand) * share
+
+    @property
+    def margin(self) -> float | None:
+        """What is left of the limit, as a share of it; negative beyond it."""
+        used = self.utilisation
+        return None if used is None else 1.0 - used
 
     @property
     def evaluated(self) -> bool:
@@ -108,6 +128,10 @@ class Check:
             "lift_can_help": self.lift_can_help,
             "waiver": self.waiver,
             "note": self.note,
+            "error": _json_number(self.error),
+            "margin": _json_number(self.margin),
+            "corner": self.corner,
+            "corner_demand": _json_number(self.corner_demand),
         }
 
 

@@ -19,6 +19,7 @@ from pipeline.checks import (
     spring,
 )
 from pipeline.checks.check import Check
+from pipeline.checks.errors import with_error_bars
 from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import in_order
 
@@ -53,7 +54,7 @@ def all_checks(trial: TrialEvidence) -> tuple[Check, ...]:
     A check that does not apply, such as the torque reduction of a cam without an engine, is
     left out.
     """
-    return _checked(trial, (*ALL, *PARTS))
+    return checked_by(trial, (*ALL, *PARTS))
 
 
 def design_checks(trial: TrialEvidence) -> tuple[Check, ...]:
@@ -63,7 +64,7 @@ def design_checks(trial: TrialEvidence) -> tuple[Check, ...]:
     the ``loads``, and by whichever way they were found ``contact.p0``, ``contact.von_mises``,
     ``guides.reaction_a`` and ``guides.reaction_b``.
     """
-    return _checked(trial, (function for function in DESIGN if function not in SLOW))
+    return checked_by(trial, (function for function in DESIGN if function not in SLOW))
 
 
 def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, ...]:
@@ -72,6 +73,7 @@ def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, .
     return tuple(replace(check, waiver=texts.get(check.id)) for check in checks)
 
 
-def _checked(trial: TrialEvidence, functions: Iterable[CheckFunction]) -> tuple[Check, ...]:
+def checked_by(trial: TrialEvidence, functions: Iterable[CheckFunction]) -> tuple[Check, ...]:
+    """The checks that some functions find, with error bars and waivers, in order."""
     found = [check for check in (function(trial) for function in functions) if check is not None]
-    return in_order(waived(found, trial.case.waivers))
+    return in_order(waived(with_error_bars(trial, found), trial.case.waivers))

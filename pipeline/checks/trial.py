@@ -52,15 +52,23 @@ class TrialEvidence:
 
 
 class Worst(NamedTuple):
-    """The value that decides, and where: `place` fills the fields of a Check."""
+    """The value that decides, and where: `place` fills the fields of a Check.
+
+    error_share is what the samples' peak may miss of the true one, over the value.
+    """
 
     value: float
     load_case: str
     cam_angle_deg: float | None
+    error_share: float = 0.0
 
     @property
     def place(self) -> dict[str, Any]:
-        return {"load_case": self.load_case, "cam_angle_deg": self.cam_angle_deg}
+        return {
+            "load_case": self.load_case,
+            "cam_angle_deg": self.cam_angle_deg,
+            "error_share": self.error_share,
+        }
 
 
 def greatest(evidence: TrialEvidence, measure: Callable[[Cycle], Array]) -> Worst:
@@ -96,5 +104,19 @@ def _extreme(
         if found.load_case and not (np.isnan(value) or sign * value > sign * found.value):
             continue
         degrees = float(np.rad2deg(cycle.theta[worst])) if angle else None
-        found = Worst(value, cycle.load_case, degrees)
+        share = _missed_between_samples(values, worst) if angle and values.size > 2 else 0.0
+        found = Worst(value, cycle.load_case, degrees, share)
     return found
+
+
+def _missed_between_samples(values: Array, worst: int) -> float:
+    """What the vertex of the parabola through three samples lies beyond the middle one, share.
+
+    A kink has no vertex; the parabola then says less than half a step of the slope, and that
+    is what it is good for.
+    """
+    before, here, after = values[worst - 1], values[worst], values[(worst + 1) % values.size]
+    bend = before - 2.0 * here + after
+    if not (np.isfinite(bend) and bend != 0.0 and here != 0.0):
+        return 0.0
+    return float(abs((after - before) ** 2 / (8.0 * bend) / here))

@@ -29,7 +29,7 @@ def other_case() -> Any:
 def test_a_finished_run_leaves_nothing_else_behind(tmp_path: Path) -> None:
     out = write_run(tmp_path / "new" / "run")
     assert entries(tmp_path / "new") == ["run"]
-    assert entries(out) == ["1_torque.csv", "case.toml", "run.json", "trial_1"]
+    assert entries(out) == ["1_torque.csv", "case.toml", "run.json", "signoff.json", "trial_1"]
     summary = results.read_summary(out)
     assert summary["input_sha256"] == small_case().sha256 == results.input_sha256(out)
     assert summary["versions"]["numpy"] == np.__version__

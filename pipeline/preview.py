@@ -1,0 +1,64 @@
+"""The checks of a case by closed forms, before anything is solved: a look ahead, never a sign-off.
+
+Torque, lift, contour, loads and guides are those of a run's first trial; the contact is Hertz's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pipeline import trial as road
+from pipeline.case import Case
+from pipeline.checks.check import Check
+from pipeline.checks.everything import DESIGN, PARTS, checked_by
+from pipeline.checks.trial import TrialEvidence
+from pipeline.checks.verdict import in_order
+from pipeline.contact.pair import closed_form_history
+from pipeline.cycle import Cycle, Turn, contact_pair, finished
+from pipeline.smoothing.smoothers import Smoother
+
+MARK = "closed forms only: "
+
+
+def closed_form_checks(case: Case) -> tuple[Check, ...]:
+    """Checks of the first trial by closed forms, with a must-have that says so.
+
+    Raises
+    ------
+    CamError
+        If there is no such cam.
+    """
+    torques = road.engine_torques(case)
+    smoother = None if case.engine is None else Smoother.from_case(case.smoothing)
+    contour = road.cam_contour(case, road.designed_lift(case, torques, smoother))
+    sound = road.is_body(contour)
+    turns = road.turns_of(case, contour, torques, case.solver.positions)
+    cycles = tuple(_cycle(case, contour, given, sound) for given in turns)
+    evidence = TrialEvidence(case=case, contour=contour, cycles=cycles)
+    found = checked_by(evidence, (*DESIGN, *PARTS))
+    marked = (replace(check, method=MARK + check.method) for check in found)
+    return in_order((_unsigned(), *marked))
+
+
+def _cycle(case: Case, contour: road.Contour, given: Turn, sound: bool) -> Cycle:
+    if not sound:
+        return finished(case, contour, given, road.unknown_contact(given))
+    force = np.asarray(given.loads.normal_force)
+    history = closed_form_history(contact_pair(case, contour), given.theta, force)
+    return finished(case, contour, given, history)
+
+
+def _unsigned() -> Check:
+    return Check(
+        id="signed_off",
+        title="Finite elements, certificate and error bars",
+        demand=None,
+        limit=1.0,
+        unit="-",
+        sense="at_least",
+        source="a sign-off asks for a run",
+        method="none: a case file has been checked, not a run",
+        note="camwright run solves the case; this is a look ahead",
+    )
