@@ -35,14 +35,16 @@ class Correction:
 
     along (count,) stress along the surface, Pa per N/m, the only one there as the surface is
     free; bend (count,) second derivative of the outward displacement along the surface, 1/m per
-    N/m.
+    N/m; along_by_depth (count,) how the stress changes into the body, Pa/m per N/m: without
+    shear a bent surface stretches the layers below it as a beam does.
     """
 
     along: Array
     bend: Array
+    along_by_depth: Array
 
     def __post_init__(self) -> None:
-        freeze(self, along=self.along, bend=self.bend)
+        freeze(self, along=self.along, bend=self.bend, along_by_depth=self.along_by_depth)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +98,8 @@ class LoadedBody:
             moved = condensed.displacement(loads[:, condensed.nodes], held)
             parts.append(self._at_contacts(moved, at, up))
         slope, bend = np.concatenate(parts, axis=1)
-        return Correction(along=self._plane_strain_modulus * slope, bend=bend)
+        modulus = self._plane_strain_modulus
+        return Correction(along=modulus * slope, bend=bend, along_by_depth=modulus * bend)
 
     @cached_property
     def _condensed(self) -> CondensedBody:
