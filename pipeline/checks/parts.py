@@ -290,7 +290,15 @@ def _given(values: Array | None) -> Array:
 
 def _missing(name: str, title: str, unit: str, note: str) -> Check:
     return Check(
-        id=name, title=title, demand=None, limit=None, unit=unit, must_have=False, note=note
+        id=name,
+        title=title,
+        demand=None,
+        limit=None,
+        unit=unit,
+        source=note,
+        method="not evaluated",
+        must_have=False,
+        note=note,
     )
 
 

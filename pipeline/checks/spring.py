@@ -157,14 +157,17 @@ def _check(
 
 
 def _unknown(name: str, title: str) -> Check:
+    note = "no wire, diameter and coils of the spring are given"
     return Check(
         id=name,
         title=title,
         demand=None,
         limit=None,
         unit="-",
+        source=note,
+        method="not evaluated",
         must_have=False,
-        note="no wire, diameter and coils of the spring are given",
+        note=note,
     )
 
 
