@@ -30,7 +30,7 @@ LONG = 700
 UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 FIELD = Path("fields") / "contact_worst.vtu"
 GROUPS = (
-    ("Torque", ("torque", "torque-components")),
+    ("Torque", ("torque", "torque-components", "crank-speed")),
     ("Shape", ("outline", "pressure-angle", "lift", "radii")),
     ("Contact", ("pressure", "half-width", "stress")),
     ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
@@ -115,6 +115,7 @@ def the_turn(run: Run, case: Mapping[str, Any]) -> Turn:
     return Turn(
         by_name[drawn], tuple(by_name.values()), final.lift.columns, final.contour.columns,
         None if run.torque is None else run.torque.columns, final.checks, case, drawn,
+        None if run.speed is None else run.speed.columns,
     )  # fmt: skip
 
 

@@ -30,6 +30,7 @@ class Turn:
     torque : mapping or None   columns of 1_torque.csv
     checks : sequence     records of 6_checks.json
     case : mapping        case.toml as read
+    speed : mapping or None    columns of 1_speed.csv
     """
 
     columns: Columns
@@ -40,6 +41,7 @@ class Turn:
     checks: Sequence[Mapping[str, Any]]
     case: Mapping[str, Any]
     load_case: str = ""
+    speed: Columns | None = None
 
     @property
     def crank(self) -> Array:
@@ -95,8 +97,8 @@ class Turn:
 def figures(turn: Turn) -> tuple[Figure, ...]:
     """Every figure the run has columns for, in reading order."""
     makers: tuple[Callable[[Turn], Figure | None], ...] = (
-        _torque, _components, _lift, _outline, _pressure_angle, _radii, _forces, _normal_force,
-        _pressure, _half_width, _stress, _guides, _jamming, _speed,
+        _torque, _components, _crank_speed, _lift, _outline, _pressure_angle, _radii, _forces,
+        _normal_force, _pressure, _half_width, _stress, _guides, _jamming, _speed,
     )  # fmt: skip
     made = (maker(turn) for maker in makers)
     return tuple(figure for figure in made if figure is not None)
@@ -146,6 +148,28 @@ def _torque(turn: Turn) -> Figure | None:
         "Crank torque about its mean, without and with the balancing cam as delivered (guide "
         "friction and follower inertia included).",
         Panel("torque", "N m", curves, height=1.25), mark=False,
+    )  # fmt: skip
+
+
+def _crank_speed(turn: Turn) -> Figure | None:
+    speed = turn.speed
+    if speed is None or "crank_angle_deg" not in speed:
+        return None
+    wanted = (
+        ("speed_before_rad_per_s", "engine alone", "blue", False),
+        ("speed_inertia_alone_rad_per_s", "with the added inertia alone", "muted", True),
+        ("speed_after_rad_per_s", "with the cam", "vermillion", False),
+    )
+    curves = tuple(
+        Curve(label, speed[name], colour, dashed)
+        for name, label, colour, dashed in wanted if name in speed
+    )  # fmt: skip
+    return _angles(
+        turn, "crank-speed", "Crank speed before and after",
+        "Speed of the crank over the cycle of the first load case: engine alone, with the "
+        "mechanism's turning parts but its follower held off, and with the cam at work.",
+        Panel("crank speed", "rad/s", curves, height=1.25), mark=False,
+        crank=speed["crank_angle_deg"],
     )  # fmt: skip
 
 
