@@ -47,7 +47,8 @@ class Reconstruction:
     def speed_at(self, count: int) -> Array:
         """The trigonometric interpolant at `count` equal angles, rad/s."""
         spectrum = np.fft.rfft(self.speed)
-        spectrum[-1] *= 0.5
+        if count > self.speed.size:
+            spectrum[-1] *= 0.5  # shared by both of the harmonics it stands for
         return np.asarray(np.fft.irfft(spectrum, n=count) * (count / self.speed.size), dtype=float)
 
     def torque_at(self, count: int) -> Array:
