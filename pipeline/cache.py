@@ -78,13 +78,18 @@ def kept(
     """
     place = folder()
     if place is None:
-        return compute()
+        return _laid_out(compute())
     path = place / f"{key(kind, asked, modules)}.npz"
     found = _read(path)
     if found is None:
-        found = dict(compute())
+        found = _laid_out(compute())
         _write(path, found)
     return found
+
+
+def _laid_out(arrays: Arrays) -> dict[str, Array]:
+    """Rows one after the other, as they are read back: sums over them then agree to the bit."""
+    return {name: np.array(values, order="C") for name, values in arrays.items()}
 
 
 def _read(path: Path) -> dict[str, Array] | None:

@@ -40,6 +40,14 @@ def test_computes_once_and_reads_back_bit_for_bit(place):
     assert [path.suffix for path in place.iterdir()] == [".npz"]
 
 
+@pytest.mark.parametrize("off", ["", "1"])
+def test_arrays_lie_in_memory_as_they_are_read_back(place, monkeypatch, off):
+    monkeypatch.setenv(cache.OFF, off)
+    made = cache.kept("thing", 1, lambda: {"a": np.ones((3, 4)).T, "n": np.array(7)}, MODULES)
+    assert made["a"].flags.c_contiguous
+    assert made["n"].shape == ()
+
+
 def test_another_question_is_another_entry(place):
     maker = Maker()
     asked(maker), asked(maker, (0.3, 8))

@@ -7,10 +7,12 @@ import pytest
 from typer.testing import CliRunner
 
 from geometry.errors import ContactError, InputError
+from pipeline import cache
 from pipeline.cli import app
 from pipeline.contact import two_cylinders
 from pipeline.contact.halfplane import point_force_displacement
 from pipeline.contact.pair import Elastic
+from pipeline.contact.patch import contact_patch
 from pipeline.contact.two_cylinders import TwoCylinders
 from pipeline.contact_command import Asked, solved
 
@@ -219,3 +221,30 @@ def test_asked_without_command_line():
     assert solved(asked)["hertz"]["p0_MPa"] == pytest.approx(
         1e-6 * two_cylinders.closed_form(asked.pair()).p0
     )
+
+
+@pytest.fixture
+def fresh(tmp_path, monkeypatch):
+    """A cache folder of its own, and no template in memory."""
+    monkeypatch.setenv(cache.OFF, "")
+    monkeypatch.setenv(cache.FOLDER, str(tmp_path / "kept"))
+    contact_patch.cache_clear()
+    yield tmp_path / "kept"
+    contact_patch.cache_clear()
+
+
+def test_the_template_is_kept_and_gives_the_same_figures(fresh):
+    first = figures()
+    entries = {path: path.read_bytes() for path in fresh.iterdir()}
+    assert len(entries) == 2, "one template of each resolution"
+    contact_patch.cache_clear()
+    again = figures()
+    assert {k: v for k, v in again.items() if k != "seconds"} == {
+        k: v for k, v in first.items() if k != "seconds"
+    }
+    assert {path: path.read_bytes() for path in fresh.iterdir()} == entries
+
+
+def test_no_cache_leaves_no_trace(fresh):
+    assert run("--json", "--no-cache").exception is None
+    assert not fresh.exists()
