@@ -424,6 +424,12 @@ def write_run(
         "inertia_Nm": t["inertia"], "valve_train_Nm": t["valve_train"],
         "friction_Nm": t["friction"],
     })  # fmt: skip
+    wave = np.sin(np.radians(t["crank"]) / 2.0)
+    write_columns(folder / "1_speed.csv", {
+        "crank_angle_deg": t["crank"], "speed_before_rad_per_s": 157.0 - 4.0 * wave,
+        "speed_inertia_alone_rad_per_s": 157.0 - 3.8 * wave,
+        "speed_after_rad_per_s": 157.0 - 0.4 * wave,
+    })  # fmt: skip
     worst = int(np.argmax(cycle["p0_fe_MPa"]))
     for number in (1, 2):
         trial = folder / f"trial_{number}"
