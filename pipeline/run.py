@@ -29,6 +29,7 @@ from pipeline.progress import Progress
 from pipeline.records import contour_columns, headline, lift_columns, pressure_arrays, trial_record
 from pipeline.rolling import envelope_arrays, rolling_history, rolling_record
 from pipeline.run_folder import RunFolder
+from pipeline.shop import write_shop
 from pipeline.smoothing.gentler import Next, Stop, next_smoother
 from pipeline.smoothing.outlook import Attempt
 from pipeline.smoothing.smoothers import Smoother
@@ -110,6 +111,7 @@ def run_case(
                 done.number, trial_record(case, done) | {"rolling": rolling_record(turns)}
             )
         _write_fields(journey, final)
+        _write_shop(journey, final)
         summary = {
             "timings_s": watch.read(),
             "trials": len(trials),
@@ -275,5 +277,13 @@ def _write_fields(journey: Journey, final: Trial) -> None:
 def _write_report(path: Path) -> None:
     # The page is drawn from the files alone, as `camwright report` does it later.
     from reports.page import build
+
+def _write_shop(journey: Journey, final: Trial) -> None:
+    if final.mesh is None:
+        return  # no body, nothing to cut
+    journey.progress.stage("shop")
+    note = journey.progress.note
+    write_shop(journey.folder.path / "shop", journey.case, final.contour, note=note)
+
 
     build(path)
