@@ -223,9 +223,11 @@ def _loaded_positions(
 
     patch = patches[0]
     total = np.tensordot(patch.stress, contacts.pressure * p0[:, None], axes=(2, 1))
-    bending = cam.along_by_depth * load * half_width
-    total[0] += cam.along * load + patch.points[1][:, None] * bending
-    bulge = p0 * half_width * pair.contour.curvature(theta)
+    # Below a free curved surface the stress along it and the stress into it change so.
+    curvature, depth = pair.contour.curvature(theta), patch.points[1][:, None] * half_width
+    total[0] += load * (cam.along + depth * (cam.along_by_depth + 2 * curvature * cam.along))
+    total[1] -= load * depth * curvature * cam.along
+    bulge = p0 * half_width * curvature
     total += hertz.curved_surface_stress(*patch.points)[:, :, None] * bulge
     shear, shear_at = patch.peaks(stress.shear_in_plane(total))
     mises, mises_at = patch.peaks(stress.von_mises(total, pair.cam.poisson))
