@@ -25,6 +25,7 @@ import numpy as np
 from geometry.arrays import Array
 
 FOLDER, OFF = "CAMWRIGHT_CACHE", "CAMWRIGHT_NO_CACHE"
+LARGEST = 400_000_000  # bytes in all; what was not used for longest goes first
 _LIBRARIES = ("camwright", "gmsh", "numpy", "scikit-fem", "scipy")
 _BROKEN = (
     *(OSError, ValueError, KeyError, EOFError, MemoryError, NotImplementedError),
@@ -96,9 +97,12 @@ def _read(path: Path) -> dict[str, Array] | None:
     """Arrays of an entry; None for one that is missing, cut short or altered (zip has sums)."""
     try:
         with np.load(path, allow_pickle=False) as entry:
-            return {name: entry[name] for name in entry.files}
+            found = {name: entry[name] for name in entry.files}
     except _BROKEN:
         return None
+    with suppress(OSError):  # a folder shared for reading alone
+        path.touch()
+    return found
 
 
 def _write(path: Path, arrays: Arrays) -> None:
@@ -111,9 +115,20 @@ def _write(path: Path, arrays: Arrays) -> None:
             with os.fdopen(handle, "wb") as file:
                 np.savez(file, allow_pickle=False, **arrays)
             Path(temporary).replace(path)
+            _make_room(path)
         except OSError:
             if temporary is not None:
                 Path(temporary).unlink(missing_ok=True)
+
+
+def _make_room(newest: Path) -> None:
+    """Delete the entries not used for longest until the rest is no larger than `LARGEST`."""
+    entries = [(entry.stat(), entry) for entry in newest.parent.glob("*.npz") if entry != newest]
+    room = LARGEST - newest.stat().st_size
+    for state, entry in sorted(entries, key=lambda pair: pair[0].st_mtime, reverse=True):
+        room -= state.st_size
+        if room < 0:
+            entry.unlink(missing_ok=True)
 
 
 @lru_cache(maxsize=1)

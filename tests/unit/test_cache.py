@@ -103,6 +103,22 @@ def test_switched_off_it_neither_reads_nor_writes(place, monkeypatch):
     assert len(list(place.iterdir())) == 1
 
 
+def test_what_was_not_used_for_longest_makes_room(place, monkeypatch):
+    maker = Maker()
+    for number in range(3):
+        asked(maker, number)
+    entries = sorted(place.iterdir(), key=lambda path: path.stat().st_mtime_ns)
+    for age, path in zip((30, 20, 10), entries, strict=True):
+        os.utime(path, (1e9 - age, 1e9 - age))
+    asked(maker, 0)  # used again: now the newest
+    monkeypatch.setattr(cache, "LARGEST", 2 * entries[0].stat().st_size + 10)
+    asked(maker, 3)
+    assert maker.calls == 4
+    left = set(place.iterdir())
+    assert len(left) == 2
+    assert entries[0] in left and not {entries[1], entries[2]} & left
+
+
 def test_a_folder_that_cannot_be_made_is_no_error(place):
     place.write_text("a file in the way")
     maker = Maker()
