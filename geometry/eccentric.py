@@ -87,7 +87,7 @@ class Eccentric:
         turning = np.cos(angle) * rate**2 + np.sin(angle) * bend
         return np.asarray(-self.rod * turning - self.crank * np.sin(phi))
 
-    def lift(self, count: int = 1440) -> Lift:
+    def lift(self, count: int = 720) -> Lift:
         """s = d - least d, against theta = phi + 90 deg: without offset lowest at theta = 0."""
         theta = uniform_turn(count)
         values = self.height(theta - _QUARTER_TURN) - self.height_base
