@@ -34,6 +34,7 @@ GROUPS = (
     ("Shape", ("outline", "pressure-angle", "lift", "radii")),
     ("Contact", ("pressure", "half-width", "stress")),
     ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
+    ("Parts", ("bushes", "elastic", "parts")),
 )
 ASSUMPTIONS = (
     "The contact is two-dimensional and in plane strain: every slice across the width carries the "

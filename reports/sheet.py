@@ -99,6 +99,7 @@ def figures(turn: Turn) -> tuple[Figure, ...]:
     makers: tuple[Callable[[Turn], Figure | None], ...] = (
         _torque, _components, _crank_speed, _lift, _outline, _pressure_angle, _radii, _forces,
         _normal_force, _pressure, _half_width, _stress, _guides, _jamming, _speed,
+        _bushes, _elastic, _parts,
     )  # fmt: skip
     made = (maker(turn) for maker in makers)
     return tuple(figure for figure in made if figure is not None)
@@ -368,9 +369,9 @@ def _speed(turn: Turn) -> Figure | None:
     for name, colour in (("A", "blue"), ("B", "vermillion")):
         length = turn.length("guides", name.lower(), "length")
         diameter = turn.length("guides", name.lower(), "diameter")
-        reaction = turn.columns.get(f"reaction_{name}_N")
-        if length and diameter and reaction is not None:
-            pv = np.abs(reaction * velocity) / (length * diameter)
+        load = turn.columns.get(f"rubbing_load_{name}_N", turn.columns.get(f"reaction_{name}_N"))
+        if length and diameter and load is not None:
+            pv = np.abs(load * velocity) / (length * diameter)
             curves.append(Curve(f"guide {name}", pv, colour))
             limits += turn.limit(f"mean PV limit {name}", "MPa m/s", f"bush_pv_{name}")
     return _angles(
@@ -378,4 +379,47 @@ def _speed(turn: Turn) -> Figure | None:
         "PV is the guide pressure on its projected area times the sliding speed.",
         Panel("velocity", "m/s", _curves(turn, ("velocity_m_per_s", "")), height=0.8),
         Panel("PV", "MPa m/s", tuple(curves), tuple(dict.fromkeys(limits)), height=0.9),
+    )  # fmt: skip
+
+
+def _bushes(turn: Turn) -> Figure | None:
+    peaks = (("bush_peak_A_MPa", "guide A"), ("bush_peak_B_MPa", "guide B"))
+    heats = (("friction_heat_A_W", "guide A"), ("friction_heat_B_W", "guide B"))
+    limits = turn.limit("limit A", "MPa", "bush_peak_A") + turn.limit(
+        "limit B", "MPa", "bush_peak_B"
+    )
+    return _angles(
+        turn, "bushes", "Edges and heat of the guides",
+        "Peak pressure of the stem in its bore, with clearance, where it leans hardest; heat of "
+        "the pushes of both sides of the bore.",
+        Panel("peak pressure", "MPa", _curves(turn, *peaks), limits, height=0.9),
+        Panel("heat", "W", _curves(turn, *heats), height=0.8),
+    )  # fmt: skip
+
+
+def _elastic(turn: Turn) -> Figure | None:
+    forces = (
+        ("elastic_contact_force_N", "elastic stem, no friction"),
+        ("normal_force_friction_min_N", "least over friction"),
+        ("normal_force_friction_max_N", "greatest over friction"),
+    )
+    return _angles(
+        turn, "elastic", "Contact force: elastic stem, bounds of friction",
+        "What an elastic stem and the least and greatest friction make of the contact force.",
+        Panel("contact force", "N", _curves(turn, *forces)),
+        Panel("stem shortened by", "um", _curves(turn, ("elastic_deflection_um", "")), height=0.7),
+    )  # fmt: skip
+
+
+def _parts(turn: Turn) -> Figure | None:
+    stresses = (
+        ("spring_stress_MPa", "spring wire, shear"), ("pin_stress_MPa", "roller pin, bending"),
+        ("ring_stress_range_MPa", "outer ring, range"), ("key_pressure_MPa", "key, pressure"),
+    )  # fmt: skip
+    bearings = (("shaft_bearing_1_N", "bearing 1"), ("shaft_bearing_2_N", "bearing 2"))
+    return _angles(
+        turn, "parts", "Spring, pin, ring, key and shaft",
+        "Stresses of the parts around the cam as far as the case describes them.",
+        Panel("stress", "MPa", _curves(turn, *stresses)),
+        Panel("camshaft bearing", "N", _curves(turn, *bearings), height=0.8),
     )  # fmt: skip

@@ -211,6 +211,14 @@ def cycle_columns(t: dict[str, np.ndarray], g: dict[str, np.ndarray]) -> dict[st
         "torque_before_Nm": t["total"] - t["total"].mean(), "torque_after_Nm": after,
         "residual_equilibrium": noise, "residual_complementarity": noise / 3,
         "residual_guide_force": noise / 5, "residual_guide_moment": noise / 2,
+        "bush_peak_A_MPa": np.abs(a) / 20, "bush_peak_B_MPa": np.abs(b) / 10,
+        "rubbing_load_A_N": np.abs(a), "rubbing_load_B_N": np.abs(b),
+        "friction_heat_A_W": np.abs(friction_a * omega * t["d1"]),
+        "friction_heat_B_W": np.abs(friction_b * omega * t["d1"]),
+        "normal_force_friction_min_N": 0.97 * normal, "normal_force_friction_max_N": 1.03 * normal,
+        "elastic_contact_force_N": 1.001 * normal, "elastic_deflection_um": normal / 150.0,
+        "key_pressure_MPa": axial * t["d1"] * 6.0, "shaft_bearing_1_N": 0.7 * normal,
+        "shaft_bearing_2_N": 0.5 * normal, "spring_stress_MPa": 0.8 * spring,
     }  # fmt: skip
 
 
