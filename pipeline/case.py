@@ -29,6 +29,7 @@ from pipeline.case_fields import (
     Solver,
     Spring,
     Text,
+    Tolerances,
     Waiver,
 )
 from pipeline.case_text import to_toml
@@ -73,6 +74,7 @@ class Case(Section):
     smoothing: Smoothing = Smoothing()
     limits: Limits = Limits()
     solver: Solver = Solver()
+    tolerances: Tolerances = Tolerances()
     waivers: Annotated[tuple[Waiver, ...], Field(strict=False, max_length=64)] = ()
     load_cases: Annotated[
         tuple[LoadCase, ...], Field(alias="load_case", strict=False, min_length=1, max_length=64)
@@ -241,6 +243,8 @@ def _check_road(case: Case) -> None:
             engine.rod_length > throw,
             "longer than the crank radius and the pin offset",
         )
+    if case.engine is not None and not case.load_cases[0].speed > 0:
+        raise InputError("load_case[0].speed", "0 rpm", "> 0 rpm: its torque designs the cam")
     for k, load_case in enumerate(case.load_cases):
         if case.engine is None and load_case.torque is not None:
             raise InputError(f"load_case[{k}].torque", load_case.torque, "left out with a lift")
@@ -326,6 +330,7 @@ _WORDS = {
     "missing": "given",
     "string_type": "text in quotes",
     "int_type": "a whole number",
+    "bool_type": "true or false",
     "model_type": "a table",
     "dict_type": "a table",
     "model_attributes_type": "a table",

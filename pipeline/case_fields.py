@@ -276,6 +276,8 @@ class Cam(Section):
     material: Name
     keyway: Keyway | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
+    profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] | None = None
+    waviness_length: Length = 0.005
     source: Text = ""
 
 
@@ -351,6 +353,7 @@ class Roller(Section):
     chamfer: Annotated[float, In("mm", at_least=0, at_most=1000)] = 0.0
     hub_radius: Length
     inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
+    crowned: bool = False
     friction: Annotated[float, In(above=0, below=2)] | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     material: Name
@@ -417,6 +420,8 @@ class Material(Section):
     tensile_strength: Pressure | None = None
     hardness: Annotated[float, In(above=0, at_most=10_000)] | None = None
     endurance_pressure: Pressure | None = None
+    endurance_slope: Annotated[float, In(above=0, at_most=100)] | None = None
+    endurance_intercept: Annotated[float, In(above=0, at_most=1000)] | None = None
     conductivity: Annotated[float, In("W/m/K", above=0, at_most=1e4)] | None = None
     temperature_limit: Temperature | None = None
     fatigue_torsion: Pressure | None = None
@@ -462,6 +467,14 @@ class Limits(Section):
     shakedown_safety: Safety = 1.0
     contact_force_margin: Annotated[float, In(above=0, below=1)] = 0.2
     jump: Safety = 1.0
+    overspeed: Annotated[float, In("rpm", above=0, below=20_000)] | None = None
+    jump_speed: Annotated[float, In(at_least=1, at_most=100)] = 1.3
+    clearance: Annotated[float, In("mm", above=0, at_most=1000)] = 0.001
+    cam_radius: Length | None = None
+    target_life: Annotated[float, In("h", above=0, at_most=1e6)] | None = None
+    edge_factor: Annotated[float, In(at_least=1, at_most=5)] = 1.3
+    waviness: Annotated[float, In(above=0, at_most=1)] = 0.2
+    chord_share: Fraction = 0.25
     jam_index: Annotated[float, In(above=0, below=1)] = 0.5
     roller_static_safety: Safety = 1.0
     roller_life: Annotated[float, In("h", above=0, at_most=1e6)] | None = None
@@ -511,10 +524,28 @@ class Waiver(Section):
     date: dt.date
 
 
+class Tolerances(Section):
+    """How far the case may be from what is built: shares of the nominal, phase in crank degrees.
+
+    Those of the spring and the line profile stand in their own sections; friction goes from
+    guides.*.friction_min to friction_max where they are given.
+    """
+
+    friction: Annotated[float, In(at_least=0, below=1)] = 0.0
+    mass: Annotated[float, In(at_least=0, below=1)] = 0.0
+    phase: Annotated[float, In("deg", at_least=0, at_most=90)] = 0.0
+    samples: Annotated[int, Field(ge=0, le=1000)] = 16
+    seed: Annotated[int, Field(ge=0, le=2**31)] = 1
+    source: Text = ""
+
+
 class LoadCase(Section):
-    """One state the cam has to bear: crank speed and, where it differs, the torque."""
+    """One state the cam has to bear: crank speed and, where it differs, the torque.
+
+    At speed 0 the cam stands or creeps: springs and friction act, inertia does not.
+    """
 
     name: Name
-    speed: Annotated[float, In("rpm", above=0, below=20_000)]
+    speed: Annotated[float, In("rpm", at_least=0, below=20_000)]
     torque: FileName | None = None
     source: Text = ""

@@ -67,6 +67,8 @@ def _key(text: str) -> str:
 
 
 def _value(value: Any, unit: str | None) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
     if isinstance(value, float):
         return json.dumps(units.format(value, unit)) if unit else repr(value)
     if isinstance(value, dt.date):

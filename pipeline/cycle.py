@@ -20,6 +20,8 @@ from pipeline.parts import PartsHistory, parts_history
 from pipeline.rolling import RollingHistory
 
 _FEW_KNOTS = 5
+# A load case at rest is a turn so slow (rad/s) that inertia, film and heat are as good as none.
+CREEP = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +128,8 @@ def turn(
     """Loads of one load case at `positions` equally spaced cam angles."""
     theta = uniform_turn(positions)
     ratio = case.mechanism.gear_ratio
-    speed = next(state.speed for state in case.load_cases if state.name == load_case)
+    given = next(state.speed for state in case.load_cases if state.name == load_case)
+    speed = max(given, CREEP)
     loads = follower_loads(contour.pitch, FollowerSystem.from_case(case), speed / ratio, theta)
     before = None if torque is None else torque.without_mean().resampled(positions).total
     return Turn(

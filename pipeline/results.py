@@ -87,7 +87,7 @@ CYCLE = _columns(
     "reaction_A [N]; reaction_B [N]; reaction_A_statics [N]; reaction_B_statics [N];"
     "spring_force [N]; inertia_force [N]; axial_force [N]; tangential_force [N];"
     "friction_A [N]; friction_B [N]; jam_index; velocity [m/s]; cam_torque [N m];"
-    "torque_before? [N m]; torque_after? [N m]; residual_equilibrium~; residual_complementarity~;"
+    "torque_before?~ [N m]; torque_after?~ [N m]; residual_equilibrium~; residual_complementarity~;"
     "residual_guide_force; residual_guide_moment;"
     "traction_demand?~; creepage?~; slip?~ [m/s]; skid?~; film_thickness?~ [um]; lambda_ratio?~;"
     "shear_range?~ [MPa]; bore_stress?~ [MPa]; bore_stress_at_edge?~;"

@@ -230,7 +230,8 @@ def _crank_speed(
 ) -> dict[str, Any]:
     """Ripple of the crank with the final cam, whether the inputs agree, what was measured."""
     pitch, ripple, findings = final.contour.pitch, {}, []
-    for number, state in enumerate(case.load_cases if torques else ()):
+    running = [state for state in case.load_cases if state.name in torques and state.speed > 0]
+    for number, state in enumerate(running):
         torque = torques[state.name]
         study = None
         try:
@@ -252,8 +253,11 @@ def _write_cycles(journey: Journey, number: int, cycles: tuple[Cycle, ...]) -> N
     """All load cases, one below the other."""
     ratio = journey.case.mechanism.gear_ratio
     tables = [cycle.columns(ratio) for cycle in cycles]
+    names = dict.fromkeys(name for table in tables for name in table)
+    # What one load case knows and another does not, such as the torque of an engine at rest.
+    unknown = np.full(cycles[0].theta.size, np.nan)
     journey.folder.write_cycle(
-        number, {name: np.concatenate([t[name] for t in tables]) for name in tables[0]}
+        number, {name: np.concatenate([t.get(name, unknown) for t in tables]) for name in names}
     )
     journey.folder.write_pressure(number, pressure_arrays(cycles))
     turns = {cycle.load_case: cycle.rolling for cycle in cycles}
@@ -274,10 +278,6 @@ def _write_fields(journey: Journey, final: Trial) -> None:
     write_turn(folder.fields, pair, bodies, final.cycles[0], _FIELD_STEP_DEG, progress.advance)
 
 
-def _write_report(path: Path) -> None:
-    # The page is drawn from the files alone, as `camwright report` does it later.
-    from reports.page import build
-
 def _write_shop(journey: Journey, final: Trial) -> None:
     if final.mesh is None:
         return  # no body, nothing to cut
@@ -285,5 +285,9 @@ def _write_shop(journey: Journey, final: Trial) -> None:
     note = journey.progress.note
     write_shop(journey.folder.path / "shop", journey.case, final.contour, note=note)
 
+
+def _write_report(path: Path) -> None:
+    # The page is drawn from the files alone, as `camwright report` does it later.
+    from reports.page import build
 
     build(path)

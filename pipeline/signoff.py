@@ -157,6 +157,6 @@ def _files(path: Path) -> Iterator[tuple[str, Path]]:
 
 
 def _figure(check: Mapping[str, Any]) -> dict[str, Any]:
-    names = ("id", "demand", "error", "limit", "unit", "utilisation", "status", "load_case")
-    names += ("cam_angle_deg", "source", "method", "corner", "corner_demand")
+    names = ["id", "demand", "error", "limit", "unit", "utilisation", "status", "load_case"]
+    names += ["cam_angle_deg", "source", "method", "corner", "corner_demand"]
     return {name: check.get(name) for name in names}

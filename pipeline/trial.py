@@ -74,10 +74,17 @@ class Trial:
 
 
 def engine_torques(case: Case) -> dict[str, Torque]:
-    """Engine torque of each load case by name; empty for a case that starts at the lift."""
+    """Engine torque of each load case by name; empty for a case that starts at the lift.
+
+    An engine that stands has only the torque its load case names.
+    """
     if case.engine is None:
         return {}
-    return {state.name: engine_torque(case, state) for state in case.load_cases}
+    return {
+        state.name: engine_torque(case, state)
+        for state in case.load_cases
+        if state.speed > 0 or state.torque is not None
+    }
 
 
 def designed_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None) -> Lift:

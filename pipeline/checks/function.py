@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,9 +22,10 @@ GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 def torque_reduction(evidence: TrialEvidence) -> Check | None:
     """Share of the torque ripple the cam takes away; None when there is no engine."""
-    if any(cycle.torque_before is None for cycle in evidence.cycles):
+    running = tuple(c for c in evidence.cycles if c.torque_before is not None)
+    if not running:
         return None
-    worst = worst_case(evidence, _reduction, at_least=True)
+    worst = worst_case(replace(evidence, cycles=running), _reduction, at_least=True)
     return Check(
         id=TORQUE_REDUCTION,
         title="Torque ripple taken away",

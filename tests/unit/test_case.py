@@ -109,7 +109,7 @@ def test_positions_can_be_given_again() -> None:
         ("positions = 720", "positions = 35", "solver.positions = 35, must be >= 36"),
         ("positions = 720", "positions = 7201", "solver.positions = 7201, must be <= 7200"),
         ("positions = 720", "positions = 72.0", "solver.positions = 72.0, must be a whole number"),
-        ('"1500 rpm" ', '"0 rpm" ', "load_case[0].speed = 0 rpm, must be > 0 and < 20000 rpm"),
+        ('"1500 rpm" ', '"-1 rpm" ', "load_case[0].speed = -1 rpm, must be >= 0 and < 20000 rpm"),
         ('"1500 rpm" ', '"25 Hz" ', "load_case[0].speed = 25 Hz, must be in a unit of"),
         ('name = "idle"', 'name = "../idle"', "load_case[0].name = ../idle, must be 1 to 40"),
         ('name = "gx120"', 'name = "gx/120"', "name = gx/120, must be 1 to 40"),
