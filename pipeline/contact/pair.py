@@ -29,7 +29,7 @@ _FLAT_LIMIT = 0.1
 # Finer changes the largest shear by less than 1e-4.
 _GRID_OF_CYCLE_MESH = 120
 # What a body adds varies over its wall's thickness; fewer would smooth it away.
-_EDGES_ACROSS_WALL = 5
+_EDGES_ACROSS_WALL = 4
 TWO_SCALE = "two-scale finite elements: contact patch and bodies"
 
 

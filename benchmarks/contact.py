@@ -1,0 +1,94 @@
+"""What the contact costs, and how far its tiers are apart.
+
+Prints CPU seconds, which other work on the machine hardly touches: the cycle tier for a whole
+turn and per position, one certificate solution with its meshes given, the spread of the tiers,
+and the cost of meshing and solving every position in full over that of the cycle tier.
+"""
+
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import resource
+import time
+
+import numpy as np
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from pipeline.contact import hertz
+from pipeline.contact.certificate import ContactSide, solve_contact
+from pipeline.contact.pair import ContactPair, CycleBodies, Elastic, elastic_body, pair_history
+from pipeline.contact.pair_certificate import solve_pair
+from pipeline.contact.patch import contact_patch
+
+POSITIONS = 720
+SAMPLED = (0, 90, 200)
+
+
+def balancing_cam() -> tuple[ContactPair, np.ndarray, np.ndarray]:
+    """A cam, roller and spring of the size of the Honda GX120 case."""
+    theta = uniform_turn(POSITIONS)
+    lift = Lift(theta, 8e-3 * (1 - np.cos(2 * theta)))
+    contour = Contour(PitchCurve(lift, 50e-3), 8e-3)
+    steel = Elastic(210e9, 0.3)
+    pair = ContactPair(contour, 4.4e-3, 8.5e-3, None, 4.2e-3, steel, steel)
+    return pair, theta, 242.0 + 24.2e3 * lift(theta)
+
+
+def cpu(function):
+    """Result of a call and its CPU seconds."""
+    start = time.process_time()
+    found = function()
+    return found, time.process_time() - start
+
+
+def certificate_with_meshes_given(pair, solved, theta, force):
+    """CPU seconds of one full solution at h = a/8 on the meshes of an earlier one."""
+    materials = (pair.cam, pair.roller)
+    sides = tuple(
+        ContactSide(elastic_body(side.body.mesh, material, side.body.held), side.surface)
+        for side, material in zip(solved.sides, materials, strict=True)
+    )
+    load = force / pair.width
+    width, _ = hertz.line_contact(load, pair.relative_radius(theta), pair.contact_modulus)
+
+    def solve():
+        return solve_contact(
+            sides, solved.frame, lambda xi: pair.gap(np.array([theta]), xi[None])[0], load,
+            float(width),
+        )  # fmt: skip
+
+    return cpu(solve)[1]
+
+
+def main() -> None:
+    pair, theta, force = balancing_cam()
+    _, template = cpu(lambda: contact_patch(0.3))
+    bodies, meshing = cpu(lambda: CycleBodies.meshed(pair))
+    history, cycle = cpu(lambda: pair_history(pair, bodies, theta, force))
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    spread, full, given = 0.0, [], []
+    for k in SAMPLED:
+        solved, seconds = cpu(lambda k=k: solve_pair(pair, float(theta[k]), float(force[k])))
+        full.append(seconds)
+        given.append(certificate_with_meshes_given(pair, solved, float(theta[k]), float(force[k])))
+        for name in ("p0", "half_width", "tau_max", "von_mises"):
+            ratio = getattr(history, name)[k] / getattr(solved.solution, name)
+            spread = max(spread, abs(ratio - 1))
+    per_position = (cycle + meshing) / POSITIONS
+    print(f"patch template (0 when kept)     {template:8.2f} s")
+    print(f"bodies meshed                    {meshing:8.2f} s")
+    print(f"cycle tier, {POSITIONS} positions        {cycle:8.2f} s")
+    print(f"  per position                   {1e3 * per_position:8.2f} ms")
+    print(f"  peak memory                    {memory:8.2f} GiB")
+    print(f"certificate at a/8, with meshing {np.mean(full):8.2f} s")
+    print(f"  meshes given                   {np.mean(given):8.2f} s")
+    print(f"tier spread at {len(SAMPLED)} positions       {100 * spread:8.3f} %")
+    print(f"remesh and solve / cycle tier    {np.mean(full) / per_position:8.0f} times")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,137 @@
+"""The cycle tier against the full contact: what real bodies add, and where it stops."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from meshes.body import roller_mesh
+from meshes.sizing import Sizing
+from pipeline.contact.bodies import LoadedBody
+from pipeline.contact.elastic_body import ElasticBody
+from pipeline.contact.factor import factorised
+from pipeline.contact.pair import ContactPair, CycleBodies, Elastic, pair_history
+from pipeline.contact.pair_certificate import solve_pair
+from pipeline.contact.pressure import PressureShapes
+from pipeline.contact.surface import ContactFrame, normal_loads
+
+THETA = uniform_turn(720)
+STEEL = Elastic(210e9, 0.3)
+WIDTH = 5e-3
+
+
+@dataclass(frozen=True)
+class Slot:
+    width: float = 4e-3
+    depth: float = 2e-3
+    angle: float = np.pi
+
+
+def pair(cam=STEEL, roller=STEEL, *, lift=0.0, pitch=0.03, bore=6e-3, hub=4e-3, keyway=None):
+    """A roller of 10 mm on a cam with two lobes, round without lift."""
+    law = Lift(THETA, lift / 2 * (1 - np.cos(2 * THETA)))
+    contour = Contour(PitchCurve(law, pitch), 0.01)
+    return ContactPair(contour, WIDTH, bore, keyway, hub, cam, roller)
+
+
+def history(of, theta, force):
+    angles = np.atleast_1d(np.asarray(theta, dtype=float))
+    forces = np.broadcast_to(np.asarray(force, dtype=float), angles.shape)
+    return pair_history(of, CycleBodies.meshed(of), angles, forces)
+
+
+@pytest.mark.parametrize(
+    ("of", "theta", "force"),
+    [
+        pytest.param(pair(lift=4e-3, keyway=Slot()), 0.7, 20.0, id="light"),
+        pytest.param(pair(lift=4e-3, keyway=Slot()), 0.5 * np.pi, 2e4, id="heavy"),
+        pytest.param(pair(keyway=Slot()), np.pi, 2e3, id="over the keyway"),
+        pytest.param(pair(hub=9e-3), 0.0, 2e3, id="thin roller"),
+        pytest.param(pair(bore=18.5e-3), 0.0, 2e3, id="thin cam"),
+        pytest.param(pair(pitch=10.4e-3, bore=2e-4), 0.0, 200.0, id="cam of 0.4 mm"),
+        pytest.param(pair(roller=Elastic(2.1e9, 0.49)), 0.0, 200.0, id="soft roller"),
+        pytest.param(
+            pair(Elastic(2.1e9, 0.49), Elastic(2.1e12, 0.0)), 0.0, 200.0, id="soft cam"
+        ),
+    ],
+)  # fmt: skip
+def test_cycle_agrees_with_the_certificate(of, theta, force):
+    # Gate 0.5 % of every signed figure against the full contact at h = a/8.
+    cycle, full = history(of, theta, force), solve_pair(of, theta, force).solution
+    for name, gate in (("p0", 5e-4), ("half_width", 1e-3), ("tau_max", 4e-3), ("von_mises", 4e-3)):
+        found = float(getattr(cycle, name)[0])
+        np.testing.assert_allclose(found, getattr(full, name), rtol=gate, err_msg=name)
+    np.testing.assert_allclose(cycle.tau_depth[0], full.tau_depth, rtol=0.02)
+
+
+def test_thin_ring_presses_harder_than_hertz_says():
+    # The bend has a sign: a layer on a rigid hub is stiffer beside the contact than below it.
+    found = history(pair(hub=9e-3), 0.0, 2e3)
+    assert 4e-3 < found.p0_difference[0] < 6e-3
+
+
+def test_stress_moves_smoothly_over_the_turn():
+    of = pair(lift=4e-3, keyway=Slot())
+    ratio = history(of, THETA, 2e3)
+    share = ratio.tau_max / ratio.p0
+    assert np.abs(np.diff(share)).max() < 1e-3 * share.mean()
+    # No steps where the contact passes a node: the second difference is that of the lobes.
+    assert np.abs(np.diff(share, 2)).max() < 5e-5 * share.mean()
+
+
+def test_no_load_gives_zeros_without_a_warning():
+    of = pair()
+    found = history(of, [0.0, 1.0, 2.0], [0.0, 500.0, -3.0])
+    for name in ("p0", "half_width", "tau_max", "von_mises", "tau_depth", "p0_difference"):
+        values = getattr(found, name)
+        assert values[0] == values[2] == 0, name
+    assert found.p0[1] > 0
+
+
+def test_pressure_grows_as_the_root_of_the_load_over_six_decades():
+    force = np.geomspace(1e-3, 1e3, 7)
+    found = history(pair(), np.zeros(7), force)
+    np.testing.assert_allclose(found.p0, found.p0[0] * np.sqrt(force / force[0]), rtol=1e-3)
+    assert found.residual_equilibrium.max() < 1e-10
+    assert found.residual_complementarity.max() < 1e-9
+
+
+def test_superposed_field_is_that_of_the_load_itself():
+    # Half-plane plus correction against the same mesh under the nodal loads of the pressure.
+    radius, half_width, load = 0.01, 2e-4, 1e6
+    sizing = Sizing.from_half_width(half_width, radius / 6, edges=6)
+    mesh = roller_mesh(radius, 0.4 * radius, 0.5 * np.pi, sizing)
+    body = ElasticBody(mesh, STEEL.modulus, STEEL.poisson, "hub")
+    at, normal = np.array([[0.0], [radius]]), np.array([[0.0], [1.0]])
+    moved, _ = LoadedBody(body, "rim").field(at, normal, load, half_width)
+    frame = ContactFrame(at[:, 0], normal[:, 0])
+    shapes = PressureShapes(np.linspace(-half_width, half_width, 41))
+    ellipse = np.sqrt(1 - (shapes.centres / half_width) ** 2)
+    pressure = load * ellipse / (shapes.integrals @ ellipse)
+    direct = body.displacement(-(normal_loads(mesh, "rim", frame, shapes) @ pressure)[:, :, None])
+    away = np.hypot(*(mesh.points - at)) > 10 * half_width
+    size = np.abs(direct[:, away]).max()
+    np.testing.assert_allclose(moved[:, away], direct[:, away, 0], atol=1e-2 * size)
+
+
+def test_a_faster_solver_gives_the_same_answers(monkeypatch):
+    pytest.importorskip("cvxopt", reason="optional back end")
+    mesh = roller_mesh(1.0, 0.3, 0.0, Sizing(far_size=0.3))
+    body = ElasticBody(mesh, 1.0, 0.3, "hub")
+    matrix = body.stiffness[body.free_dofs][:, body.free_dofs]
+    right = np.random.default_rng(0).normal(size=(matrix.shape[0], 4))
+    fast = factorised(matrix)(right)
+    monkeypatch.setenv("CAMWRIGHT_SOLVER", "scipy")
+    np.testing.assert_allclose(fast, factorised(matrix)(right), rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("force", [1e5, 5e6])
+def test_a_contact_that_is_not_locally_flat_is_not_answered(force):
+    # The full contact stands in there; the cycle must not make a number up.
+    found = history(pair(), 0.0, force)
+    assert np.isnan(found.p0[0]) and np.isnan(found.tau_max[0])
+    assert found.p0_hertz[0] > 0
