@@ -279,9 +279,11 @@ def bounce(
         pieces.append((found.t, found.y, np.full(found.t.size, touching)))
         if not touching:
             flights.append(motion.flight(found))
-        time, state = float(found.t[-1]), found.y[:, -1]
+        time, state = float(found.t[-1]), found.y[:, -1].copy()
         if found.status == 0:
             return motion.record(pieces, tuple(flights))
+        if touching:  # the foot, without mass, relaxes at once; its damper takes what was left
+            state[3] += 0.5 * follower.stiffness * (motion.foot(time)[0] - state[0]) ** 2
         touching = not touching
     raise ContactError(f"follower: more than {_EVENTS_MAX} losses of contact")
 

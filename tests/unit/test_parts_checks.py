@@ -231,6 +231,19 @@ def test_a_card_fills_in_what_the_case_leaves_out():
         case('card = "nobody"')
 
 
+def test_overspeed_jumps_and_lands(bare):
+    """Fast enough to leave the cam: the check fails and names the losses of contact."""
+    state = bare.case.load_cases[0].model_copy(update={"speed": 2000.0})
+    given = evidence(bare.case.model_copy(update={"load_cases": (state,)}))
+    parts = given.cycles[0].parts
+    assert parts.elastic.lost
+    assert parts.flights
+    assert parts.bounce_force > given.cycles[0].loads.spring_force.max()
+    check = part_checks.elastic_contact(given)
+    assert check.status == "fail"
+    assert f"{len(parts.flights)} losses of contact" in check.note
+
+
 def test_ring_of_a_card(full):
     """The range grows with the load; without a card the ring is flagged as not evaluated."""
     open_ring = part_checks.roller_ring(full)

@@ -132,6 +132,14 @@ def test_energy_is_kept_through_jump_and_landing():
     assert first.landing_speed > 0.0
 
 
+def test_losses_account_for_the_energy_after_a_jump():
+    """With both dampers, energy and losses together stand still, impacts included: 1e-6."""
+    run = bounce(LIFT, 600.0, DAMPED, 1.0)
+    assert run.flights
+    assert run.dissipated[-1] > 0.0
+    assert run.energy_error < 1e-6
+
+
 def test_flight_is_that_of_a_mass_on_the_spring():
     """Between jump and landing m x'' + k x + P = 0 has a closed form."""
     run = bounce(LIFT, 420.0, PLAIN, 1.0)
