@@ -317,6 +317,70 @@ def validate(
     return PASSED
 
 
+@app.command("compare-mechanisms")
+def compare_mechanisms(
+    case: Annotated[Path, typer.Argument(metavar="CASE", help="Case of a comparison (TOML).")],
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Where the figures are to lie.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="The figures as JSON.")] = False,
+) -> int:
+    """Slider-crank against eccentric cam: friction by pair, slip, inertia, workspaces."""
+    from pipeline.mechanism.comparison import compared, lines
+    from reports import mechanisms
+
+    document = compared(case)
+    if as_json:
+        print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - not to be wrapped
+    else:
+        for line in lines(document):
+            _out.print(line, markup=False)
+    folder = Path(f"{document['case']}_figures") if out is None else out
+    drawn = mechanisms.draw(document, folder)
+    if not as_json:
+        _out.print(f"figures: {', '.join(path.name for path in drawn)} in {folder}", markup=False)
+    return PASSED
+
+
+@app.command()
+def inspect(
+    folder: DirArgument,
+    measured: Annotated[
+        Path, typer.Argument(metavar="MEASURED", help="Measured surface points (CSV).")
+    ],
+    tolerance: Annotated[
+        str, typer.Option(help="Full width of the tolerance band of the form.")
+    ] = "20 um",
+    keep_phase: Annotated[
+        bool, typer.Option("--keep-phase", help="The angles are the keyway's: leave the part turned.")
+    ] = False,
+    jobs: Annotated[int | None, typer.Option(help="Processes for the certificate.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="The record as JSON.")] = False,
+) -> int:
+    """Fit a measured cam to its drawing and judge the real part: exit 0 passed, 1 failed."""
+    from pipeline import inspection, units
+    from reports.inspection import draw
+
+    band = units.parse(tolerance, "um", "--tolerance")
+    if not band > 0:
+        raise InputError("--tolerance", tolerance, "> 0 um")
+    points = inspection.read_measured(measured)
+    case, contour = inspection.nominal(folder)
+    with _progress() as progress:
+        part = inspection.inspect_part(
+            case, contour, points, keep_phase=keep_phase, jobs=jobs, tell=progress.stage
+        )
+    record = inspection.write_inspection(folder, case, part, band)
+    picture = draw(folder, 1e6 * band)
+    if as_json:
+        print(json.dumps(record, indent=2, ensure_ascii=False))  # noqa: T201 - not to be wrapped
+    else:
+        for line in inspection.lines(record):
+            _out.print(line, markup=False)
+        _out.print(f"deviations: {picture}", markup=False)
+    return PASSED if record["verdict"] == "pass" else FAILED
+
+
 @app.command()
 def init(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the new case.")],
@@ -392,7 +456,19 @@ def _show(document: dict[str, Any], found: Run | None) -> None:
     if document["binding"]:
         _out.print(f"binding: {', '.join(document['binding'])}", markup=False)
     if found is not None:
+        for finding in found.summary.get("consistency") or ():
+            _out.print(_consistency_line(finding), markup=False)
         _out.print(f"report: {found.path / '8_report.html'}", markup=False)
+
+
+def _consistency_line(finding: Any) -> str:
+    """An input and what the other inputs imply for it."""
+    share = finding["difference_percent"]
+    off = "beyond bounds" if share is None else f"{share:+.1f} %"
+    words = f"{finding['title']}: given {finding['given']:.4g}, implied {finding['implied']:.4g}"
+    unit = "" if finding["unit"] == "-" else f" {finding['unit']}"
+    mark = "; INPUTS DISAGREE" if finding["flagged"] else ""
+    return f"consistency, {finding['load_case']}: {words}{unit} ({off}){mark}"
 
 
 if __name__ == "__main__":
