@@ -33,6 +33,7 @@ from pipeline.contact.two_cylinders import (
 _MM, _MPA = 1e3, 1e-6
 # Relative excess of another plane's shear from which on it is worth a line.
 _WORTH = 1e-3
+_OPTIONS = {"radius_1": "--r1", "radius_2": "--r2", "friction": "--friction"}
 
 
 @dataclass(frozen=True)
@@ -70,14 +71,13 @@ class Asked:
                 raise InputError(f"--e{number}", body.modulus, "> 0 Pa")
             if not 0 <= body.poisson < 0.5:
                 raise InputError(f"--nu{number}", body.poisson, "in [0, 0.5)")
-        return TwoCylinders(
-            radius_1=_radius(self.r1, "--r1"),
-            radius_2=_radius(self.r2, "--r2"),
-            body_1=first,
-            body_2=second,
-            line_load=self._line_load(),
-            friction=self.friction,
-        )
+        radii = _radius(self.r1, "--r1"), _radius(self.r2, "--r2")
+        load = self._line_load()
+        try:
+            return TwoCylinders(*radii, first, second, load, self.friction)
+        except InputError as error:
+            option = _OPTIONS.get(error.field, error.field)
+            raise InputError(option, error.value, error.limit) from None
 
     def depths(self) -> tuple[float | None, float | None]:
         """Depths of the points whose approach is asked for, m."""

@@ -79,8 +79,8 @@ def test_for_people_it_prints_both_columns():
         ({"r1": "0"}, "--r1"),
         ({"r1": "nan"}, "--r1"),
         ({"r1": "10 s"}, "--r1"),
-        ({"r2": "-10"}, "radius_2"),
-        ({"r1": "inf"}, "radius_2"),
+        ({"r2": "-10"}, "--r2"),
+        ({"r1": "inf"}, "--r2"),
         ({"e1": "0"}, "--e1"),
         ({"e1": "inf"}, "--e1"),
         ({"nu1": "0.5"}, "--nu1"),
@@ -90,7 +90,7 @@ def test_for_people_it_prints_both_columns():
         ({"line_load": None}, "--line-load"),
         ({"load": "5"}, "--load"),
         ({"line_load": None, "load": "5", "width": "0"}, "--width"),
-        ({"friction": "-0.1"}, "friction"),
+        ({"friction": "-0.1"}, "--friction"),
     ],
 )
 def test_bad_input_is_named(changes, field):
