@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
 from geometry.arrays import Array, freeze
@@ -25,6 +26,8 @@ _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 _BLIND_SHARE = 0.05
 # Contacts worked on together: few enough to stay small.
 _BATCH = 180
+# Up to so many contacts the body is not worth condensing.
+_FEW = 8
 # Surface nodes about a contact that its stress and bending are read from.
 _NEIGHBOURS = 10
 
@@ -90,21 +93,27 @@ class LoadedBody:
 
     def correction(self, contacts: Array, normals: Array) -> Correction:
         """Correction at contact points (2, count) with outward normals (2, count)."""
-        condensed = self._condensed
         parts = []
         for start in range(0, contacts.shape[1], _BATCH):
             at, up = contacts[:, start : start + _BATCH], normals[:, start : start + _BATCH]
             loads, held = self._cancelling(at, up)
-            moved = condensed.displacement(loads[:, condensed.nodes], held)
+            if contacts.shape[1] <= _FEW:
+                moved = self.body.displacement(loads, held)[:, self._seen]
+            else:
+                moved = self._condensed.displacement(loads[:, self._seen], held)
             parts.append(self._at_contacts(moved, at, up))
         slope, bend = np.concatenate(parts, axis=1)
         modulus = self._plane_strain_modulus
         return Correction(along=modulus * slope, bend=bend, along_by_depth=modulus * bend)
 
     @cached_property
+    def _seen(self) -> NDArray[np.int64]:
+        """Nodes that carry the cancelling loads, feel what holds the body or are looked at."""
+        return np.union1d(np.unique(self._free_facets), self.body.beside_held)
+
+    @cached_property
     def _condensed(self) -> CondensedBody:
-        nodes = np.union1d(np.unique(self._free_facets), self.body.beside_held)
-        return self.body.condensed(nodes)
+        return self.body.condensed(self._seen)
 
     @property
     def _plane_strain_modulus(self) -> float:
@@ -185,13 +194,13 @@ class LoadedBody:
     def _at_contacts(self, moved: Array, contacts: Array, normals: Array) -> Array:
         """Slope of the tangential, bend of the outward displacement (2, count) at contacts.
 
-        moved (2, m, count) at the condensed nodes. A cubic is fitted to the surface nodes
+        moved (2, m, count) at the nodes seen. A cubic is fitted to the surface nodes
         about each contact, with weights that fade out, so that nothing jumps when the contact
         passes a node.
         """
-        mesh, condensed = self.body.mesh, self._condensed
-        surface = np.searchsorted(condensed.nodes, mesh.boundary_nodes(self.surface))
-        points = mesh.points[:, condensed.nodes[surface]]
+        mesh = self.body.mesh
+        surface = np.searchsorted(self._seen, mesh.boundary_nodes(self.surface))
+        points = mesh.points[:, self._seen[surface]]
         distance = np.hypot(*(points[:, :, None] - contacts[:, None, :]))
         nearest = np.argpartition(distance, _NEIGHBOURS, axis=0)[: _NEIGHBOURS + 1]
         distance = np.take_along_axis(distance, nearest, axis=0)

@@ -83,6 +83,15 @@ def test_stress_moves_smoothly_over_the_turn():
     assert np.abs(np.diff(share, 2)).max() < 5e-5 * share.mean()
 
 
+def test_many_positions_are_answered_as_few_are():
+    # Many go through a condensed body, few through the whole one.
+    of = pair(lift=4e-3, keyway=Slot())
+    angles = THETA[::48]
+    many, few = history(of, angles, 2e3), history(of, angles[:3], 2e3)
+    for name in ("p0", "half_width", "tau_max", "von_mises"):
+        np.testing.assert_allclose(getattr(few, name), getattr(many, name)[:3], rtol=1e-9)
+
+
 def test_no_load_gives_zeros_without_a_warning():
     of = pair()
     found = history(of, [0.0, 1.0, 2.0], [0.0, 500.0, -3.0])
