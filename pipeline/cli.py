@@ -467,7 +467,7 @@ def _consistency_line(finding: Any) -> str:
     off = "beyond bounds" if share is None else f"{share:+.1f} %"
     words = f"{finding['title']}: given {finding['given']:.4g}, implied {finding['implied']:.4g}"
     unit = "" if finding["unit"] == "-" else f" {finding['unit']}"
-    mark = "; INPUTS DISAGREE" if finding["flagged"] else ""
+    mark = "; MORE THAN 10 % APART" if finding["flagged"] else ""
     return f"consistency, {finding['load_case']}: {words}{unit} ({off}){mark}"
 
 

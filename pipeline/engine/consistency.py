@@ -108,7 +108,7 @@ def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: fl
     crank, cam = finite("crank_torque", crank_torque), finite("cam_torque", cam_torque)
     return Finding(
         "power",
-        "power balance, crank to cam: torque ratio",
+        "power balance crank to cam, torque ratio with what smoothing took",
         gear_ratio,
         float(cam @ crank) / float(crank @ crank),
         "-",

@@ -66,3 +66,14 @@ def test_bad_speeds_are_refused():
     for speed, std in ((0.0, 1.0), (np.nan, 1.0), (150.0, 0.0), (150.0, np.inf)):
         with pytest.raises(InputError):
             implied_inertia(TORQUE, speed, std)
+
+
+def test_the_line_on_the_screen_tells_both_values_and_the_flag():
+    from pipeline.cli import _consistency_line
+
+    line = _consistency_line({"load_case": "idle"} | finding(2.0, 1.5).as_record())
+    assert line == "consistency, idle: x: given 2, implied 1.5 J (-25.0 %); MORE THAN 10 % APART"
+    bare = _consistency_line({"load_case": "idle"} | finding(0.0, 1.0).as_record())
+    assert "(beyond bounds); MORE" in bare
+    calm = _consistency_line({"load_case": "idle"} | finding(2.0, 2.1).as_record())
+    assert calm.endswith("(+5.0 %)")
