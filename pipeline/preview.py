@@ -12,7 +12,7 @@ import numpy as np
 from pipeline import trial as road
 from pipeline.case import Case
 from pipeline.checks.check import Check
-from pipeline.checks.everything import DESIGN, PARTS, checked_by
+from pipeline.checks.everything import DESIGN, PARTS, SIGNED, checked_by
 from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import in_order
 from pipeline.contact.pair import closed_form_history
@@ -37,7 +37,7 @@ def closed_form_checks(case: Case) -> tuple[Check, ...]:
     turns = road.turns_of(case, contour, torques, case.solver.positions)
     cycles = tuple(_cycle(case, contour, given, sound) for given in turns)
     evidence = TrialEvidence(case=case, contour=contour, cycles=cycles)
-    found = checked_by(evidence, (*DESIGN, *PARTS))
+    found = checked_by(evidence, (*DESIGN, *SIGNED, *PARTS))
     marked = (replace(check, method=MARK + check.method) for check in found)
     return in_order((_unsigned(), *marked))
 

@@ -16,6 +16,7 @@ from pipeline.checks import (
     parts,
     roller,
     rolling,
+    signed,
     spring,
 )
 from pipeline.checks.check import Check
@@ -44,6 +45,9 @@ SLOW = (geometry.self_intersection, geometry.second_contact)
 ALL: tuple[CheckFunction, ...] = (*DESIGN, *rolling.CHECKS, *evidence.CHECKS)
 
 
+SIGNED: tuple[CheckFunction, ...] = signed.CHECKS
+"""What a sign-off asks for besides."""
+
 PARTS: tuple[CheckFunction, ...] = (*parts.CHECKS, *spring.CHECKS)
 """Limits of the parts around the cam, which only a trial with its cycles tells of."""
 
@@ -54,7 +58,7 @@ def all_checks(trial: TrialEvidence) -> tuple[Check, ...]:
     A check that does not apply, such as the torque reduction of a cam without an engine, is
     left out.
     """
-    return checked_by(trial, (*ALL, *PARTS))
+    return checked_by(trial, (*ALL, *SIGNED, *PARTS))
 
 
 def design_checks(trial: TrialEvidence) -> tuple[Check, ...]:
