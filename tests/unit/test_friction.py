@@ -32,6 +32,8 @@ def test_force_lies_between_the_bounds():
     fall = found.nominal.lift_slope < -1e-6
     np.testing.assert_array_equal(found.normal_force_max[rise], found.greatest.normal_force[rise])
     np.testing.assert_array_equal(found.normal_force_max[fall], found.least.normal_force[fall])
+    assert (found.jam_index_max[rise] > 0.0).all()
+    assert (found.jam_index_max[fall] == 0.0).all()  # on the way back friction cannot lock
     top = np.argmax(found.nominal.lift)  # a dwell of no length: friction has no say
     assert found.normal_force_max[top] == pytest.approx(found.normal_force_min[top], rel=1e-9)
 
