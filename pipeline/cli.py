@@ -352,7 +352,7 @@ def inspect(
         str, typer.Option(help="Full width of the tolerance band of the form.")
     ] = "20 um",
     keep_phase: Annotated[
-        bool, typer.Option("--keep-phase", help="The angles are the keyway's: leave the part turned.")
+        bool, typer.Option("--keep-phase", help="Angles are the keyway's: run it turned.")
     ] = False,
     jobs: Annotated[int | None, typer.Option(help="Processes for the certificate.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="The record as JSON.")] = False,

@@ -1,0 +1,214 @@
+"""A measured cam: known errors come back, and the real part runs as theory says."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
+import small_run
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.errors import InputError
+from geometry.inspection import inspected, real_contour
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from pipeline import results
+from pipeline import trial as road
+from pipeline.case import Case, parse_case
+from pipeline.case_template import template
+from pipeline.contact.pair import closed_form_history
+from pipeline.cycle import contact_pair
+from pipeline.inspection import FOLDER, lines, read_measured
+from pipeline.records import contour_columns, lift_columns
+from pipeline.run_folder import RunFolder
+from pipeline.shop import inspection_sheet
+
+THETA = uniform_turn(360)
+RIPPLE, WAVES, PHASE = 20e-6, 12, np.radians(3.0)
+POINTS = np.sort(np.random.default_rng(7).uniform(0, 2 * np.pi, 720))
+
+
+def contour() -> Contour:
+    lift = Lift(THETA, 0.005 * (1 - np.cos(2 * THETA - 0.3)) + 0.001 * (1 + np.sin(3 * THETA)))
+    return Contour(PitchCurve(lift, 0.050), 0.008)
+
+
+def turned(points: np.ndarray, angle: float) -> np.ndarray:
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.array([[cos, -sin], [sin, cos]]) @ points
+
+
+def measured(
+    nominal: Contour, ripple: float = RIPPLE, phase: float = PHASE, size: float = 0.0
+) -> np.ndarray:
+    """Surface points of a part with a known wave, phase and size."""
+    error = size + ripple * np.cos(WAVES * POINTS + 0.4)
+    return turned(nominal.points(POINTS) + error * nominal.normal(POINTS), phase)
+
+
+def test_ripple_and_phase_are_recovered() -> None:
+    found = inspected(contour(), measured(contour()))
+    assert found.wave(WAVES) == pytest.approx(RIPPLE, rel=0.05)
+    assert found.phase == pytest.approx(PHASE, rel=0.05)
+    others = [found.wave(k) for k in range(1, len(found.cosine)) if k != WAVES]
+    # the wave and the few lobes of this lift see a little of each other
+    assert max(others) < 0.05 * RIPPLE
+
+
+@pytest.mark.parametrize("phase", [-2.5, -0.01, 0.7, 3.1])
+def test_any_phase_and_size_is_recovered_to_a_tenth_of_a_micrometre(phase: float) -> None:
+    found = inspected(contour(), measured(contour(), 0.0, phase, 50e-6))
+    assert found.phase == pytest.approx(phase, abs=1e-6)
+    assert found.size == pytest.approx(50e-6, abs=1e-7)
+    # a part the same amount too large everywhere
+    np.testing.assert_allclose(found.deviation, 50e-6, atol=1e-7)
+
+
+def test_noise_of_the_probe_is_scatter_and_not_form() -> None:
+    noise = np.random.default_rng(3).normal(0.0, 1e-6, (2, POINTS.size))
+    found = inspected(contour(), measured(contour()) + noise)
+    assert found.scatter == pytest.approx(1e-6, rel=0.15)
+    assert found.wave(WAVES) == pytest.approx(RIPPLE, rel=0.05)
+
+
+def test_nominal_part_runs_like_the_drawing() -> None:
+    nominal = contour()
+    real = real_contour(nominal, inspected(nominal, measured(nominal, 0.0)))
+    theta = uniform_turn(720)
+    np.testing.assert_allclose(real.pitch.radius(theta), nominal.pitch.radius(theta), atol=1e-8)
+    # by way of two derivatives: a tenth of a per cent of the lift's own
+    second = nominal.pitch.lift(theta, 2)
+    np.testing.assert_allclose(real.pitch.lift(theta, 2), second, atol=2e-3 * np.abs(second).max())
+
+
+def test_kept_phase_turns_the_lift() -> None:
+    nominal = contour()
+    found = inspected(nominal, measured(nominal, 0.0))
+    real = real_contour(nominal, found, keep_phase=True)
+    np.testing.assert_allclose(
+        real.pitch.radius(THETA + PHASE), nominal.pitch.radius(THETA), atol=1e-8
+    )
+
+
+def small_case(positions: int = 180) -> Case:
+    text = template("part").replace("certificate_positions = 8", "certificate_positions = 1")
+    return parse_case(text).with_positions(positions)
+
+
+def test_rise_of_force_and_pressure_is_that_of_theory() -> None:
+    """A round cam with a ripple: F = P + k e + m w^2 e'', and Hertz with the wave's curvature."""
+    case, theta = small_case(), uniform_turn(720)
+    base, roller = case.cam.pitch_base_radius, case.roller.radius
+    flat = Contour(PitchCurve(Lift(theta, np.zeros(720)), base), roller)
+    error = RIPPLE * np.cos(WAVES * POINTS)
+    points = flat.points(POINTS) + error * flat.normal(POINTS)
+    # a circle has no phase of its own: the part is compared as it lies
+    mark = 1e-3 * np.exp(-(((THETA - np.pi) / 0.15) ** 2))
+    nominal = Contour(PitchCurve(Lift(THETA, mark), base), roller)
+    points = nominal.points(POINTS) + error * nominal.normal(POINTS)
+    real = real_contour(nominal, inspected(nominal, points))
+    speed = case.load_cases[0].speed / case.mechanism.gear_ratio
+    drawn, run = (road.turns_of(case, made, {}, 720)[0] for made in (nominal, real))
+    away = np.cos(theta) > 0.2  # far from the mark the cam is round
+    # the roller's centre sees the wave of the surface a little finer than the surface itself
+    surface = base - roller
+    seen = RIPPLE * np.cos(WAVES * theta)
+    rise = case.spring.rate * (seen - seen.min()) - case.follower.mass * speed**2 * WAVES**2 * seen
+    got = (run.loads.axial_force - drawn.loads.axial_force)[away]
+    swing = case.follower.mass * speed**2 * WAVES**2 * RIPPLE
+    assert swing > 1.0  # N, or there is nothing to see
+    assert np.ptp(got) == pytest.approx(np.ptp(rise[away]), rel=0.05)
+    assert np.abs(got - rise[away]).max() < 0.1 * np.ptp(rise)
+    # pressure: Hertz on the curvature of a circle with a wave, crest and hollow
+    pair = contact_pair(case, real)
+    found = closed_form_history(pair, theta, run.loads.normal_force)
+    crest = 1 / surface + RIPPLE * (WAVES**2 - 1) / surface**2 * np.cos(WAVES * theta)
+    load = run.loads.normal_force / pair.width
+    p0 = np.sqrt(load * pair.contact_modulus * (crest + 1 / roller) / np.pi)
+    np.testing.assert_allclose(found.p0[away], p0[away], rtol=5e-3)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Case, Contour]:
+    """A run folder whose tables are those of a given lift, at little cost."""
+    folder, case = tmp_path_factory.mktemp("inspect") / "run", small_case(72)
+    lift = Lift(THETA, 0.005 * (1 - np.cos(THETA)))
+    made = road.cam_contour(case, lift)
+    with RunFolder(folder, case) as out:
+        out.write_lift(1, lift_columns(case, lift))
+        out.write_contour(1, contour_columns(case, made))
+        cycle = {k: np.abs(v) if v.dtype.kind == "f" else v
+                 for k, v in small_run.values(results.CYCLE).items()}  # fmt: skip
+        out.write_cycle(1, cycle)
+        out.write_checks(1, [small_run.check()])
+        out.write_trial(1, {})
+        out.finish(small_run.summary())
+    return folder, case, made
+
+
+def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
+    from pipeline.cli import FAILED, PASSED, app
+
+    folder, _, made = run
+    x, y = measured(made) * 1e3
+    table = tmp_path / "measured.csv"
+    rows = "".join(f"{a!r},{b!r}\n" for a, b in zip(x.tolist(), y.tolist(), strict=True))
+    table.write_text("x_mm,y_mm\n" + rows, encoding="utf-8")
+    code = app(args=["inspect", str(folder), str(table), "--jobs", "1"], standalone_mode=False)
+    record = json.loads((folder / FOLDER / "inspection.json").read_text(encoding="utf-8"))
+    assert code == (PASSED if record["verdict"] == "pass" else FAILED)
+    assert record["phase_deg"] == pytest.approx(3.0, rel=0.05)
+    assert record["waves_um"]["12"] == pytest.approx(20.0, rel=0.05)
+    assert not record["within_tolerance"]
+    assert (folder / FOLDER / "deviation.png").read_bytes()[:4] == b"\x89PNG"
+    cycle = results.read_table(folder / FOLDER / "cycle.csv")
+    assert np.isfinite(cycle["p0_fe_MPa"]).all()
+    checks = json.loads((folder / FOLDER / "checks.json").read_text(encoding="utf-8"))
+    assert "certificate" in " ".join(check["id"] + check["method"] for check in checks)
+    assert any("verdict on the part" in line for line in lines(record))
+    assert results.load_run(folder).verdict == "pass"  # the run itself is left as it was
+
+
+def test_filled_sheet_reads_back(tmp_path: Path) -> None:
+    sheet = inspection_sheet(contour(), THETA, 20e-6).splitlines()
+    filled = [sheet[0]]
+    for row in sheet[1:-5]:  # five points were not measured
+        cells = row.split(",")
+        filled.append(",".join([*cells[:9], cells[3], cells[4], ""]))
+    path = tmp_path / "sheet.csv"
+    path.write_text("\n".join([*filled, *sheet[-5:]]) + "\n", encoding="utf-8")
+    np.testing.assert_allclose(
+        read_measured(path), contour().points(THETA[:-5]), rtol=0, atol=1e-15
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("", "columns"),
+        ("a,b\n1,2\n", "x_mm"),
+        ("x_mm,y_mm\n1,nan\n", "line 2"),
+        ("x_mm,y_mm\n1,inf\n", "line 2"),
+        ("x_mm,y_mm\n1,two\n", "line 2"),
+    ],
+)
+def test_bad_tables_are_refused(text: str, named: str, tmp_path: Path) -> None:
+    path = tmp_path / "bad.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=named):
+        read_measured(path)
+
+
+def test_few_points_a_gap_and_a_missing_file_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="n >= 48"):
+        inspected(contour(), contour().polygon(47))
+    with pytest.raises(InputError, match="gap"):
+        inspected(contour(), contour().polygon(720)[:, 80:])
+    with pytest.raises(InputError, match="readable"):
+        read_measured(tmp_path / "none.csv")
