@@ -12,11 +12,11 @@ from matplotlib.figure import Figure as Canvas
 from reports.plots import COLOURS, style
 
 _PAIRS = {
-    "shaft": "blue",
-    "guide": "green",
-    "pin_a": "orange",
-    "pin_b": "vermillion",
-    "sliding": "purple",
+    "shaft": ("shaft", "blue"),
+    "guide": ("guide", "green"),
+    "pin_a": ("pin A", "orange"),
+    "pin_b": ("pin B", "vermillion"),
+    "sliding": ("sliding", "purple"),
 }
 _DPI = 150
 
@@ -54,9 +54,8 @@ def _energies(document: Mapping[str, Any]) -> Canvas:
         axes = canvas.add_subplot()
         at = np.arange(len(rows))[::-1]
         left = np.zeros(len(rows))
-        for pair, colour in _PAIRS.items():
+        for pair, (name, colour) in _PAIRS.items():
             width = np.array([losses[pair] for _, losses in rows])
-            name = pair.replace("_", " ").upper() if pair.startswith("pin") else pair
             axes.barh(at, width, left=left, height=0.6, color=COLOURS[colour], label=name)
             left = left + width
         for place, total in zip(at, left, strict=True):

@@ -16,6 +16,8 @@ from pipeline.validation.registry import PaperResult, citations, row_record, tar
 PAPERS: Mapping[str, str] = {
     "C25": "pipeline.validation.c25",
     "C24": "pipeline.validation.c24",
+    "P15": "pipeline.validation.p15",
+    "E24": "pipeline.validation.e24",
 }
 
 
