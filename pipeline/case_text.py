@@ -29,7 +29,7 @@ def _table(model: BaseModel, path: tuple[str, ...], renamed: Mapping[str, str]) 
         if value is None or value in ((), {}):
             continue
         unit = _unit_of(field.annotation, field.metadata)
-        if isinstance(value, tuple) and isinstance(value[0], float):
+        if isinstance(value, tuple) and isinstance(value[0], (float, str)):
             yield f"{key} = [{', '.join(_value(each, unit) for each in value)}]"
         elif isinstance(value, (BaseModel, dict, tuple)):
             tables.append((key, value))
