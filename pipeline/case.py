@@ -293,6 +293,10 @@ def _check_geometry(case: Case) -> None:
     if pin is not None and pin.mounting == "straddled":
         width = case.roller.width
         _require("roller.pin.span", pin.span, pin.span >= width, f">= {width:.6g} m, roller.width")
+    guides = case.guides
+    reach = 0.5 * (guides.a.length + guides.b.length)
+    apart = guides.spacing > reach
+    _require("guides.spacing", guides.spacing, apart, f"> {reach:.6g} m, half of both lengths")
     for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
         _require(
             f"guides.{side}.diameter",

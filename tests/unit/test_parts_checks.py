@@ -262,6 +262,12 @@ def test_ring_of_a_card(full):
     assert "verify" in check.note
 
 
+def test_guides_that_overlap_are_refused():
+    """Two of 24 mm, 24 mm apart in the middle, would touch."""
+    with pytest.raises(InputError, match=r"guides\.spacing"):
+        parse_case(template("parts").replace('spacing = "80 mm"', 'spacing = "24 mm"'))
+
+
 @pytest.mark.parametrize("name", ["friction_min", "friction_max"])
 def test_friction_bounds_out_of_order_are_refused(name):
     lines = template("parts").replace("friction = 0.04", f"friction = 0.04\n{name} = PUT", 1)
