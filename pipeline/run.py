@@ -17,9 +17,11 @@ from geometry.errors import CamError
 from pipeline import trial as road
 from pipeline.case import Case
 from pipeline.certify import certified, positions_to_certify
-from pipeline.checks.verdict import binding, verdict
+from pipeline.checks.verdict import binding, in_order, verdict
 from pipeline.contact.pair import CycleBodies
 from pipeline.contact.pair_certificate import solve_pair
+from pipeline.corners import governed, outcomes
+from pipeline.corners import record as corners_record
 from pipeline.cycle import Cycle, Turn, contact_pair, finished
 from pipeline.engine.torque import Torque
 from pipeline.fields import write_contact, write_turn
@@ -103,7 +105,7 @@ def run_case(
             _write_torque(folder, case, torques)
         journey = Journey(case, folder, torques, progress, watch)
         trials, stop = _trials(journey)
-        final = _certified(journey, trials[-1], jobs)
+        final = _at_corners(journey, _certified(journey, trials[-1], jobs))
         for done in (*trials[:-1], final):
             folder.write_checks(done.number, [check.as_record() for check in done.checks])
             turns = {cycle.load_case: cycle.rolling for cycle in done.cycles}
@@ -215,6 +217,16 @@ def _certified(journey: Journey, final: Trial, jobs: int | None) -> Trial:
     with journey.watch.stage("certificate"):
         points = certified(contact_pair(case, final.contour), final, chosen, jobs, progress.advance)
     return road.checked(case, replace(final, certificate=points))
+
+
+def _at_corners(journey: Journey, final: Trial) -> Trial:
+    """The final trial with each check's governing corner; ``corners.json`` on the way."""
+    journey.progress.stage("tolerance corners")
+    with journey.watch.stage("corners"):
+        found = outcomes(journey.case, journey.torques, final.contour)
+        if len(found) > 1:
+            journey.folder.write_corners(corners_record(journey.case, found))
+        return replace(final, checks=in_order(governed(final.checks, found)))
 
 
 def _write_torque(folder: RunFolder, case: Case, torques: Mapping[str, Torque]) -> None:

@@ -158,6 +158,10 @@ class RunFolder:
         text = results.json_text(dict(record))
         write_atomic(self._file(f"trial_{trial}/trial.json"), text + "\n")
 
+    def write_corners(self, record: Mapping[str, Any]) -> None:
+        """``corners.json``: demands at every corner of the tolerances."""
+        write_atomic(self._file("corners.json"), results.json_text(dict(record)) + "\n")
+
     @property
     def fields(self) -> Path:
         return self._file("fields/x").parent

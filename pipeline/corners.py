@@ -1,0 +1,245 @@
+"""The final cam at the corners of its tolerances, by closed forms: which corner governs a check.
+
+Every tolerance goes to both ends alone, then a seeded sample takes them all at once. The cam is
+the one that was designed; friction, spring, mass, phase and contour are those of the corner. The
+demand at a corner is the nominal one times the ratio of the closed forms there and here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.errors import CamError
+from geometry.pitch_curve import PitchCurve
+from pipeline.case import Case
+from pipeline.checks import forces, function, guides, roller, signed
+from pipeline.checks.check import Check
+from pipeline.checks.contact import contact_pressure, first_yield, shakedown
+from pipeline.checks.everything import CheckFunction, checked_by
+from pipeline.checks.geometry import curvature_ratio, pressure_angle, undercut
+from pipeline.checks.trial import TrialEvidence
+from pipeline.cycle import Turn, closed_form_cycle, turn
+from pipeline.engine.torque import Torque
+
+POSITIONS = 180
+TRIED: tuple[CheckFunction, ...] = (
+    *(function.torque_reduction, pressure_angle, curvature_ratio, undercut),
+    *forces.CHECKS,
+    *(contact_pressure, first_yield, shakedown),
+    *roller.CHECKS,
+    *guides.CHECKS,
+    *(signed.jump_speed, signed.contact_at_overspeed, signed.edge_pressure),
+)
+
+
+@dataclass(frozen=True)
+class Corner:
+    """Where in its tolerances a case stands: factors on the nominal; phase rad, profile m."""
+
+    name: str
+    friction_a: float = 1.0
+    friction_b: float = 1.0
+    rate: float = 1.0
+    preload: float = 1.0
+    mass: float = 1.0
+    phase: float = 0.0
+    profile: float = 0.0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Demands by check id at one corner, or why there are none."""
+
+    corner: Corner
+    demands: Mapping[str, float]
+    refused: str = ""
+
+
+def corners_of(case: Case) -> tuple[Corner, ...]:
+    """One tolerance at a time to both ends, then the seeded sample of all together."""
+    ranges = _ranges(case)
+    alone = []
+    for label, bounds in ranges.items():
+        low = {name: ends[0] for name, ends in bounds.items()}
+        high = {name: ends[1] for name, ends in bounds.items()}
+        alone += [Corner(f"{label} low", **low), Corner(f"{label} high", **high)]
+    if not ranges:
+        return ()
+    draw = np.random.default_rng(case.tolerances.seed)
+    sample = []
+    for number in range(case.tolerances.samples):
+        values: dict[str, float] = {}
+        for bounds in ranges.values():
+            place = float(draw.random())  # both guides share the day's oil
+            values |= {name: low + place * (high - low) for name, (low, high) in bounds.items()}
+        sample.append(Corner(f"sample {number + 1}", **values))
+    return (*alone, *sample)
+
+
+def outcomes(case: Case, torques: Mapping[str, Torque], contour: Contour) -> tuple[Outcome, ...]:
+    """The nominal case first, then every corner of it."""
+    return tuple(
+        _outcome(case, torques, contour, corner)
+        for corner in (Corner("nominal"), *corners_of(case))
+    )
+
+
+def governed(checks: Sequence[Check], found: Sequence[Outcome]) -> tuple[Check, ...]:
+    """The checks with the corner where each is worst and its demand there.
+
+    Last stands a check of its own: how many that pass at the nominal fail at a corner.
+    """
+    if len(found) < 2:
+        return tuple(checks)
+    named = tuple(_governed(check, found) for check in checks)
+    return (*named, _robust(named, len(found) - 1))
+
+
+def record(case: Case, found: Sequence[Outcome]) -> dict[str, Any]:
+    """Contents of ``corners.json``."""
+    return {
+        "seed": case.tolerances.seed,
+        "tried": len(found) - 1,
+        "positions": POSITIONS,
+        "method": "closed forms on the final cam; demands scale the nominal figures of the run",
+        "corners": [
+            {**asdict(one.corner), "demands": dict(one.demands), "refused": one.refused}
+            for one in found
+        ],
+    }
+
+
+def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
+    """Bounds of the fields of `Corner` by what moves together; nothing of no width."""
+    tolerances, spring = case.tolerances, case.spring
+    share = tolerances.friction
+
+    def friction(guide: Any) -> tuple[float, float]:
+        nominal = guide.friction or 1.0
+        low = 1.0 - share if guide.friction_min is None else guide.friction_min / nominal
+        high = 1.0 + share if guide.friction_max is None else guide.friction_max / nominal
+        return low, high
+
+    def around(tolerance: float) -> tuple[float, float]:
+        return 1.0 - tolerance, 1.0 + tolerance
+
+    profile = case.cam.profile_tolerance or 0.0
+    found: dict[str, dict[str, tuple[float, float]]] = {
+        "friction": {
+            "friction_a": friction(case.guides.a),
+            "friction_b": friction(case.guides.b),
+        },
+        "spring rate": {"rate": around(spring.rate_tolerance)},
+        "preload": {"preload": around(spring.preload_tolerance)},
+        "mass": {"mass": around(tolerances.mass)},
+        "phase": {"phase": (-tolerances.phase, tolerances.phase)},
+        "line profile": {"profile": (-0.5 * profile, 0.5 * profile)},
+    }
+    return {
+        label: bounds
+        for label, bounds in found.items()
+        if any(high > low for low, high in bounds.values())
+    }
+
+
+def _outcome(
+    case: Case, torques: Mapping[str, Torque], contour: Contour, corner: Corner
+) -> Outcome:
+    try:
+        at, shape = applied(case, corner), _shape(contour, corner)
+        turns = tuple(
+            _turned(turn(at, shape, torques.get(state.name), state.name, POSITIONS), at, corner)
+            for state in at.load_cases
+        )
+        cycles = tuple(closed_form_cycle(at, shape, given) for given in turns)
+        checks = checked_by(TrialEvidence(case=at, contour=shape, cycles=cycles), TRIED)
+    except CamError as error:
+        return Outcome(corner, {}, str(error))
+    known = {c.id: float(c.demand) for c in checks if c.demand is not None}
+    return Outcome(corner, {name: value for name, value in known.items() if np.isfinite(value)})
+
+
+def applied(case: Case, corner: Corner) -> Case:
+    """The case at a corner of its tolerances; the contour is not the case's to change."""
+    spring, guides = case.spring, case.guides
+    # A cam that stands proud by some hundredths presses the spring by as much more.
+    preload = spring.preload * corner.preload + spring.rate * corner.rate * corner.profile
+    return case.model_copy(
+        update={
+            "spring": spring.model_copy(
+                update={"rate": spring.rate * corner.rate, "preload": preload}
+            ),
+            "follower": case.follower.model_copy(update={"mass": case.follower.mass * corner.mass}),
+            "guides": guides.model_copy(
+                update={
+                    "a": _rubbing(guides.a, corner.friction_a),
+                    "b": _rubbing(guides.b, corner.friction_b),
+                }
+            ),
+        }
+    )
+
+
+def _rubbing(guide: Any, factor: float) -> Any:
+    bounds = {"friction_min": None, "friction_max": None}
+    return guide.model_copy(update={"friction": guide.friction * factor, **bounds})
+
+
+def _shape(contour: Contour, corner: Corner) -> Contour:
+    pitch = contour.pitch
+    moved = PitchCurve(pitch.lift, pitch.base_radius + corner.profile, pitch.offset)
+    return Contour(moved, contour.roller_radius)
+
+
+def _turned(given: Turn, case: Case, corner: Corner) -> Turn:
+    """The turn with the engine's torque `phase` (rad of crank) late against the cam."""
+    before = given.torque_before
+    if before is None or corner.phase == 0.0:
+        return given
+    ratio = case.mechanism.gear_ratio
+    theta = uniform_turn(before.size)
+    late = np.interp(theta - corner.phase / ratio, theta, before, period=2.0 * np.pi)
+    return replace(given, torque_before=late, residual_torque=late - given.loads.cam_torque / ratio)
+
+
+def _governed(check: Check, found: Sequence[Outcome]) -> Check:
+    nominal = found[0]
+    here = nominal.demands.get(check.id)
+    if check.demand is None or not here:
+        return check
+    sign = 1.0 if check.sense == "at_most" else -1.0
+    known = [one for one in found if check.id in one.demands]
+    worst = max(known, key=lambda one: sign * one.demands[check.id])
+    if worst is nominal:
+        return replace(check, corner="nominal", corner_demand=check.demand)
+    demand = check.demand * worst.demands[check.id] / here
+    return replace(check, corner=worst.corner.name, corner_demand=float(demand))
+
+
+def _robust(checks: Sequence[Check], tried: int) -> Check:
+    lost = [
+        c.id
+        for c in checks
+        if c.must_have
+        and c.status == "pass"
+        and c.corner_demand is not None
+        and replace(c, demand=c.corner_demand).status == "fail"
+    ]
+    return Check(
+        id="tolerance_corners",
+        title="Checks that pass at the nominal and fail at a corner",
+        demand=float(len(lost)),
+        limit=0.0,
+        unit="checks",
+        source="tolerances of the case; one at a time and a seeded sample",
+        method=f"closed forms at {tried} corners",
+        must_have=False,
+        lift_can_help=False,
+        note=", ".join(lost),
+    )

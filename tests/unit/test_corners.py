@@ -1,0 +1,104 @@
+"""Tolerance corners: what is tried, which way each moves the demands, which one governs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.contour import Contour
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from pipeline.case import parse_case
+from pipeline.case_template import template
+from pipeline.checks.check import Check
+from pipeline.corners import Corner, Outcome, applied, corners_of, governed, outcomes, record
+
+TOLERANCES = """
+[tolerances]
+friction = 0.5
+mass = 0.1
+phase = "2 deg"
+samples = 3
+seed = 7
+"""
+
+
+def case():
+    text = template("corners")
+    return parse_case(text + TOLERANCES)
+
+
+def cam():
+    theta = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
+    return Contour(PitchCurve(Lift(theta, 0.005 * (1.0 - np.cos(theta))), 0.05), 0.008)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return {one.corner.name: one.demands for one in outcomes(case(), {}, cam())}
+
+
+def test_one_at_a_time_then_a_seeded_sample():
+    names = [corner.name for corner in corners_of(case())]
+    assert names[:2] == ["friction low", "friction high"]
+    assert names[-3:] == ["sample 1", "sample 2", "sample 3"]
+    assert corners_of(case()) == corners_of(case())
+    other = case().model_copy(
+        update={"tolerances": case().tolerances.model_copy(update={"seed": 8})}
+    )
+    assert corners_of(other)[-1] != corners_of(case())[-1]
+
+
+def test_without_tolerances_there_are_no_corners():
+    bare = case()
+    none = {"tolerances": bare.tolerances.model_copy(
+        update={"friction": 0.0, "mass": 0.0, "phase": 0.0})}  # fmt: skip
+    guides = bare.guides.model_copy(update={
+        side: getattr(bare.guides, side).model_copy(
+            update={"friction_min": None, "friction_max": None})
+        for side in ("a", "b")})  # fmt: skip
+    spring = bare.spring.model_copy(update={"rate_tolerance": 0.0, "preload_tolerance": 0.0})
+    none |= {"guides": guides, "spring": spring}
+    assert corners_of(bare.model_copy(update=none)) == ()
+
+
+def test_a_proud_contour_presses_the_spring():
+    at = applied(case(), Corner("x", profile=1e-4, rate=1.1))
+    spring = case().spring
+    assert at.spring.preload == pytest.approx(spring.preload + 1.1 * spring.rate * 1e-4)
+
+
+def test_tendencies_at_a_fixed_lift(found):
+    """Worse friction and a heavier follower: nearer to jamming, to more pressure, to the jump."""
+    assert found["friction high"]["jam_index"] > found["nominal"]["jam_index"]
+    assert found["friction high"]["contact_pressure"] > found["nominal"]["contact_pressure"]
+    assert found["mass high"]["jump_speed"] < found["nominal"]["jump_speed"]
+    # w_jump goes with one over the root of the mass
+    ratio = found["mass high"]["jump_speed"] / found["nominal"]["jump_speed"]
+    assert ratio == pytest.approx(1.1**-0.5, rel=1e-9)
+
+
+def test_the_governing_corner_is_named_and_scales_the_nominal_demand():
+    check = Check("p", "pressure", 100.0, 105.0)
+    seen = (
+        Outcome(Corner("nominal"), {"p": 50.0}),
+        Outcome(Corner("a"), {"p": 55.0}),
+        Outcome(Corner("b"), {"p": 45.0}),
+        Outcome(Corner("c"), {}, "refused"),
+    )
+    named, robust = governed([check], seen)
+    assert (named.corner, named.corner_demand) == ("a", pytest.approx(110.0))
+    assert named.status == "pass"
+    assert (robust.id, robust.demand, robust.status, robust.note) == (
+        "tolerance_corners", 1.0, "fail", "p"
+    )  # fmt: skip
+    lower, fine = governed([replace(check, sense="at_least", limit=80.0)], seen)
+    assert (lower.corner, lower.corner_demand) == ("b", pytest.approx(90.0))
+    assert fine.status == "pass"
+
+
+def test_record_holds_every_corner():
+    seen = outcomes(case(), {}, cam())
+    written = record(case(), seen)
+    assert written["tried"] == len(seen) - 1 == len(corners_of(case()))
+    assert written["corners"][0]["name"] == "nominal"
