@@ -433,17 +433,48 @@ class Material(Section):
     source: Text
 
 
-class Smoothing(Section):
-    """What is done to the torque before the lift is drawn from it; angles are crank angles."""
+FreeName = Literal["initial_energy", "spring_rate", "preload", "pitch_base_radius"]
+Rate = Annotated[float, In("kN/m", above=0, at_most=1e6)]
+Preload = Annotated[float, In("N", above=0, at_most=1e9)]
 
-    kind: Literal["none", "moving_average", "gaussian", "harmonic", "savitzky_golay"] = "none"
+
+class Smoothing(Section):
+    """What is done to the torque before the lift is drawn from it; angles are crank angles.
+
+    `constrained` draws the lift of least ripple within all limits; what is `free` it may change
+    as well, within its range.
+    """
+
+    kind: Literal[
+        "none", "moving_average", "gaussian", "harmonic", "savitzky_golay", "constrained"
+    ] = "none"
     points: Annotated[int, Field(ge=1, le=720)] = 12
     spacing: Annotated[float, In("deg", above=0, at_most=120)] = radians(5.0)
     width: Duration = radians(60.0)
     harmonics: Annotated[float, In(at_least=1, at_most=360)] = 12.0
     taper: Annotated[float, In(at_least=0, below=1)] = 0.25
     degree: Annotated[int, Field(ge=0, le=20)] = 2
+    free: Annotated[tuple[FreeName, ...], Field(strict=False)] = ("initial_energy",)
+    spring_rate_range: Annotated[tuple[Rate, Rate], Field(strict=False)] | None = None
+    preload_range: Annotated[tuple[Preload, Preload], Field(strict=False)] | None = None
+    pitch_base_radius_range: Annotated[tuple[Length, Length], Field(strict=False)] | None = None
+    coefficients: Annotated[int, Field(ge=12, le=240)] = 96
+    torque_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 1.0
+    speed_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
+    jerk_weight: Annotated[float, In(at_least=0, at_most=1e3)] = 1e-6
+    corners: bool = False
     source: Text = ""
+
+    @model_validator(mode="after")
+    def _knows_how_far(self) -> Self:
+        for name in self.free:
+            if name == "initial_energy":
+                continue
+            ends = getattr(self, f"{name}_range")
+            if ends is None or not ends[0] < ends[1]:
+                field = f"smoothing.{name}_range"
+                raise InputError(field, ends, "two rising values, as it is free")
+        return self
 
     @model_validator(mode="after")
     def _fits_into_a_cycle(self) -> Self:
@@ -542,10 +573,12 @@ class Tolerances(Section):
 class LoadCase(Section):
     """One state the cam has to bear: crank speed and, where it differs, the torque.
 
-    At speed 0 the cam stands or creeps: springs and friction act, inertia does not.
+    At speed 0 the cam stands or creeps: springs and friction act, inertia does not. The ripple
+    counts with its weight; at 0 the case only loads the cam and no reduction is asked for.
     """
 
     name: Name
     speed: Annotated[float, In("rpm", at_least=0, below=20_000)]
     torque: FileName | None = None
+    ripple_weight: Annotated[float, In(at_least=0, at_most=1000)] = 1.0
     source: Text = ""

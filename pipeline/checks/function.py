@@ -22,7 +22,14 @@ GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 def torque_reduction(evidence: TrialEvidence) -> Check | None:
     """Share of the torque ripple the cam takes away; None when there is no engine."""
-    running = tuple(c for c in evidence.cycles if c.torque_before is not None)
+    states = getattr(evidence.case, "load_cases", ())
+    weights = {state.name: state.ripple_weight for state in states}
+    running = tuple(
+        cycle
+        for cycle in evidence.cycles
+        if cycle.torque_before is not None and weights.get(cycle.load_case, 1.0) > 0
+    )
+    only_loads = [name for name, weight in weights.items() if not weight > 0]
     if not running:
         return None
     worst = worst_case(replace(evidence, cycles=running), _reduction, at_least=True)
@@ -37,6 +44,7 @@ def torque_reduction(evidence: TrialEvidence) -> Check | None:
         method="1 - std of the crank torque with the cam, as delivered, over that without it",
         # A gentler lift only takes less ripple away: this one is never traded.
         lift_can_help=False,
+        note=f"not asked for in {', '.join(only_loads)}" if only_loads else "",
         **worst.place,
     )
 

@@ -1,0 +1,172 @@
+"""From a case to the synthesis it asks for: its limits, its load cases, what it frees."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from geometry.errors import InputError
+from pipeline.case import Case
+from pipeline.case_fields import Guide, LoadCase
+from pipeline.checks.contact import SHAKEDOWN
+from pipeline.checks.geometry import TOOL_ALLOWANCE
+from pipeline.checks.guides import pv_limit
+from pipeline.contact.hertz import contact_modulus
+from pipeline.cycle import contact_width
+from pipeline.engine.torque import Torque
+from pipeline.smoothing.constrained import Problem
+from pipeline.smoothing.constraints import LIFE_UNIT, Correction, Machine, Ratings, Scenario
+
+POINTS = 720
+
+
+def problem_of(
+    case: Case, torques: Mapping[str, Torque], corrections: Mapping[str, Correction] | None = None
+) -> Problem:
+    """The constrained synthesis of a case.
+
+    Parameters
+    ----------
+    torques : mapping       engine torque by load case
+    corrections : mapping   finite elements over closed forms by load case; none: 1
+
+    Raises
+    ------
+    InputError
+        If the case has no engine.
+    """
+    if not torques:
+        raise InputError("smoothing.kind", "constrained", "another one for a given lift")
+    if not any(state.ripple_weight > 0 for state in case.load_cases):
+        raise InputError("load_case.ripple_weight", 0.0, "> 0 in one load case")
+    smoothing = case.smoothing
+    found = corrections or {}
+    scenarios = [
+        scenario
+        for state in case.load_cases
+        for scenario in _scenarios(case, state, torques.get(state.name), found.get(state.name))
+    ]
+    names = {"spring_rate": "rate", "preload": "preload", "pitch_base_radius": "base_radius"}
+    freed = {
+        short: getattr(smoothing, f"{name}_range")
+        for name, short in names.items()
+        if name in smoothing.free
+    }
+    return Problem(
+        scenarios=tuple(scenarios),
+        ratings=ratings_of(case),
+        machine=Machine(case.spring.rate, case.spring.preload, case.cam.pitch_base_radius),
+        gear_ratio=case.mechanism.gear_ratio,
+        freed=freed,
+        energy=(0.0, np.inf if "initial_energy" in smoothing.free else 0.0),
+        coefficients=smoothing.coefficients,
+        points=POINTS,
+        torque_reduction=case.limits.torque_reduction,
+        torque_weight=smoothing.torque_weight,
+        speed_weight=smoothing.speed_weight,
+        jerk_weight=smoothing.jerk_weight,
+    )
+
+
+def ratings_of(case: Case) -> Ratings:
+    """Limits of a case as the checks apply them."""
+    limits, roller, guides = case.limits, case.roller, case.guides
+    cards = [case.material(case.cam.material), case.material(roller.material)]
+    softer = min(cards, key=lambda card: card.yield_strength)
+    allowed = SHAKEDOWN * softer.yield_strength / np.sqrt(3.0) / limits.shakedown_safety
+    if softer.endurance_pressure is not None:
+        allowed = min(allowed, softer.endurance_pressure / limits.contact_safety)
+    modulus = contact_modulus(cards[0].E, cards[0].nu, cards[1].E, cards[1].nu)
+    bearing = roller.bearing
+    wear = None
+    if bearing.C is not None and limits.roller_life is not None:
+        wear = bearing.C**3 * LIFE_UNIT / (limits.roller_life / 3600.0)
+    return Ratings(
+        roller_radius=roller.radius,
+        offset=case.cam.offset,
+        travel=case.spring.travel_max,
+        pressure_angle=limits.pressure_angle,
+        jam_index=limits.jam_index,
+        curvature_ratio=limits.curvature_ratio,
+        undercut_factor=limits.undercut_factor,
+        hollow_radius=None if limits.tool_radius is None else TOOL_ALLOWANCE * limits.tool_radius,
+        pressure=float(allowed),
+        stiffness_of_contact=float(np.pi * contact_width(case) * roller.radius / modulus),
+        contact_force_margin=limits.contact_force_margin,
+        jump=limits.jump,
+        normal_force=None if bearing.C0 is None else bearing.C0 / limits.roller_static_safety,
+        life_force_cubed=wear,
+        roller_spin=None
+        if bearing.speed_limit is None
+        else limits.roller_speed_share * bearing.speed_limit,
+        bush_pressure=(guides.a.pressure_limit, guides.b.pressure_limit),
+        bush_pv=(pv_limit(guides.a), pv_limit(guides.b)),
+        bush_area=(_area(guides.a), _area(guides.b)),
+    )
+
+
+def _scenarios(
+    case: Case, state: LoadCase, torque: Torque | None, correction: Correction | None
+) -> list[Scenario]:
+    """The load case itself and, where the case asks for corners, its tolerances."""
+    follower, guides = case.follower, case.guides
+    values = np.zeros(POINTS)  # a cam that stands still has no torque to balance
+    if torque is not None:
+        values = torque.without_mean().resampled(POINTS).total
+    worst = (guides.a.friction_max, guides.b.friction_max)
+    nominal = Scenario(
+        name=state.name,
+        cam_speed=state.speed / case.mechanism.gear_ratio,
+        torque=values - values.mean(),
+        mass=follower.mass,
+        guide_spacing=guides.spacing,
+        overhang=follower.overhang_at_max_lift,
+        friction_a=guides.a.friction,
+        friction_b=guides.b.friction,
+        viscous_damping=follower.viscous_damping,
+        weight=0.0 if torque is None else state.ripple_weight,
+        friction_worst=None if worst[0] is None or worst[1] is None else (worst[0], worst[1]),
+        correction=correction or Correction.none(POINTS),
+    )
+    if not case.smoothing.corners:
+        return [nominal]
+    return [nominal, *_corners(case, nominal)]
+
+
+def _corners(case: Case, nominal: Scenario) -> list[Scenario]:
+    """Every combination of spring and friction at the ends of their tolerances."""
+    spring, guides = case.spring, case.guides
+    rates, preloads = _ends(spring.rate_tolerance), _ends(spring.preload_tolerance)
+    frictions = _friction(guides.a, guides.b)
+    return [
+        replace(
+            nominal,
+            name=f"{nominal.name}, k x {rate:g}, P x {preload:g}, mu {mu[0]:g} and {mu[1]:g}",
+            rate_factor=rate,
+            preload_factor=preload,
+            friction_a=mu[0],
+            friction_b=mu[1],
+            weight=0.0,
+        )
+        for rate, preload, mu in product(rates, preloads, frictions)
+    ]
+
+
+def _ends(tolerance: float) -> list[float]:
+    return [1.0 - tolerance, 1.0 + tolerance] if tolerance > 0 else [1.0]
+
+
+def _friction(a: Guide, b: Guide) -> list[tuple[float, float]]:
+    low = (a.friction_min, b.friction_min)
+    high = (a.friction_max, b.friction_max)
+    found = [
+        (pair[0], pair[1]) for pair in (low, high) if pair[0] is not None and pair[1] is not None
+    ]
+    return found or [(a.friction, b.friction)]
+
+
+def _area(guide: Guide) -> float:
+    return guide.diameter * guide.length
