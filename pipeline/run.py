@@ -14,7 +14,9 @@ import numpy as np
 
 from geometry.contour import Contour
 from geometry.errors import CamError
+from geometry.lift import Lift
 from pipeline import trial as road
+from pipeline.benchmarks import benchmarks
 from pipeline.case import Case
 from pipeline.certify import certified, positions_to_certify
 from pipeline.checks.verdict import binding, in_order, verdict
@@ -32,8 +34,11 @@ from pipeline.records import contour_columns, headline, lift_columns, pressure_a
 from pipeline.rolling import envelope_arrays, rolling_history, rolling_record
 from pipeline.run_folder import RunFolder
 from pipeline.shop import write_shop
+from pipeline.smoothing import loop
+from pipeline.smoothing.constrained import RESERVE, synthesise
 from pipeline.smoothing.gentler import Next, Stop, next_smoother
 from pipeline.smoothing.outlook import Attempt
+from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 from pipeline.speed import consistency, speed_record, study_of
 from pipeline.trial import Trial
@@ -104,7 +109,8 @@ def run_case(
             torques = road.engine_torques(case)
             _write_torque(folder, case, torques)
         journey = Journey(case, folder, torques, progress, watch)
-        trials, stop = _trials(journey)
+        journey, trials, stop = _trials(journey)
+        case = journey.case  # with the spring and base radius of a constrained synthesis
         final = _at_corners(journey, _certified(journey, trials[-1], jobs))
         for done in (*trials[:-1], final):
             folder.write_checks(done.number, [check.as_record() for check in done.checks])
@@ -121,6 +127,8 @@ def run_case(
             "binding": list(binding(final.checks)),
             "statement": stop.reason,
             "headline": headline(case, torques, final),
+            "prices": None if final.synthesis is None else final.synthesis["prices"],
+            "benchmarks": benchmarks(case.roller.radius) if final.certificate else None,
             "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
             **_crank_speed(folder, case, torques, final),
         }
@@ -131,14 +139,16 @@ def run_case(
         return folder.finish(summary | {"timings_s": watch.read()})
 
 
-def _trials(journey: Journey) -> tuple[list[Trial], Stop]:
+def _trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
     """Trials until one passes or none could do better."""
     case = journey.case
+    if case.smoothing.kind == "constrained":
+        return _constrained_trials(journey)
     if case.engine is None:
         alone = _trial(journey, 1, None, lift_origin(case))
         found = binding(alone.checks)
         reason = "the given lift passes" if not found else "a given lift is not smoothed"
-        return [alone], Stop(reason, found, 1)
+        return journey, [alone], Stop(reason, found, 1)
     step = Next(Smoother.from_case(case.smoothing), "the smoothing the case asks for")
     foreseen = cache(partial(road.foreseen, case, journey.torques))
     trials: list[Trial] = []
@@ -147,19 +157,53 @@ def _trials(journey: Journey) -> tuple[list[Trial], Stop]:
         attempts = [Attempt(t.smoother, t.checks) for t in trials if t.smoother is not None]
         after = next_smoother(attempts, case.solver.max_trials, foreseen)
         if isinstance(after, Stop):
-            return trials, after
+            return journey, trials, after
         journey.progress.note(f"trial {len(trials)} fails: {after.why}")
         step = after
 
 
-def _trial(journey: Journey, number: int, smoother: Smoother | None, why: str) -> Trial:
-    """One trial, written down as it goes."""
+def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
+    """Synthesis and finite elements in turn, until these move no limit in use any more."""
+    given, problem = journey.case, problem_of(journey.case, journey.torques)
+    why = "the cam of least ripple within all limits"
+    trials: list[Trial] = []
+    while True:
+        journey.progress.stage(f"trial {len(trials) + 1}: synthesis")
+        with journey.watch.stage("synthesis"):
+            design = synthesise(problem)
+        journey = replace(journey, case=loop.redrawn(given, design))
+        done = _trial(journey, len(trials) + 1, None, why, design.lift())
+        trials.append(replace(done, synthesis=loop.design_record(design, problem)))
+        found = binding(done.checks)
+        if not design.feasible:
+            return journey, trials, Stop("no cam keeps all limits", found, len(trials))
+        corrections = loop.corrections_of(done.cycles)
+        moved = loop.moved(design, problem, corrections)
+        settled = moved < loop.SETTLED and (not found or moved < RESERVE)
+        if settled or done.mesh is None or len(trials) == given.solver.max_trials:
+            last = f"trial {len(trials)} {'fails' if found else 'passes every must-have check'}"
+            reason = f"{last}; finite elements move no limit in use by more than {moved:.2g}"
+            return journey, trials, Stop(reason, found, len(trials))
+        why = f"finite elements moved a limit in use by {moved:.2g} of itself"
+        journey.progress.note(f"trial {len(trials)}: {why}")
+        problem = replace(
+            loop.with_corrections(problem, corrections),
+            seed=design.coefficients,
+            machine=design.machine,
+        )
+
+
+def _trial(
+    journey: Journey, number: int, smoother: Smoother | None, why: str, lift: Lift | None = None
+) -> Trial:
+    """One trial, written down as it goes; the lift is drawn by the smoother unless given."""
     case, folder, progress, watch = (
         journey.case, journey.folder, journey.progress, journey.watch
     )  # fmt: skip
     progress.stage(f"trial {number}: lift and contour")
     with watch.stage("lift"):
-        lift = road.designed_lift(case, journey.torques, smoother)
+        if lift is None:
+            lift = road.designed_lift(case, journey.torques, smoother)
         folder.write_lift(number, lift_columns(case, lift))
     with watch.stage("contour"):
         contour = road.cam_contour(case, lift)
@@ -216,7 +260,10 @@ def _certified(journey: Journey, final: Trial, jobs: int | None) -> Trial:
     progress.stage(f"certificate at {len(chosen)} angles")
     with journey.watch.stage("certificate"):
         points = certified(contact_pair(case, final.contour), final, chosen, jobs, progress.advance)
-    return road.checked(case, replace(final, certificate=points))
+    progress.stage("benchmarks")
+    with journey.watch.stage("benchmarks"):
+        solved = benchmarks(case.roller.radius)
+    return road.checked(case, replace(final, certificate=points), solved)
 
 
 def _at_corners(journey: Journey, final: Trial) -> Trial:

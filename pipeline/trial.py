@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -59,6 +60,7 @@ class ContactMesh:
 class Trial:
     """A lift and all that follows from it; `why` says what brought it about.
 
+    synthesis is the record of the constrained synthesis that drew the lift, if one did.
     mesh is None, and the contact unknown (NaN), where the contour cannot exist as a body.
     """
 
@@ -71,6 +73,7 @@ class Trial:
     mesh: ContactMesh | None
     checks: tuple[Check, ...]
     certificate: tuple[CertificatePoint, ...] = ()
+    synthesis: Mapping[str, Any] | None = None
 
 
 def engine_torques(case: Case) -> dict[str, Torque]:
@@ -193,14 +196,15 @@ def _as_arrays(history: ContactHistory) -> dict[str, Array]:
     return {f.name: getattr(history, f.name) for f in fields(history) if f.name != "method"}
 
 
-def checked(case: Case, trial: Trial) -> Trial:
-    """The trial with its checks, certificate included as far as there is one."""
+def checked(case: Case, trial: Trial, benchmarks: Mapping[str, float] | None = None) -> Trial:
+    """The trial with its checks, certificate and benchmarks included as far as there are any."""
     evidence = TrialEvidence(
         case=case,
         contour=trial.contour,
         cycles=trial.cycles,
         mesh_quality=None if trial.mesh is None else trial.mesh.quality,
         certificate=trial.certificate,
+        benchmarks=benchmarks,
     )
     return replace(trial, checks=all_checks(evidence))
 

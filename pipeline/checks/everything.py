@@ -14,6 +14,7 @@ from pipeline.checks import (
     geometry,
     guides,
     parts,
+    proof,
     roller,
     rolling,
     signed,
@@ -48,6 +49,9 @@ ALL: tuple[CheckFunction, ...] = (*DESIGN, *rolling.CHECKS, *evidence.CHECKS)
 SIGNED: tuple[CheckFunction, ...] = signed.CHECKS
 """What a sign-off asks for besides."""
 
+PROOF: tuple[CheckFunction, ...] = proof.CHECKS
+"""Meshes and benchmarks behind the figures of a certified trial."""
+
 PARTS: tuple[CheckFunction, ...] = (*parts.CHECKS, *spring.CHECKS)
 """Limits of the parts around the cam, which only a trial with its cycles tells of."""
 
@@ -58,7 +62,7 @@ def all_checks(trial: TrialEvidence) -> tuple[Check, ...]:
     A check that does not apply, such as the torque reduction of a cam without an engine, is
     left out.
     """
-    return checked_by(trial, (*ALL, *SIGNED, *PARTS))
+    return checked_by(trial, (*ALL, *PROOF, *SIGNED, *PARTS))
 
 
 def design_checks(trial: TrialEvidence) -> tuple[Check, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -29,6 +29,7 @@ class TrialEvidence:
     cycles : tuple of Cycle                   one a load case
     mesh_quality : Quality                    None when the trial made no mesh
     certificate : tuple of CertificatePoint   empty when none was asked for
+    benchmarks : mapping                      as `pipeline.benchmarks` gives it; None: not solved
     """
 
     case: Case
@@ -36,6 +37,7 @@ class TrialEvidence:
     cycles: tuple[Cycle, ...]
     mesh_quality: Quality | None = None
     certificate: tuple[CertificatePoint, ...] = ()
+    benchmarks: Mapping[str, float] | None = None
 
     def cam_speed(self, cycle: Cycle) -> float:
         """Cam speed of a load case, rad/s."""

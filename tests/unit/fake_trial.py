@@ -11,6 +11,7 @@ from geometry.contour import Contour
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from pipeline.checks.trial import TrialEvidence
+from pipeline.contact.convergence import Convergence
 
 POSITIONS = 72
 THETA = uniform_turn(POSITIONS)
@@ -129,15 +130,22 @@ def cycle(shape: Contour | None = None, load_case: str = "idle", scale: float = 
 MESH = SimpleNamespace(
     min_angle_deg=28.0, min_scaled_jacobian=0.5, edges_across_half_width=10.0, elements=1, nodes=1
 )
+MESHES = {
+    name: Convergence((1.1, 1.02, 1.005), 1.001, 2.0, 0.01)
+    for name in ("p0", "half_width", "von_mises", "tau_max")
+}
 CERTIFICATE = (
-    SimpleNamespace(theta=0.5, spread_percent=-0.2, gci_percent=0.5),
-    SimpleNamespace(theta=1.5, spread_percent=-0.4, gci_percent=0.4),
+    SimpleNamespace(theta=0.5, spread_percent=-0.2, gci_percent=0.5, **MESHES),
+    SimpleNamespace(theta=1.5, spread_percent=-0.4, gci_percent=0.4, **MESHES),
 )
+BENCHMARKS = {
+    f"{name}_{figure}": 0.01 for name in ("nafems", "hertz") for figure in ("p0", "half_width")
+}
 
 
 def evidence(**changes) -> TrialEvidence:
     """A trial that passes; `changes` replace its parts."""
-    plain = TrialEvidence(case(), contour(), (cycle(),), MESH, CERTIFICATE)
+    plain = TrialEvidence(case(), contour(), (cycle(),), MESH, CERTIFICATE, BENCHMARKS)
     return replace(plain, **changes)
 
 

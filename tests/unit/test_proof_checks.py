@@ -1,0 +1,83 @@
+"""Three meshes of every figure and the benchmarks: limits, NaN, missing, by hand."""
+
+import fake_trial as fake
+import numpy as np
+import pytest
+
+from pipeline import benchmarks
+from pipeline.checks import proof
+from pipeline.checks.contact import contact_pressure
+from pipeline.checks.errors import with_error_bars
+from pipeline.checks.evidence import certificate_spread
+from pipeline.contact.convergence import Convergence, converged
+
+MESHED = {
+    "p0": proof.mesh_p0,
+    "half_width": proof.mesh_half_width,
+    "von_mises": proof.mesh_von_mises,
+    "tau_max": proof.mesh_tau_max,
+}
+
+
+def with_gci(field, gci):
+    figure = Convergence((1.0, 1.0, 1.0), 1.0, 2.0, gci)
+    points = (fake.CERTIFICATE[0], fake.changed(fake.CERTIFICATE[1], **{field: figure}))
+    return fake.evidence(certificate=points)
+
+
+@pytest.mark.parametrize("field", MESHED)
+@pytest.mark.parametrize(
+    ("gci", "status"), [(0.0297, "pass"), (0.0303, "fail"), (np.nan, "not_evaluated")]
+)
+def test_each_figure_has_its_own_error_bar(field, gci, status):
+    check = MESHED[field](with_gci(field, gci))
+    assert check.status == status
+    assert check.must_have
+    assert check.cam_angle_deg == pytest.approx(np.rad2deg(1.5))
+
+
+@pytest.mark.parametrize("field", MESHED)
+def test_without_certificate_or_limit_nothing_is_claimed(field):
+    assert MESHED[field](fake.evidence(certificate=())).status == "not_evaluated"
+    given = fake.evidence(case=fake.limits(mesh_uncertainty=None))
+    assert MESHED[field](given).status == "not_evaluated"
+
+
+@pytest.mark.parametrize("check", [proof.benchmark_nafems, proof.benchmark_hertz])
+@pytest.mark.parametrize(
+    ("off", "status"), [(-0.0297, "pass"), (0.0303, "fail"), (np.nan, "not_evaluated")]
+)
+def test_benchmarks_at_their_limit(check, off, status):
+    name = check(fake.evidence()).id.removeprefix("benchmark_")
+    given = fake.evidence(benchmarks=fake.BENCHMARKS | {f"{name}_half_width": off})
+    assert check(given).status == status
+    missing = check(fake.evidence(benchmarks=None))
+    assert (missing.status, missing.must_have) == ("not_evaluated", False)
+
+
+def test_gci_by_hand():
+    """Second order on halved meshes: f = 1 + h^2; GCI = 1.25 e/(r^p - 1), Roache (1998)."""
+    figure = converged([1.16, 1.04, 1.01], 2.0)
+    assert figure.order == pytest.approx(2.0)
+    assert figure.gci == pytest.approx(1.25 * (0.03 / 1.01) / 3.0)
+
+
+def test_error_bar_of_the_pressure_joins_tiers_and_meshes():
+    given = fake.evidence()
+    (check,) = with_error_bars(given, [contact_pressure(given)])
+    # 0.4 % of the meshes and 0.4 % between the tiers at one angle; the samples hold the peak of the sine.
+    assert check.error == pytest.approx(0.008 * check.demand, rel=1e-3)
+    (bare,) = with_error_bars(fake.evidence(certificate=()), [contact_pressure(given)])
+    assert bare.error is None
+    assert certificate_spread(given).demand == pytest.approx(0.4)
+
+
+def test_benchmarks_are_solved_here(monkeypatch, tmp_path):
+    """Both within 1 % of the known answers; the second time from what was kept."""
+    monkeypatch.setenv("CAMWRIGHT_CACHE", str(tmp_path))
+    monkeypatch.delenv("CAMWRIGHT_NO_CACHE", raising=False)
+    found = benchmarks.benchmarks(0.008)
+    assert all(abs(found[f"{n}_{f}"]) < 0.01 for n in ("nafems", "hertz") for f in ("p0",))
+    assert max(found["nafems_residual"], found["hertz_residual"]) < 1e-8
+    monkeypatch.setattr(benchmarks, "_solved", lambda _: pytest.fail("solved again"))
+    assert benchmarks.benchmarks(0.008) == found
