@@ -122,10 +122,12 @@ def trial_record(case: Case, trial: Trial) -> dict[str, Any]:
     return {
         "number": trial.number,
         "why": trial.why,
-        "smoother": None if smoother is None else smoother.kind,
+        "smoother": _smoother_kind(trial),
         "strength": None if smoother is None else smoother.strength,
         "angular_width_deg": window,
-        "smoothing": "a given lift" if smoother is None else smoother.width_in_words,
+        "smoothing": _smoothing_in_words(trial),
+        "synthesis": trial.synthesis,
+        "prices": None if trial.synthesis is None else trial.synthesis["prices"],
         "closure_mm": _MM * trial.lift.closure,
         "contact_method": trial.cycles[0].contact.method,
         "line_contact_width_mm": _MM * contact_width(case),
@@ -139,6 +141,18 @@ def trial_record(case: Case, trial: Trial) -> dict[str, Any]:
         },
         "certificate": [certificate_record(point) for point in trial.certificate],
     }
+
+
+def _smoother_kind(trial: Trial) -> str | None:
+    if trial.synthesis is not None:
+        return "constrained"
+    return None if trial.smoother is None else trial.smoother.kind
+
+
+def _smoothing_in_words(trial: Trial) -> str:
+    if trial.synthesis is not None:
+        return "constrained: the least ripple within all limits"
+    return "a given lift" if trial.smoother is None else trial.smoother.width_in_words
 
 
 def certificate_record(point: CertificatePoint) -> dict[str, Any]:

@@ -156,7 +156,7 @@ class _State:
         return ripple_weight * self.ripple + self.jerk + penalty * over
 
 
-class _Search:
+class Search:
     """The functions of one problem on one grid, and their linear models."""
 
     def __init__(self, problem: Problem, extra: Array | None = None) -> None:
@@ -403,7 +403,7 @@ def synthesise(problem: Problem, ripple_weight: float = 1.0) -> Design:
     extra: Array | None = None
     seed = problem
     for _ in range(4):
-        search = _Search(seed, extra)
+        search = Search(seed, extra)
         state, answer, steps, converged = _descended(search, ripple_weight)
         between = _between(search, state)
         if not between.size:
@@ -413,7 +413,7 @@ def synthesise(problem: Problem, ripple_weight: float = 1.0) -> Design:
     return _design(search, state, answer, steps, converged)
 
 
-def _descended(search: _Search, ripple_weight: float) -> tuple[_State, Answer | None, int, bool]:
+def _descended(search: Search, ripple_weight: float) -> tuple[_State, Answer | None, int, bool]:
     state = search.state(search.start, search.problem.machine)
     trust, penalty = 0.3, _PENALTY
     last: Answer | None = None
@@ -455,7 +455,7 @@ def _descended(search: _Search, ripple_weight: float) -> tuple[_State, Answer | 
     return state, last, _STEPS_MAX, False
 
 
-def _between(search: _Search, state: _State) -> Array:
+def _between(search: Search, state: _State) -> Array:
     """Angles between the points where a limit is passed that holds on them."""
     fine = _Grid.at(uniform_turn(_FINEST * search.problem.points), search.problem.coefficients)
     found: list[Array] = []
@@ -469,7 +469,7 @@ def _between(search: _Search, state: _State) -> Array:
 
 
 def _design(
-    search: _Search, state: _State, answer: Answer | None, steps: int, converged: bool
+    search: Search, state: _State, answer: Answer | None, steps: int, converged: bool
 ) -> Design:
     prices: dict[str, float] = {}
     strip: dict[str, tuple[Array, Array]] = {}

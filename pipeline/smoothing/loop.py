@@ -1,0 +1,100 @@
+"""The synthesis and the finite elements, in turn: what the one answers corrects the other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Array
+from pipeline.case import Case
+from pipeline.cycle import Cycle
+from pipeline.smoothing.constrained import RESERVE, Design, Problem, Search
+from pipeline.smoothing.constraints import Correction
+from pipeline.smoothing.prices import prices
+
+SETTLED = 0.01  # utilisation that finite elements may still move, of the limit
+_LOADED = 0.05  # of the greatest: below it a ratio of two small numbers says nothing
+
+
+def corrections_of(cycles: Sequence[Cycle]) -> dict[str, Correction]:
+    """Finite elements over closed forms at every angle of each load case, 1 where unloaded."""
+    return {cycle.load_case: _correction(cycle) for cycle in cycles}
+
+
+def _correction(cycle: Cycle) -> Correction:
+    guides, contact = cycle.guides, cycle.contact
+    return Correction(
+        contact=_ratio(contact.p0, contact.p0_hertz),
+        guide_a=_ratio(guides.reaction_a, guides.statics_a),
+        guide_b=_ratio(guides.reaction_b, guides.statics_b),
+        rubbing_a=_ratio(guides.rubbing_load_a, guides.statics_a),
+        rubbing_b=_ratio(guides.rubbing_load_b, guides.statics_b),
+    )
+
+
+def _ratio(found: Array, closed: Array) -> Array:
+    found, closed = np.abs(found), np.abs(closed)
+    loaded = np.isfinite(found) & (closed > _LOADED * closed.max())
+    return np.where(loaded, found, 1.0) / np.where(loaded, closed, 1.0)
+
+
+def with_corrections(problem: Problem, corrections: Mapping[str, Correction]) -> Problem:
+    """The problem with what finite elements answered; a corner takes that of its load case."""
+
+    def named(name: str) -> Correction | None:
+        return corrections.get(name.split(",")[0])
+
+    scenarios = tuple(
+        replace(item, correction=named(item.name) or item.correction) for item in problem.scenarios
+    )
+    return replace(problem, scenarios=scenarios)
+
+
+def moved(design: Design, problem: Problem, corrections: Mapping[str, Correction]) -> float:
+    """How far new corrections move the utilisation of any limit that is above one half."""
+    after = replace(with_corrections(problem, corrections), seed=design.coefficients)
+    state = Search(after).state(design.coefficients, design.machine)
+    return max(
+        (
+            abs(value - design.utilisation[name])
+            for name, value in state.utilisation.items()
+            if max(value, design.utilisation[name]) > 0.5
+        ),
+        default=0.0,
+    )
+
+
+def redrawn(case: Case, design: Design) -> Case:
+    """The case with the spring and base radius of the design."""
+    machine = design.machine
+    return case.model_copy(
+        update={
+            "spring": case.spring.model_copy(
+                update={"rate": float(machine.rate), "preload": float(machine.preload)}
+            ),
+            "cam": case.cam.model_copy(update={"pitch_base_radius": float(machine.base_radius)}),
+        }
+    )
+
+
+def design_record(design: Design, problem: Problem) -> dict[str, Any]:
+    """What ``trial.json`` keeps of a synthesis."""
+    least = float(design.lift().lowest.value)
+    machine = design.machine
+    energy = machine.preload * least + 0.5 * machine.rate * least**2
+    return {
+        "feasible": design.feasible,
+        "converged": design.converged,
+        "steps": design.steps,
+        "ripple_left": design.ripple,
+        "initial_energy_J": energy,
+        "spring_rate_N_per_mm": 1e-3 * machine.rate,
+        "preload_N": machine.preload,
+        "pitch_base_radius_mm": 1e3 * machine.base_radius,
+        "reserve": RESERVE,
+        "utilisation": dict(sorted(design.utilisation.items(), key=lambda item: -item[1])),
+        "prices": prices(design, problem) if design.feasible else [],
+    }
