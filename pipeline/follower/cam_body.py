@@ -93,6 +93,10 @@ def torque_reversals(theta: Array, torque: ArrayLike, drag: float = 0.0) -> tupl
     return tuple(sorted(found))
 
 
+_BALANCED = 1e-9
+"""Of area times bore radius: a first moment that is round-off, as that of a tripled cam."""
+
+
 @dataclass(frozen=True)
 class Camshaft:
     """Places along the shaft from its first bearing, m, and the gear that drives it.
@@ -293,7 +297,12 @@ def counter_hole(
         away = np.hypot(*(ring - (place * direction)[:, None])).min()
         return float(away - np.sqrt(need / (np.pi * place)) - wall)
 
-    places = np.linspace(bore_radius, contour.radius_max().value, 400)
+    if need <= _BALANCED * found.area * bore_radius:
+        raise GeometryError("the cam is balanced as it is")
+    # beyond the contour the distance to it grows again, and no hole fits there
+    bearing = np.arctan2(ring[1], ring[0])
+    reach = float(np.interp(found.angle, bearing, np.hypot(*ring), period=2.0 * np.pi))
+    places = np.linspace(bore_radius, reach, 400)
     fits = [place for place in places if spare(place) >= 0.0]
     if not fits:
         raise GeometryError("no counter-hole fits between bore and contour")

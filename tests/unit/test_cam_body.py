@@ -9,6 +9,7 @@ from geometry.arrays import uniform_turn
 from geometry.contour import Contour
 from geometry.errors import GeometryError, InputError
 from geometry.lift import Lift
+from geometry.motion import Motion, Segment
 from geometry.pitch_curve import PitchCurve
 from pipeline.follower.cam_body import (
     Camshaft,
@@ -141,3 +142,30 @@ def test_counter_hole_refuses_what_does_not_fit():
         counter_hole(contour, found, 8.5e-3, 0.0)
     with pytest.raises(InputError, match="density"):
         unbalance(contour, 8.5e-3, None, WIDTH, np.nan)
+
+
+def tripled(*, notch=None):
+    """Three lobes a turn: beyond its valleys the distance to the contour grows again."""
+    rise = np.pi / 9
+    lift = Motion(
+        (Segment("harmonic", rise, 0.01), Segment("harmonic", rise, -0.01),
+         Segment("dwell", 4 * np.pi / 9)), repeat=3,
+    ).lift()  # fmt: skip
+    contour = Contour(PitchCurve(lift, 0.025), 0.004)
+    return contour, unbalance(contour, 8.5e-3, notch, WIDTH, DENSITY)
+
+
+def test_balanced_cam_needs_no_hole():
+    contour, found = tripled()
+    with pytest.raises(GeometryError, match="balanced as it is"):
+        counter_hole(contour, found, 8.5e-3, 1e-3)
+
+
+def test_hole_stays_within_the_contour_of_a_valley():
+    # the keyway lies under the lobe at 260 deg, so the valley at 80 deg is the heavy side
+    contour, found = tripled(notch=SimpleNamespace(width=5e-3, depth=2.3e-3, angle=13 * np.pi / 9))
+    assert np.degrees(found.angle) == pytest.approx(80.0)
+    hole = counter_hole(contour, found, 8.5e-3, 1e-3)
+    away = np.hypot(*(contour.polygon(1440) - hole.centre[:, None])).min()
+    assert away - hole.radius == pytest.approx(1e-3, abs=1e-5)
+    assert np.hypot(*hole.centre) < contour.radius_min().value
