@@ -35,7 +35,7 @@ def write_msh(path: str | Path, meshes: Mapping[str, BodyMesh]) -> None:
     ResultError
         If the file cannot be written; one already there is left as it was.
     """
-    with _replacing(path) as temporary, session() as gmsh:
+    with replacing(path) as temporary, session() as gmsh:
         first = 1
         for name, mesh in meshes.items():
             _add_body(gmsh, name, mesh, first)
@@ -119,7 +119,7 @@ def write_vtu(
         point_data=fields,
         cell_data=cell_data,
     )
-    with _replacing(path) as temporary:
+    with replacing(path) as temporary:
         grid.write(temporary, file_format="vtu")
         _insert_field_data(temporary, field_data or {})
 
@@ -169,7 +169,7 @@ def write_pvd(path: str | Path, entries: Iterable[tuple[float, str | Path]]) -> 
         f"file={quoteattr(Path(file).as_posix())}/>\n"
         for time, file in entries
     )
-    with _replacing(path) as temporary:
+    with replacing(path) as temporary:
         temporary.write_text(
             '<?xml version="1.0"?>\n'
             '<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
@@ -179,7 +179,7 @@ def write_pvd(path: str | Path, entries: Iterable[tuple[float, str | Path]]) -> 
 
 
 @contextmanager
-def _replacing(path: str | Path) -> Iterator[Path]:
+def replacing(path: str | Path) -> Iterator[Path]:
     """A name beside `path` to write to, which takes its place when all went well."""
     path = Path(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")

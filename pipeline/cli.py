@@ -382,6 +382,31 @@ def inspect(
 
 
 @app.command()
+def deck(
+    folder: DirArgument,
+    angle: Annotated[str, typer.Option(help="Cam angle, degrees unless it has a unit.")],
+    load_case: Annotated[
+        str | None, typer.Option("--load-case", help="The first by default.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="FILE.inp", help="Where the deck is to lie.")
+    ] = None,
+) -> int:
+    """Write the contact at one angle as a CalculiX/Abaqus deck, to be solved by another code."""
+    from pipeline import deck as decks
+    from pipeline import units
+
+    text = angle if any(c.isalpha() or c == "°" for c in angle) else f"{angle} deg"
+    theta = units.parse(text, "deg", "--angle")
+    path = folder / "exports" / f"contact_{math.degrees(theta):07.3f}.inp" if out is None else out
+    path.parent.mkdir(parents=True, exist_ok=True)
+    solved = decks.deck(folder, theta, path, load_case)
+    p0 = solved.solution.p0 / 1e6
+    _out.print(f"deck: {path} (peak pressure {p0:.5g} MPa)", markup=False)
+    return PASSED
+
+
+@app.command()
 def init(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the new case.")],
 ) -> int:

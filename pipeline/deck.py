@@ -1,0 +1,98 @@
+"""The contact at one angle as an input deck, so that another program can solve it again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from geometry.arrays import FULL_TURN, Array
+from geometry.errors import InputError
+from meshes.deck import DeckBody, write_deck
+from pipeline import results
+from pipeline.contact.pair import ContactPair
+from pipeline.contact.pair_certificate import SolvedPair, solve_pair
+from pipeline.contact.pressure import PressureShapes
+from pipeline.contact.surface import knots_of, normal_loads
+from pipeline.cycle import contact_pair
+from pipeline.inspection import nominal
+
+_WINDOW = 1.4  # half-widths, that of the solution itself
+
+
+def force_at(cycle: results.Table, load_case: str, theta: float) -> float:
+    """Normal force (N) of a load case at any cam angle (rad), by straight lines in its table.
+
+    Raises
+    ------
+    InputError
+        If there is no such load case, or no load at the angle.
+    """
+    rows = cycle.where("load_case", load_case)
+    if not len(rows):
+        known = ", ".join(dict.fromkeys(cycle["load_case"].tolist()))
+        raise InputError("--load-case", load_case, f"one of {known}")
+    angle = np.degrees(theta % FULL_TURN)
+    force = float(np.interp(angle, rows["cam_angle_deg"], rows["normal_force_N"], period=360.0))
+    if not force > 0:
+        raise InputError("--angle", f"{angle:g} deg", "where the roller is loaded")
+    return force
+
+
+def nodal_forces(pair: ContactPair, solved: SolvedPair) -> tuple[Array, Array]:
+    """Forces (2, nodes), N, that the contact pressure puts on the nodes of cam and roller."""
+    reach = _WINDOW * solved.half_width_hertz
+    cam = solved.sides[0]
+    shapes = PressureShapes(knots_of(cam.body.mesh, cam.surface, solved.frame, reach))
+    on_cam, on_roller = (
+        normal_loads(side.body.mesh, side.surface, solved.frame, shapes)
+        @ solved.solution.pressure
+        * pair.width
+        for side in solved.sides
+    )
+    return -on_cam, on_roller
+
+
+def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> None:
+    """Write the bodies at one angle with the pressures of the contact on their nodes."""
+    forces = nodal_forces(pair, solved)
+    bodies = {
+        name: DeckBody(side.body.mesh, material.modulus, material.poisson, held, force)
+        for name, side, material, held, force in zip(
+            ("cam", "roller"),
+            solved.sides,
+            (pair.cam, pair.roller),
+            ("bore", "hub"),
+            forces,
+            strict=True,
+        )
+    }
+    load = float(np.abs(forces[1].sum(axis=1) @ solved.frame.normal))
+    write_deck(
+        path,
+        bodies,
+        pair.width,
+        (
+            f"contact at cam angle {np.degrees(solved.theta):.6f} deg, normal force {load:.6f} N",
+            "the contact pressure acts as consistent nodal forces along the contact normal",
+            "the bore and the roller's hub are held",
+        ),
+    )
+
+
+def deck(run: Path, theta: float, path: Path, load_case: str | None = None) -> SolvedPair:
+    """Solve the contact of a run at a cam angle (rad) and write it as a deck.
+
+    Raises
+    ------
+    InputError
+        If the angle carries no load.
+    """
+    cycle = results.load_run(run).final.cycle
+    case, contour = nominal(run)
+    name = case.load_cases[0].name if load_case is None else load_case
+    force = force_at(cycle, name, theta)
+    pair = contact_pair(case, contour)
+    solved = solve_pair(pair, theta % FULL_TURN, force)
+    write_contact_deck(path, pair, solved)
+    return solved
