@@ -6,6 +6,7 @@ Heavy modules are imported by the command that needs them, so that ``--version``
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import sys

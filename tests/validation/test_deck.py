@@ -93,7 +93,7 @@ def test_displacement_is_that_of_calculix(solved, calculix) -> None:
 
 
 def test_von_mises_is_that_of_calculix_away_from_the_contact_edge(solved, calculix) -> None:
-    pair, contact = solved
+    _, contact = solved
     for body, moved, nodes in sides(contact):
         recovery = StressRecovery(body, np.arange(body.mesh.triangles.shape[1]))
         nodal = np.zeros((3, body.mesh.points.shape[1]))
@@ -113,7 +113,7 @@ def test_von_mises_is_that_of_calculix_away_from_the_contact_edge(solved, calcul
 
 
 def test_forces_of_the_deck_balance_the_load(solved) -> None:
-    pair, contact = solved
+    _, contact = solved
     on_cam, on_roller = nodal_forces(pair, contact)
     np.testing.assert_allclose(on_roller.sum(axis=1), FORCE * contact.frame.normal, atol=1e-6)
     np.testing.assert_allclose(on_cam.sum(axis=1), -FORCE * contact.frame.normal, atol=1e-6)
