@@ -1,0 +1,103 @@
+"""The papers' cams through the road: an eccentric circle, and valve cams that are undercut."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry.arrays import uniform_turn
+from geometry.eccentric import Eccentric
+from pipeline import trial as road
+from pipeline.case import load_case_file
+from pipeline.checks import geometry as checks
+from pipeline.checks.trial import TrialEvidence
+from pipeline.contact.pair import CycleBodies, closed_form_history, pair_history
+from pipeline.cycle import contact_pair
+from pipeline.follower.roller import roller_motion
+from pipeline.mechanism.drive import (
+    EccentricDrive,
+    HoldingSpring,
+    Masses,
+    PairFriction,
+    SliderCrankDrive,
+)
+
+PAPERS = Path(__file__).resolve().parents[2] / "cases" / "papers"
+POSITIONS = 72
+
+
+@pytest.fixture(scope="module")
+def eccentric():
+    case = load_case_file(PAPERS / "eccentric.toml")
+    contour = road.cam_contour(case, road.designed_lift(case, {}, None))
+    return case, contour, road.turns_of(case, contour, {}, POSITIONS)[0]
+
+
+LINKAGE = Eccentric(0.02, 0.08)
+PHI = uniform_turn(POSITIONS) - 0.5 * np.pi
+
+
+def test_circle_has_its_heights_and_its_constant_curvature(eccentric):
+    _, contour, turn = eccentric
+    pitch = contour.pitch
+    np.testing.assert_allclose(pitch.height(turn.theta), LINKAGE.height(PHI), rtol=1e-12)
+    np.testing.assert_allclose(
+        pitch.lift(turn.theta, 1), LINKAGE.height_rate(PHI), rtol=0, atol=1e-12
+    )
+    np.testing.assert_allclose(pitch.radius_of_curvature(turn.theta), 0.08, rtol=1e-9)
+    np.testing.assert_allclose(contour.radius_of_curvature(turn.theta), 0.0325, rtol=1e-9)
+
+
+def test_roller_turns_at_the_published_speed(eccentric):
+    case, contour, turn = eccentric
+    speed = case.load_cases[0].speed
+    drive = EccentricDrive(
+        LINKAGE, 0.0475, PairFriction(0, 0, 0, 0), Masses(slider=1.0), HoldingSpring(59.0, 1700.0)
+    )
+    spin = roller_motion(contour.pitch, 0.0475, speed, turn.theta).spin
+    np.testing.assert_allclose(spin, drive.rolling_way(PHI) * speed / 0.0475, rtol=1e-10)
+
+
+def test_torque_and_reactions_are_those_of_the_slider_crank(eccentric):
+    case, _, turn = eccentric
+    rod = SliderCrankDrive(
+        LINKAGE,
+        PairFriction(0.0, 0.0, 0.0, 0.0),
+        Masses(slider=case.follower.mass),
+        HoldingSpring(case.spring.preload, case.spring.rate),
+    )
+    found, loads = rod.reactions(PHI, case.load_cases[0].speed), turn.loads
+    scale = np.abs(found.a).max()
+    np.testing.assert_allclose(loads.axial_force, -found.b[0], rtol=0, atol=1e-10 * scale)
+    np.testing.assert_allclose(loads.tangential_force, -found.b[1], rtol=0, atol=1e-10 * scale)
+    np.testing.assert_allclose(loads.normal_force, np.hypot(*found.a), rtol=0, atol=1e-10 * scale)
+    torque = np.abs(found.motor).max()
+    np.testing.assert_allclose(loads.cam_torque, found.motor, rtol=0, atol=1e-10 * torque)
+
+
+def test_hertz_radius_is_constant_and_finite_elements_agree(eccentric):
+    case, contour, turn = eccentric
+    pair, few = contact_pair(case, contour), slice(None, None, 18)
+    history = closed_form_history(pair, turn.theta, turn.loads.normal_force)
+    radius = 1 / (1 / 0.0325 + 1 / 0.0475)
+    np.testing.assert_allclose(history.relative_radius, radius, rtol=1e-9)
+    solved = pair_history(
+        pair, CycleBodies.meshed(pair), turn.theta[few], turn.loads.normal_force[few]
+    )
+    np.testing.assert_allclose(solved.p0, history.p0[few], rtol=2e-3)
+
+
+@pytest.mark.parametrize(("name", "stands"), [("b1", True), ("b2", True), ("b3", False),
+                                              ("b4", False)])  # fmt: skip
+def test_third_and_fourth_valve_cam_fail_as_undercut(name, stands):
+    case = load_case_file(PAPERS / f"petrescu_{name}.toml")
+    contour = road.cam_contour(case, road.designed_lift(case, {}, None))
+    check = checks.undercut(TrialEvidence(case=case, contour=contour, cycles=()))
+    assert road.is_body(contour) is stands
+    assert (check.demand > 0) is stands
+    if not stands:
+        assert check.status == "fail"
+        assert check.must_have
+    assert checks.pressure_angle(
+        TrialEvidence(case=case, contour=contour, cycles=())
+    ).status == "fail"  # fmt: skip
