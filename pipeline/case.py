@@ -32,6 +32,7 @@ from pipeline.case_fields import (
     Tolerances,
     Waiver,
 )
+from pipeline.cards.fill import filled
 from pipeline.case_text import to_toml
 from pipeline.engine_fields import (
     KINDS,
@@ -146,7 +147,7 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
     if version is not None and version != SCHEMA_VERSION:
         raise InputError("schema_version", version, f"{SCHEMA_VERSION}, the one known here")
     try:
-        case = Case.model_validate(data)
+        case = Case.model_validate(filled(data, folder))
     except ValidationError as error:
         raise _first_error(error) from None
     case._folder = folder
@@ -229,6 +230,9 @@ def _check_road(case: Case) -> None:
         raise InputError("engine, lift", found, "exactly one of the two")
     if isinstance(case.lift, LiftSegments):
         motion_of(case.lift)
+    if case.follower.kind == "flat":
+        limit = '"roller": the finite elements of the contact know no flat face yet'
+        raise InputError("follower.kind", "flat", limit)
     ratio = case.mechanism.gear_ratio
     if case.engine is not None and ratio != 2.0:
         raise InputError("mechanism.gear_ratio", ratio, "2 with an engine: a cam turn is 720 deg")

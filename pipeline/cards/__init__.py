@@ -1,0 +1,1 @@
+"""Cards of materials, bushes, oils and spring wires, shipped and the user's own."""

@@ -1,0 +1,123 @@
+"""Cards: shipped and the user's own, filled in, with their sources, refused when unknown."""
+
+import pytest
+
+from geometry.errors import InputError
+from pipeline.cards.fill import known_cards, viscosity
+from pipeline.case import parse_case
+from pipeline.case_fields import Material, Oil
+from pipeline.case_template import template
+from pipeline.checks.contact import contact_pressure
+from pipeline.checks.trial import TrialEvidence
+
+
+def with_card(table, *lines):
+    return parse_case(template("cards") + f"\n[{table}]\n" + "\n".join(lines) + "\n")
+
+
+def test_every_shipped_material_is_a_card_of_a_case():
+    for name in known_cards(None)["materials"]:
+        card = with_card("materials.extra", f'card = "{name}"').material("extra")
+        assert isinstance(card, Material)
+        assert card.source.startswith(f"card {name}: ")
+
+
+def test_what_the_issue_asks_for_is_shipped():
+    cards = known_cards(None)
+    hardened = {"case_hardened", "induction_hardened", "through_hardened"}
+    assert hardened | {"structural", "nodular_iron"} <= set(cards["materials"])
+    assert {"pa6", "pa66", "pom", "ptfe_lined", "bronze"} <= set(cards["bushes"])
+    assert {"iso_vg_32", "iso_vg_68", "iso_vg_220"} <= set(cards["oils"])
+
+
+def test_endurance_lines_give_the_endurance_pressure_at_1e8():
+    """A and B against the pressures beside them: K is rounded to 2 %, iron has a softer modulus."""
+    from pipeline.checks.signed import pressure_at_life
+    from pipeline.contact.hertz import contact_modulus
+
+    for name, card in known_cards(None)["materials"].items():
+        if "endurance_slope" in card:
+            modulus = contact_modulus(float(card["E"].split()[0]) * 1e9, card["nu"], 210e9, 0.3)
+            found = pressure_at_life(
+                1e8, card["endurance_slope"], card["endurance_intercept"], modulus
+            )
+            printed = 1e6 * float(card["endurance_pressure"].split()[0])
+            assert found == pytest.approx(printed, rel=0.05), name
+
+
+def test_what_the_case_gives_stands():
+    card = with_card("materials.extra", 'card = "structural"', 'yield_strength = "400 MPa"')
+    assert card.material("extra").yield_strength == 400e6
+    assert card.material("extra").E == 210e9
+
+
+def test_a_resolved_case_holds_the_numbers_and_no_card():
+    case = with_card("lubricant", 'card = "iso_vg_68"', 'temperature = "333.15 K"')
+    text = case.to_toml()
+    assert "card =" not in text
+    assert parse_case(text) == case
+    assert isinstance(case.lubricant, Oil)
+
+
+def test_a_bush_brings_its_material():
+    text = template("cards")
+    head, _, tail = text.partition("[guides.a]")
+    body, _, rest = tail.partition("\n[")
+    kept = [line for line in body.splitlines() if line.startswith(("length", "diameter"))]
+    given = f"{head}[guides.a]\n" + "\n".join([*kept, 'card = "ptfe_lined"']) + f"\n\n[{rest}"
+    case = parse_case(given)
+    assert case.guides.a.material == "ptfe_lined"
+    assert case.guides.a.pv_limit == pytest.approx(1.8e6)
+    assert "verify" in case.guides.a.source
+    assert case.material("ptfe_lined").source.startswith("card ptfe_lined: ")
+
+
+def test_viscosity_by_hand():
+    """The ends come back; between them Walther's line: log log 28.66 + 0.7 = 0.16665."""
+    assert viscosity(68.0, 8.7, 313.15) == pytest.approx(68.0, rel=1e-12)
+    assert viscosity(68.0, 8.7, 373.15) == pytest.approx(8.7, rel=1e-12)
+    assert viscosity(68.0, 8.7, 333.15) == pytest.approx(28.66, rel=1e-3)
+
+
+def test_a_users_card_beside_the_case_goes_first(tmp_path):
+    (tmp_path / "cards.toml").write_text(
+        '[materials.structural]\nE = "200 GPa"\nnu = 0.29\nyield_strength = "300 MPa"\n'
+        'density = "7800 kg/m^3"\nsource = "certificate 4711"\n'
+    )
+    text = template("cards") + '\n[materials.extra]\ncard = "structural"\n'
+    card = parse_case(text, tmp_path).material("extra")
+    assert (card.E, card.source) == (200e9, "card structural: certificate 4711")
+
+
+@pytest.mark.parametrize(
+    ("written", "message"),
+    [
+        ("[materials.x]\nE = 1\n", "materials.x.source = missing"),
+        ("[pets.x]\nsource = 'y'\n", "must be one of: materials"),
+        ("[materials\n", "a readable TOML file"),
+    ],
+)
+def test_a_users_card_that_is_none(tmp_path, written, message):
+    (tmp_path / "cards.toml").write_text(written)
+    text = template("cards") + '\n[materials.extra]\ncard = "structural"\n'
+    with pytest.raises(InputError, match=message.replace(".", r"\.")):
+        parse_case(text, tmp_path)
+
+
+def test_an_unknown_card_is_refused_with_the_known_ones():
+    with pytest.raises(InputError, match=r"materials\.extra\.card = kryptonite, must be one of"):
+        with_card("materials.extra", 'card = "kryptonite"')
+
+
+def test_a_recalled_number_makes_the_check_say_so():
+    case = with_card("materials.extra", 'card = "case_hardened"')
+    hard = case.model_copy(
+        update={
+            "cam": case.cam.model_copy(update={"material": "extra"}),
+            "roller": case.roller.model_copy(update={"material": "extra"}),
+        }
+    )
+    import fake_trial as fake
+
+    found = contact_pressure(TrialEvidence(hard, fake.contour(), (fake.cycle(),)))
+    assert "verify" in found.source
