@@ -364,6 +364,7 @@ class Roller(Section):
 class Follower(Section):
     """The translating follower; the overhang is from guide A to the roller's centre."""
 
+    kind: Literal["roller", "flat"] = "roller"
     mass: Mass
     stem_diameter: Length
     stem_length: Length | None = None

@@ -121,3 +121,10 @@ def test_understated_noise_is_refused(tmp_path):
     found = table(tmp_path, 'noise = "0.1 um"\n')
     with pytest.raises(InputError, match=r"lift\.noise"):
         given_lift(found)
+
+
+def test_flat_face_is_refused_on_this_road():
+    text = with_lift(segments()).replace("[follower]", '[follower]\nkind = "flat"')
+    with pytest.raises(InputError, match="follower.kind = flat, must be \"roller\""):
+        parse_case(text)
+    assert case(segments()).follower.kind == "roller"
