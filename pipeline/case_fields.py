@@ -462,7 +462,7 @@ class Smoothing(Section):
     coefficients: Annotated[int, Field(ge=12, le=240)] = 96
     torque_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 1.0
     speed_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
-    jerk_weight: Annotated[float, In(at_least=0, at_most=1e3)] = 1e-6
+    jerk_weight: Annotated[float, In(at_least=0, at_most=1e3)] = 1e-5
     corners: bool = False
     source: Text = ""
 

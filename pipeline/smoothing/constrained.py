@@ -77,7 +77,7 @@ class Problem:
     torque_reduction: float | None = None
     torque_weight: float = 1.0
     speed_weight: float = 0.0
-    jerk_weight: float = 1e-6
+    jerk_weight: float = 1e-5
     left_out: frozenset[str] = frozenset()
     seed: Array | None = None
 

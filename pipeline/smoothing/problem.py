@@ -96,7 +96,7 @@ def ratings_of(case: Case) -> Ratings:
         pressure=float(allowed),
         stiffness_of_contact=float(np.pi * contact_width(case) * roller.radius / modulus),
         contact_force_margin=limits.contact_force_margin,
-        jump=limits.jump,
+        jump=min(limits.jump, _jump_share(case)),
         normal_force=None if bearing.C0 is None else bearing.C0 / limits.roller_static_safety,
         life_force_cubed=wear,
         roller_spin=None
@@ -106,6 +106,13 @@ def ratings_of(case: Case) -> Ratings:
         bush_pv=(pv_limit(guides.a), pv_limit(guides.b)),
         bush_area=(_area(guides.a), _area(guides.b)),
     )
+
+
+def _jump_share(case: Case) -> float:
+    """Unloading inertia over spring force at the fastest load case that leaves the jump speed."""
+    fastest = max(state.speed for state in case.load_cases)
+    asked = (case.limits.jump_speed or 1.0) * max(case.limits.overspeed or fastest, fastest)
+    return float((fastest / asked) ** 2) if asked > 0 else 1.0
 
 
 def _scenarios(
