@@ -19,6 +19,9 @@ from meshes.body import BodyMesh
 from meshes.mesher import Index, session
 from meshes.sizing import MILLIMETRE
 
+UNITS = "units_mm_N_MPa"
+"""Name of the field data by which every VTU file says its units."""
+
 _LINE3, _TRIANGLE6 = 8, 9  # gmsh's element types
 
 Fields = Mapping[str, ArrayLike]
@@ -84,7 +87,8 @@ def write_vtu(
     point_data : mapping            field name, unit included -> (n,) or (c, n) at the nodes; for
                                     several bodies one such mapping per body name, same fields
                                     in each. A vector (2, n) gets a third component 0.
-    field_data : mapping            numbers that belong to the file as a whole
+    field_data : mapping            numbers that belong to the file as a whole; its units are
+                                    always named there
 
     With several bodies, cell and point data ``body`` number them from 0.
 
@@ -145,11 +149,11 @@ def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Any]) -> dict[str
 
 
 def _insert_field_data(path: Path, values: Mapping[str, float]) -> None:
-    """Add numbers to a VTU file; meshio leaves its field data out."""
+    """Add numbers to a VTU file; meshio leaves its field data out, and reads no text there."""
     rows = (
         f'<DataArray type="Float64" Name={quoteattr(name)} NumberOfTuples="1" '
         f'format="ascii">{float(value)!r}</DataArray>'
-        for name, value in values.items()
+        for name, value in ({UNITS: 1.0} | dict(values)).items()
     )
     mark = b"<UnstructuredGrid>"
     block = f"<FieldData>{''.join(rows)}</FieldData>".encode()

@@ -29,6 +29,7 @@ from pipeline.engine.torque import Torque
 from pipeline.fields import write_contact, write_turn
 from pipeline.given_lift import lift_origin
 from pipeline.measured import measurement_record
+from pipeline.patch_series import write_patches
 from pipeline.progress import Progress
 from pipeline.records import contour_columns, headline, lift_columns, pressure_arrays, trial_record
 from pipeline.rolling import envelope_arrays, rolling_history, rolling_record
@@ -335,6 +336,7 @@ def _write_fields(journey: Journey, final: Trial) -> None:
     write_contact(folder.fields / "contact_worst.vtu", solve_pair(pair, final.mesh.theta, force))
     bodies = CycleBodies.meshed(pair)
     write_turn(folder.fields, pair, bodies, final.cycles[0], _FIELD_STEP_DEG, progress.advance)
+    write_patches(folder.fields, pair, bodies, final.cycles[0], progress.advance)
 
 
 def _write_shop(journey: Journey, final: Trial) -> None:

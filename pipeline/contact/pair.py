@@ -19,7 +19,7 @@ from meshes.body import BodyMesh, cam_mesh, roller_mesh
 from meshes.cam_outline import KeywayLike
 from meshes.sizing import Sizing
 from pipeline.contact import hertz, stress
-from pipeline.contact.bodies import LoadedBody
+from pipeline.contact.bodies import Correction, LoadedBody
 from pipeline.contact.elastic_body import ElasticBody
 from pipeline.contact.history import ContactHistory
 from pipeline.contact.patch import contact_patch, solve_patches
@@ -222,13 +222,7 @@ def _loaded_positions(
     )
 
     patch = patches[0]
-    total = np.tensordot(patch.stress, contacts.pressure * p0[:, None], axes=(2, 1))
-    # Below a free curved surface the stress along it and the stress into it change so.
-    curvature, depth = pair.contour.curvature(theta), patch.points[1][:, None] * half_width
-    total[0] += load * (cam.along + depth * (cam.along_by_depth + 2 * curvature * cam.along))
-    total[1] -= load * depth * curvature * cam.along
-    bulge = p0 * half_width * curvature
-    total += hertz.curved_surface_stress(*patch.points)[:, :, None] * bulge
+    total = stress_on_patch(pair, cam, theta, load, half_width, p0, contacts.pressure * p0[:, None])
     shear, shear_at = patch.peaks(stress.shear_in_plane(total))
     mises, mises_at = patch.peaks(stress.von_mises(total, pair.cam.poisson))
     return {
@@ -242,3 +236,28 @@ def _loaded_positions(
         "residual_complementarity": contacts.residual_complementarity,
         "pressure": contacts.pressure * p0[:, None],
     }
+
+
+def stress_on_patch(
+    pair: ContactPair,
+    cam: Correction,
+    theta: Array,
+    load: Array,
+    half_width: Array,
+    p0: Array,
+    pressure: Array,
+) -> Array:
+    """Stress (3, m, n), Pa, in the cam at the patch's m points for n positions.
+
+    Components along the tangent of the contact frame and into the depth; the unit of length of
+    the points is the position's Hertz half-width. From the pressures (n, k), Pa, at the knots,
+    and what the real body adds.
+    """
+    patch = contact_patch(pair.cam.poisson)
+    total = np.tensordot(patch.stress, pressure, axes=(2, 1))
+    # Below a free curved surface the stress along it and the stress into it change so.
+    curvature, depth = pair.contour.curvature(theta), patch.points[1][:, None] * half_width
+    total[0] += load * (cam.along + depth * (cam.along_by_depth + 2 * curvature * cam.along))
+    total[1] -= load * depth * curvature * cam.along
+    total += hertz.curved_surface_stress(*patch.points)[:, :, None] * (p0 * half_width * curvature)
+    return total

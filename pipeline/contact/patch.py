@@ -30,7 +30,7 @@ from pipeline.contact.surface import ContactFrame, normal_loads
 _RADIUS = 40.0
 _WINDOW = 1.4
 STRESS_REACH = 1.6
-_ELEMENTS_PER_HALF_WIDTH = 16
+ELEMENTS_PER_HALF_WIDTH = 16
 # The modules whose text decides a template: a change in one of them makes a new one.
 RECIPE = (
     __name__,
@@ -75,7 +75,7 @@ class ContactPatch:
 
 @lru_cache(maxsize=8)
 def contact_patch(
-    poisson: float, elements_per_half_width: int = _ELEMENTS_PER_HALF_WIDTH
+    poisson: float, elements_per_half_width: int = ELEMENTS_PER_HALF_WIDTH
 ) -> ContactPatch:
     """The template for a material, see `ContactPatch`; kept between runs."""
     arrays = cache.kept(

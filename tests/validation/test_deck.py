@@ -113,7 +113,7 @@ def test_von_mises_is_that_of_calculix_away_from_the_contact_edge(solved, calcul
 
 
 def test_forces_of_the_deck_balance_the_load(solved) -> None:
-    _, contact = solved
+    pair, contact = solved
     on_cam, on_roller = nodal_forces(pair, contact)
     np.testing.assert_allclose(on_roller.sum(axis=1), FORCE * contact.frame.normal, atol=1e-6)
     np.testing.assert_allclose(on_cam.sum(axis=1), -FORCE * contact.frame.normal, atol=1e-6)
