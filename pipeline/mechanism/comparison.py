@@ -17,12 +17,14 @@ from pipeline.case import CASE_BYTES
 from pipeline.case_fields import FileName, Force, In, Length, Mass, Name, Section, Text
 from pipeline.mechanism.drive import (
     POSITIONS,
+    DryFriction,
     EccentricDrive,
     HoldingSpring,
     Losses,
     Masses,
     PairFriction,
     SliderCrankDrive,
+    dry_losses,
     stroke_efficiency,
 )
 from pipeline.mechanism.identify import Pendulum, from_pendulum, from_run_down, read_decay
@@ -51,6 +53,22 @@ class Frictions(Section):
     pin_b: Viscous
     guide: Annotated[float, In("N s/m", at_least=0, at_most=1e9)]
     source: Text = ""
+
+
+class Dry(Section):
+    """Coulomb friction of the guide, and of shaft and pins with their radii."""
+
+    guide: Ratio = 0.0
+    shaft: Ratio = 0.0
+    pins: Ratio = 0.0
+    shaft_radius: Length = 0.01
+    pin_radius: Length = 0.005
+    source: Text = ""
+
+    def build(self) -> DryFriction:
+        """mu times radius for what turns."""
+        pin = self.pins * self.pin_radius
+        return DryFriction(self.guide, self.shaft * self.shaft_radius, pin, pin)
 
 
 class Moving(Section):
@@ -104,6 +122,7 @@ class ComparisonCase(Section):
     notes: Text = ""
     mechanism: Linkage
     friction: Frictions
+    dry_friction: Dry | None = None
     masses: Moving
     spring: Holding
     rollers: Annotated[
@@ -182,13 +201,14 @@ def compared(path: Path) -> dict[str, Any]:
     case = load_comparison(path)
     speed, phi = case.mechanism.speed, uniform_turn(POSITIONS)
     rod = case.slider_crank()
-    mechanisms: list[dict[str, Any]] = [_mechanism("slider-crank", rod, speed)]
+    dry = None if case.dry_friction is None else case.dry_friction.build()
+    mechanisms: list[dict[str, Any]] = [_mechanism("slider-crank", rod, speed, dry)]
     for roller in case.rollers:
         drive = case.cam(roller)
         found = drive.reactions(phi, speed)
         need = np.abs(found.traction) / np.maximum(found.normal, 1e-300)
         mechanisms.append(
-            _mechanism(f"cam, roller {roller.name}", drive, speed)
+            _mechanism(f"cam, roller {roller.name}", drive, speed, dry)
             | {
                 "normal_force_mean_N": float(found.normal.mean()),
                 "normal_force_min_N": float(found.normal.min()),
@@ -222,12 +242,15 @@ def compared(path: Path) -> dict[str, Any]:
     }
 
 
-def _mechanism(name: str, drive: SliderCrankDrive | EccentricDrive, speed: float) -> dict[str, Any]:
+def _mechanism(
+    name: str, drive: SliderCrankDrive | EccentricDrive, speed: float, dry: DryFriction | None
+) -> dict[str, Any]:
     phi = uniform_turn(POSITIONS)
     found = drive.reactions(phi, speed)
     return {
         "name": name,
         "losses_J": _losses(drive.losses(speed)),
+        "dry_losses_J": None if dry is None else _losses(dry_losses(drive, speed, dry)),
         "efficiency_out_stroke": stroke_efficiency(drive, speed),
         "reduced_inertia_mean_kg_m2": float(drive.reduced_inertia(phi).mean()),
         "pin_reaction_mean_N": float(np.hypot(*found.b).mean()),
@@ -270,6 +293,8 @@ def lines(document: Mapping[str, Any]) -> Iterator[str]:
     yield f"{'':34}" + "".join(f"{head:>9}" for head in heads)
     for found in document["mechanisms"]:
         yield _row(found["name"], found["losses_J"])
+        if found["dry_losses_J"] is not None:
+            yield _row("  dry friction besides", found["dry_losses_J"])
         for friction, losses in found.get("slipping", {}).items():
             yield _row(f"  slipping at mu {friction}", losses)
     for found in document["mechanisms"]:

@@ -304,9 +304,46 @@ def stroke_efficiency(drive: SliderCrankDrive | EccentricDrive, speed: float) ->
     return float(np.sum(held[out]) / np.sum(drive.reactions(phi, speed).motor[out]))
 
 
-def coulomb_loss(force: Array, way: Array, friction: float) -> float:
-    """mu |F| |ds/dphi| over a turn, J: dry friction of a guide or a pin (way m/rad, (n,))."""
-    return float(np.mean(friction * np.abs(force) * np.abs(way)) * FULL_TURN)
+@dataclass(frozen=True)
+class DryFriction:
+    """Coulomb friction of the pairs: guide (-); shaft and pins mu times radius, m."""
+
+    guide: float = 0.0
+    shaft: float = 0.0
+    pin_a: float = 0.0
+    pin_b: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in self.__dataclass_fields__:
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise InputError(f"dry_friction.{name}", getattr(self, name), ">= 0")
+
+
+def dry_losses(drive: SliderCrankDrive | EccentricDrive, speed: float, dry: DryFriction) -> Losses:
+    """Coulomb friction energy of a turn by pair, J: mu |R| times the way rubbed.
+
+    With the reactions of the viscous mechanism: what dry friction changes in them is of second
+    order in mu and left out.
+    """
+    phi = uniform_turn(POSITIONS)
+    found, linkage = drive.reactions(phi, speed), drive.linkage
+    if isinstance(drive, SliderCrankDrive):
+        spin = linkage.rod_rate(phi)
+        pin_a = _rubbed(dry.pin_a, found.a, 1.0 - spin)
+    else:
+        spin, pin_a = drive.rolling_way(phi) / drive.roller_radius, 0.0
+    return Losses(
+        shaft=_rubbed(dry.shaft, found.o, np.ones_like(phi)),
+        guide=_rubbed(dry.guide, found.side[None], linkage.height_rate(phi)),
+        pin_a=pin_a,
+        pin_b=_rubbed(dry.pin_b, found.b, spin),
+    )
+
+
+def _rubbed(friction: float, force: Array, way: Array) -> float:
+    """mu |F| |ds/dphi| over a turn, J; force (1 or 2, n), way (n,) in m or rad per radian."""
+    size = np.sqrt(np.sum(force**2, axis=0))
+    return float(np.mean(friction * size * np.abs(way)) * FULL_TURN)
 
 
 def _held(spring: HoldingSpring, linkage: Eccentric, phi: Array) -> Array:

@@ -125,6 +125,6 @@ def test_understated_noise_is_refused(tmp_path):
 
 def test_flat_face_is_refused_on_this_road():
     text = with_lift(segments()).replace("[follower]", '[follower]\nkind = "flat"')
-    with pytest.raises(InputError, match="follower.kind = flat, must be \"roller\""):
+    with pytest.raises(InputError, match=r"follower\.kind = flat, must be .roller.:"):
         parse_case(text)
     assert case(segments()).follower.kind == "roller"

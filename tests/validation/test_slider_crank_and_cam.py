@@ -12,12 +12,13 @@ from geometry.errors import InputError
 from geometry.pitch_curve import PitchCurve
 from pipeline.follower.forces import FollowerSystem, follower_loads
 from pipeline.mechanism.drive import (
+    DryFriction,
     EccentricDrive,
     HoldingSpring,
     Masses,
     PairFriction,
     SliderCrankDrive,
-    coulomb_loss,
+    dry_losses,
     stroke_efficiency,
 )
 from pipeline.mechanism.identify import Pendulum, from_pendulum, from_run_down, read_decay
@@ -158,10 +159,26 @@ def test_efficiency_ranks_as_the_energies():
     assert 0 < efficiency[0] < efficiency[2] < 1
 
 
-def test_coulomb_loss_of_a_guide():
-    # constant force over a stroke of 40 mm, there and back
-    way = LINKAGE.height_rate(uniform_turn(7200))
-    assert coulomb_loss(np.full(7200, 50.0), way, 0.1) == pytest.approx(0.1 * 50 * 0.08, rel=1e-5)
+def test_dry_friction_by_pair():
+    # without mass or viscous friction the rod carries F / cos phi_2 under a constant force F
+    free, force = PairFriction(0.0, 0.0, 0.0, 0.0), 100.0
+    rod = SliderCrankDrive(LINKAGE, free, Masses(slider=0.0), HoldingSpring(force, 0.0))
+    dry = DryFriction(guide=0.1, shaft=0.001, pin_a=0.002, pin_b=0.003)
+    found = dry_losses(rod, SPEED, dry)
+    angle, spin = LINKAGE.rod_angle(PHI), LINKAGE.rod_rate(PHI)
+    pull = force / np.cos(angle)
+    turn = 2 * np.pi
+    assert found.shaft == pytest.approx(0.001 * pull.mean() * turn, rel=1e-12)
+    assert found.pin_a == pytest.approx(0.002 * np.mean(pull * (1 - spin)) * turn, rel=1e-12)
+    assert found.pin_b == pytest.approx(0.003 * np.mean(pull * abs(spin)) * turn, rel=1e-12)
+    side = force * np.abs(np.tan(angle) * LINKAGE.height_rate(PHI))
+    assert found.guide == pytest.approx(0.1 * side.mean() * turn, rel=1e-12)
+    roller = EccentricDrive(LINKAGE, 0.0475, free, Masses(slider=0.0), rod.spring)
+    other = dry_losses(roller, SPEED, dry)
+    assert other.pin_a == 0.0
+    assert (other.shaft, other.guide) == pytest.approx((found.shaft, found.guide), rel=1e-12)
+    with pytest.raises(InputError, match=r"dry_friction\.guide"):
+        DryFriction(guide=-0.1)
 
 
 @pytest.fixture(scope="module")
