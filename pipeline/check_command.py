@@ -19,6 +19,9 @@ FAIL_ON = ("must", "open", "any", "never")
 """What makes `check` leave with 1: a must-have that fails or is not evaluated; besides it any
 check not evaluated; besides that an optional check that fails; nothing."""
 
+HEADINGS = (
+    *("check", "demand", "limit", "unit", "used", "margin", "where", "worst corner", "status"),
+)
 STYLES = {"pass": "green", "fail": "red", "waived": "yellow", "not_evaluated": "magenta"}
 
 
@@ -30,16 +33,22 @@ def selected(records: Sequence[Record], only: Iterable[str]) -> tuple[Record, ..
     InputError
         For a pattern that no check fits.
     """
-    patterns = [word for text in only for word in text.replace(",", " ").split()]
+    patterns = _patterns(only)
     for pattern in patterns:
         if not any(fnmatch.fnmatchcase(record["id"], pattern) for record in records):
             known = ", ".join(sorted(record["id"] for record in records))
             raise InputError("--only", pattern, f"the id of a check: {known}")
-    return tuple(
-        record
-        for record in records
-        if not patterns or any(fnmatch.fnmatchcase(record["id"], p) for p in patterns)
-    )
+    return tuple(record for record in records if fits(record, patterns))
+
+
+def fits(record: Record, only: Iterable[str]) -> bool:
+    """Whether a record's id fits one of the patterns, or there is none."""
+    patterns = _patterns(only)
+    return not patterns or any(fnmatch.fnmatchcase(record["id"], p) for p in patterns)
+
+
+def _patterns(only: Iterable[str]) -> list[str]:
+    return [word for text in only for word in text.replace(",", " ").split()]
 
 
 def failing(records: Iterable[Record], fail_on: str) -> tuple[str, ...]:
@@ -71,7 +80,7 @@ def rank(record: Record) -> tuple[bool, float, str]:
 
 
 def rows(records: Iterable[Record]) -> list[tuple[str, ...]]:
-    """Text of the table, worst first: title, demand, limit, unit, used, margin, place, status."""
+    """Text of the table by `HEADINGS`, worst first."""
     return [
         (
             record["title"],
@@ -81,6 +90,7 @@ def rows(records: Iterable[Record]) -> list[tuple[str, ...]]:
             share(record["utilisation"]),
             share(None if record["utilisation"] is None else 1.0 - record["utilisation"]),
             place(record),
+            corner(record),
             record["status"] + ("" if record.get("must_have", True) else " (optional)"),
         )
         for record in sorted(records, key=rank)
@@ -93,12 +103,12 @@ def table(records: Iterable[Record]) -> Table:
     from rich.text import Text
 
     made = Table(box=None, pad_edge=False, header_style="")
-    for heading in ("check", "demand", "limit", "unit", "used", "margin", "where", "status"):
+    for heading in HEADINGS:
         right = heading in ("demand", "limit", "used", "margin")
         made.add_column(
             heading,
             justify="right" if right else "left",
-            no_wrap=heading not in ("check", "where"),
+            no_wrap=heading not in ("check", "where", "worst corner"),
         )
     for row in rows(records):
         style = STYLES.get(row[-1].split()[0], "")
@@ -121,12 +131,18 @@ def remarks(records: Iterable[Record]) -> list[str]:
 
 
 def place(record: Record) -> str:
-    """Load case, angle and tolerance corner where a check is decided."""
+    """Load case and angle where a check is decided."""
     angle = record.get("cam_angle_deg")
     words = [record["load_case"]] if record["load_case"] else []
     words += [] if angle is None else [f"{angle:.1f} deg"]
-    words += [record["corner"]] if record.get("corner") else []
     return " ".join(words)
+
+
+def corner(record: Record) -> str:
+    """The tolerance corner that governs, and the demand there."""
+    if not record.get("corner"):
+        return ""
+    return f"{record['corner']}: {number(record.get('corner_demand'))}"
 
 
 def number(value: float | None) -> str:

@@ -10,7 +10,7 @@ import math
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
@@ -38,7 +38,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-_out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 120)
+_out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 180)
 _err = Console(stderr=True, highlight=False, soft_wrap=True)
 
 CaseArgument = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
@@ -147,8 +147,9 @@ def run(
         old = set_aside(out, design) if replace else nullcontext()
         with old, _progress() as progress:
             run_case(design, out, positions=positions, jobs=jobs, resume=resume, progress=progress)
-    finished = _load(out)
-    _show(_document(finished), finished)
+    from pipeline.results import read_verdict
+
+    _show(read_verdict(out), out)
     return PASSED
 
 
@@ -179,15 +180,16 @@ def check(
     from pipeline.check_command import failing, selected
     from pipeline.check_command import junit as junit_text
 
-    if verify_record and not target.is_file() and not _as_signed(target):
+    if verify_record and not _as_signed(target):
         return FAILED
-    document, found = _checked_case(target) if target.is_file() else _checked_run(target)
+    is_case = target.is_file()
+    document = _checked_case(target) if is_case else _checked_run(target)
     document["checks"] = list(selected(document["checks"], only or ()))
     failed = failing(document["checks"], fail_on)
     if baseline is not None:
         from pipeline.baseline import changes
 
-        document["changes"] = changes(_load(baseline).final.checks, document["checks"])
+        document["changes"] = changes(_comparable(baseline, only or ()), document["checks"])
     if junit is not None:
         from pipeline.run_folder import write_atomic
 
@@ -195,8 +197,16 @@ def check(
     if as_json:
         print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - not to be wrapped
     else:
-        _show(document, found)
+        _show(document, None if is_case else target)
     return FAILED if failed else PASSED
+
+
+def _comparable(folder: Path, only: Iterable[str]) -> list[dict[str, Any]]:
+    """Checks of an earlier run, those that a pattern names."""
+    from pipeline.check_command import fits
+    from pipeline.results import read_verdict
+
+    return [record for record in read_verdict(folder)["checks"] if fits(record, only)]
 
 
 def _as_signed(folder: Path) -> bool:
@@ -209,34 +219,23 @@ def _as_signed(folder: Path) -> bool:
     return not changed
 
 
-def _checked_run(folder: Path) -> tuple[dict[str, Any], Run]:
-    from pipeline.results import verify_run
+def _checked_run(folder: Path) -> dict[str, Any]:
+    from pipeline.results import read_verdict, verify_run
+    from pipeline.signoff import LIMITATIONS, SINGULARITIES
 
     verify_run(folder)
-    found = _load(folder)
-    return _document(found), found
+    spoken = {"limitations": list(LIMITATIONS), "singularities": list(SINGULARITIES)}
+    return read_verdict(folder) | spoken
 
 
-def _document(found: Run) -> dict[str, Any]:
-    return {
-        "case": found.summary["case"],
-        "input_sha256": found.summary["input_sha256"],
-        "verdict": found.verdict,
-        "binding": list(found.final.binding),
-        "trials": found.summary["trials"],
-        "headline": found.summary["headline"],
-        "checks": [dict(record) for record in found.final.checks],
-    }
-
-
-def _checked_case(path: Path) -> tuple[dict[str, Any], None]:
+def _checked_case(path: Path) -> dict[str, Any]:
     from pipeline.case import load_case_file
     from pipeline.checks.verdict import binding
     from pipeline.preview import closed_form_checks
 
     case = load_case_file(path)
     checks = closed_form_checks(case)
-    document = {
+    return {
         "case": case.name,
         "input_sha256": case.sha256,
         "verdict": "fail",
@@ -244,7 +243,6 @@ def _checked_case(path: Path) -> tuple[dict[str, Any], None]:
         "look_ahead": True,
         "checks": [one.as_record() for one in checks],
     }
-    return document, None
 
 
 @app.command()
@@ -460,7 +458,7 @@ def _progress() -> Iterator[Progress]:
         yield Lines(lambda text: print(text, file=sys.stderr, flush=True))  # noqa: T201
 
 
-def _show(document: dict[str, Any], found: Run | None) -> None:
+def _show(document: dict[str, Any], folder: Path | None) -> None:
     """Checks by utilisation, what else is to be known, then the verdict and the report's place."""
     from pipeline.check_command import remarks, table
 
@@ -472,29 +470,18 @@ def _show(document: dict[str, Any], found: Run | None) -> None:
 
         for line in lines(document["changes"]):
             _out.print(f"baseline: {line}", markup=False)
-    if found is None:
+    if folder is None:
         _out.print(f"verdict: {document['verdict']}, a look ahead by closed forms", markup=False)
     else:
-        trials = f"{len(found.trials)} trial{'s' if len(found.trials) > 1 else ''}"
-        _out.print(f"verdict: {found.verdict} after {trials}", markup=False)
-        if found.summary.get("statement"):
-            _out.print(found.summary["statement"], markup=False)
+        count = document["trials"]
+        trials = f"{count} trial{'s' if count > 1 else ''}"
+        _out.print(f"verdict: {document['verdict']} after {trials}", markup=False)
+        if document["statement"]:
+            _out.print(document["statement"], markup=False)
     if document["binding"]:
         _out.print(f"binding: {', '.join(document['binding'])}", markup=False)
-    if found is not None:
-        for finding in found.summary.get("consistency") or ():
-            _out.print(_consistency_line(finding), markup=False)
-        _out.print(f"report: {found.path / '8_report.html'}", markup=False)
-
-
-def _consistency_line(finding: Any) -> str:
-    """An input and what the other inputs imply for it."""
-    share = finding["difference_percent"]
-    off = "beyond bounds" if share is None else f"{share:+.1f} %"
-    words = f"{finding['title']}: given {finding['given']:.4g}, implied {finding['implied']:.4g}"
-    unit = "" if finding["unit"] == "-" else f" {finding['unit']}"
-    mark = "; MORE THAN 10 % APART" if finding["flagged"] else ""
-    return f"consistency, {finding['load_case']}: {words}{unit} ({off}){mark}"
+    if folder is not None:
+        _out.print(f"report: {folder / '8_report.html'}", markup=False)
 
 
 if __name__ == "__main__":

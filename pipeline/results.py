@@ -197,11 +197,7 @@ class TrialRecord:
     @property
     def binding(self) -> tuple[str, ...]:
         """Must-have checks that fail or are not evaluated."""
-        return tuple(
-            check["id"]
-            for check in self.checks
-            if check.get("must_have", True) and check["status"] not in ("pass", "waived")
-        )
+        return _binding(self.checks)
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,6 +244,32 @@ def load_run(path: str | Path) -> Run:
         said, found = summary["verdict"], run.verdict
         raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {found}")
     return run
+
+
+def read_verdict(path: Path) -> dict[str, Any]:
+    """What a finished run says of itself, no table read: summary and checks of the last trial.
+
+    Raises
+    ------
+    ResultError
+        If something is missing or unreadable, or if summary and checks disagree.
+    """
+    summary = read_summary(path)
+    checks = tuple(_read_checks(path / f"trial_{summary['trials']}" / "6_checks.json"))
+    found = "fail" if not checks or _binding(checks) else "pass"
+    if found != summary["verdict"]:
+        said = summary["verdict"]
+        raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {found}")
+    return {
+        "case": summary["case"],
+        "input_sha256": summary["input_sha256"],
+        "verdict": found,
+        "binding": list(_binding(checks)),
+        "trials": summary["trials"],
+        "statement": summary.get("statement", ""),
+        "headline": summary["headline"],
+        "checks": [dict(record) for record in checks],
+    }
 
 
 def verify_run(path: Path) -> None:
@@ -330,6 +352,14 @@ def json_text(value: object) -> str:
         return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=_plain)
     except (TypeError, ValueError) as error:
         raise ResultError(f"a record cannot be written: {error}") from None
+
+
+def _binding(checks: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+    return tuple(
+        check["id"]
+        for check in checks
+        if check.get("must_have", True) and check["status"] not in ("pass", "waived")
+    )
 
 
 def _read_trial(run: Path, number: int) -> TrialRecord:

@@ -1,0 +1,159 @@
+"""`camwright check`: choice, failure, JUnit, baseline, record, look ahead."""
+
+from __future__ import annotations
+
+import json
+import signal
+import sys
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from small_run import check, small_case, summary, write_run, write_trial
+
+from geometry.errors import InputError
+from pipeline import cli
+from pipeline.baseline import changes, lines
+from pipeline.case_template import template
+from pipeline.check_command import failing, junit, remarks, rows, selected
+from pipeline.run_folder import RunFolder
+
+RECORDS = (
+    check("pass", id="a_one"),
+    check("fail", id="a_two"),
+    check("not_evaluated", id="b_open", must_have=False, note="no spring"),
+    check("fail", id="b_optional", must_have=False, source="recalled: verify"),
+    check("waived", id="c_waived", waiver="A. Engineer, 2025-01-02: proven"),
+    check("not_evaluated", id="c_must"),
+)
+
+Command = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
+    def call(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["camwright", *map(str, arguments)])
+        handler = signal.getsignal(signal.SIGTERM)
+        try:
+            with pytest.raises(SystemExit) as leaving:
+                cli.main()
+        finally:
+            signal.signal(signal.SIGTERM, handler)
+        captured = capsys.readouterr()
+        return int(leaving.value.code or 0), captured.out, captured.err
+
+    return call
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    with RunFolder(tmp_path / "run", small_case()) as folder:
+        write_trial(folder, list(RECORDS))
+        folder.finish(summary("fail") | {"binding": ["a_two", "c_must"]})
+    return tmp_path / "run"
+
+
+@pytest.mark.parametrize(
+    ("level", "failed"),
+    [
+        ("must", ["a_two", "c_must"]),
+        ("open", ["a_two", "b_open", "c_must"]),
+        ("any", ["a_two", "b_open", "b_optional", "c_must"]),
+        ("never", []),
+    ],
+)
+def test_levels_of_failure(level: str, failed: list[str]) -> None:
+    assert list(failing(RECORDS, level)) == failed
+
+
+def test_an_unknown_level_is_refused() -> None:
+    with pytest.raises(InputError, match="--fail-on = some, must be one of: must"):
+        failing(RECORDS, "some")
+
+
+def test_patterns_choose() -> None:
+    assert [r["id"] for r in selected(RECORDS, ["a_*", "c_must"])] == ["a_one", "a_two", "c_must"]
+    assert selected(RECORDS, ()) == RECORDS
+    with pytest.raises(InputError, match="--only = x"):
+        selected(RECORDS, ["x*"])
+
+
+def test_table_worst_first_with_margin_error_and_corner() -> None:
+    one = check("pass", error=0.1, corner="friction high", corner_demand=1.5)
+    (row,) = rows([one])
+    assert row[1:7] == ("1 ±0.1", "2", "deg", "50%", "50%", "idle 12.5 deg")
+    assert row[7] == "friction high: 1.5"
+    assert [row[-1].split()[0] for row in rows(RECORDS)][:2] == ["not_evaluated"] * 2
+
+
+def test_waivers_open_checks_and_recalled_limits_are_told() -> None:
+    told = "\n".join(remarks(RECORDS))
+    assert "waived: c_waived: A. Engineer, 2025-01-02: proven" in told
+    assert "not evaluated: b_open: no spring" in told
+    assert "to be verified: b_optional" in told
+
+
+def test_junit_counts() -> None:
+    suite = ET.fromstring(junit(RECORDS, "small", "must"))
+    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("6", "2", "1")
+    failed = [case.get("name") for case in suite if case.find("failure") is not None]
+    assert sorted(failed) == ["a_two", "c_must"]
+
+
+def test_baseline_tells_changes_beyond_the_error_bars_only() -> None:
+    old = [check(id="p", demand=1.0, error=0.05), check(id="q"), check(id="r"), check(id="s")]
+    new = [
+        check(id="p", demand=1.09, error=0.05),
+        check(id="q", demand=1.01, error=0.001),
+        check("fail", id="r"),
+        check(id="t"),
+    ]
+    found = {entry["id"]: entry["kinds"] for entry in changes(old, new)}
+    assert found == {"q": ["demand"], "r": ["status", "demand"], "t": ["new"], "s": ["gone"]}
+    assert lines([]) == ["nothing changed beyond the error bars"]
+    assert changes(old, old) == []
+
+
+def test_exit_codes_and_files(run: Path, command: Command, tmp_path: Path) -> None:
+    assert command("check", run)[0] == 1
+    assert command("check", run, "--fail-on", "never")[0] == 0
+    assert command("check", run, "--only", "a_one")[0] == 0
+    assert command("check", run, "--only", "nothing")[0] == 2
+    file = tmp_path / "junit.xml"
+    assert command("check", run, "--only", "a_*", "--junit", file)[0] == 1
+    assert file.read_text().startswith("<?xml")
+    code, out, _ = command("check", run, "--json", "--baseline", run, "--only", "a_*,b_*")
+    document = json.loads(out)
+    assert (code, document["changes"], len(document["checks"])) == (1, [], 4)
+
+
+def test_a_changed_byte_fails_the_record_and_is_named(run: Path, command: Command) -> None:
+    assert command("check", run, "--verify-record", "--fail-on", "never")[0] == 0
+    file = run / "trial_1" / "5_cycle.csv"
+    content = bytearray(file.read_bytes())
+    content[-3] ^= 1
+    file.write_bytes(bytes(content))
+    code, _, err = command("check", run, "--verify-record", "--fail-on", "never")
+    assert code == 1
+    assert "5_cycle.csv: was changed" in err
+
+
+def test_a_case_file_is_looked_ahead_and_never_passes(tmp_path: Path, command: Command) -> None:
+    file = tmp_path / "ahead.toml"
+    file.write_text(template("ahead"))
+    code, out, _ = command("check", file, "--json")
+    document = json.loads(out)
+    assert code == 1
+    assert document["look_ahead"]
+    assert "signed_off" in document["binding"]
+    designs = [r for r in document["checks"] if r["id"] not in ("signed_off",)]
+    assert all(r["method"].startswith("closed forms only") or not r["method"].strip()
+               for r in designs)  # fmt: skip
+    assert "a look ahead by closed forms" in command("check", file)[1]
+
+
+def test_a_finished_run_is_checked_from_its_folder(tmp_path: Path, command: Command) -> None:
+    out = write_run(tmp_path / "good")
+    assert command("check", out, "--verify-record")[0] == 0

@@ -1,0 +1,90 @@
+"""The sign-off record: what it holds, and that no file can change unseen."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from small_run import check, small_case, summary, write_run, write_trial
+
+from geometry.errors import ResultError
+from pipeline import signoff
+from pipeline.run_folder import RunFolder
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    out = write_run(tmp_path / "run")
+    for name in ("8_report.html", "figures/a.png", "exports/cam.dxf"):
+        (out / name).parent.mkdir(exist_ok=True)
+        (out / name).write_text("drawn")
+    return out
+
+
+def test_the_record_is_whole(tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    waived = check("waived", id="x", waiver="A. Engineer, 2025-01-02: proven", error=0.01)
+    with RunFolder(out, small_case()) as folder:
+        (folder.fields / "a.vtu").write_text("field")
+        (folder.path / "8_report.html").write_text("drawn")
+        write_trial(folder, [check("fail"), waived])
+        folder.finish(summary("fail"))
+    record = json.loads((out / "signoff.json").read_text())
+    assert record["case_sha256"] == small_case().sha256
+    assert record["verdict"] == "fail"
+    assert record["binding"] == ["pressure_angle"]
+    assert record["waivers"][0]["waiver"] == "A. Engineer, 2025-01-02: proven"
+    assert [f["error"] for f in record["figures"] if f["id"] == "x"] == [0.01]
+    assert record["environment"]["versions"]["numpy"]
+    assert record["limitations"] and record["singularities"]
+    assert {"case.toml", "run.json", "fields/a.vtu", "trial_1/5_cycle.csv"} <= set(record["files"])
+    assert record["presentation"] == ["8_report.html"]
+    assert "signoff.json" not in record["files"]
+    assert all(len(digest) == 64 for digest in record["files"].values())
+
+
+def test_untouched_nothing_differs(run: Path) -> None:
+    assert signoff.changes(run) == []
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["trial_1/5_cycle.csv", "case.toml", "run.json", "trial_1/6_checks.json", "1_torque.csv"],
+)
+def test_one_byte_is_seen_and_named(run: Path, name: str) -> None:
+    content = bytearray((run / name).read_bytes())
+    content[len(content) // 2] ^= 1
+    (run / name).write_bytes(bytes(content))
+    assert signoff.changes(run) == [f"{name}: was changed since the sign-off"]
+
+
+def test_missing_and_added_files_are_named(run: Path) -> None:
+    (run / "trial_1" / "3_contour.csv").unlink()
+    (run / "fields").mkdir()
+    (run / "fields" / "b.vtu").write_text("new")
+    assert signoff.changes(run) == [
+        "fields/b.vtu: was added since the sign-off",
+        "trial_1/3_contour.csv: is missing since the sign-off",
+    ]
+
+
+def test_presentation_may_be_drawn_again(run: Path) -> None:
+    (run / "8_report.html").write_text("drawn again")
+    (run / "figures" / "b.png").write_text("one more")
+    assert signoff.changes(run) == []
+
+
+def test_a_forged_verdict_is_seen(run: Path) -> None:
+    file = run / "signoff.json"
+    record = json.loads(file.read_text())
+    file.write_text(json.dumps(record | {"verdict": "fail"}))
+    assert signoff.changes(run) == ["signoff.json: verdict is not what the files of the run say"]
+
+
+def test_without_a_record_nothing_is_verified(run: Path) -> None:
+    (run / "signoff.json").unlink()
+    with pytest.raises(ResultError, match=r"signoff\.json"):
+        signoff.changes(run)
+    (run / "signoff.json").write_text("[]")
+    assert signoff.changes(run) == ["signoff.json: holds no hashes"]
