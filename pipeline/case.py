@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from geometry.errors import InputError
+from pipeline.cards.fill import filled
 from pipeline.case_fields import (
     Cam,
     Camshaft,
@@ -32,7 +33,6 @@ from pipeline.case_fields import (
     Tolerances,
     Waiver,
 )
-from pipeline.cards.fill import filled
 from pipeline.case_text import to_toml
 from pipeline.engine_fields import (
     KINDS,
