@@ -38,6 +38,7 @@ from pipeline.shop import write_shop
 from pipeline.smoothing import loop
 from pipeline.smoothing.constrained import RESERVE, synthesise
 from pipeline.smoothing.gentler import Next, Stop, next_smoother
+from pipeline.smoothing.infeasible import infeasibility
 from pipeline.smoothing.outlook import Attempt
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
@@ -177,7 +178,11 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
         trials.append(replace(done, synthesis=loop.design_record(design, problem)))
         found = binding(done.checks)
         if not design.feasible:
-            return journey, trials, Stop("no cam keeps all limits", found, len(trials))
+            journey.progress.stage("which limits conflict")
+            report = infeasibility(problem)
+            record = {**(trials[-1].synthesis or {}), "infeasible": report.as_record()}
+            trials[-1] = replace(trials[-1], synthesis=record)
+            return journey, trials, Stop(report.sentence, found, len(trials))
         corrections = loop.corrections_of(done.cycles)
         moved = loop.moved(design, problem, corrections)
         settled = moved < loop.SETTLED and (not found or moved < RESERVE)

@@ -28,6 +28,8 @@ from pipeline.smoothing.constraints import (
     load_utilisations,
     shape_utilisations,
 )
+from pipeline.smoothing.infeasible import infeasibility
+from pipeline.smoothing.prices import prices
 from pipeline.smoothing.problem import problem_of, ratings_of
 from pipeline.smoothing.smoothers import Smoother, smoothed
 from pipeline.smoothing.spline_energy import basis_matrix
@@ -191,8 +193,8 @@ def test_leaves_less_than_any_moving_average_within_angle_and_force(published, i
     """E0 free for the average: of all widths and rises that keep both limits, the best."""
     case, _ = published
     best = np.inf
-    for strength in np.linspace(0.2, 5.0, 25):
-        for rise in np.linspace(0.0, 16.0, 33):
+    for strength in np.linspace(0.2, 5.0, 17):
+        for rise in np.linspace(0.0, 16.0, 17):
             angle, force, rest = moving_average(case, idle.torque, strength, rise)
             if angle <= 30.0 and force <= 1100.0:
                 best = min(best, rest)
@@ -269,3 +271,26 @@ def test_energy_without_limits_is_the_exact_one(idle):
     assert design.ripple < 1e-3
     np.testing.assert_allclose(moved - moved.min(), energy, atol=0.02)
     assert lift.max() > 0
+
+
+@pytest.mark.slow
+def test_conflict_is_named_and_a_relaxation_makes_room(idle):
+    given = replace(problem(idle, normal_force=380.0), torque_reduction=0.5)
+    assert not synthesise(given).feasible
+    report = infeasibility(given)
+    assert set(report.conflict) == {"roller_static", "torque_reduction"}
+    roller = next(item for item in report.relaxations if item.unit == "N")
+    ratings = replace(given.ratings, normal_force=roller.asked)
+    assert synthesise(replace(given, ratings=ratings)).feasible
+    less = next(item for item in report.relaxations if item.what.startswith("a torque"))
+    assert synthesise(replace(given, torque_reduction=less.asked)).feasible
+
+
+def test_price_of_the_roller_foresees_a_larger_one(idle, limited):
+    given = problem(idle, normal_force=1100.0)
+    record = next(r for r in prices(limited, given) if r["limit"] == "roller_static")
+    more = synthesise(problem(idle, normal_force=1105.0))
+    gained = (limited.ripple - more.ripple) * np.std(idle.torque)
+    # first order over 5 N of 1100
+    assert 5.0 * record["ripple_per_unit_Nm"] == pytest.approx(gained, rel=0.05)
+    assert record["binds_at_deg"]
