@@ -301,6 +301,7 @@ class Bearing(Section):
     name: Text
     C: Force | None = None
     C0: Force | None = None
+    radial_limit: Annotated[float, In("N", above=0, at_most=1e9)] | None = None
     speed_limit: Annotated[float, In("rpm", above=0, at_most=1e6)] | None = None
     drag_torque: Annotated[float, In("N mm", at_least=0, at_most=1e6)] | None = None
     friction: Annotated[float, In(at_least=0, below=1)] | None = None

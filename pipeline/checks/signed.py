@@ -295,6 +295,51 @@ def chord_error(evidence: TrialEvidence) -> Check:
     )
 
 
+def roller_radial(evidence: TrialEvidence) -> Check:
+    """Greatest force on the roller against what its outer ring bears unsupported."""
+    bearing = evidence.case.roller.bearing
+    limit = getattr(bearing, "radial_limit", None)
+    worst = greatest(evidence, lambda cycle: cycle.loads.normal_force)
+    return Check(
+        id="roller_radial",
+        title="Force on the roller against the rating of its outer ring",
+        demand=worst.value,
+        limit=limit,
+        unit="N",
+        source=evidence.source(
+            "radial_limit", f"F_r,max of a track roller; {bearing.name}: {bearing.source}"
+        ),
+        method="greatest normal force over the turn",
+        must_have=limit is not None,
+        lift_can_help=True,
+        note=""
+        if limit is not None
+        else f"{bearing.name} has no rating for an outer ring without a housing",
+        **worst.place,
+    )
+
+
+def guide_length(evidence: TrialEvidence) -> Check:
+    """Distance of the guides beside the greatest overhang."""
+    case = evidence.case
+    overhang = case.follower.overhang_at_max_lift + evidence.contour.pitch.lift.highest.value
+    spread = case.guides.spacing + 0.5 * (case.guides.a.length + case.guides.b.length)
+    return Check(
+        id="guide_length",
+        title="Guided length over the greatest overhang",
+        demand=spread / overhang,
+        limit=evidence.limit("guide_length", 2.0),
+        unit="-",
+        sense="at_least",
+        source=evidence.source(
+            "guide_length", "bearing length at least twice the overhang, Rothbart (2004) ch. 6"
+        ),
+        method="outer ends of the two guides over the overhang at the least lift",
+        must_have=False,
+        lift_can_help=True,
+    )
+
+
 def _path(evidence: TrialEvidence, theta: Array) -> Array:
     """Way of the contact along the contour per radian (n,), m."""
     contour = evidence.contour
@@ -338,4 +383,6 @@ CHECKS = (
     cam_envelope,
     profile_waviness,
     chord_error,
+    roller_radial,
+    guide_length,
 )

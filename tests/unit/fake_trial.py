@@ -67,7 +67,7 @@ def case(**changes):
         ),
         "solver": SimpleNamespace(positions=720),
         "follower": SimpleNamespace(mass=MASS, overhang_at_max_lift=0.03),
-        "guides": SimpleNamespace(a=guide, b=guide),
+        "guides": SimpleNamespace(a=guide, b=guide, spacing=0.08),
         "materials": {"steel": steel, "hard": hard},
         "waivers": (),
     }

@@ -60,7 +60,15 @@ def by_life_safety(limit):
     return {"case": life_case(contact_safety=bare.limit / limit)}
 
 
+def by_rating(limit):
+    base = fake.case()
+    bearing = fake.changed(base.roller.bearing, radial_limit=limit)
+    return {"case": fake.changed(base, roller=fake.changed(base.roller, bearing=bearing))}
+
+
 CASES = {
+    "roller_radial": by_rating,
+    "guide_length": lambda limit: with_limits(guide_length=limit),
     "jump_speed": lambda limit: with_limits(
         jump_speed=None if limit is None else limit / (RPM * 2.0 * fake.CAM_SPEED)
     ),
@@ -107,6 +115,7 @@ def test_without_a_limit_nothing_is_evaluated(name):
         ("contact_pressure_at_life", "contact", "p0"),
         ("edge_pressure", "contact", "p0"),
         ("shakedown_traction", "contact", "p0"),
+        ("roller_radial", "loads", "normal_force"),
     ],
 )
 def test_a_nan_is_a_missing_number(name, part, field):
@@ -173,6 +182,15 @@ def test_shakedown_factor_is_johnsons():
 def test_clearance_by_hand():
     """Roller of 8 mm, guide of 20 mm whose middle is 30 mm off: 12 mm stay."""
     assert signed.guide_clearance(fake.evidence()).demand == pytest.approx(12.0, abs=1e-6)
+
+
+def test_guide_length_by_hand():
+    """80 mm apart, 20 mm long, 30 mm over at full lift and 40 mm at none."""
+    assert signed.guide_length(fake.evidence()).demand == pytest.approx(100.0 / 40.0)
+
+
+def test_force_on_the_roller_by_hand():
+    assert signed.roller_radial(fake.evidence()).demand == pytest.approx(400.0)
 
 
 def test_waviness_by_hand():
