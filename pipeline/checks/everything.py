@@ -62,7 +62,25 @@ def all_checks(trial: TrialEvidence) -> tuple[Check, ...]:
     A check that does not apply, such as the torque reduction of a cam without an engine, is
     left out.
     """
-    return checked_by(trial, (*ALL, *PROOF, *SIGNED, *PARTS))
+    found = checked_by(trial, (*ALL, *PROOF, *SIGNED, *PARTS))
+    known = {check.id for check in found} | {"tolerance_corners"}
+    idle = [waiver.check for waiver in trial.case.waivers if waiver.check not in known]
+    return in_order((*found, _idle_waivers(idle))) if idle else found
+
+
+def _idle_waivers(names: Sequence[str]) -> Check:
+    """A waiver that fits no check: a slip of the pen would otherwise go unseen."""
+    return Check(
+        id="idle_waivers",
+        title="Waivers of checks that are none",
+        demand=float(len(names)),
+        limit=0.0,
+        unit="waivers",
+        source="a waiver names a check",
+        method="names of the case's waivers against the ids of its checks",
+        must_have=False,
+        note=", ".join(names),
+    )
 
 
 def design_checks(trial: TrialEvidence) -> tuple[Check, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pipeline.checks import signed
-from pipeline.checks.everything import SIGNED
+from pipeline.checks.everything import SIGNED, all_checks
 from pipeline.checks.signed import pressure_at_life, shakedown_factor
 
 FUNCTIONS = {function(fake.evidence()).id: function for function in SIGNED}
@@ -209,3 +209,12 @@ def test_chord_error_by_hand():
     ring = replace(fake.evidence(), contour=fake.contour(stroke=1e-9))
     step = 42e3 * np.pi / 360.0
     assert signed.chord_error(ring).demand == pytest.approx(step**2 / (8.0 * 42e3), rel=1e-4)
+
+
+def test_a_waiver_of_no_check_is_told():
+    waiver = SimpleNamespace(check="jmup", name="A. Engineer", reason="proven", date="2025-01-02")
+    found = {c.id: c for c in all_checks(fake.evidence(case=fake.case(waivers=(waiver,))))}
+    assert found["idle_waivers"].status == "fail"
+    assert found["idle_waivers"].note == "jmup"
+    assert not found["idle_waivers"].must_have
+    assert "idle_waivers" not in {c.id for c in all_checks(fake.evidence())}
