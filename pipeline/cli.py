@@ -48,6 +48,15 @@ NoCacheOption = Annotated[
 ]
 
 
+_COMPARED = (
+    ("residual_std_Nm", "N m std left"),
+    ("pressure_angle_max_deg", "deg"),
+    ("lift_max_mm", "mm lift"),
+    ("normal_force_max_N", "N"),
+    ("p0_max_MPa", "MPa"),
+)
+
+
 def main() -> NoReturn:
     """Entry point: every error becomes one line and an exit code."""
     arguments = [argument for argument in sys.argv[1:] if argument != "--debug"]
@@ -243,6 +252,37 @@ def _checked_case(path: Path) -> dict[str, Any]:
         "look_ahead": True,
         "checks": [one.as_record() for one in checks],
     }
+
+
+@app.command()
+def compare(
+    case: CaseArgument,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Write table, figure and page.")
+    ] = None,
+) -> int:
+    """Every smoother on the same case, by closed forms: ripple left, forces, verdict."""
+    from pipeline.case import load_case_file
+    from pipeline.smoothing.comparison import compared
+    from pipeline.trial import engine_torques
+    from reports import smoothers
+
+    design = load_case_file(case)
+    found = list(compared(design, engine_torques(design)))
+    rows = [{"smoother": one.smoother, "words": one.words, **one.record} for one in found]
+    for row in rows:
+        shown = [f"{row[n]:.4g} {u}" for n, u in _COMPARED if row.get(n) is not None]
+        line = f"{row['smoother']} ({row['words']}): {', '.join(shown)}; {row['verdict']}"
+        _out.print(line, markup=False)
+    if out is not None:
+        lifts = {
+            one.smoother if one.smoother == "constrained" else one.words: one.lift.values
+            for one in found
+            if one.lift is not None
+        }
+        page = smoothers.write(out, f"{design.name}: smoothers compared", rows, lifts)
+        _out.print(f"page: {page}", markup=False)
+    return PASSED
 
 
 @app.command()

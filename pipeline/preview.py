@@ -17,6 +17,9 @@ from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import in_order
 from pipeline.contact.pair import closed_form_history
 from pipeline.cycle import Cycle, Turn, contact_pair, finished
+from pipeline.smoothing.constrained import synthesise
+from pipeline.smoothing.loop import redrawn
+from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 
 MARK = "closed forms only: "
@@ -31,8 +34,13 @@ def closed_form_checks(case: Case) -> tuple[Check, ...]:
         If there is no such cam.
     """
     torques = road.engine_torques(case)
-    smoother = None if case.engine is None else Smoother.from_case(case.smoothing)
-    contour = road.cam_contour(case, road.designed_lift(case, torques, smoother))
+    if case.smoothing.kind == "constrained":
+        design = synthesise(problem_of(case, torques))
+        case, lift = redrawn(case, design), design.lift()
+    else:
+        smoother = None if case.engine is None else Smoother.from_case(case.smoothing)
+        lift = road.designed_lift(case, torques, smoother)
+    contour = road.cam_contour(case, lift)
     sound = road.is_body(contour)
     turns = road.turns_of(case, contour, torques, case.solver.positions)
     cycles = tuple(_cycle(case, contour, given, sound) for given in turns)

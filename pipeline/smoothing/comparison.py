@@ -1,0 +1,85 @@
+"""Smoothers side by side: the same case, each way to draw the lift, judged by closed forms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from geometry.errors import CamError
+from geometry.lift import Lift
+from pipeline import cycle as cycles
+from pipeline import trial as road
+from pipeline.case import Case
+from pipeline.checks.everything import design_checks
+from pipeline.checks.trial import TrialEvidence
+from pipeline.checks.verdict import binding, verdict
+from pipeline.engine.torque import Torque
+from pipeline.smoothing.constrained import synthesise
+from pipeline.smoothing.loop import redrawn
+from pipeline.smoothing.problem import problem_of
+from pipeline.smoothing.smoothers import Smoother
+
+_SMOOTHERS = (
+    Smoother("none"),
+    Smoother("moving_average", points=12, spacing=float(np.radians(5.0))),
+    Smoother("moving_average", points=12, spacing=float(np.radians(10.0))),
+    Smoother("savitzky_golay", points=24, spacing=float(np.radians(5.0))),
+    Smoother("gaussian", width=float(np.radians(60.0))),
+    Smoother("harmonic", harmonics=12.0),
+)
+_POSITIONS = 720
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """One way to draw the lift and what it leads to; lift None: there is no such cam."""
+
+    smoother: str
+    words: str
+    lift: Lift | None
+    record: Mapping[str, Any]
+
+
+def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
+    """Every smoother in turn, the constrained synthesis last.
+
+    Raises
+    ------
+    InputError
+        If the case has no engine.
+    """
+    problem = problem_of(case, torques)
+    for smoother in _SMOOTHERS:
+        words = smoother.width_in_words
+        try:
+            lift = road.designed_lift(case, torques, smoother)
+            yield _judged(case, torques, smoother.kind, words, lift)
+        except CamError as error:
+            yield Compared(smoother.kind, words, None, {"verdict": "fail", "why": str(error)})
+    design = synthesise(problem)
+    words = "least ripple within all limits" if design.feasible else "no cam keeps all limits"
+    yield _judged(redrawn(case, design), torques, "constrained", words, design.lift())
+
+
+def _judged(
+    case: Case, torques: Mapping[str, Torque], kind: str, words: str, lift: Lift
+) -> Compared:
+    contour = road.cam_contour(case, lift)
+    turns = road.turns_of(case, contour, torques, _POSITIONS)
+    found = tuple(cycles.closed_form_cycle(case, contour, given) for given in turns)
+    checks = design_checks(TrialEvidence(case=case, contour=contour, cycles=found))
+    rest = turns[0].residual_torque
+    record = {
+        "pressure_angle_max_deg": float(np.degrees(contour.pitch.pressure_angle_max().value)),
+        "lift_max_mm": 1e3 * lift.highest.value,
+        "normal_force_max_N": max(float(t.loads.normal_force.max()) for t in turns),
+        "p0_max_MPa": 1e-6 * max(float(np.max(c.contact.p0)) for c in found),
+        "residual_std_Nm": None if rest is None else float(np.std(rest)),
+        "residual_p2p_Nm": None if rest is None else float(np.ptp(rest)),
+        "verdict": verdict(checks),
+        "binding": list(binding(checks)),
+    }
+    return Compared(kind, words, lift, record)

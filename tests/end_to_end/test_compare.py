@@ -1,0 +1,35 @@
+"""`camwright compare`: every smoother on one case."""
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+from geometry.arrays import uniform_turn
+from reports import smoothers
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def test_compare_tabulates_and_draws(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "pipeline.cli", "compare", str(CASES / "gx120-signed.toml"),
+         "--out", str(tmp_path)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "smoothers.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    ours = rows[-1]
+    assert (ours["smoother"], ours["verdict"]) == ("constrained", "pass")
+    others = [float(row["residual_std_Nm"]) for row in rows[:-1] if row["residual_std_Nm"]]
+    assert 2.0 * float(ours["residual_std_Nm"]) < min(others)
+    assert {"none", "moving_average", "savitzky_golay", "harmonic"} <= {r["smoother"] for r in rows}
+    assert (tmp_path / "smoothers.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_page_escapes_what_it_shows(tmp_path):
+    rows = [{"smoother": "<b>", "verdict": "fail", "lift_max_mm": 1.0}]
+    page = smoothers.write(tmp_path, "a & b", rows, {"x": uniform_turn(12)})
+    text = page.read_text(encoding="utf-8")
+    assert "&lt;b&gt;" in text and "a &amp; b" in text and "<b>" not in text
