@@ -15,8 +15,8 @@ from pipeline import results
 
 NAME = "signoff.json"
 SCHEMA = 1
-PRESENTATION = ("figures", "exports")
-"""Folders of what is drawn from the results, and may be drawn again."""
+PRESENTATION = ("figures", "exports", "inspection")
+"""Folders of what is drawn from the results, or measured later, and may come and go."""
 PRESENTATION_SUFFIXES = (".html", ".png", ".svg", ".pdf")
 LIMITATIONS = (
     "Plane strain: the ends of the roller, its chamfers and a tilt of the axis raise the pressure"
