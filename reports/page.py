@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 from geometry.errors import ResultError
 from pipeline.results import Run, TrialRecord, load_run
-from reports import scene, tables
+from reports import interactive, scene, tables
 from reports.figures import Figure
 from reports.plots import svg_and_png
 from reports.sheet import Turn, figures
@@ -98,6 +98,7 @@ def build(folder: Path) -> Path:
         pictures = _pictures(turn, folder)
         html = _environment().get_template("report.html").render(
             context(run, case, turn, groups, pictures)
+            | {"live": interactive.bundle(d.figure for _, drawn in groups for d in drawn)}
         )  # fmt: skip
         _write(folder / PAGE, html.encode("utf-8", "replace"))
     except OSError as error:

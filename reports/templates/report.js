@@ -1,0 +1,95 @@
+"use strict";
+/* Draws the figures of the page with Plotly, over static drawings that stay for print. */
+(function () {
+  if (!window.Plotly) return;
+  const specs = JSON.parse(document.getElementById("figure-data").textContent);
+  const config = { displayModeBar: false, responsive: true };
+  const colour = (name) =>
+    getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim() || name;
+  const faded = (name) => {
+    const code = colour(name);
+    return /^#[0-9a-f]{6}$/i.test(code) ? code + "2e" : code;
+  };
+
+  function themed(spec) {
+    const data = spec.data.map((trace) => {
+      const line = trace.line && { ...trace.line, color: colour(trace.line.color) };
+      const fill = trace.fillcolor && faded(trace.fillcolor);
+      return { ...trace, ...(line && { line }), ...(fill && { fillcolor: fill }) };
+    });
+    const ink = colour("ink"), muted = colour("muted"), grid = colour("grid");
+    const layout = {
+      hovermode: "x unified", hoversubplots: "axis", margin: { l: 64, r: 14, t: 78, b: 46 },
+      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", dragmode: false,
+      font: { color: ink, size: 11, family: "system-ui, sans-serif" },
+      legend: { orientation: "h", x: 0, y: 1, yref: "container", yanchor: "top" },
+      hoverlabel: { bgcolor: colour("card"), font: { color: ink } }, ...spec.layout };
+    for (const key of Object.keys(layout).filter((k) => /^[xy]axis/.test(k)))
+      layout[key] = { gridcolor: grid, linecolor: muted, zerolinecolor: muted, tickcolor: muted,
+        automargin: false, showgrid: key[0] === "y" || !layout.xaxis2, ...layout[key] };
+    layout.shapes = layout.shapes.map((shape) => ({ ...shape,
+      ...(shape.fillcolor && { fillcolor: colour(shape.fillcolor) }),
+      line: { ...shape.line, ...(shape.line.color && { color: colour(shape.line.color) }) } }));
+    layout.annotations = layout.annotations.map((note) => ({ ...note,
+      font: { ...note.font, color: colour(note.font.color) } }));
+    return { data, layout };
+  }
+
+  function told(spec, index) {
+    const plain = (text) => new DOMParser().parseFromString(text, "text/html").body.textContent;
+    const seen = spec.data.filter((trace) => trace.hovertemplate && trace.x.length > index);
+    if (!seen.length) return "";
+    const where = "cam angle " + seen[0].customdata[index].toFixed(1) + " degrees: ";
+    return where + seen.map((trace) => plain(trace.name) + " " +
+      (trace.y[index] === null ? "unknown" : trace.y[index] + " " + plain(trace.meta))).join("; ");
+  }
+
+  function reachable(place, spec) {
+    let index = 0;
+    const first = spec.data.findIndex((trace) => trace.hovertemplate);
+    const said = place.parentNode.querySelector(".told-values");
+    place.addEventListener("keydown", (event) => {
+      const count = spec.data[first].x.length;
+      const steps = { ArrowRight: 1, ArrowLeft: -1, PageUp: 10, PageDown: -10 };
+      if (event.key === "Home") index = 0;
+      else if (event.key === "End") index = count - 1;
+      else if (event.key in steps) index = (index + steps[event.key] + count) % count;
+      else return;
+      event.preventDefault();
+      Plotly.Fx.hover(place, [{ curveNumber: first, pointNumber: index }]);
+      said.textContent = told(spec, index);
+    });
+    place.addEventListener("blur", () => Plotly.Fx.unhover(place));
+  }
+
+  const places = [...document.querySelectorAll(".live")].filter((p) => specs[p.dataset.figure]);
+  function drawn(place) {
+    if (place.dataset.drawn) return;
+    place.dataset.drawn = "begun";
+    const spec = specs[place.dataset.figure], made = themed(spec);
+    place.hidden = false;
+    Plotly.newPlot(place, made.data, made.layout, config).then(() => {
+      place.parentNode.classList.add("interactive");
+      place.dataset.drawn = "done";
+      reachable(place, spec);
+    }).catch((error) => { place.hidden = true; console.error(error); });
+  }
+
+  const watcher = new IntersectionObserver((entries) => entries.forEach((entry) => {
+    if (!entry.isIntersecting) return;
+    watcher.unobserve(entry.target);
+    drawn(entry.target.querySelector(".live"));
+  }), { rootMargin: "400px" });
+  places.forEach((place) => watcher.observe(place.parentNode));
+  const idle = window.requestIdleCallback || ((work) => setTimeout(work, 60));
+  const rest = [...places];
+  (function next() {
+    const place = rest.shift();
+    if (place) idle(() => { drawn(place); next(); });
+  })();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
+    places.filter((place) => place.dataset.drawn === "done").forEach((place) => {
+      const made = themed(specs[place.dataset.figure]);
+      Plotly.react(place, made.data, made.layout, config);
+    }));
+})();

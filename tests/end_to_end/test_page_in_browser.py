@@ -1,0 +1,94 @@
+"""The page in a real browser: every plot drawn, hover, keyboard, no scroll sideways, PDF."""
+
+from __future__ import annotations
+
+import re
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import report_fixture
+
+from reports import browser, interactive, page
+
+ALL_DRAWN = "[...document.querySelectorAll('.live')].every(e => e.dataset.drawn === 'done')"
+PLACE = """(() => { const r = document.querySelector('#pressure .live .nsewdrag')
+    .getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()"""
+BYTES_MAX = 8 << 20
+HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </script><!--"
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("browser") / "run"
+    report_fixture.write_run(folder, title=HOSTILE)
+    return page.build(folder)
+
+
+@pytest.fixture(scope="module")
+def tab():
+    if browser.executable() is None:
+        pytest.skip("no Chromium here: Debian has it in the package chromium")
+    with browser.tab() as opened:
+        yield opened
+
+
+def test_page_is_small_and_asks_nothing_of_the_network(report: Path) -> None:
+    text = report.read_text(encoding="utf-8")
+    assert report.stat().st_size <= BYTES_MAX
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)
+    assert policy and "default-src 'none'" in policy[1] and "unsafe-eval" not in policy[1]
+    assert not re.search(r"<(script|link|img|iframe)[^>]+(src|href)=.?https?:", text)
+
+
+@pytest.mark.parametrize("width", [390, 1440])
+def test_every_plot_is_drawn_and_answers(report: Path, tab: browser.Tab, width: int) -> None:
+    tab.events.clear()
+    tab.size(width, 900)
+    tab.open(report)
+    tab.wait(ALL_DRAWN)
+    assert tab.evaluate("document.querySelectorAll('.live').length") >= 10
+    assert tab.evaluate("document.documentElement.scrollWidth") <= width
+    tab.evaluate("document.getElementById('pressure').scrollIntoView({behavior: 'instant'})")
+    x, y, wide, high = tab.evaluate(PLACE)
+    for share in (0.3, 0.4):
+        tab.call("Input.dispatchMouseEvent", type="mouseMoved", x=x + share * wide, y=y + high / 2)
+        time.sleep(0.2)
+    tab.wait("document.querySelector('#pressure .hoverlayer').textContent.includes('MPa')", 10)
+    tab.evaluate("document.querySelector('#pressure .live').focus()")
+    tab.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowRight", code="ArrowRight",
+             windowsVirtualKeyCode=39)  # fmt: skip
+    said = tab.evaluate("document.querySelector('#pressure .told-values').textContent")
+    assert said.startswith("cam angle") and "MPa" in said
+    assert tab.complaints() == []
+    assert tab.evaluate("window.broken") is None
+    assert "עברית" in tab.evaluate("document.querySelector('h1').textContent")
+
+
+def test_print_shows_the_still_drawings(report: Path, tab: browser.Tab) -> None:
+    tab.size(800, 1100)
+    tab.open(report)
+    tab.wait(ALL_DRAWN)
+    tab.call("Emulation.setEmulatedMedia", media="print")
+    shown = "[...document.querySelectorAll('{}')].filter(e => e.offsetParent !== null).length"
+    stills = tab.evaluate(shown.format(".still"))
+    assert tab.evaluate(shown.format(".live")) == 0
+    assert stills == tab.evaluate("document.querySelectorAll('.live').length")
+    tab.call("Emulation.setEmulatedMedia", media="")
+
+
+def test_json_in_the_page_cannot_end_its_script() -> None:
+    text = interactive.script_safe_json({"a": "</script><!--&"})
+    assert not set("<>&") & set(text)
+
+
+def test_page_without_the_library_is_still_whole(
+    report: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(interactive, "_library", lambda: None)
+    text = page.build(report.parent).read_text(encoding="utf-8")
+    assert "<script" not in text and "plotly is not installed" in text
+    assert text.count("<svg") >= 10
