@@ -1,0 +1,25 @@
+"""The redesigned GX120: every must-have check passes, half of the ripple and more is gone."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from pipeline.case import load_case_file
+from pipeline.progress import Silent
+from pipeline.run import run_case
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+@pytest.mark.slow
+def test_signed_case_passes(tmp_path):
+    case = load_case_file(CASES / "gx120-signed.toml")
+    assert {state.name for state in case.load_cases} == {"idle", "overspeed"}
+    summary = run_case(case, tmp_path / "run", positions=180, progress=Silent())
+    assert summary["verdict"] == "pass", summary["binding"]
+    figures = summary["headline"]
+    assert figures["torque_std_after_Nm"] <= 0.5 * figures["torque_std_before_Nm"]
+    assert summary["prices"]
+    trial = json.loads((tmp_path / "run" / "trial_1" / "trial.json").read_text(encoding="utf-8"))
+    assert trial["smoother"] == "constrained" and trial["synthesis"]["feasible"]
