@@ -3,6 +3,8 @@
 Second-order bodies, continuous linear pressure on the facets of one surface, integrals split at
 the knots and facets of both, the gap from the true shapes and not from the facets, the bodies
 condensed to a compliance of the pressures, complementarity solved exactly under the given load.
+Linear pressures find the contact and overshoot at its edge; within the contact found they are
+then multiplied by an ellipse, which ends as a contact pressure does.
 
 Frictionless: the surfaces may slide past each other, also where unlike materials would drag each
 other along (Dundurs' beta is not felt), and pressures act along the one normal of the frame.
@@ -11,9 +13,11 @@ other along (Dundurs' beta is not felt), and pressures act along the one normal 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from geometry.arrays import Array, freeze
 from geometry.errors import ContactError, InputError
@@ -24,7 +28,7 @@ from pipeline.contact.elastic_body import (
     StressRecovery,
     elements_near,
 )
-from pipeline.contact.pressure import PressureShapes, fitted_ellipses
+from pipeline.contact.pressure import Ellipses, EllipticShapes, PressureShapes, fitted_ellipses
 from pipeline.contact.stress import PeakFinder, shear_in_plane, von_mises
 from pipeline.contact.surface import ContactFrame, knots_of, normal_loads
 
@@ -33,6 +37,10 @@ _WINDOW = 1.4
 # Stresses are recovered within this many half-widths of the contact.
 _STRESS_REACH = 2.0
 _EQUILIBRIUM = 1e-8
+# The second moment of a pressure cut off wrongly is off in the second order alone.
+_EDGE_UPDATES = 2
+# Overlap next to the contact over the opening at the window's end, by round-off and mesh.
+_OVERLAP = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,10 +55,11 @@ class ContactSide:
 class ContactSolution:
     """Contact of two bodies under a line load.
 
-    xi (k,) m and pressure (k,) Pa at the knots; p0 and half_width from the pressure's square,
-    which is a parabola in xi; tau_max, von_mises and their depths below the contact in body 1
+    xi (k,) m and pressure (k,) Pa at the knots; p0, centre and half_width of the ellipse fitted
+    to it; tau_max, von_mises and their depths below the contact in body 1
     (Pa, m); displacements (2, nodes) m of both bodies; equilibrium and complementarity
-    residuals, relative.
+    residuals, relative. Where the pressure could not be given elliptic edges, `linear_because`
+    says why; it is empty elsewhere.
     """
 
     xi: Array
@@ -67,6 +76,7 @@ class ContactSolution:
     residual_equilibrium: float
     residual_complementarity: float
     dofs: int
+    linear_because: str = ""
 
     def __post_init__(self) -> None:
         freeze(self, xi=self.xi, pressure=self.pressure)
@@ -109,30 +119,25 @@ def solve_contact(
         chosen = sides[pressure_on]
         reach = _WINDOW * half_width
         shapes = PressureShapes(knots_of(chosen.body.mesh, chosen.surface, frame, reach))
-    seen = [_LoadedNodes.of(side, frame, shapes) for side in sides]
-    compliance = seen[0].compliance + seen[1].compliance
-    xi, weights = shapes.quadrature()
-    solution = active_set.solve(
-        compliance,
-        shapes.integrated(gap(xi), xi, weights),
-        shapes.integrals,
-        [line_load],
-        guess=np.abs(shapes.centres) < half_width,
-    )
-    pressure = solution.pressure[0]
-    if not shapes.open_ends and (pressure[0] > 0 or pressure[-1] > 0):
+    seen = (_LoadedNodes.of(sides[0], frame, shapes), _LoadedNodes.of(sides[1], frame, shapes))
+    linear = _pressed(seen, shapes, gap, line_load, np.abs(shapes.centres) < half_width)
+    found = linear.solution.pressure[0]
+    if not shapes.open_ends and (found[0] > 0 or found[-1] > 0):
         raise ContactError("the contact is wider than the window it was sought in")
+    pressed, linear_because = _with_elliptic_edges(linear, gap, line_load)
+    seen, solution = pressed.seen, pressed.solution
+    pressure = solution.pressure[0]
     displacements = (seen[0].displacement(-pressure), seen[1].displacement(pressure))
     support = sides[0].body.reaction(displacements[0]) - line_load * frame.normal
     equilibrium = max(float(solution.equilibrium[0]), float(np.linalg.norm(support)) / line_load)
     if not equilibrium <= _EQUILIBRIUM:
         raise ContactError(f"equilibrium = {equilibrium:.1e}, must be <= {_EQUILIBRIUM:.0e}")
-    ellipse = fitted_ellipses(shapes, pressure[None])
+    ellipse = pressed.ellipse
     width = float(ellipse.half_width[0])
     peak = _peak_stress(sides[0].body, displacements[0], frame, width)
     return ContactSolution(
         xi=shapes.centres,
-        pressure=pressure,
+        pressure=pressed.shapes.values(shapes.centres).T @ pressure,
         p0=float(ellipse.p0[0]),
         centre=float(ellipse.centre[0]),
         half_width=width,
@@ -145,6 +150,7 @@ def solve_contact(
         residual_equilibrium=equilibrium,
         residual_complementarity=float(solution.complementarity[0]),
         dofs=sum(side.body.dof_count for side in sides),
+        linear_because=linear_because,
     )
 
 
@@ -152,6 +158,8 @@ def solve_contact(
 class _LoadedNodes:
     """A body condensed to the nodes under the pressures, with their loads (2, m, n)."""
 
+    side: ContactSide
+    frame: ContactFrame
     body: CondensedBody
     loads: Array
 
@@ -159,7 +167,12 @@ class _LoadedNodes:
     def of(cls, side: ContactSide, frame: ContactFrame, shapes: PressureShapes) -> _LoadedNodes:
         loads = normal_loads(side.body.mesh, side.surface, frame, shapes)
         nodes = np.flatnonzero((loads != 0).any(axis=(0, 2)))
-        return cls(side.body.condensed(nodes), loads[:, nodes])
+        return cls(side, frame, side.body.condensed(nodes), loads[:, nodes])
+
+    def under(self, shapes: EllipticShapes) -> _LoadedNodes:
+        """The same nodes under other pressures within those of before."""
+        loads = normal_loads(self.side.body.mesh, self.side.surface, self.frame, shapes)
+        return replace(self, loads=loads[:, self.body.nodes])
 
     @property
     def compliance(self) -> Array:
@@ -170,6 +183,82 @@ class _LoadedNodes:
     def displacement(self, pressure: Array) -> Array:
         """Displacement (2, nodes) of the whole body."""
         return self.body.everywhere((self.loads @ pressure)[:, :, None])[:, :, 0]
+
+
+@dataclass(frozen=True, eq=False)
+class _Pressed:
+    """Both bodies under the pressures found with some shapes."""
+
+    seen: tuple[_LoadedNodes, _LoadedNodes]
+    shapes: PressureShapes | EllipticShapes
+    solution: active_set.Complementarity
+
+    @cached_property
+    def ellipse(self) -> Ellipses:
+        return fitted_ellipses(self.shapes, self.solution.pressure)
+
+    @property
+    def edges(self) -> Array:
+        """Ends (2,) of the fitted ellipse, m."""
+        reach = self.ellipse.half_width[0]
+        return self.ellipse.centre[0] + np.array([-reach, reach])
+
+
+def _pressed(
+    seen: tuple[_LoadedNodes, _LoadedNodes],
+    shapes: PressureShapes | EllipticShapes,
+    gap: Callable[[Array], Array],
+    line_load: float,
+    guess: ArrayLike | None = None,
+) -> _Pressed:
+    xi, weights = shapes.quadrature()
+    solution = active_set.solve(
+        seen[0].compliance + seen[1].compliance,
+        shapes.integrated(gap(xi), xi, weights),
+        shapes.integrals,
+        [line_load],
+        guess=guess,
+    )
+    return _Pressed(seen, shapes, solution)
+
+
+def _with_elliptic_edges(
+    linear: _Pressed, gap: Callable[[Array], Array], line_load: float
+) -> tuple[_Pressed, str]:
+    """The contact again with pressures that end as an ellipse; else as it was, and why.
+
+    On every second knot: as fine as the displacements can follow.
+    """
+    shapes = linear.shapes
+    if not isinstance(shapes, PressureShapes) or shapes.open_ends:
+        return linear, "the pressure does not end within the surface"
+    step = float(np.diff(shapes.knots).max())
+    carrying = np.flatnonzero(linear.solution.pressure[0] > 0)
+    ends = shapes.centres[carrying[[0, -1]]]
+    if np.diff(carrying).max() > 1 or np.abs(ends - linear.edges).max() > 2 * step:
+        return linear, "the contact is no single ellipse"
+    found = linear
+    for _ in range(_EDGE_UPDATES):
+        cut = EllipticShapes.within(shapes.knots[::2], found.edges)
+        seen = (linear.seen[0].under(cut), linear.seen[1].under(cut))
+        found = _pressed(seen, cut, gap, line_load)
+    if not _overlap(linear, found, gap) <= _OVERLAP:
+        return linear, "the surfaces would overlap beside the ellipse"
+    return found, ""
+
+
+def _overlap(linear: _Pressed, found: _Pressed, gap: Callable[[Array], Array]) -> float:
+    """Deepest overlap beside the contact over the widest gap, both weighed by linear shapes."""
+    shapes, pressure = linear.shapes, found.solution.pressure[0]
+    xi, weights = shapes.quadrature()
+    apart = shapes.integrated(gap(xi), xi, weights)
+    for before, after in zip(linear.seen, found.seen, strict=True):
+        moved = before.body.displacement((after.loads @ pressure)[:, :, None])[:, :, 0]
+        apart += np.tensordot(before.loads, moved, axes=([0, 1], [0, 1]))
+    apart -= found.solution.approach[0] * shapes.integrals
+    low, high = found.edges
+    beside = (shapes.knots[2:] <= low) | (shapes.knots[:-2] >= high)
+    return float(-apart[beside].min() / apart.max())
 
 
 def _peak_stress(

@@ -69,6 +69,62 @@ class PressureShapes:
 
 
 @dataclass(frozen=True, eq=False)
+class EllipticShapes:
+    """Piecewise-linear functions on `knots` (n,), m, times the ellipse between the outer two.
+
+    A Hertz pressure is one of these for any spacing of the knots, its edges included, which
+    plain linear shapes can only overshoot.
+    """
+
+    knots: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "knots", readonly(self.knots))
+
+    @classmethod
+    def within(cls, knots: Array, ends: Array) -> EllipticShapes:
+        """Knots of a surface between two ends (2,); one nearer to them than half a step goes."""
+        apart = 0.5 * float(np.diff(knots).max())
+        inner = knots[(knots > ends[0] + apart) & (knots < ends[1] - apart)]
+        return cls(np.concatenate([ends[:1], inner, ends[1:]]))
+
+    @property
+    def centres(self) -> Array:
+        """Knots (n,), m."""
+        return self.knots
+
+    @property
+    def integrals(self) -> Array:
+        """Integral (n,) of each shape, m."""
+        xi, weights = self.quadrature()
+        return self.values(xi) @ weights
+
+    def values(self, xi: ArrayLike) -> Array:
+        """Shapes (n, ...) at the coordinates xi (...)."""
+        x = np.asarray(xi, dtype=float)
+        middle, half_width = self._ellipse
+        ellipse = np.sqrt(np.maximum(1 - ((x - middle) / half_width) ** 2, 0.0))
+        return PressureShapes(self.knots, open_ends=True).values(x) * ellipse
+
+    def integrated(self, function_values: Array, xi: Array, weights: Array) -> Array:
+        """Integral (n,) of a function, given at quadrature points, against each shape."""
+        return self.values(xi) @ (weights * function_values)
+
+    def quadrature(self, breaks: ArrayLike = ()) -> tuple[Array, Array]:
+        """Points and weights (q,), m: Gauss in the angle of the ellipse, smooth at its edges."""
+        middle, half_width = self._ellipse
+        share = (np.concatenate([self.knots, np.ravel(breaks)]) - middle) / half_width
+        turned = np.arcsin(np.clip(share, -1.0, 1.0))
+        angle, weights = PressureShapes(np.unique(turned), open_ends=True).quadrature()
+        return middle + half_width * np.sin(angle), half_width * np.cos(angle) * weights
+
+    @property
+    def _ellipse(self) -> tuple[float, float]:
+        low, high = float(self.knots[0]), float(self.knots[-1])
+        return (low + high) / 2, (high - low) / 2
+
+
+@dataclass(frozen=True, eq=False)
 class Ellipses:
     """Peak (Pa), centre (m) and half-width (m) of `count` contact pressures."""
 
@@ -80,7 +136,7 @@ class Ellipses:
         freeze(self, p0=self.p0, centre=self.centre, half_width=self.half_width)
 
 
-def fitted_ellipses(shapes: PressureShapes, pressure: Array) -> Ellipses:
+def fitted_ellipses(shapes: PressureShapes | EllipticShapes, pressure: Array) -> Ellipses:
     """Peak, centre and half-width of contact pressures (count, n).
 
     The square of a Hertz pressure is a parabola, so an ellipse is fitted: its half-width has

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from geometry.arrays import Array, readonly
 from geometry.errors import ContactError
 from meshes.body import BodyMesh
-from pipeline.contact.pressure import PressureShapes
+from pipeline.contact.pressure import EllipticShapes, PressureShapes
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,10 @@ def knots_of(mesh: BodyMesh, boundary: str, frame: ContactFrame, reach: float) -
 
 
 def normal_loads(
-    mesh: BodyMesh, boundary: str, frame: ContactFrame, shapes: PressureShapes
+    mesh: BodyMesh,
+    boundary: str,
+    frame: ContactFrame,
+    shapes: PressureShapes | EllipticShapes,
 ) -> Array:
     """Nodal forces (2, nodes, n) of each pressure shape acting along the frame's normal.
 

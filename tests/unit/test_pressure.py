@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from geometry.errors import ContactError
-from pipeline.contact.pressure import PressureShapes, fitted_ellipses
+from pipeline.contact.pressure import EllipticShapes, PressureShapes, fitted_ellipses
 
 KNOTS = np.array([-1.0, -0.7, -0.1, 0.2, 0.9, 1.3])
 
@@ -81,3 +81,27 @@ def test_too_few_knots_are_no_contact_to_measure():
     shapes = PressureShapes(np.linspace(-1, 1, 9))
     with pytest.raises(ContactError, match="3 pressure knots"):
         fitted_ellipses(shapes, np.array([[0, 0, 1.0, 1.2, 1.0, 0, 0]]))
+
+
+def test_elliptic_shapes_hold_a_hertz_pressure_on_uneven_knots():
+    shapes = EllipticShapes.within(np.linspace(-2.0, 2.0, 23), np.array([-1.1, 0.9]))
+    assert shapes.knots[0] == -1.1 and shapes.knots[-1] == 0.9
+    assert np.diff(shapes.knots).min() > 0.5 * 4 / 22
+    pressure = np.full((1, shapes.knots.size), 7.0)
+    assert (pressure @ shapes.integrals)[0] == pytest.approx(7 * np.pi / 2, rel=1e-12)
+    xi = np.array([-1.2, -1.1, -0.6, 0.9, 1.0])
+    expected = 7 * np.sqrt(np.maximum(1 - (xi + 0.1) ** 2, 0))
+    np.testing.assert_allclose(pressure[0] @ shapes.values(xi), expected, atol=1e-7)
+    found = fitted_ellipses(shapes, pressure)
+    np.testing.assert_allclose([found.p0[0], found.centre[0], found.half_width[0]], [7, -0.1, 1],
+                               rtol=1e-12)  # fmt: skip
+
+
+def test_quadrature_of_elliptic_shapes_takes_the_breaks_of_a_surface():
+    shapes = EllipticShapes(np.linspace(-1.0, 1.0, 9))
+    xi, weights = shapes.quadrature([-3.0, -0.99, 0.123])
+    kink = np.abs(xi - 0.123) * np.sqrt(1 - xi**2)
+    x = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 200001))
+    dense = np.abs(x - 0.123) * (1 - x**2)
+    expected = dense.sum() * np.pi / 200000
+    assert kink @ weights == pytest.approx(expected, rel=1e-8)

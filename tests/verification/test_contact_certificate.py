@@ -50,7 +50,7 @@ def hertz_of_the_discs():
     return float(a), float(p0), float(load)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=24)
 def two_discs(edges=8, phase=0.0, other_phase=0.0, angle=0.0, swapped=False):
     a, _, load = hertz_of_the_discs()
     meshes = [
@@ -118,28 +118,51 @@ def test_three_meshes_settle_with_an_order_near_two():
     solved = [two_discs(edges) for edges in (4, 8, 16)]
     for name in ("p0", "half_width", "tau_max", "von_mises"):
         found = converged([getattr(s, name) for s in solved], 2.0)
-        # Recovered stresses of quadratic elements may gain half an order; p0 may be within
-        # the scatter of mesh positions already and then has none.
-        most = 3.5 if name in ("tau_max", "von_mises") else 3.0
-        assert found.order is None or 1.5 <= found.order <= most, (name, found.order)
-        assert found.order is not None or found.gci < 2e-3
-    widths = converged([s.half_width for s in solved], 2.0)
-    assert widths.order is not None
-    np.testing.assert_allclose(widths.extrapolated, a, rtol=5e-4)
+        # Recovered stresses of quadratic elements may gain an order on meshes this coarse; p0 and
+        # half-width are within the scatter of mesh positions already and may have none.
+        least, most = (2.0, 4.0) if name in ("tau_max", "von_mises") else (1.4, 3.0)
+        assert found.order is None or least <= found.order <= most, (name, found.order)
+        assert found.order is not None or found.gci < 1e-3
+    for name, exact in (("p0", p0), ("half_width", a)):
+        found = converged([getattr(s, name) for s in solved], 2.0)
+        np.testing.assert_allclose(found.extrapolated, exact, rtol=1.5e-4)
     # At sixteen edges the disc's first-order term is seen whole: half of it would be off 0.17 %.
     shear = hertz.SHEAR_MAX * p0 + hertz.disc_correction(load, RADIUS)
     np.testing.assert_allclose(solved[2].tau_max, shear, rtol=4e-4)
 
 
-def test_pressure_follows_the_ellipse():
-    # Ladder: 0.5 % within 0.8 a, here at sixteen edges.
+@pytest.mark.parametrize("edges", [8, 16])
+@pytest.mark.parametrize("k", range(8))
+def test_pressure_follows_the_ellipse_at_every_mesh_position(k, edges):
+    # Gate at h = a/8: 0.5 % within 0.8 a and 4 % at the last two nodes of either end, counted
+    # from where the contact lies: what holds the discs is not quite opposite.
+    if edges == 16 and k % 4:
+        pytest.skip("the finer mesh at two positions is enough")
     a, p0, _ = hertz_of_the_discs()
-    found = two_discs(16)
-    inside = np.abs(found.xi) < 0.8 * a
-    ellipse = p0 * np.sqrt(np.maximum(1 - (found.xi / a) ** 2, 0))
-    error = np.abs(found.pressure - ellipse) / p0
-    assert error[inside].max() < 5e-3
-    assert error.max() < 0.065
+    found = two_discs(edges, phase=k / 8, other_phase=0.37)
+    assert found.linear_because == ""
+    x = (found.xi - found.centre) / a
+    error = np.abs(found.pressure / p0 - np.sqrt(np.maximum(1 - x**2, 0)))
+    assert error[np.abs(x) < 0.8].max() < {8: 5e-3, 16: 1e-3}[edges]
+    inside = np.flatnonzero(np.abs(x) < 1)
+    assert error[inside[[0, 1, -2, -1]]].max() < 0.04
+    assert error.max() < 0.04
+    assert (found.pressure >= 0).all()
+
+
+def test_edges_are_elliptic_where_the_contact_is_one_ellipse_only():
+    # Two bumps: the pressure has a gap at the middle, and stays piecewise linear.
+    a, _, load = hertz_of_the_discs()
+    sides = tuple(
+        ContactSide(ElasticBody(disc(RADIUS, s * 0.5 * np.pi, a, 8, 0.0), E, NU, "far"), "rim")
+        for s in (1, -1)
+    )
+    depth = 2 * a**2 / RADIUS
+    found = solve_contact(
+        sides, UP, lambda xi: 4 * depth * ((xi / a) ** 2 - 0.49) ** 2, 0.2 * load, a
+    )
+    assert found.pressure[np.abs(found.xi).argmin()] == 0
+    assert found.linear_because == "the contact is no single ellipse"
 
 
 def test_turning_the_whole_set_up_changes_nothing():
