@@ -326,12 +326,21 @@ def contact(
 @app.command()
 def report(
     folder: DirArgument,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Print it as 8_report.pdf as well.")] = False,
+    show: Annotated[bool, typer.Option("--open", help="Show the page when it is there.")] = False,
 ) -> int:
     """Write the report of a finished run again; nothing is solved."""
     from reports import page
 
-    _load(folder)
-    _out.print(f"report: {page.build(folder)}", markup=False)
+    found = _load(folder)
+    made = page.build(folder)
+    _out.print(f"report: {made}", markup=False)
+    if pdf:
+        _out.print(f"pdf: {page.printed(made, str(found.summary['case']))}", markup=False)
+    if show:
+        import webbrowser
+
+        webbrowser.open(made.resolve().as_uri())
     return PASSED
 
 

@@ -32,7 +32,7 @@ from pipeline.case import Case
 _STATE, _CHUNKS, _LOCK = ".state.json", ".chunks", ".lock"
 _OURS = re.compile(
     r"case\.toml|(run|signoff|corners)\.json|inputs|fields|figures|exports|shop|inspection|trial_\d+"
-    r"|\d+_\w+\.(csv|html|json)"
+    r"|\d+_\w+\.(csv|html|json|pdf)"
 )
 _LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import html
 import os
 import re
 import tempfile
@@ -19,7 +20,7 @@ from markupsafe import Markup
 
 from geometry.errors import ResultError
 from pipeline.results import Run, TrialRecord, load_run
-from reports import interactive, scene, tables
+from reports import browser, interactive, scene, tables
 from reports.figures import Figure
 from reports.plots import svg_and_png
 from reports.sheet import Turn, figures
@@ -96,14 +97,27 @@ def build(folder: Path) -> Path:
         (folder / "figures").mkdir(exist_ok=True)
         groups = _drawn(turn, folder / "figures")
         pictures = _pictures(turn, folder)
-        html = _environment().get_template("report.html").render(
+        text = _environment().get_template("report.html").render(
             context(run, case, turn, groups, pictures)
             | {"live": interactive.bundle(d.figure for _, drawn in groups for d in drawn)}
         )  # fmt: skip
-        _write(folder / PAGE, html.encode("utf-8", "replace"))
+        _write(folder / PAGE, text.encode("utf-8", "replace"))
     except OSError as error:
         raise ResultError(f"{folder}: {error.strerror or error}") from None
     return folder / PAGE
+
+
+def printed(page: Path, name: str) -> Path:
+    """Print the page to A4 beside it, with page numbers, by a headless Chromium.
+
+    Raises
+    ------
+    ResultError
+        If no Chromium is there, or the file cannot be written.
+    """
+    pdf = page.with_suffix(".pdf")
+    browser.print_pdf(page, pdf, html.escape(f"Camwright · {shortened(name, 60)}"))
+    return pdf
 
 
 def the_turn(run: Run, case: Mapping[str, Any]) -> Turn:

@@ -12,6 +12,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
+from geometry.errors import ResultError
 from reports import browser, interactive, page
 
 ALL_DRAWN = "[...document.querySelectorAll('.live')].every(e => e.dataset.drawn === 'done')"
@@ -92,3 +93,22 @@ def test_page_without_the_library_is_still_whole(
     text = page.build(report.parent).read_text(encoding="utf-8")
     assert "<script" not in text and "plotly is not installed" in text
     assert text.count("<svg") >= 10
+
+
+def test_pdf_has_its_pages_and_fonts(report: Path, tmp_path: Path) -> None:
+    if browser.executable() is None:
+        pytest.skip("no Chromium here: Debian has it in the package chromium")
+    data = page.printed(report, HOSTILE).read_bytes()
+    assert data.startswith(b"%PDF") and len(data) > 50_000
+    assert len(re.findall(rb"/Type\s*/Page\b", data)) >= 3
+    box = re.search(rb"/MediaBox\s*\[0 0 ([\d.]+) ([\d.]+)\]", data)
+    assert box and abs(float(box[1]) - 595) < 2 and abs(float(box[2]) - 842) < 2  # A4, points
+    assert re.search(rb"/FontFile[23]", data)  # fonts are in the file
+
+
+def test_pdf_without_a_browser_says_what_is_missing(
+    report: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(browser, "executable", lambda: None)
+    with pytest.raises(ResultError, match="chromium"):
+        page.printed(report, "x")
