@@ -21,16 +21,24 @@ OF_THE_CONTACT = {
     "hardened_case",
 }
 """Demands proportional to the contact's pressure."""
+OF_THE_GUIDES = {
+    f"bush_{name}_{side}" for name in ("pressure", "pv", "peak") for side in ("A", "B")
+}
+"""Demands proportional to a guide's reaction, as the beam's meshes leave it."""
 
 
 def with_error_bars(trial: TrialEvidence, checks: Iterable[Check]) -> tuple[Check, ...]:
     """The checks with the share of error their demands carry.
 
-    A demand of the contact carries the certificate's greatest difference and grid convergence
+    A demand on a guide carries the mesh uncertainty of its reaction. One of the contact carries
+    the certificate's greatest difference and grid convergence
     index besides what lies between samples; without a certificate its error is not known.
     """
+    checks = tuple(checks)
     contact = contact_error(trial)
-    return tuple(replace(check, error_share=_share(check, contact)) for check in checks)
+    beam = [check.demand for check in checks if check.id == "mesh_reaction"]
+    guides = None if beam in ([], [None]) else float(beam[0] or 0.0) / 100.0
+    return tuple(replace(check, error_share=_share(check, contact, guides)) for check in checks)
 
 
 def contact_error(trial: TrialEvidence) -> float | None:
@@ -41,8 +49,10 @@ def contact_error(trial: TrialEvidence) -> float | None:
     return max(abs(p.spread_percent) + abs(p.gci_percent) for p in points) / 100.0
 
 
-def _share(check: Check, contact: float | None) -> float | None:
+def _share(check: Check, contact: float | None, guides: float | None) -> float | None:
     sampled = ROUNDING if check.error_share is None else max(check.error_share, ROUNDING)
-    if check.id not in OF_THE_CONTACT:
-        return sampled
-    return None if contact is None else sampled + contact
+    if check.id in OF_THE_CONTACT:
+        return None if contact is None else sampled + contact
+    if check.id in OF_THE_GUIDES:
+        return None if guides is None else sampled + guides
+    return sampled

@@ -70,6 +70,7 @@ def case(**changes):
         "guides": SimpleNamespace(a=guide, b=guide, spacing=0.08),
         "materials": {"steel": steel, "hard": hard},
         "waivers": (),
+        "load_cases": (),
     }
     return SimpleNamespace(**(plain | changes))
 

@@ -6,6 +6,7 @@ import pytest
 
 from pipeline import benchmarks
 from pipeline.checks import proof
+from pipeline.checks.check import Check
 from pipeline.checks.contact import contact_pressure
 from pipeline.checks.errors import with_error_bars
 from pipeline.checks.evidence import certificate_spread
@@ -65,7 +66,7 @@ def test_gci_by_hand():
 def test_error_bar_of_the_pressure_joins_tiers_and_meshes():
     given = fake.evidence()
     (check,) = with_error_bars(given, [contact_pressure(given)])
-    # 0.4 % of the meshes and 0.4 % between the tiers at one angle; the samples hold the peak of the sine.
+    # 0.4 % of the meshes and 0.4 % between the tiers at one angle.
     assert check.error == pytest.approx(0.008 * check.demand, rel=1e-3)
     (bare,) = with_error_bars(fake.evidence(certificate=()), [contact_pressure(given)])
     assert bare.error is None
@@ -81,3 +82,11 @@ def test_benchmarks_are_solved_here(monkeypatch, tmp_path):
     assert max(found["nafems_residual"], found["hertz_residual"]) < 1e-8
     monkeypatch.setattr(benchmarks, "_solved", lambda _: pytest.fail("solved again"))
     assert benchmarks.benchmarks(0.008) == found
+
+
+def test_error_bar_of_a_guide_is_that_of_its_reaction():
+    given = fake.evidence()
+    guide = Check("bush_pv_A", "x", 2.0, 3.0)
+    mesh = Check("mesh_reaction", "y", 0.5, 3.0)
+    assert with_error_bars(given, [guide, mesh])[0].error == pytest.approx(0.01)
+    assert with_error_bars(given, [guide])[0].error is None
