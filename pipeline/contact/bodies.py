@@ -9,6 +9,7 @@ contact at every angle.
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,7 +19,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from geometry.arrays import Array, freeze
+from pipeline import cache
 from pipeline.contact.elastic_body import CondensedBody, ElasticBody, StressRecovery
+from pipeline.contact.factor import back_end
 from pipeline.contact.halfplane import point_force_displacement
 from pipeline.contact.hertz import subsurface_stress
 
@@ -30,6 +33,11 @@ _BATCH = 180
 _FEW = 8
 # Surface nodes about a contact that its stress and bending are read from.
 _NEIGHBOURS = 10
+# The modules whose text decides a correction: a change in one of them makes a new one.
+RECIPE = (
+    __name__,
+    *(f"pipeline.contact.{name}" for name in ("elastic_body", "factor", "halfplane")),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +100,30 @@ class LoadedBody:
         return float(np.hypot(*steps).max())
 
     def correction(self, contacts: Array, normals: Array) -> Correction:
-        """Correction at contact points (2, count) with outward normals (2, count)."""
+        """Correction at contact points (2, count) with outward normals (2, count).
+
+        Kept between runs: a body of the same mesh, material and contacts is not solved again.
+        """
+        kept = cache.kept(
+            "body", self._asked(contacts, normals), lambda: self._found(contacts, normals), RECIPE
+        )
+        modulus, bend = self._plane_strain_modulus, kept["bend"]
+        return Correction(along=modulus * kept["slope"], bend=bend, along_by_depth=modulus * bend)
+
+    def _asked(self, contacts: Array, normals: Array) -> tuple[object, ...]:
+        """All that decides a correction; the mesh says contour, bore, keyway and hub."""
+        body = self.body
+        free = np.ascontiguousarray(self._free_facets, dtype="<i8")
+        places = np.ascontiguousarray([contacts, normals], dtype="<f8")
+        return (
+            body.mesh.sha256,
+            *(hashlib.sha256(v.tobytes()).hexdigest() for v in (free, body.held_dofs, places)),
+            (float(body.modulus), float(body.poisson)),
+            back_end(),
+        )
+
+    def _found(self, contacts: Array, normals: Array) -> dict[str, Array]:
+        """Slope of the tangential, bend of the outward displacement (count,) at contacts."""
         parts = []
         for start in range(0, contacts.shape[1], _BATCH):
             at, up = contacts[:, start : start + _BATCH], normals[:, start : start + _BATCH]
@@ -103,8 +134,7 @@ class LoadedBody:
                 moved = self._condensed.displacement(loads[:, self._seen], held)
             parts.append(self._at_contacts(moved, at, up))
         slope, bend = np.concatenate(parts, axis=1)
-        modulus = self._plane_strain_modulus
-        return Correction(along=modulus * slope, bend=bend, along_by_depth=modulus * bend)
+        return {"slope": slope, "bend": bend}
 
     @cached_property
     def _seen(self) -> NDArray[np.int64]:

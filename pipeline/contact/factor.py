@@ -23,16 +23,25 @@ from geometry.errors import ContactError
 _SYMMETRIC: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
-def factorised(matrix: Any) -> Callable[[Array], Array]:
-    """Solver of a sparse symmetric positive definite matrix for right-hand sides (n, k)."""
+def back_end() -> str:
+    """Which library factors: CHOLMOD where it is installed and not switched off, else SciPy."""
     if os.environ.get("CAMWRIGHT_SOLVER") != "scipy":
         try:
-            from cvxopt import cholmod, spmatrix
-            from cvxopt import matrix as dense
+            import cvxopt.cholmod  # noqa: F401
         except ImportError:
             pass
         else:
-            return _by_cholmod(sparse.csc_array(matrix), cholmod, spmatrix, dense)
+            return "cholmod"
+    return "scipy"
+
+
+def factorised(matrix: Any) -> Callable[[Array], Array]:
+    """Solver of a sparse symmetric positive definite matrix for right-hand sides (n, k)."""
+    if back_end() == "cholmod":
+        from cvxopt import cholmod, spmatrix
+        from cvxopt import matrix as dense
+
+        return _by_cholmod(sparse.csc_array(matrix), cholmod, spmatrix, dense)
     factor = splu(sparse.csc_matrix(matrix), permc_spec="MMD_AT_PLUS_A", **_SYMMETRIC)
     return factor.solve
 

@@ -11,6 +11,7 @@ from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from meshes.body import roller_mesh
 from meshes.sizing import Sizing
+from pipeline import cache
 from pipeline.contact.bodies import LoadedBody
 from pipeline.contact.elastic_body import ElasticBody
 from pipeline.contact.factor import factorised
@@ -144,3 +145,33 @@ def test_a_contact_that_is_not_locally_flat_is_not_answered(force):
     found = history(pair(), 0.0, force)
     assert np.isnan(found.p0[0]) and np.isnan(found.tau_max[0])
     assert found.p0_hertz[0] > 0
+
+
+@pytest.mark.parametrize("change", ["nothing", "load", "lift", "bore", "material", "grid"])
+def test_a_body_already_known_is_not_solved_again(change, tmp_path, monkeypatch):
+    # The correction depends on the body and the grid alone, and is the same to the bit.
+    monkeypatch.delenv(cache.OFF, raising=False)
+    monkeypatch.setenv(cache.FOLDER, str(tmp_path))
+    theta, force = np.linspace(0.0, 1.0, 12), 1000.0
+    first = history(pair(lift=2e-3), theta, force)
+    of = {
+        "lift": pair(lift=2.001e-3),
+        "bore": pair(lift=2e-3, bore=6.01e-3),
+        "material": pair(Elastic(211e9, 0.3), lift=2e-3),
+    }.get(change, pair(lift=2e-3))
+    again = theta + 1e-9 if change == "grid" else theta
+    load = 1100.0 if change == "load" else force
+    solved = []
+    original = LoadedBody._found
+    monkeypatch.setattr(
+        LoadedBody,
+        "_found",
+        lambda body, *at: (solved.append(body.surface), original(body, *at))[1],
+    )
+    second = history(of, again, load)
+    assert solved == ([] if change in ("nothing", "load") else ["contour"])
+    monkeypatch.setenv(cache.OFF, "1")
+    without = history(of, again, load)
+    for name in ("p0", "half_width", "tau_max", "von_mises", "pressure"):
+        assert np.array_equal(getattr(second, name), getattr(without, name)), name
+        assert change != "nothing" or np.array_equal(getattr(second, name), getattr(first, name))
