@@ -1,4 +1,4 @@
-"""Outer ring, pin, skidding roller and bearing cards against hand calculation."""
+"""Outer ring, pin and bearing cards against hand calculation."""
 
 from dataclasses import replace
 
@@ -15,8 +15,6 @@ from pipeline.follower.ring import (
     ring_moments,
     ring_stiffness,
 )
-from pipeline.follower.roller import traction_demand
-from pipeline.follower.skid import skid
 
 RING = Ring(7.5e-3, 1e-3, 5e-3, 210e9, 6, 1e8)
 
@@ -107,49 +105,6 @@ def test_pin_bending():
         pin_bending_stress(1.0, 0.0, 5e-3, 9e-3)
     with pytest.raises(InputError, match="force"):
         pin_bending_stress(np.nan, 5e-3, 5e-3, 9e-3)
-
-
-N = 720
-ANGLE = 2 * np.pi * np.arange(N) / N
-SPIN = 600.0 + 100.0 * np.sin(ANGLE)
-ACCELERATION = 75.0 * 100.0 * np.cos(ANGLE)
-INERTIA, RADIUS = 1.2e-7, 8e-3
-
-
-def test_enough_traction_rolls():
-    found = skid(np.full(N, 500.0), SPIN, 75.0, INERTIA, RADIUS, 0.05, drag=1e-3)
-    assert found.share == 0.0
-    assert found.heat == 0.0
-    np.testing.assert_allclose(found.spin, SPIN, rtol=1e-12)
-    needed = (INERTIA * ACCELERATION + 1e-3) / RADIUS
-    np.testing.assert_allclose(found.traction, needed, atol=0.01 * np.abs(needed).max())
-
-
-def test_too_little_traction_slips():
-    """Slip begins where the demand for traction passes mu, and is bound by mu N."""
-    demand = traction_demand(np.full(N, 0.5), ACCELERATION, INERTIA, RADIUS)
-    mu = 0.6 * demand.max()
-    found = skid(np.full(N, 0.5), SPIN, 75.0, INERTIA, RADIUS, mu)
-    assert 0.0 < found.share < 1.0
-    assert np.abs(found.traction).max() <= mu * 0.5 * (1 + 1e-12)
-    assert np.ptp(found.spin) < np.ptp(SPIN)
-    assert found.heat > 0.0
-    held = skid(np.full(N, 0.5), SPIN, 75.0, INERTIA, RADIUS, 1.02 * demand.max())
-    assert held.share == 0.0
-
-
-def test_drag_beyond_the_grip_stops_the_roller():
-    found = skid(np.full(N, 10.0), SPIN, 75.0, INERTIA, RADIUS, 0.01, drag=2e-3)
-    assert found.spin.max() < 0.05 * SPIN.max()
-
-
-def test_skid_refusals():
-    for bad in ({"inertia": 0.0}, {"radius": -1.0}, {"friction": -0.1}):
-        given = {"inertia": INERTIA, "radius": RADIUS, "friction": 0.1} | bad
-        with pytest.raises(InputError, match=next(iter(bad))):
-            skid(np.ones(N), SPIN, 75.0, **given)
-    with pytest.raises(InputError, match="normal_force"):
-        skid(-np.ones(N), SPIN, 75.0, INERTIA, RADIUS, 0.1)
 
 
 def test_shipped_cards():

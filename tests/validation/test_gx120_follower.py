@@ -150,7 +150,7 @@ def test_jam_index_and_liftoff_speed(design):
 def test_design_scaled_to_the_printed_inertia():
     """The torque that the inertia printed in the paper (2.603e-3 kg m2) would leave of the trace's.
 
-    Expected figures carry two digits; asked for is 5 %.
+    Asked for is 5 %; expected figures carry at least two digits, the jam index 0.054.
     """
     samples = resample(crank_torque(), 144)
     weights = np.r_[0.5, np.ones(11), 0.5] / 12.0
@@ -162,7 +162,7 @@ def test_design_scaled_to_the_printed_inertia():
     force = free.normal_force
     np.testing.assert_allclose([force.min(), force.max()], [249.0, 502.0], rtol=0.01)
     assert np.abs(free.reaction_a).max() == pytest.approx(185.0, rel=0.02)
-    assert rubbing.jam_index.max() == pytest.approx(0.05, abs=0.005)  # printed to two decimals
+    assert rubbing.jam_index.max() == pytest.approx(0.054, rel=0.05)
     liftoff = 2 * jump_speed(pitch, SYSTEM, THETA)[0] * 60 / (2 * np.pi)
     assert liftoff == pytest.approx(4760.0, rel=0.01)
 
