@@ -27,6 +27,8 @@ from pipeline.contact.tangential import Drag, RollingContact, ring_inertia, roll
 from pipeline.follower.forces import FollowerSystem, follower_loads
 from pipeline.follower.roller import RollerMotion, roller_motion
 
+# Of the contact angles, every so many tell what the real body adds.
+_THINNED = 4
 _MM, _MPA = 1e3, 1e-6
 _MAPS = ("von_mises", "tau_max", "shear_range", "crossland", "dang_van")
 
@@ -113,7 +115,7 @@ def rolling_history(
         bore=bore_stress(
             bodies.cam, contour.points(theta), contour.normal(theta), contact.line_load
         ),
-        envelope=_envelope(case, pair, theta, contact, cam_speed),
+        envelope=_envelope(case, pair, bodies, theta, contact, cam_speed),
         contact=driven if given is not None else None,
         tau_max=shear,
         von_mises=mises,
@@ -165,7 +167,12 @@ def _film(oil: Oil, pair: ContactPair, contact: ContactHistory, speed: Array) ->
 
 
 def _envelope(
-    case: Case, pair: ContactPair, theta: Array, contact: ContactHistory, cam_speed: float
+    case: Case,
+    pair: ContactPair,
+    bodies: CycleBodies,
+    theta: Array,
+    contact: ContactHistory,
+    cam_speed: float,
 ) -> Envelope:
     """The map at stations of its own, under the loads there."""
     stations = uniform_turn(STATIONS)
@@ -175,7 +182,19 @@ def _envelope(
     if card.fatigue_torsion is not None and card.fatigue_bending is not None:
         limits = FatigueLimits(card.fatigue_torsion, card.fatigue_bending)
     load = np.maximum(loads.normal_force, 0.0) / pair.width
-    return swept(pair, theta, contact, stations, load, limits=limits)
+    added = added_stress(pair, bodies, theta, contact.line_load)
+    return swept(pair, theta, contact, stations, load, limits=limits, body_stress=added)
+
+
+def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load: Array) -> Array:
+    """Stress (3, n) along the contour, Pa, that the real cam adds under loads (n,) N/m.
+
+    Known at every few angles and drawn out between them: what a wall adds is smooth.
+    """
+    few = theta[::_THINNED]
+    unit = bodies.cam.correction(pair.contour.points(few), pair.contour.normal(few)).along
+    along = line_load * np.interp(theta, few, unit, period=FULL_TURN)
+    return np.stack([along, np.zeros_like(along), np.zeros_like(along)])
 
 
 def envelope_arrays(turns: Mapping[str, RollingHistory | None]) -> dict[str, Array]:

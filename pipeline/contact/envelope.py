@@ -219,6 +219,7 @@ def swept(
         extra = np.stack([np.interp(at, turn, part, period=FULL_TURN) for part in given])
     mises, shear = _with_body(unit, p0, extra, pair.cam.poisson)
     scale = p0[:, None]
+    pulled = (1 + pair.cam.poisson) / 3 * (extra[0] + extra[1])
     return Envelope(
         theta=at,
         arc=arc_length(pair, at),
@@ -226,8 +227,8 @@ def swept(
         von_mises=mises,
         tau_max=shear,
         shear_range=scale * unit.shear_range,
-        crossland=None if limits is None else scale * unit.crossland(limits),
-        dang_van=None if limits is None else scale * unit.dang_van(limits),
+        crossland=None if limits is None else _crossland(unit, p0, pulled, limits),
+        dang_van=None if limits is None else _dang_van(unit, p0, pulled, limits),
     )
 
 
@@ -259,6 +260,25 @@ def _with_body(unit: RollingPass, p0: Array, extra: Array, poisson: float) -> tu
         mises[part] = stress.von_mises(total, poisson).max(axis=2)
         shear[part] = stress.shear_in_plane(total).max(axis=2)
     return mises, shear
+
+
+def _crossland(unit: RollingPass, p0: Array, pulled: Array, limits: FatigueLimits) -> Array:
+    """Crossland's value (n, k) with the body's hydrostatic stress `pulled` (n,) added."""
+    greatest = p0[:, None] * unit.hydrostatic.max(axis=1) + pulled[:, None]
+    return p0[:, None] * unit.shear_amplitude + limits.crossland * np.maximum(greatest, 0.0)
+
+
+def _dang_van(unit: RollingPass, p0: Array, pulled: Array, limits: FatigueLimits) -> Array:
+    """Dang Van's value (n, k) likewise; compression gets no credit."""
+    if not pulled.any():
+        return p0[:, None] * unit.dang_van(limits)
+    found = np.empty((p0.size, unit.depth.size))
+    for start in range(0, p0.size, _BLOCK):
+        part = slice(start, start + _BLOCK)
+        scale = p0[part, None, None]
+        tension = np.maximum(scale * unit.hydrostatic + pulled[part, None, None], 0.0)
+        found[part] = (scale * unit.shear + limits.dang_van * tension).max(axis=2)
+    return found
 
 
 def required_strength(envelope: Envelope, depth: ArrayLike) -> Array:

@@ -29,6 +29,7 @@ from pipeline.contact.pair import (
 )
 from pipeline.contact.patch import contact_patch
 from pipeline.contact.stress import von_mises
+from pipeline.rolling import added_stress
 
 STEEL = Elastic(210e9, 0.3)
 WIDTH = 0.005
@@ -195,6 +196,36 @@ def test_stress_of_the_body_comes_on_top():
     # Tension along the surface adds half of itself to the shear where the load presses down.
     gained = more.tau_max.max(axis=1) - plain.tau_max.max(axis=1)
     assert gained == pytest.approx(np.full(180, 25e6), rel=0.02)
+
+
+def test_pull_of_the_body_counts_in_the_fatigue_values_and_push_does_not():
+    pair = pair_of(0.02)
+    theta = uniform_turn(180)
+    contact = closed_form_history(pair, theta, force(theta))
+    limits = FatigueLimits(300e6, 450e6)
+
+    def values(along):
+        extra = np.stack([np.full(180, along), np.zeros(180), np.zeros(180)])
+        load = force(theta) / WIDTH
+        found = swept(pair, theta, contact, theta, load, limits=limits, body_stress=extra)
+        return np.stack([found.crossland, found.dang_van])
+
+    plain = values(0.0)
+    np.testing.assert_allclose(values(-30e6), plain, rtol=1e-12)
+    # Where no half-plane stress is left, far before the load, the body's is all there is.
+    gained = (values(30e6) - plain)[0].max()
+    assert gained == pytest.approx(limits.crossland * 1.3 / 3 * 30e6, rel=0.02)
+    assert (values(30e6)[1] >= plain[1]).all()
+
+
+def test_stress_added_by_a_real_cam_is_that_of_its_correction():
+    pair, bodies = pair_of(0.02), CycleBodies.meshed(pair_of(0.02))
+    theta = uniform_turn(180)
+    load = force(theta) / WIDTH
+    along, *others = added_stress(pair, bodies, theta, load)
+    exact = bodies.cam.correction(pair.contour.points(theta), pair.contour.normal(theta)).along
+    np.testing.assert_allclose(along, load * exact, atol=0.01 * np.abs(load * exact).max())
+    assert not np.any(others)
 
 
 def test_required_strength_is_the_worst_place_at_each_depth():
