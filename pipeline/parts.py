@@ -31,7 +31,13 @@ from pipeline.follower.friction import (
     guide_heat,
 )
 from pipeline.follower.guides import WALL_SHARE, GuideReactions
-from pipeline.follower.ring import Ring, ball_stiffness, pin_bending_stress, ring_bending
+from pipeline.follower.ring import (
+    Ring,
+    ball_stiffness,
+    flattening,
+    pin_bending_stress,
+    ring_bending,
+)
 from pipeline.follower.spring import HelicalSpring, case_spring, surge_force
 from pipeline.follower.stem import Stem
 
@@ -45,6 +51,7 @@ class PartsHistory:
     bush_peak_* are the pressures of the stem in the bore where the line pressure is greatest.
     elastic is the stem's steady response with the contact held; flights the losses of contact
     in one turn from there, where it does not hold, and bounce_force the greatest force of it.
+    ring_correction is the share by which a flattened outer ring changes the peak pressure.
     """
 
     bush_peak_a: Array
@@ -68,6 +75,7 @@ class PartsHistory:
     surge_force: Array | None
     pin_stress: Array | None
     ring_stress: Array | None
+    ring_correction: Array | None
 
     def __post_init__(self) -> None:
         for name in self.__dataclass_fields__:
@@ -97,6 +105,7 @@ class PartsHistory:
             "spring_surge_force": self.surge_force,
             "pin_stress": self.pin_stress,
             "ring_stress_range": self.ring_stress,
+            "ring_correction": self.ring_correction,
         }
         return {name: values for name, values in found.items() if values is not None}
 
@@ -108,6 +117,7 @@ def parts_history(
     elastic, deflection, flights, force = _elastic(case, contour, loads, cam_speed)
     spring = case_spring(case)
     shaft = _shaft(case, loads)
+    ring = _ring(case, contour, loads)
     return PartsHistory(
         bush_peak_a=_bush_peak(case, case.guides.a, guides.line_pressure_max_a),
         bush_peak_b=_bush_peak(case, case.guides.b, guides.line_pressure_max_b),
@@ -129,7 +139,8 @@ def parts_history(
         spring_stress=None if spring is None else spring.stress(loads.spring_force),
         surge_force=None if spring is None else _surge(spring, loads, cam_speed),
         pin_stress=_pin(case, loads),
-        ring_stress=_ring(case, loads),
+        ring_stress=None if ring is None else ring[0],
+        ring_correction=None if ring is None else ring[1],
     )
 
 
@@ -239,8 +250,10 @@ def _pin(case: Case, loads: Loads) -> Array | None:
     return per_newton * loads.normal_force
 
 
-def _ring(case: Case, loads: Loads) -> Array | None:
-    """Range of the bending stress in the outer ring of a bearing taken from a card."""
+def _ring(case: Case, contour: Contour, loads: Loads) -> tuple[Array, Array] | None:
+    """Range of the bending stress in the outer ring of a bearing taken from a card, Pa; and the
+    share by which its flattening under the push changes the contact's greatest pressure, <= 0.
+    """
     name, force = case.roller.bearing.card, float(loads.normal_force.max())
     if name is None or not force > 0.0:
         return None
@@ -255,4 +268,9 @@ def _ring(case: Case, loads: Loads) -> Array | None:
         balls=card.balls,
         ball_stiffness=ball_stiffness(force, ball, steel.E, steel.nu),
     )
-    return ring_bending(ring).stress_range(ring, 1.0) * loads.normal_force
+    bending = ring_bending(ring)
+    curvature = 1.0 / case.roller.radius + contour.curvature(loads.theta)
+    return (
+        bending.stress_range(ring, 1.0) * loads.normal_force,
+        flattening(ring, bending, loads.normal_force, curvature),
+    )

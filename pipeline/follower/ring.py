@@ -118,6 +118,27 @@ def ring_bending(ring: Ring, phases: int = 5) -> RingBending:
     return RingBending(np.linspace(0.0, 0.5 * gap, phases), loads, most, least, soft)
 
 
+def flattening(ring: Ring, bending: RingBending, force: Array, curvature: Array) -> Array:
+    """Share by which the ring's bending changes a line contact's greatest pressure, (n,), <= 0.
+
+    Under the push the ring loses the curvature M/(E I), taken at the ball position that bends it
+    most; p0 goes with the root of the relative curvature, the half-width with its reciprocal.
+    The dent of the contact itself is left to Hertz, whose p0 for the round ring is thus an upper
+    bound.
+
+    Parameters
+    ----------
+    force : array (n,)       N, >= 0
+    curvature : array (n,)   of the contact with the round ring, 1/R, 1/m, > 0
+
+    References
+    ----------
+    Timoshenko, Strength of Materials II: thin rings; Johnson (1985), sec. 4.2(c).
+    """
+    lost = bending.moment_max.max() * force / ring.bending_stiffness
+    return np.asarray(np.sqrt(np.maximum(1.0 - lost / curvature, 0.0)) - 1.0)
+
+
 def _pushed(
     ring: Ring, stiffness: Array, count: int, shift: int
 ) -> tuple[Array, float, float, float]:

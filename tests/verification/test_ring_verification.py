@@ -1,11 +1,13 @@
 """Outer ring by plane finite elements against its closed form and against beam elements."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-from pipeline.follower.ring import Ring, ring_bending
+from pipeline.follower.ring import Ring, flattening, ring_bending
 from pipeline.follower.ring_elements import RingElements, ring_bending_by_elements
 
 RING = Ring(7.5e-3, 1e-3, 5e-3, 210e9, 6, 1e8)
@@ -41,3 +43,21 @@ def test_beams_agree_with_plane_elements(ring, share, moment, soft):
     )
     assert plane.stress_range(ring, 1e3) == pytest.approx(beam.stress_range(ring, 1e3), rel=moment)
     np.testing.assert_allclose(plane.compliance, beam.compliance, atol=soft * beam.compliance.max())
+
+
+def test_flattened_ring_lowers_the_contact_pressure():
+    """On a flat face the loss of curvature is that of the ring's own moment over E I."""
+    bending = ring_bending(RING)
+    force = np.array([0.0, 500.0, 1000.0])
+    found = flattening(RING, bending, force, np.full(3, 1 / 8e-3))
+    lost = bending.moment_max.max() * 1000.0 / (210e9 * 5e-3 * 1e-3**3 / 12)
+    assert found[0] == 0.0
+    assert (np.diff(found) < 0.0).all()
+    assert (1 + found[2]) ** 2 == pytest.approx(1 - lost * 8e-3, rel=1e-12)
+    stiff = flattening(
+        replace(RING, modulus=210e15),
+        ring_bending(replace(RING, modulus=210e15)),
+        force,
+        np.full(3, 125.0),
+    )
+    assert np.abs(stiff).max() < 1e-6
