@@ -20,7 +20,7 @@ from markupsafe import Markup
 
 from geometry.errors import ResultError
 from pipeline.results import Run, TrialRecord, load_run
-from reports import browser, interactive, scene, tables
+from reports import browser, envelope, interactive, scene, tables
 from reports.figures import Figure
 from reports.plots import svg_and_png
 from reports.sheet import Turn, figures
@@ -96,7 +96,7 @@ def build(folder: Path) -> Path:
     try:
         (folder / "figures").mkdir(exist_ok=True)
         groups = _drawn(turn, folder / "figures")
-        pictures = _pictures(turn, folder)
+        pictures = _pictures(turn, folder) + _envelope(turn, run.final.path, folder)
         text = _environment().get_template("report.html").render(
             context(run, case, turn, groups, pictures)
             | {"live": interactive.bundle(d.figure for _, drawn in groups for d in drawn)}
@@ -263,6 +263,33 @@ def _pictures(turn: Turn, folder: Path) -> list[Picture]:
             base64.b64encode(framed[1]).decode(), rasters[1].note,
         ),
     ]  # fmt: skip
+
+
+def _envelope(turn: Turn, trial: Path, folder: Path) -> list[Picture]:
+    """The map of greatest stresses under the contour; older runs have none."""
+    if not (trial / envelope.FILE).exists():
+        return []
+    title = "Greatest stress under the contour in one turn"
+    try:
+        found = envelope.read_envelope(trial / envelope.FILE, turn.load_case)
+    except ResultError as error:
+        return [Picture(title, "", "", note=f"There is no map of the turn: {error}.")]
+    png = envelope.drawn(found)
+    _write(folder / "figures" / "envelope.png", png)
+    mises, angle, depth = envelope.worst(found, "von_mises_MPa")
+    where = (
+        f"{tables.quantity(mises, 'MPa')} of von Mises stress at {tables.number(angle)} deg of "
+        f"the cam, {tables.quantity(depth, 'mm')} deep"
+    )
+    return [
+        Picture(
+            title,
+            f"The contour unrolled, with what each place of the material bears as the load rolls "
+            f"over it; greatest {where}. Where the map is brightest the cam will pit first.",
+            f"Maps of von Mises stress and shear range by cam angle and depth; greatest {where}.",
+            base64.b64encode(png).decode(),
+        )
+    ]
 
 
 def _environment() -> Environment:

@@ -1,0 +1,43 @@
+"""The picture of the map of a turn."""
+
+import numpy as np
+import pytest
+
+from geometry.errors import ResultError
+from reports import envelope
+
+
+@pytest.fixture
+def path(tmp_path):
+    depth = np.outer([1.0, 2.0], [0.0, 0.5, 1.0])
+    values = np.array([[1.0, 3.0, 2.0], [2.0, 6.0, 4.0]])
+    names = ("von_mises_MPa", "shear_range_MPa")
+    np.savez(
+        tmp_path / envelope.FILE,
+        **{"rated.cam_angle_deg": np.array([0.0, 180.0]), "rated.depth_mm": depth},
+        **{f"rated.{name}": values for name in names},
+    )
+    return tmp_path / envelope.FILE
+
+
+def test_reads_one_load_case_and_its_worst_place(path):
+    found = envelope.read_envelope(path, "rated")
+    assert envelope.worst(found, "von_mises_MPa") == (6.0, 180.0, 1.0)
+
+
+def test_lays_stations_on_common_depths_and_knows_where_they_end(path):
+    found = envelope.read_envelope(path, "rated")
+    flat = envelope.unrolled(found["von_mises_MPa"], found["depth_mm"], np.array([0.0, 0.5, 1.5]))
+    np.testing.assert_allclose(flat, [[1.0, 2.0], [3.0, 4.0], [np.nan, 5.0]])
+
+
+def test_draws_a_picture(path):
+    png = envelope.drawn(envelope.read_envelope(path, "rated"))
+    assert png.startswith(b"\x89PNG") and len(png) > 5000
+
+
+def test_a_load_case_or_file_that_is_not_there_is_told(path):
+    with pytest.raises(ResultError, match="idle"):
+        envelope.read_envelope(path, "idle")
+    with pytest.raises(ResultError):
+        envelope.read_envelope(path.parent / "none.npz", "rated")
