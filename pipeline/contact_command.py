@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.arrays import Array
 from geometry.errors import InputError
 from meshes.body import BodyMesh
 from pipeline import units
@@ -132,7 +133,7 @@ def solved(
         found = finite_elements(pair)
         document |= {"fe": _finite_elements(found), "finite_body": _finite_body(pair)}
         if field is not None:
-            _write_field(field, found, pair.body_1.poisson)
+            _write_field(field, found, (pair.body_1.poisson, pair.body_2.poisson))
             document["field"] = str(field)
     if with_approach:
         document["approach_mm"] = _MM * approach(pair, asked.depths())
@@ -243,22 +244,36 @@ def _conforming(found: ConformingContact, pair: TwoCylinders) -> dict[str, Any]:
     }
 
 
-def _write_field(path: Path, found: FiniteElementContact, poisson: float) -> None:
-    """Stress of body 1 around the contact, its surface y = 0 on top, as VTU."""
+def _write_field(path: Path, found: FiniteElementContact, poissons: tuple[float, float]) -> None:
+    """Stress of both bodies around the contact as VTU: body 1 below y = 0, body 2 above."""
     from meshes.files import write_vtu
 
-    mesh, order = patch_mesh(poisson)
-    xx, yy, xy = found.stress[:, order]
-    write_vtu(
-        path,
-        BodyMesh(mesh.points * found.half_width_hertz, mesh.triangles, {}),
-        {
-            "stress_xx_MPa": _MPA * xx,
-            "stress_yy_MPa": _MPA * yy,
-            "stress_zz_MPa": _MPA * poisson * (xx + yy),
-            "stress_xy_MPa": -_MPA * xy,  # seen with y upward, not into the body
-            "von_mises_MPa": _MPA * stress.von_mises((xx, yy, xy), poisson),
-            "tau_max_MPa": _MPA * stress.shear_in_plane((xx, yy, xy)),
-            "tau_any_plane_MPa": _MPA * shear_any_plane((xx, yy, xy), poisson),
-        },
-    )
+    meshes, fields = {}, {}
+    for number, (nu, side, of) in enumerate(zip(poissons, (-1, 1), found.stresses, strict=True)):
+        mesh, order = patch_mesh(nu)
+        name = f"body_{number + 1}"
+        meshes[name] = _placed(mesh, found.half_width_hertz, upward=side > 0)
+        fields[name] = _fields(of[:, order], nu, side)
+    write_vtu(path, meshes, fields)
+
+
+def _placed(mesh: BodyMesh, size: float, *, upward: bool) -> BodyMesh:
+    """The patch below y = 0 in its size; turned over, with the triangles' sense, for body 2."""
+    if not upward:
+        return BodyMesh(mesh.points * size, mesh.triangles, {})
+    points = mesh.points * np.array([[size], [-size]])
+    return BodyMesh(points, mesh.triangles[[0, 2, 1, 5, 4, 3]], {})
+
+
+def _fields(of: Array, poisson: float, side: int) -> dict[str, Array]:
+    """Stresses by name, MPa; `side` is the sense of the depth along y."""
+    xx, yy, xy = of
+    return {
+        "stress_xx_MPa": _MPA * xx,
+        "stress_yy_MPa": _MPA * yy,
+        "stress_zz_MPa": _MPA * poisson * (xx + yy),
+        "stress_xy_MPa": side * _MPA * xy,
+        "von_mises_MPa": _MPA * stress.von_mises((xx, yy, xy), poisson),
+        "tau_max_MPa": _MPA * stress.shear_in_plane((xx, yy, xy)),
+        "tau_any_plane_MPa": _MPA * shear_any_plane((xx, yy, xy), poisson),
+    }

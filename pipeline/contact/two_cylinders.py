@@ -113,8 +113,8 @@ class LineContact:
 class FiniteElementContact:
     """The same by finite elements, with its error bar (relative), size and residual.
 
-    stress (3, m) Pa of body 1 at the points of the finer template, whose unit of length is
-    half_width_hertz (m).
+    stresses (3, m) Pa of body 1 and 2 at the points of each one's finer template, along the
+    surface and into the depth; half_width_hertz (m) is the unit of length there.
     """
 
     figures: LineContact
@@ -122,7 +122,7 @@ class FiniteElementContact:
     dofs: int
     residual: float
     half_width_hertz: float
-    stress: Array
+    stresses: tuple[Array, Array]
 
 
 @dataclass(frozen=True)
@@ -286,16 +286,20 @@ def _solved(pair: TwoCylinders, elements: int) -> FiniteElementContact:
     patches = tuple(contact_patch(body.poisson, elements) for body in (pair.body_1, pair.body_2))
     dofs = patches[0].dofs + patches[1].dofs
     if half_width == 0:
-        nothing = np.zeros((3, patches[0].points.shape[1]))
-        return FiniteElementContact(LineContact(*[0.0] * 7), 0.0, dofs, 0.0, 0.0, nothing)
+        nothing = tuple(np.zeros((3, patch.points.shape[1])) for patch in patches)
+        idle = LineContact(*[0.0] * 7)
+        return FiniteElementContact(idle, 0.0, dofs, 0.0, 0.0, (nothing[0], nothing[1]))
     contacts = _pressures(pair, (patches[0], patches[1]), half_width)
-    field = patches[0].stress @ contacts.pressure[0]
+    field, other = (patch.stress @ contacts.pressure[0] for patch in patches)
     nu = pair.body_1.poisson
     peaks = patches[0].peaks
     if pair.friction > 0:
         sliding = tangential_patch(nu, elements)
         field = field + pair.friction * (sliding.stress @ contacts.pressure[0])
         peaks = sliding.peaks
+        # What drags one body forward drags the other back.
+        dragged = tangential_patch(pair.body_2.poisson, elements)
+        other = other - pair.friction * (dragged.stress @ contacts.pressure[0])
     shear, shear_at = peaks(stress.shear_in_plane(field)[:, None])
     mises, mises_at = peaks(stress.von_mises(field, nu)[:, None])
     figures = LineContact(
@@ -308,7 +312,8 @@ def _solved(pair: TwoCylinders, elements: int) -> FiniteElementContact:
         shear_any_plane=max(float(shear[0]), _beyond(field, nu)) * p0,
     )
     residual = max(contacts.residual_equilibrium[0], contacts.residual_complementarity[0])
-    return FiniteElementContact(figures, 0.0, dofs, float(residual), half_width, field * p0)
+    stresses = (field * p0, other * p0)
+    return FiniteElementContact(figures, 0.0, dofs, float(residual), half_width, stresses)
 
 
 def _beyond(field: Array, poisson: float) -> float:
