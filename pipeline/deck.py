@@ -12,12 +12,8 @@ from meshes.deck import DeckBody, write_deck
 from pipeline import results
 from pipeline.contact.pair import ContactPair
 from pipeline.contact.pair_certificate import SolvedPair, solve_pair
-from pipeline.contact.pressure import PressureShapes
-from pipeline.contact.surface import knots_of, normal_loads
 from pipeline.cycle import contact_pair
 from pipeline.inspection import nominal
-
-_WINDOW = 1.4  # half-widths, that of the solution itself
 
 
 def force_at(cycle: results.Table, load_case: str, theta: float) -> float:
@@ -41,16 +37,11 @@ def force_at(cycle: results.Table, load_case: str, theta: float) -> float:
 
 def nodal_forces(pair: ContactPair, solved: SolvedPair) -> tuple[Array, Array]:
     """Forces (2, nodes), N, that the contact pressure puts on the nodes of cam and roller."""
-    reach = _WINDOW * solved.half_width_hertz
-    cam = solved.sides[0]
-    shapes = PressureShapes(knots_of(cam.body.mesh, cam.surface, solved.frame, reach))
     on_cam, on_roller = (
-        normal_loads(side.body.mesh, side.surface, solved.frame, shapes)
-        @ solved.solution.pressure
-        * pair.width
-        for side in solved.sides
+        pair.width * side.body.surface_forces(moved, side.surface)
+        for side, moved in zip(solved.sides, solved.solution.displacements, strict=True)
     )
-    return -on_cam, on_roller
+    return on_cam, on_roller
 
 
 def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> None:

@@ -135,6 +135,15 @@ class ElasticBody:
         """The body as seen from some of its nodes."""
         return CondensedBody(self, nodes)
 
+    def surface_forces(self, displacement: Array, boundary: str) -> Array:
+        """Forces (2, nodes), N/m, that act on a boundary where the body is displaced so."""
+        flat = np.zeros(self.basis.N)
+        flat[self.dofs] = displacement
+        nodes = self.mesh.boundary_nodes(boundary)
+        forces = np.zeros_like(displacement)
+        forces[:, nodes] = (self.stiffness[self.dofs[:, nodes].ravel()] @ flat).reshape(2, -1)
+        return forces
+
     def reaction(self, displacement: Array) -> Array:
         """Resultant force (2,) of what holds the body on the body, N/m."""
         flat = np.zeros(self.basis.N)
