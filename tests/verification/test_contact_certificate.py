@@ -13,8 +13,10 @@ from pipeline.contact import hertz
 from pipeline.contact.certificate import ContactSide, solve_contact
 from pipeline.contact.convergence import converged
 from pipeline.contact.elastic_body import ElasticBody, lame_parameters
+from pipeline.contact.pair import Elastic
 from pipeline.contact.pressure import PressureShapes
 from pipeline.contact.surface import ContactFrame
+from pipeline.contact.two_cylinders import TwoCylinders, finite_elements
 
 E, NU = 210e9, 0.3
 UP = ContactFrame(np.zeros(2), np.array([0.0, 1.0]))
@@ -223,6 +225,29 @@ def test_unlike_materials_do_not_lock(ratio, poisson):
     )
     found = solve_contact(sides, UP, twice_the_circle, load, a)
     np.testing.assert_allclose([found.p0 / p0, found.half_width / a], 1, rtol=5e-3)
+
+
+@pytest.mark.parametrize("a_over_r", [0.05, 0.2, 0.25])
+def test_error_bar_of_flat_bodies_covers_what_discs_do(a_over_r):
+    # Up to the half contact angle of 15 deg beyond which the flat bodies are refused.
+    a = a_over_r * RADIUS
+    modulus = hertz.contact_modulus(E, NU, E, NU)
+    load = np.pi * modulus * a**2 / (4 * RADIUS / 2)
+    sides = tuple(
+        ContactSide(ElasticBody(disc(RADIUS, s * 0.5 * np.pi, a, 8, 0.0), E, NU, "far"), "rim")
+        for s in (1, -1)
+    )
+    full = solve_contact(sides, UP, twice_the_circle, load, a)
+    steel = Elastic(E, NU)
+    flat = finite_elements(TwoCylinders(RADIUS, RADIUS, steel, steel, load))
+    shear = flat.figures.tau_max + hertz.disc_correction(load, RADIUS)
+    for found, exact in (
+        (flat.figures.p0, full.p0),
+        (flat.figures.half_width, full.half_width),
+        (shear, full.tau_max),
+    ):
+        assert abs(found / exact - 1) < flat.error_bar
+    assert flat.error_bar < 5e-3 + 0.5 * a_over_r**2
 
 
 def test_stiffness_is_that_of_the_library_form():
