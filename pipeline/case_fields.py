@@ -377,6 +377,12 @@ class Follower(Section):
     source: Text = ""
 
 
+def _no_press_fit(clearance: float) -> float:
+    if clearance < 0:
+        raise refusal(">= 0 mm: a press fit cannot slide")
+    return clearance
+
+
 class Guide(Section):
     """One guide of the stem; its limits hold for dry running unless the source says more."""
 
@@ -386,7 +392,9 @@ class Guide(Section):
     friction_min: Annotated[float, In(at_least=0, below=2)] | None = None
     friction_max: Annotated[float, In(at_least=0, below=2)] | None = None
     lubrication: Literal["dry", "greased_once", "regularly_greased", "flooded"] | None = None
-    clearance: Annotated[float, In("mm", at_least=0, at_most=100)] = 0.0
+    clearance: Annotated[
+        float, In("mm", at_least=-100, at_most=100), AfterValidator(_no_press_fit)
+    ] = 0.0
     material: Name
     pressure_limit: Pressure | None = None
     pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e6)] | None = None

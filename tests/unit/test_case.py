@@ -246,3 +246,11 @@ def test_template_is_a_case() -> None:
     assert isinstance(case, Case)
     with pytest.raises(InputError):
         template("../demo")
+
+
+def test_a_press_fit_of_the_stem_is_refused_with_the_reason() -> None:
+    """A clearance of zero still slides."""
+    fit = GX120.replace('clearance = "0.05 mm"', 'clearance = "0 mm"', 1)
+    assert parse_case(fit).guides.a.clearance == 0.0
+    tight = GX120.replace('clearance = "0.05 mm"', 'clearance = "-0.001 mm"', 1)
+    assert "guides.a.clearance = -0.001 mm, must be >= 0 mm: a press fit" in refused(tight)
