@@ -188,3 +188,13 @@ def junit(records: Iterable[Record], name: str, fail_on: str) -> str:
             ET.SubElement(case, "system-out").text = text + (f"; {waiver}" if waiver else "")
     ET.indent(suite)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suite, "unicode") + "\n"
+
+
+def consistency_line(finding: Mapping[str, Any]) -> str:
+    """An input and what the other inputs imply for it."""
+    share = finding["difference_percent"]
+    off = "beyond bounds" if share is None else f"{share:+.1f} %"
+    words = f"{finding['title']}: given {finding['given']:.4g}, implied {finding['implied']:.4g}"
+    unit = "" if finding["unit"] == "-" else f" {finding['unit']}"
+    mark = "; MORE THAN 10 % APART" if finding["flagged"] else ""
+    return f"consistency, {finding['load_case']}: {words}{unit} ({off}){mark}"

@@ -509,7 +509,7 @@ def _progress() -> Iterator[Progress]:
 
 def _show(document: dict[str, Any], folder: Path | None) -> None:
     """Checks by utilisation, what else is to be known, then the verdict and the report's place."""
-    from pipeline.check_command import remarks, table
+    from pipeline.check_command import consistency_line, remarks, table
 
     _out.print(table(document["checks"]))
     for line in remarks(document["checks"]):
@@ -529,6 +529,8 @@ def _show(document: dict[str, Any], folder: Path | None) -> None:
             _out.print(document["statement"], markup=False)
     if document["binding"]:
         _out.print(f"binding: {', '.join(document['binding'])}", markup=False)
+    for finding in document.get("consistency", ()):
+        _out.print(consistency_line(finding), markup=False)
     if folder is not None:
         _out.print(f"report: {folder / '8_report.html'}", markup=False)
 

@@ -268,6 +268,7 @@ def read_verdict(path: Path) -> dict[str, Any]:
         "trials": summary["trials"],
         "statement": summary.get("statement", ""),
         "headline": summary["headline"],
+        "consistency": summary.get("consistency") or [],
         "checks": [dict(record) for record in checks],
     }
 

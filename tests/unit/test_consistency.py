@@ -69,11 +69,11 @@ def test_bad_speeds_are_refused():
 
 
 def test_the_line_on_the_screen_tells_both_values_and_the_flag():
-    from pipeline.cli import _consistency_line
+    from pipeline.check_command import consistency_line
 
-    line = _consistency_line({"load_case": "idle"} | finding(2.0, 1.5).as_record())
+    line = consistency_line({"load_case": "idle"} | finding(2.0, 1.5).as_record())
     assert line == "consistency, idle: x: given 2, implied 1.5 J (-25.0 %); MORE THAN 10 % APART"
-    bare = _consistency_line({"load_case": "idle"} | finding(0.0, 1.0).as_record())
+    bare = consistency_line({"load_case": "idle"} | finding(0.0, 1.0).as_record())
     assert "(beyond bounds); MORE" in bare
-    calm = _consistency_line({"load_case": "idle"} | finding(2.0, 2.1).as_record())
+    calm = consistency_line({"load_case": "idle"} | finding(2.0, 2.1).as_record())
     assert calm.endswith("(+5.0 %)")
