@@ -117,6 +117,13 @@ class Case(Section):
             raise _first_error(error, "solver") from None
         return self.model_copy(update={"solver": solver})
 
+    def at(self, load_case: str) -> Case:
+        """The case as one of its load cases has it: with the preload of that state."""
+        own = next(state.preload for state in self.load_cases if state.name == load_case)
+        if own is None:
+            return self
+        return self.model_copy(update={"spring": self.spring.model_copy(update={"preload": own})})
+
     def path(self, name: str) -> Path:
         """Where an included file lies; `name` as the case file has it."""
         if self._folder is None:
@@ -249,7 +256,14 @@ def _check_road(case: Case) -> None:
         )
     if case.engine is not None and not case.load_cases[0].speed > 0:
         raise InputError("load_case[0].speed", "0 rpm", "> 0 rpm: its torque designs the cam")
+    share, constrained = case.mechanism.compensation, case.smoothing.kind == "constrained"
+    if share != 1.0 and (case.engine is None or constrained):
+        limit = "1 with a lift" if case.engine is None else '1 with smoothing.kind = "constrained"'
+        raise InputError("mechanism.compensation", share, limit)
     for k, load_case in enumerate(case.load_cases):
+        if constrained and load_case.preload is not None:
+            limit = 'left out with smoothing.kind = "constrained", which demands one spring'
+            raise InputError(f"load_case[{k}].preload", load_case.preload, limit)
         if case.engine is None and load_case.torque is not None:
             raise InputError(f"load_case[{k}].torque", load_case.torque, "left out with a lift")
 

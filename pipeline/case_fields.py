@@ -225,9 +225,13 @@ class Cylinder(Section):
 
 
 class Mechanism(Section):
-    """The drive between crank and cam: crank turns per cam turn."""
+    """The drive between crank and cam: crank turns per cam turn.
+
+    compensation is the share of the engine's torque that the cam is cut to take.
+    """
 
     gear_ratio: Annotated[float, In(above=0, at_most=100)] = 2.0
+    compensation: Annotated[float, In(above=0, at_most=1)] = 1.0
 
 
 class SpringDesign(Section):
@@ -585,10 +589,12 @@ class LoadCase(Section):
 
     At speed 0 the cam stands or creeps: springs and friction act, inertia does not. The ripple
     counts with its weight; at 0 the case only loads the cam and no reduction is asked for.
+    A preload of its own loads the cam that was cut for spring.preload.
     """
 
     name: Name
     speed: Annotated[float, In("rpm", at_least=0, below=20_000)]
+    preload: Preload | None = None
     torque: FileName | None = None
     ripple_weight: Annotated[float, In(at_least=0, at_most=1000)] = 1.0
     source: Text = ""

@@ -169,9 +169,17 @@ def applied(case: Case, corner: Corner) -> Case:
     """The case at a corner of its tolerances; the contour is not the case's to change."""
     spring, guides = case.spring, case.guides
     # A cam that stands proud by some hundredths presses the spring by as much more.
-    preload = spring.preload * corner.preload + spring.rate * corner.rate * corner.profile
+    more = spring.rate * corner.rate * corner.profile
+    states = tuple(
+        state
+        if state.preload is None
+        else state.model_copy(update={"preload": state.preload * corner.preload + more})
+        for state in case.load_cases
+    )
+    preload = spring.preload * corner.preload + more
     return case.model_copy(
         update={
+            "load_cases": states,
             "spring": spring.model_copy(
                 update={"rate": spring.rate * corner.rate, "preload": preload}
             ),

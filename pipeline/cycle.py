@@ -130,7 +130,8 @@ def turn(
     ratio = case.mechanism.gear_ratio
     given = next(state.speed for state in case.load_cases if state.name == load_case)
     speed = max(given, CREEP)
-    loads = follower_loads(contour.pitch, FollowerSystem.from_case(case), speed / ratio, theta)
+    system = FollowerSystem.from_case(case.at(load_case))
+    loads = follower_loads(contour.pitch, system, speed / ratio, theta)
     before = None if torque is None else torque.without_mean().resampled(positions).total
     return Turn(
         load_case=load_case,
@@ -156,7 +157,8 @@ def finished(
     )
     # A look ahead asks nothing of the parts, and its few knots would not serve them.
     speed = given.crank_speed / case.mechanism.gear_ratio
-    parts = parts_history(case, contour, loads, guides, speed) if knots == KNOTS else None
+    state = case.at(given.load_case)
+    parts = parts_history(state, contour, loads, guides, speed) if knots == KNOTS else None
     return Cycle(
         load_case=given.load_case,
         crank_speed=given.crank_speed,

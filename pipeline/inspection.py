@@ -154,10 +154,11 @@ def _cycle(case: Case, contour: Contour, bodies: CycleBodies, given: Turn) -> Cy
     pair = contact_pair(case, contour)
     contact = road.joined(dict(road.contact_chunks(pair, bodies, given, {})))
     done = finished(case, contour, given, contact)
-    speed = given.crank_speed / case.mechanism.gear_ratio
+    state = case.at(given.load_case)
+    speed = given.crank_speed / state.mechanism.gear_ratio
     force = given.loads.normal_force
     return replace(
-        done, rolling=rolling_history(case, pair, bodies, given.theta, force, contact, speed)
+        done, rolling=rolling_history(state, pair, bodies, given.theta, force, contact, speed)
     )
 
 

@@ -249,11 +249,12 @@ def _cycle(journey: Journey, number: int, contour: Contour, given: Turn) -> Cycl
         journey.progress.advance(index + 1, total)
     contact = road.joined(pieces)
     done = finished(journey.case, contour, given, contact)
-    speed = given.crank_speed / journey.case.mechanism.gear_ratio
+    state = journey.case.at(given.load_case)
+    speed = given.crank_speed / state.mechanism.gear_ratio
     force = given.loads.normal_force
     return replace(
         done,
-        rolling=rolling_history(journey.case, pair, bodies, given.theta, force, contact, speed),
+        rolling=rolling_history(state, pair, bodies, given.theta, force, contact, speed),
     )
 
 
@@ -300,7 +301,7 @@ def _crank_speed(
         torque = torques[state.name]
         study = None
         try:
-            study = study_of(case, torque, state.speed, pitch)
+            study = study_of(case.at(state.name), torque, state.speed, pitch)
         except CamError as error:  # a crank that stalls contradicts the case, not the cam
             ripple[state.name] = {"refused": str(error)}
         if study is not None:
@@ -308,7 +309,7 @@ def _crank_speed(
             ripple[state.name] = speed_record(study, radius)
             if number == 0:
                 folder.write_speed(study.columns)
-        found = consistency(case, torque, state.speed, pitch, study)
+        found = consistency(case.at(state.name), torque, state.speed, pitch, study)
         findings += [{"load_case": state.name, **one.as_record()} for one in found]
     measured = measurement_record(case)
     return {"speed": ripple or None, "consistency": findings, "measurement": measured}

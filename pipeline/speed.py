@@ -195,12 +195,13 @@ def consistency(
     theta = uniform_turn(torque.theta_crank.size)
     loads = follower_loads(pitch, system, speed / ratio, theta)
     balanced = torque.without_mean().total
+    asked = case.mechanism.compensation * balanced
     spring_torque = loads.spring_force * loads.lift_slope
     stroke = pitch.lift.stroke
     stored = stroke * (system.preload + 0.5 * system.spring_rate * stroke)
     found = [
-        ratio_finding(balanced, spring_torque, ratio),
-        energy_finding(balanced, stored),
+        ratio_finding(asked, spring_torque, ratio),
+        energy_finding(asked, stored),
     ]
     if study is not None:
         taken = -4.0 * pi * float(study.after.mechanism_torque.mean())

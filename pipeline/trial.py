@@ -91,13 +91,17 @@ def engine_torques(case: Case) -> dict[str, Torque]:
 
 
 def designed_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None) -> Lift:
-    """The lift that balances the first load case's torque, or the one the case gives."""
+    """The lift that balances the first load case's torque, or the one the case gives.
+
+    Of the torque it takes the share `mechanism.compensation`.
+    """
     if case.lift is not None:
         return given_lift(case)
     if smoother is None:
         raise ResultError("a cam that balances torque needs a smoother")
     torque = torques[case.load_cases[0].name].without_mean().total
-    target = case.mechanism.gear_ratio * smoothed(torque, smoother)
+    mechanism = case.mechanism
+    target = mechanism.compensation * mechanism.gear_ratio * smoothed(torque, smoother)
     return lift_from_torque(
         uniform_turn(target.size), target, case.spring.rate, case.spring.preload
     )

@@ -10,8 +10,7 @@ from pipeline.checks.trial import TrialEvidence, greatest, least
 
 def contact_force_margin(evidence: TrialEvidence) -> Check:
     """Least contact force beside the preload."""
-    preload = evidence.case.spring.preload
-    worst = least(evidence, lambda cycle: cycle.loads.normal_force / preload)
+    worst = least(evidence, lambda cycle: cycle.loads.normal_force / evidence.preload(cycle))
     return Check(
         id="contact_force_margin",
         title="Least contact force over preload",

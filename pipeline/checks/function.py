@@ -86,9 +86,9 @@ def friction_balance(evidence: TrialEvidence) -> Check:
     )
 
 
-def _stored(evidence: TrialEvidence) -> float:
+def _stored(evidence: TrialEvidence, cycle: Cycle) -> float:
     spring, lift = evidence.case.spring, evidence.contour.pitch.lift.highest.value
-    return float(spring.preload * lift + 0.5 * spring.rate * lift**2)
+    return float(evidence.preload(cycle) * lift + 0.5 * spring.rate * lift**2)
 
 
 def _imbalance(evidence: TrialEvidence, cycle: Cycle) -> float:
@@ -97,9 +97,9 @@ def _imbalance(evidence: TrialEvidence, cycle: Cycle) -> float:
     theta = lift.theta[:, None] + 0.5 * step * (1.0 + GAUSS_POINTS)
     s, slope, bend = (lift(theta, order) for order in (0, 1, 2))
     mass_rate = evidence.case.follower.mass * evidence.cam_speed(cycle) ** 2
-    force = spring.preload + spring.rate * s + mass_rate * bend
+    force = evidence.preload(cycle) + spring.rate * s + mass_rate * bend
     work = 0.5 * step * float(np.sum((force * slope) @ GAUSS_WEIGHTS))
-    return _relative(work, _stored(evidence))
+    return _relative(work, _stored(evidence, cycle))
 
 
 def _heat_mismatch(evidence: TrialEvidence, cycle: Cycle) -> float:
@@ -110,7 +110,7 @@ def _heat_mismatch(evidence: TrialEvidence, cycle: Cycle) -> float:
     spent = loads.cam_torque - (loads.spring_force + loads.inertia_force) * slope
     step = FULL_TURN / len(slope)
     loss, heat = step * float(np.sum(spent)), step * float(np.sum(friction * np.abs(slope)))
-    return _relative(loss - heat, max(heat, 1e-9 * _stored(evidence)))
+    return _relative(loss - heat, max(heat, 1e-9 * _stored(evidence, cycle)))
 
 
 def _relative(part: float, whole: float) -> float:

@@ -64,8 +64,10 @@ def elastic_contact(evidence: TrialEvidence) -> Check | None:
     """Least contact force with an elastic stem."""
     if not _known(evidence):
         return None
-    preload = evidence.case.spring.preload
-    worst = least(evidence, lambda cycle: _parts(cycle).elastic.contact_force / preload)
+    worst = least(
+        evidence,
+        lambda cycle: _parts(cycle).elastic.contact_force / evidence.preload(cycle),
+    )
     flights = sum(len(_parts(cycle).flights) for cycle in evidence.cycles)
     return Check(
         id="elastic_contact",

@@ -45,11 +45,11 @@ def jump_speed(evidence: TrialEvidence) -> Check:
 def contact_at_overspeed(evidence: TrialEvidence) -> Check:
     """Least contact force at the over-speed beside the preload."""
     over, note = _overspeed(evidence)
-    preload = evidence.case.spring.preload
 
     def force(cycle: Any) -> Array:
         scale = (over / cycle.crank_speed) ** 2
-        return np.asarray(cycle.loads.spring_force + scale * cycle.loads.inertia_force) / preload
+        left = cycle.loads.spring_force + scale * cycle.loads.inertia_force
+        return np.asarray(left / evidence.preload(cycle))
 
     worst = least(evidence, force)
     return Check(

@@ -141,7 +141,8 @@ def _check(
     if spring is None:
         return _unknown(id, title)
     travel = evidence.contour.pitch.lift.highest.value
-    preload = case.spring.preload * (1.0 + case.spring.preload_tolerance)
+    greatest = max(evidence.preload(cycle) for cycle in evidence.cycles)
+    preload = greatest * (1.0 + case.spring.preload_tolerance)
     rate = spring.rate * (1.0 + case.spring.rate_tolerance)
     return Check(
         id=id,

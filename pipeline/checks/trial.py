@@ -43,6 +43,12 @@ class TrialEvidence:
         """Cam speed of a load case, rad/s."""
         return float(cycle.crank_speed / self.case.mechanism.gear_ratio)
 
+    def preload(self, cycle: Cycle) -> float:
+        """Preload of the spring in a load case, N."""
+        states = getattr(self.case, "load_cases", ())
+        own = [state.preload for state in states if state.name == cycle.load_case]
+        return float(self.case.spring.preload if own in ([], [None]) else own[0])
+
     def limit(self, name: str, default: float | None = None) -> float | None:
         """A limit of the case in SI; the default when the case has no such limit."""
         value = getattr(self.case.limits, name, default)
