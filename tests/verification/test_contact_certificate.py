@@ -106,8 +106,8 @@ def test_two_steel_cylinders_at_every_mesh_position(k):
     # Gate 0.5 % at h = a/8, the contact pushed through one facet.
     a, p0, load = hertz_of_the_discs()
     found = two_discs(phase=k / 8, other_phase=0.37)
-    np.testing.assert_allclose(found.p0, p0, rtol=1e-3)
-    np.testing.assert_allclose(found.half_width, a, rtol=2e-3)
+    np.testing.assert_allclose(found.p0, p0, rtol=5e-4)
+    np.testing.assert_allclose(found.half_width, a, rtol=1e-3)
     shear = hertz.SHEAR_MAX * p0 + hertz.disc_correction(load, RADIUS)
     np.testing.assert_allclose(found.tau_max, shear, rtol=2e-3)
     np.testing.assert_allclose(found.tau_depth, hertz.SHEAR_MAX_DEPTH * a, atol=0.05 * a)
@@ -176,7 +176,8 @@ def test_turning_the_whole_set_up_changes_nothing():
 
 def test_swapping_the_side_that_carries_the_knots_changes_little():
     one, other = (two_discs(8, 0.25, 0.37, swapped=s) for s in (False, True))
-    np.testing.assert_allclose(other.p0, one.p0, rtol=2e-4)
+    for name in ("p0", "half_width", "tau_max", "von_mises"):
+        np.testing.assert_allclose(getattr(other, name), getattr(one, name), rtol=1e-4)
 
 
 def test_more_load_makes_a_wider_contact_and_a_higher_pressure_as_the_root():
