@@ -1,13 +1,16 @@
 """Sparse symmetric positive definite matrices, factored once and solved for many loads.
 
-SciPy's SuperLU does it everywhere; CHOLMOD, through cvxopt, where that is installed and not
-switched off by ``CAMWRIGHT_SOLVER=scipy``. The answers are the same to round-off.
+SciPy's SuperLU does it everywhere; CHOLMOD, through cvxopt, or Pardiso, through pypardiso, where
+one of them is installed and not switched off by ``CAMWRIGHT_SOLVER=scipy``. The answers are the
+same to round-off.
 """
 
 from __future__ import annotations
 
+import importlib
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -22,26 +25,31 @@ from geometry.errors import ContactError
 # Legitimate for such a matrix, and several times faster than pivoting with COLAMD.
 _SYMMETRIC: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
+_POSITIVE_DEFINITE = 2  # Pardiso's number for such a real matrix
+
 
 def back_end() -> str:
-    """Which library factors: CHOLMOD where it is installed and not switched off, else SciPy."""
+    """Which library factors: CHOLMOD or Pardiso where installed and not switched off, or SciPy."""
     if os.environ.get("CAMWRIGHT_SOLVER") != "scipy":
-        try:
-            import cvxopt.cholmod  # noqa: F401
-        except ImportError:
-            pass
-        else:
-            return "cholmod"
+        for name, module in (("cholmod", "cvxopt.cholmod"), ("pardiso", "pypardiso")):
+            with suppress(ImportError):
+                importlib.import_module(module)
+                return name
     return "scipy"
 
 
 def factorised(matrix: Any) -> Callable[[Array], Array]:
     """Solver of a sparse symmetric positive definite matrix for right-hand sides (n, k)."""
-    if back_end() == "cholmod":
+    chosen = back_end()
+    if chosen == "cholmod":
         from cvxopt import cholmod, spmatrix
         from cvxopt import matrix as dense
 
         return _by_cholmod(sparse.csc_array(matrix), cholmod, spmatrix, dense)
+    if chosen == "pardiso":
+        from pypardiso import PyPardisoSolver
+
+        return _by_pardiso(matrix, PyPardisoSolver(mtype=_POSITIVE_DEFINITE))
     factor = splu(sparse.csc_matrix(matrix), permc_spec="MMD_AT_PLUS_A", **_SYMMETRIC)
     return factor.solve
 
@@ -59,6 +67,17 @@ def _by_cholmod(matrix: Any, cholmod: Any, spmatrix: Any, dense: Any) -> Callabl
         values = dense(np.asfortranarray(right, dtype=float))
         cholmod.solve(factor, values)
         return np.array(values).reshape(right.shape, order="F")
+
+    return solve
+
+
+def _by_pardiso(matrix: Any, solver: Any) -> Callable[[Array], Array]:
+    upper = sparse.csr_matrix(sparse.triu(matrix, format="csr"))
+    upper.sort_indices()
+    solver.factorize(upper)
+
+    def solve(right: Array) -> Array:
+        return np.asarray(solver.solve(upper, np.asarray(right, dtype=float))).reshape(right.shape)
 
     return solve
 

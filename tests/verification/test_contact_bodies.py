@@ -12,9 +12,9 @@ from geometry.pitch_curve import PitchCurve
 from meshes.body import roller_mesh
 from meshes.sizing import Sizing
 from pipeline import cache
+from pipeline.contact import factor
 from pipeline.contact.bodies import LoadedBody
 from pipeline.contact.elastic_body import ElasticBody
-from pipeline.contact.factor import factorised
 from pipeline.contact.pair import ContactPair, CycleBodies, Elastic, pair_history
 from pipeline.contact.pair_certificate import solve_pair
 from pipeline.contact.pressure import PressureShapes
@@ -128,15 +128,19 @@ def test_superposed_field_is_that_of_the_load_itself():
     np.testing.assert_allclose(moved[:, away], direct[:, away, 0], atol=1e-2 * size)
 
 
-def test_a_faster_solver_gives_the_same_answers(monkeypatch):
-    pytest.importorskip("cvxopt", reason="optional back end")
+@pytest.mark.parametrize(("module", "name"), [("cvxopt", "cholmod"), ("pypardiso", "pardiso")])
+def test_a_faster_solver_gives_the_same_answers(module, name, monkeypatch):
+    pytest.importorskip(module, reason="optional back end", exc_type=ImportError)
+    monkeypatch.setattr(factor, "back_end", lambda: name)
     mesh = roller_mesh(1.0, 0.3, 0.0, Sizing(far_size=0.3))
     body = ElasticBody(mesh, 1.0, 0.3, "hub")
     matrix = body.stiffness[body.free_dofs][:, body.free_dofs]
     right = np.random.default_rng(0).normal(size=(matrix.shape[0], 4))
-    fast = factorised(matrix)(right)
+    fast = factor.factorised(matrix)(right)
+    monkeypatch.undo()
     monkeypatch.setenv("CAMWRIGHT_SOLVER", "scipy")
-    np.testing.assert_allclose(fast, factorised(matrix)(right), rtol=1e-9, atol=1e-9)
+    assert factor.back_end() == "scipy"
+    np.testing.assert_allclose(fast, factor.factorised(matrix)(right), rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("force", [1e5, 5e6])
