@@ -309,7 +309,10 @@ def _crank_speed(
             ripple[state.name] = speed_record(study, radius)
             if number == 0:
                 folder.write_speed(study.columns)
-        found = consistency(case.at(state.name), torque, state.speed, pitch, study)
+        asked = None
+        if final.smoother is not None:
+            asked = road.asked_torque(case, torque, final.smoother)
+        found = consistency(case.at(state.name), torque, state.speed, pitch, study, asked)
         findings += [{"load_case": state.name, **one.as_record()} for one in found]
     measured = measurement_record(case)
     return {"speed": ripple or None, "consistency": findings, "measurement": measured}

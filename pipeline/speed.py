@@ -188,14 +188,24 @@ def speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:
 
 
 def consistency(
-    case: Case, torque: Torque, speed: float, pitch: PitchCurve, study: SpeedStudy | None
+    case: Case,
+    torque: Torque,
+    speed: float,
+    pitch: PitchCurve,
+    study: SpeedStudy | None,
+    asked: Array | None = None,
 ) -> tuple[Finding, ...]:
-    """What the inputs of a case say of one another."""
+    """What the inputs of a case say of one another.
+
+    `asked` (n,) is the crank torque the cam was drawn for, N m about its mean; without it, the
+    share of the engine's own that the case asks for.
+    """
     ratio, system = case.mechanism.gear_ratio, FollowerSystem.from_case(case)
     theta = uniform_turn(torque.theta_crank.size)
     loads = follower_loads(pitch, system, speed / ratio, theta)
     balanced = torque.without_mean().total
-    asked = case.mechanism.compensation * balanced
+    if asked is None:
+        asked = np.asarray(case.mechanism.compensation * balanced)
     spring_torque = loads.spring_force * loads.lift_slope
     stroke = pitch.lift.stroke
     stored = stroke * (system.preload + 0.5 * system.spring_rate * stroke)

@@ -99,12 +99,17 @@ def designed_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother 
         return given_lift(case)
     if smoother is None:
         raise ResultError("a cam that balances torque needs a smoother")
-    torque = torques[case.load_cases[0].name].without_mean().total
-    mechanism = case.mechanism
-    target = mechanism.compensation * mechanism.gear_ratio * smoothed(torque, smoother)
+    asked = asked_torque(case, torques[case.load_cases[0].name], smoother)
+    target = case.mechanism.gear_ratio * asked
     return lift_from_torque(
         uniform_turn(target.size), target, case.spring.rate, case.spring.preload
     )
+
+
+def asked_torque(case: Case, torque: Torque, smoother: Smoother) -> Array:
+    """What of a crank torque the cam is asked to take, about its mean, N m."""
+    share = smoothed(torque.without_mean().total, smoother)
+    return np.asarray(case.mechanism.compensation * share)
 
 
 def cam_contour(case: Case, lift: Lift) -> Contour:

@@ -97,7 +97,7 @@ def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: fl
     """Torque at the cam over the torque at the crank that it balances, against the gear ratio.
 
     Speeds stand as 1 to the gear ratio, so for equal power at every angle the cam's torque must be
-    that of the crank times the ratio. What smoothing took away shows here too.
+    that of the crank times the ratio.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: fl
     crank, cam = finite("crank_torque", crank_torque), finite("cam_torque", cam_torque)
     return Finding(
         "power",
-        "power balance crank to cam, torque ratio with what smoothing took",
+        "power balance crank to cam, torque ratio",
         gear_ratio,
         float(cam @ crank) / float(crank @ crank),
         "-",
