@@ -28,7 +28,6 @@ from pipeline.contact.two_cylinders import (
     finite_elements,
     is_conforming,
     patch_mesh,
-    shear_any_plane,
 )
 
 _MM, _MPA = 1e3, 1e-6
@@ -275,5 +274,5 @@ def _fields(of: Array, poisson: float, side: int) -> dict[str, Array]:
         "stress_xy_MPa": side * _MPA * xy,
         "von_mises_MPa": _MPA * stress.von_mises((xx, yy, xy), poisson),
         "tau_max_MPa": _MPA * stress.shear_in_plane((xx, yy, xy)),
-        "tau_any_plane_MPa": _MPA * shear_any_plane((xx, yy, xy), poisson),
+        "tau_any_plane_MPa": _MPA * stress.shear_any_plane((xx, yy, xy), poisson),
     }

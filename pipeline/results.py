@@ -98,7 +98,7 @@ CYCLE = _columns(
     "elastic_contact_force? [N]; elastic_deflection? [um]; bore_pressure? [MPa];"
     "key_pressure? [MPa]; shaft_bearing_1? [N]; shaft_bearing_2? [N]; spring_stress? [MPa];"
     "spring_surge_force? [N]; pin_stress? [MPa];"
-    "ring_stress_range? [MPa]; ring_correction?~ [percent]"
+    "ring_stress_range? [MPa]; ring_correction?~ [percent]; tau_any_plane?~ [MPa]"
 )
 
 

@@ -190,7 +190,12 @@ def joined(chunks: Mapping[int, Mapping[str, Array]]) -> ContactHistory:
     """One history from its pieces."""
     parts = [chunks[k] for k in sorted(chunks)]
     whole = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    return ContactHistory(**whole, method=TWO_SCALE)
+    refused = int(np.isnan(whole["p0"]).sum())
+    note = (
+        f"; no answer at {refused} angles, where the half-width is more than a tenth of the "
+        "relative radius and the surfaces are not locally flat"
+    )
+    return ContactHistory(**whole, method=TWO_SCALE + (note if refused else ""))
 
 
 def unknown_contact(given: Turn) -> ContactHistory:

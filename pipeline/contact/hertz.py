@@ -14,7 +14,7 @@ from scipy.optimize import minimize_scalar
 
 from geometry.arrays import Array, finite, positive
 from geometry.errors import InputError
-from pipeline.contact.stress import von_mises
+from pipeline.contact.stress import shear_any_plane, von_mises
 
 # In-plane maximum shear under a frictionless line contact (Johnson 1985, sec. 4.2(a)),
 # the root of the axis field carried to more digits than are printed there.
@@ -169,6 +169,13 @@ def curved_surface_stress(x: ArrayLike, depth: ArrayLike) -> Array:
     difference = -(slope.real - z * bend.imag) / np.pi
     shear = -(slope.imag + z * bend.real) / (2 * np.pi)
     return np.stack([(total - difference) / 2, (total + difference) / 2, shear])
+
+
+@lru_cache(maxsize=32)
+def shear_any_plane_peak(poisson: float) -> float:
+    """Largest shear on any plane under a frictionless contact over p0, on the axis."""
+    depth = np.linspace(0.0, 2.0, 2001)
+    return float(shear_any_plane(subsurface_stress(0.0, depth), poisson).max())
 
 
 def disc_correction(line_load: ArrayLike, radius: ArrayLike) -> Array:

@@ -16,6 +16,7 @@ class ContactHistory:
 
     line_load N/m; relative_radius m; p0_hertz, p0 Pa; half_width_hertz, half_width m; tau_max
     (largest shear in the plane) and von_mises in the cam, Pa, with their depths, m;
+    tau_any_plane the largest shear on any plane, more than tau_max for nu below about 0.25;
     residual_equilibrium, residual_complementarity, relative; pressure (n, k) Pa at the places
     pressure_xi (n, k) m along the contact's tangent, straight lines between them; method in words.
     """
@@ -27,6 +28,7 @@ class ContactHistory:
     p0: Array
     half_width: Array
     tau_max: Array
+    tau_any_plane: Array
     tau_depth: Array
     von_mises: Array
     von_mises_depth: Array

@@ -136,6 +136,7 @@ def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) ->
         p0=p0,
         half_width=half_width,
         tau_max=hertz.SHEAR_MAX * p0,
+        tau_any_plane=hertz.shear_any_plane_peak(pair.cam.poisson) * p0,
         tau_depth=hertz.SHEAR_MAX_DEPTH * half_width,
         von_mises=mises * p0,
         von_mises_depth=depth * half_width,
@@ -170,7 +171,8 @@ def pair_history(
     results = {
         name: np.zeros(theta.size)
         for name in (
-            "p0", "half_width", "tau_max", "tau_depth", "von_mises", "von_mises_depth",
+            "p0", "half_width", "tau_max", "tau_any_plane", "tau_depth",
+            "von_mises", "von_mises_depth",
             "residual_equilibrium", "residual_complementarity",
         )
     }  # fmt: skip
@@ -225,10 +227,12 @@ def _loaded_positions(
     total = stress_on_patch(pair, cam, theta, load, half_width, p0, contacts.pressure * p0[:, None])
     shear, shear_at = patch.peaks(stress.shear_in_plane(total))
     mises, mises_at = patch.peaks(stress.von_mises(total, pair.cam.poisson))
+    any_plane, _ = patch.peaks(stress.shear_any_plane(total, pair.cam.poisson))
     return {
         "p0": contacts.p0 * p0,
         "half_width": contacts.half_width * half_width,
         "tau_max": shear,
+        "tau_any_plane": any_plane,
         "tau_depth": shear_at[1] * half_width,
         "von_mises": mises,
         "von_mises_depth": mises_at[1] * half_width,

@@ -17,6 +17,15 @@ def shear_in_plane(stress: ArrayLike) -> Array:
     return np.hypot((xx - yy) / 2, xy)
 
 
+def shear_any_plane(field: ArrayLike, poisson: float) -> Array:
+    """Largest shear on any plane (...), of plane-strain stress (3, ...)."""
+    xx, yy, xy = np.asarray(field, dtype=float)
+    middle, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+    out = poisson * (xx + yy)
+    high, low = np.maximum(middle + radius, out), np.minimum(middle - radius, out)
+    return (high - low) / 2
+
+
 def von_mises(stress: ArrayLike, poisson: float) -> Array:
     """Von Mises stress in plane strain, ``sigma_zz = nu (sigma_xx + sigma_yy)``."""
     xx, yy, xy = np.asarray(stress, dtype=float)

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 from scipy.spatial import cKDTree
 
@@ -153,7 +152,7 @@ def closed_form(pair: TwoCylinders) -> LineContact:
     if pair.friction > 0:
         shear, shear_depth = _highest(stress.shear_in_plane, pair.friction)
         mises, mises_depth = _highest(lambda s: stress.von_mises(s, nu), pair.friction)
-    any_plane, _ = _highest(lambda s: shear_any_plane(s, nu), pair.friction)
+    any_plane, _ = _highest(lambda s: stress.shear_any_plane(s, nu), pair.friction)
     return LineContact(
         p0=p0,
         half_width=half_width,
@@ -270,15 +269,6 @@ def approach(pair: TwoCylinders, depths: tuple[float | None, float | None]) -> f
     return float(total)
 
 
-def shear_any_plane(field: ArrayLike, poisson: float) -> Array:
-    """Largest shear on any plane (...), of plane-strain stress (3, ...)."""
-    xx, yy, xy = np.asarray(field, dtype=float)
-    middle, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
-    out = poisson * (xx + yy)
-    high, low = np.maximum(middle + radius, out), np.minimum(middle - radius, out)
-    return (high - low) / 2
-
-
 def _solved(pair: TwoCylinders, elements: int) -> FiniteElementContact:
     half_width, p0 = (
         float(v)
@@ -319,7 +309,7 @@ def _solved(pair: TwoCylinders, elements: int) -> FiniteElementContact:
 
 def _beyond(field: Array, poisson: float) -> float:
     """Largest shear on any plane where it is not the one in the plane, else 0."""
-    anywhere = shear_any_plane(field, poisson)
+    anywhere = stress.shear_any_plane(field, poisson)
     k = int(anywhere.argmax())
     return float(anywhere[k]) if anywhere[k] > 1.0001 * stress.shear_in_plane(field).max() else 0.0
 

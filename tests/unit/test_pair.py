@@ -9,6 +9,7 @@ from geometry.arrays import uniform_turn
 from geometry.contour import Contour
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
+from pipeline.contact import hertz
 from pipeline.contact.pair import ContactPair, CycleBodies, Elastic, pair_history
 
 STEEL = Elastic(210e9, 0.3)
@@ -58,3 +59,14 @@ def test_too_wide_a_contact_is_not_a_number() -> None:
         assert np.isnan(getattr(found, name)[1]), name
     assert np.isnan(found.p0_difference[1])
     assert np.isfinite(found.p0_hertz[1])
+
+
+@pytest.mark.parametrize("nu", [0.1, 0.3])
+def test_shear_on_any_plane_is_told_where_it_is_larger(nu: float) -> None:
+    """Below nu of about 0.25 the largest shear turns out of the plane (Johnson 1985, sec. 4.2)."""
+    pair = round_cam(Elastic(210e9, nu))
+    bodies = CycleBodies.meshed(pair)
+    found = pair_history(pair, bodies, np.array([0.5]), np.array([800.0]))
+    by_hertz = hertz.shear_any_plane_peak(nu) * found.p0_hertz
+    np.testing.assert_allclose(found.tau_any_plane, by_hertz, rtol=1e-2)  # the disc adds 0.7 %
+    assert (found.tau_any_plane > 1.001 * found.tau_max).all() == (nu < 0.25)
