@@ -100,7 +100,8 @@ class Cycle(Turn):
         if self.torque_before is not None and self.residual_torque is not None:
             found |= {"torque_before": self.torque_before, "torque_after": self.residual_torque}
         # Another plane bears more shear only where the Poisson ratio is small: then it is told.
-        if (contact.tau_any_plane > 1.001 * contact.tau_max).any():
+        # The peaks of the two fields are fitted apart and agree within 0.3 % where they are one.
+        if (contact.tau_any_plane > 1.01 * contact.tau_max).any():
             found["tau_any_plane"] = contact.tau_any_plane
         found |= {} if self.rolling is None else self.rolling.columns()
         return found | ({} if self.parts is None else dict(self.parts.columns()))
