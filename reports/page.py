@@ -8,7 +8,7 @@ import os
 import re
 import tempfile
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -146,13 +146,20 @@ def _case(run: Run) -> dict[str, Any]:
         raise ResultError(f"{run.path / 'case.toml'}: {error}") from None
 
 
+def titled(text: str, checks: Sequence[Mapping[str, Any]]) -> str:
+    """A statement with the checks it names by their ids named by their titles."""
+    titles = {str(check["id"]): f"\u201c{check['title']}\u201d" for check in checks}
+    return re.sub(r"\b\w+\b", lambda word: titles.get(word.group(), word.group()), text)
+
+
 def context(
     run: Run, case: Mapping[str, Any], turn: Turn, groups: list[tuple[str, list[Drawn]]],
     pictures: list[Picture],
 ) -> dict[str, Any]:  # fmt: skip
     """Everything the template prints."""
     summary, final = run.summary, run.final
-    headline, statement = summary["headline"], str(summary.get("statement") or "")
+    headline = summary["headline"]
+    statement = titled(str(summary.get("statement") or ""), final.checks)
     return {
         "case": case,
         "name": str(case.get("name") or summary["case"]),

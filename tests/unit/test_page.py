@@ -228,3 +228,13 @@ def test_a_failed_write_leaves_the_old_page(built, html, undrawn, monkeypatch):
         page.build(built.parent)
     assert built.read_text(encoding="utf-8") == html
     assert not [p for p in built.parent.iterdir() if p.name.endswith(".tmp")]
+
+
+def test_a_statement_names_checks_by_their_titles():
+    checks = [{"id": "roller_static", "title": "Static safety"}, {"id": "jump", "title": "Jump"}]
+    text = page.titled(
+        "roller_static at 2.6 of its limit; roller_statics and jump_speed stay", checks
+    )
+    assert (
+        text == "\u201cStatic safety\u201d at 2.6 of its limit; roller_statics and jump_speed stay"
+    )
