@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from geometry.contour import Contour
 from geometry.errors import CamError
 from geometry.lift import Lift
 from pipeline import trial as road
@@ -20,7 +19,7 @@ from pipeline.benchmarks import benchmarks
 from pipeline.case import Case
 from pipeline.certify import certified, positions_to_certify
 from pipeline.checks.verdict import binding, in_order, verdict
-from pipeline.contact.pair import CycleBodies
+from pipeline.contact.pair import ContactPair, CycleBodies
 from pipeline.contact.pair_certificate import solve_pair
 from pipeline.corners import governed, outcomes
 from pipeline.corners import record as corners_record
@@ -223,21 +222,25 @@ def _trial(
             road.write_mesh(folder.mesh_path(number), mesh)
     progress.stage(f"trial {number}: contact")
     with watch.stage("cycle"):
-        cycles = tuple(
-            _cycle(journey, number, contour, given) if sound
-            else finished(case, contour, given, road.unknown_contact(given))
-            for given in turns
-        )  # fmt: skip
+        if sound:
+            # One pair of meshes, factored once, serves every load case.
+            pair = contact_pair(case, contour)
+            bodies = CycleBodies.meshed(pair)
+            cycles = tuple(_cycle(journey, number, pair, bodies, given) for given in turns)
+        else:
+            cycles = tuple(
+                finished(case, contour, given, road.unknown_contact(given)) for given in turns
+            )
         _write_cycles(journey, number, cycles)
     progress.stage(f"trial {number}: checks")
     with watch.stage("checks"):
         return road.checked(case, Trial(number, smoother, why, lift, contour, cycles, mesh, ()))
 
 
-def _cycle(journey: Journey, number: int, contour: Contour, given: Turn) -> Cycle:
+def _cycle(
+    journey: Journey, number: int, pair: ContactPair, bodies: CycleBodies, given: Turn
+) -> Cycle:
     """The contact of a turn, kept piece by piece so that an interruption loses little."""
-    pair = contact_pair(journey.case, contour)
-    bodies = CycleBodies.meshed(pair)
     key = road.chunk_key(pair, given)
     known = journey.folder.load_chunks(number, given.load_case, key)
     pieces = {}
@@ -248,7 +251,7 @@ def _cycle(journey: Journey, number: int, contour: Contour, given: Turn) -> Cycl
             journey.folder.save_chunk(number, given.load_case, index, arrays, key)
         journey.progress.advance(index + 1, total)
     contact = road.joined(pieces)
-    done = finished(journey.case, contour, given, contact)
+    done = finished(journey.case, pair.contour, given, contact)
     state = journey.case.at(given.load_case)
     speed = given.crank_speed / state.mechanism.gear_ratio
     force = given.loads.normal_force

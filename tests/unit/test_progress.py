@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 
+import pytest
 from rich.console import Console
 
 from pipeline.progress import Bars, Lines, Silent
@@ -44,8 +45,9 @@ def test_bars_show_stage_and_remaining_time() -> None:
     assert "[not markup]" in text
 
 
-def test_silent_says_nothing() -> None:
+def test_silent_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
     silent = Silent()
     silent.stage("torque")
     silent.advance(1, 2)
     silent.note("text")
+    assert capsys.readouterr() == ("", "")
