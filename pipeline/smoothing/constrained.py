@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, hstack
 
 from geometry.arrays import Array, readonly, uniform_turn
-from geometry.errors import ResultError
 from geometry.lift import Lift
 from pipeline.smoothing.constraints import (
     FREED,
@@ -513,17 +512,3 @@ def _integral(values: Array) -> Array:
     order = np.arange(spectrum.shape[0]).reshape(-1, *[1] * (spectrum.ndim - 1))
     spectrum = np.divide(spectrum, 1j * order, out=np.zeros_like(spectrum), where=order > 0)
     return np.fft.irfft(spectrum, n=values.shape[0], axis=0)
-
-
-def require_feasible(design: Design) -> Design:
-    """The design, or a refusal that names the limits it passes.
-
-    Raises
-    ------
-    ResultError
-        If a limit is passed.
-    """
-    if design.feasible:
-        return design
-    over = [name for name, value in design.utilisation.items() if value > 1.0 - RESERVE + FEASIBLE]
-    raise ResultError(f"no cam was found within all limits; passed: {', '.join(sorted(over))}")
