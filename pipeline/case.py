@@ -12,28 +12,18 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from geometry.errors import InputError
 from pipeline.cards.fill import filled
-from pipeline.case_fields import (
-    Cam,
-    Camshaft,
-    Cylinder,
-    Follower,
-    Guides,
+from pipeline.case_fields import Name, Section, Text
+from pipeline.case_text import to_toml
+from pipeline.cylinder_fields import Cylinder
+from pipeline.design_fields import (
     Limits,
     LoadCase,
-    Material,
     Mechanism,
-    Name,
-    Oil,
-    Roller,
-    Section,
     Smoothing,
     Solver,
-    Spring,
-    Text,
     Tolerances,
     Waiver,
 )
-from pipeline.case_text import to_toml
 from pipeline.engine_fields import (
     KINDS,
     Crankshaft,
@@ -45,6 +35,7 @@ from pipeline.engine_fields import (
 )
 from pipeline.given_lift import motion_of
 from pipeline.lift_fields import LIFT_KINDS, GivenLift, LiftSegments, LiftTable
+from pipeline.part_fields import Cam, Camshaft, Follower, Guides, Material, Oil, Roller, Spring
 from pipeline.results import hash_inputs
 
 CASE_BYTES = 256 * 1024

@@ -11,7 +11,6 @@ from pydantic import Field, model_validator
 from geometry.errors import InputError
 from pipeline.case_fields import (
     Angle,
-    Cylinder,
     FileName,
     GasPressure,
     In,
@@ -20,8 +19,8 @@ from pipeline.case_fields import (
     Section,
     Share,
     Text,
-    TorqueTable,
 )
+from pipeline.cylinder_fields import Cylinder, TorqueTable
 
 if TYPE_CHECKING:
     from pipeline.engine.cylinder import CylinderEngine

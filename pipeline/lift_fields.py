@@ -6,7 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from pipeline.case_fields import FileName, In, Length, LiftPoint, Section
+from pipeline.case_fields import FileName, In, Length, Section
+from pipeline.cylinder_fields import LiftPoint
 
 Stroke = Annotated[float, In("mm", above=-10_000, below=10_000)]
 LawName = Literal[

@@ -9,7 +9,8 @@ import numpy as np
 
 from geometry.errors import InputError
 from pipeline.case import Case
-from pipeline.case_fields import Cylinder, LoadCase, TorqueTable
+from pipeline.cylinder_fields import Cylinder, TorqueTable
+from pipeline.design_fields import LoadCase
 from pipeline.engine.pressure_trace import (
     PressureTrace,
     cycle_statistics,

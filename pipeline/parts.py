@@ -10,7 +10,6 @@ import numpy as np
 from geometry.arrays import Array, freeze
 from geometry.contour import Contour
 from pipeline.case import Case
-from pipeline.case_fields import Guide
 from pipeline.contact.harmonics import Bush, Pin
 from pipeline.contact.pin_in_hole import peak_pressure
 from pipeline.follower.bearing_cards import read_cards
@@ -40,6 +39,7 @@ from pipeline.follower.ring import (
 )
 from pipeline.follower.spring import HelicalSpring, case_spring, surge_force
 from pipeline.follower.stem import Stem
+from pipeline.part_fields import Guide
 
 BOUNCE_TURNS = 1.0
 

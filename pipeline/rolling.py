@@ -10,7 +10,6 @@ import numpy as np
 
 from geometry.arrays import FULL_TURN, Array, freeze, uniform_turn
 from pipeline.case import Case
-from pipeline.case_fields import Oil
 from pipeline.contact.bore import BoreStress, bore_stress
 from pipeline.contact.envelope import STATIONS, Envelope, FatigueLimits, rolling_pass, swept
 from pipeline.contact.film import (
@@ -26,6 +25,7 @@ from pipeline.contact.patch_tangential import rolling_increase
 from pipeline.contact.tangential import Drag, RollingContact, ring_inertia, rolling_contact
 from pipeline.follower.forces import FollowerSystem, follower_loads
 from pipeline.follower.roller import RollerMotion, roller_motion
+from pipeline.part_fields import Oil
 
 # Of the contact angles, every so many tell what the real body adds.
 _THINNED = 4

@@ -12,7 +12,7 @@ import numpy as np
 from geometry.arrays import Array, uniform_turn
 from geometry.pitch_curve import PitchCurve
 from pipeline.case import Case
-from pipeline.case_fields import Cylinder
+from pipeline.cylinder_fields import Cylinder
 from pipeline.engine.consistency import (
     Finding,
     energy_finding,

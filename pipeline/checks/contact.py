@@ -9,7 +9,7 @@ from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest
 
 if TYPE_CHECKING:
-    from pipeline.case_fields import Material
+    from pipeline.part_fields import Material
 
 SHAKEDOWN = 4.0  # p0 / k, free rolling line contact
 FIRST_YIELD = 1.79  # p0 / Y, von Mises, line contact, nu = 0.3

@@ -26,7 +26,7 @@ from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import in_order
 
 if TYPE_CHECKING:
-    from pipeline.case_fields import Waiver
+    from pipeline.design_fields import Waiver
 
 CheckFunction = Callable[[TrialEvidence], Check | None]
 

@@ -12,8 +12,8 @@ from pipeline.checks.trial import TrialEvidence, greatest, worst_case
 from pipeline.follower.friction import NYLON_PV
 
 if TYPE_CHECKING:
-    from pipeline.case_fields import Guide
     from pipeline.cycle import Cycle
+    from pipeline.part_fields import Guide
 
 
 def bush_pressure_a(evidence: TrialEvidence) -> Check:

@@ -19,8 +19,8 @@ from pipeline.follower.bearing_cards import read_cards
 from pipeline.follower.cam_body import counter_hole, unbalance
 
 if TYPE_CHECKING:
-    from pipeline.case_fields import Guide
     from pipeline.cycle import Cycle
+    from pipeline.part_fields import Guide
     from pipeline.parts import PartsHistory
 
 WALL_OF_A_HOLE = 3e-3  # steel left around a counter-hole, m

@@ -12,9 +12,9 @@ from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest, least, worst_case
 
 if TYPE_CHECKING:
-    from pipeline.case_fields import Material
     from pipeline.contact.envelope import Envelope
     from pipeline.cycle import Cycle
+    from pipeline.part_fields import Material
 
 
 def roller_grip(evidence: TrialEvidence) -> Check:

@@ -10,13 +10,14 @@ import numpy as np
 
 from geometry.errors import InputError
 from pipeline.case import Case
-from pipeline.case_fields import Guide, LoadCase
 from pipeline.checks.contact import SHAKEDOWN
 from pipeline.checks.geometry import TOOL_ALLOWANCE
 from pipeline.checks.guides import pv_limit
 from pipeline.contact.hertz import contact_modulus
 from pipeline.cycle import contact_width
+from pipeline.design_fields import LoadCase
 from pipeline.engine.torque import Torque
+from pipeline.part_fields import Guide
 from pipeline.smoothing.constrained import Problem
 from pipeline.smoothing.constraints import LIFE_UNIT, Correction, Machine, Ratings, Scenario
 

@@ -5,10 +5,10 @@ import pytest
 from geometry.errors import InputError
 from pipeline.cards.fill import known_cards, viscosity
 from pipeline.case import parse_case
-from pipeline.case_fields import Material, Oil
 from pipeline.case_template import template
 from pipeline.checks.contact import contact_pressure
 from pipeline.checks.trial import TrialEvidence
+from pipeline.part_fields import Material, Oil
 
 
 def with_card(table, *lines):

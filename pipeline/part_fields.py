@@ -1,0 +1,238 @@
+"""The parts of a case file: spring, cam and shaft, roller, follower, guides, materials."""
+
+from __future__ import annotations
+
+from math import radians
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import AfterValidator, model_validator
+
+from pipeline import units
+from pipeline.case_fields import (
+    Angle,
+    Force,
+    In,
+    Length,
+    Mass,
+    Name,
+    Preload,
+    Pressure,
+    Rate,
+    Section,
+    Temperature,
+    Text,
+    refusal,
+)
+
+
+class SpringDesign(Section):
+    """The spring as it is wound; its strength is that of a 1 mm wire times (d/mm)^-exponent."""
+
+    wire_diameter: Length
+    mean_diameter: Length
+    coils: Annotated[float, In(at_least=1.5, at_most=1000)]
+    free_length: Length
+    end_factor: Annotated[float, In(above=0, at_most=2)] = 0.5
+    shear_modulus: Annotated[float, In("GPa", above=0, at_most=1e5)]
+    density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
+    strength_at_1mm: Pressure
+    strength_exponent: Annotated[float, In(at_least=0, below=1)]
+    treatment: Literal["plain", "peened"] = "plain"
+    source: Text = ""
+
+
+class Spring(Section):
+    """The spring that stores the engine's excess energy."""
+
+    rate: Rate
+    preload: Preload
+    travel_max: Length | None = None
+    rate_tolerance: Annotated[float, In(at_least=0, below=1)] = 0.0
+    preload_tolerance: Annotated[float, In(at_least=0, below=1)] = 0.0
+    design: SpringDesign | None = None
+    source: Text = ""
+
+
+class Keyway(Section):
+    """A keyway in the bore; the angle is that of its middle, in the cam frame."""
+
+    width: Length
+    depth: Length
+    angle: Angle = 0.0
+
+
+class Cam(Section):
+    """The cam disc; the pitch base radius is the smallest radius of the roller's centre."""
+
+    pitch_base_radius: Length
+    offset: Annotated[float, In("mm", above=-10_000, below=10_000)] = 0.0
+    width: Length
+    bore_radius: Length
+    material: Name
+    keyway: Keyway | None = None
+    roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
+    profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] | None = None
+    waviness_length: Length = 0.005
+    source: Text = ""
+
+
+class Camshaft(Section):
+    """The cam's shaft: places from its first bearing, and the gear that drives it."""
+
+    bearing_spacing: Length
+    cam_position: Annotated[float, In("mm", above=-10_000, below=10_000)]
+    gear_position: Annotated[float, In("mm", above=-10_000, below=10_000)]
+    gear_radius: Length
+    mesh_angle: Angle = radians(180.0)
+    pressure_angle: Annotated[float, In("deg", at_least=0, below=45)] = radians(20.0)
+    drag: Annotated[float, In("N m", at_least=0, at_most=1e6)] = 0.0
+    source: Text = ""
+
+
+class Bearing(Section):
+    """The roller's bearing as its maker rates it; a shipped card fills in what is left out."""
+
+    card: Name | None = None
+    name: Text
+    C: Force | None = None
+    C0: Force | None = None
+    radial_limit: Annotated[float, In("N", above=0, at_most=1e9)] | None = None
+    speed_limit: Annotated[float, In("rpm", above=0, at_most=1e6)] | None = None
+    drag_torque: Annotated[float, In("N mm", at_least=0, at_most=1e6)] | None = None
+    friction: Annotated[float, In(at_least=0, below=1)] | None = None
+    source: Text = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_card(cls, given: Any) -> Any:
+        """Fill in from the card; what the case gives itself stands."""
+        if not isinstance(given, dict) or not isinstance(given.get("card"), str):
+            return given
+        from pipeline.follower.bearing_cards import read_cards
+
+        cards = read_cards()
+        if given["card"] not in cards:
+            raise refusal(f"without card, or with one of: {', '.join(sorted(cards))}")
+        card = cards[given["card"]]
+        filled = {"name": card.name, "source": card.source}
+        for key, unit in (("C", "N"), ("C0", "N"), ("speed_limit", "rpm")):
+            filled[key] = units.format(getattr(card, key), unit)
+        return filled | given
+
+
+class Pin(Section):
+    """The pin that carries the roller: held on both sides, or on one (span to its face)."""
+
+    diameter: Length
+    span: Length
+    mounting: Literal["straddled", "overhung"] = "straddled"
+    material: Name
+    source: Text = ""
+
+
+class Oil(Section):
+    """What wets the contact of cam and roller, at the temperature it has there."""
+
+    viscosity: Annotated[float, In("mPa s", above=0, at_most=1e5)]
+    pressure_viscosity: Annotated[float, In("1/GPa", above=0, at_most=1000)]
+    source: Text = ""
+
+
+class Roller(Section):
+    """The roller on the follower; the hub radius is that of its pin or inner ring.
+
+    friction is that of the roller sliding on the cam; roughness the rms one.
+    """
+
+    radius: Length
+    width: Length
+    chamfer: Annotated[float, In("mm", at_least=0, at_most=1000)] = 0.0
+    hub_radius: Length
+    inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
+    crowned: bool = False
+    friction: Annotated[float, In(above=0, below=2)] | None = None
+    roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
+    material: Name
+    bearing: Bearing
+    pin: Pin | None = None
+
+
+class Follower(Section):
+    """The translating follower; the overhang is from guide A to the roller's centre."""
+
+    kind: Literal["roller", "flat"] = "roller"
+    mass: Mass
+    stem_diameter: Length
+    stem_length: Length | None = None
+    stem_material: Name
+    overhang_at_max_lift: Length
+    viscous_damping: Annotated[float, In("N s/m", at_least=0, at_most=1e6)] = 0.0
+    stiffness: Annotated[float, In("N/mm", above=0, at_most=1e12)] | None = None
+    damping_ratio: Annotated[float, In(at_least=0, below=1)] = 0.05
+    source: Text = ""
+
+
+def _no_press_fit(clearance: float) -> float:
+    if clearance < 0:
+        raise refusal(">= 0 mm: a press fit cannot slide")
+    return clearance
+
+
+class Guide(Section):
+    """One guide of the stem; its limits hold for dry running unless the source says more."""
+
+    length: Length
+    diameter: Length
+    friction: Annotated[float, In(at_least=0, below=2)]
+    friction_min: Annotated[float, In(at_least=0, below=2)] | None = None
+    friction_max: Annotated[float, In(at_least=0, below=2)] | None = None
+    lubrication: Literal["dry", "greased_once", "regularly_greased", "flooded"] | None = None
+    clearance: Annotated[
+        float, In("mm", at_least=-100, at_most=100), AfterValidator(_no_press_fit)
+    ] = 0.0
+    material: Name
+    pressure_limit: Pressure | None = None
+    pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e6)] | None = None
+    stiffness: Annotated[float, In("N/mm", above=0, at_most=1e9)] | None = None
+    thermal_resistance: Annotated[float, In("K/W", above=0, at_most=1e6)] | None = None
+    source: Text = ""
+
+    @model_validator(mode="after")
+    def _friction_in_order(self) -> Self:
+        low, high = self.friction_min, self.friction_max
+        if low is not None and not low <= self.friction:
+            raise refusal("of friction_min <= friction")
+        if high is not None and not self.friction <= high:
+            raise refusal("of friction <= friction_max")
+        return self
+
+
+class Guides(Section):
+    """Guide A stands next to the cam, guide B beyond it; the spacing is middle to middle."""
+
+    spacing: Length
+    ambient_temperature: Temperature = 293.15
+    a: Guide
+    b: Guide
+
+
+class Material(Section):
+    """A material card: elastic constants, strengths and where they come from."""
+
+    E: Annotated[float, In("GPa", above=0, at_most=1e5)]
+    nu: Annotated[float, In(at_least=0, below=0.5)]
+    yield_strength: Pressure
+    tensile_strength: Pressure | None = None
+    hardness: Annotated[float, In(above=0, at_most=10_000)] | None = None
+    endurance_pressure: Pressure | None = None
+    endurance_slope: Annotated[float, In(above=0, at_most=100)] | None = None
+    endurance_intercept: Annotated[float, In(above=0, at_most=1000)] | None = None
+    conductivity: Annotated[float, In("W/m/K", above=0, at_most=1e4)] | None = None
+    temperature_limit: Temperature | None = None
+    fatigue_torsion: Pressure | None = None
+    fatigue_bending: Pressure | None = None
+    case_depth: Length | None = None
+    core_yield_strength: Pressure | None = None
+    density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
+    condition: Text = ""
+    source: Text
