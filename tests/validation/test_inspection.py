@@ -153,7 +153,8 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Case, Contour]:
 
 
 def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
-    from pipeline.cli import FAILED, PASSED, app
+    from pipeline.cli import app
+    from pipeline.commands.terminal import FAILED, PASSED
 
     folder, _, made = run
     x, y = measured(made) * 1e3

@@ -1,0 +1,56 @@
+"""A measured cam against its drawing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from geometry.errors import InputError
+from pipeline.commands.terminal import (
+    FAILED,
+    PASSED,
+    DirArgument,
+    progress_shown,
+    show_json,
+    stdout,
+)
+
+
+def inspect(
+    folder: DirArgument,
+    measured: Annotated[
+        Path, typer.Argument(metavar="MEASURED", help="Measured surface points (CSV).")
+    ],
+    tolerance: Annotated[
+        str, typer.Option(help="Full width of the tolerance band of the form.")
+    ] = "20 um",
+    keep_phase: Annotated[
+        bool, typer.Option("--keep-phase", help="Angles are the keyway's: run it turned.")
+    ] = False,
+    jobs: Annotated[int | None, typer.Option(help="Processes for the certificate.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="The record as JSON.")] = False,
+) -> int:
+    """Fit a measured cam to its drawing and judge the real part: exit 0 passed, 1 failed."""
+    from pipeline import inspection, units
+    from reports.inspection import draw
+
+    band = units.parse(tolerance, "um", "--tolerance")
+    if not band > 0:
+        raise InputError("--tolerance", tolerance, "> 0 um")
+    points = inspection.read_measured(measured)
+    case, contour = inspection.nominal(folder)
+    with progress_shown() as progress:
+        part = inspection.inspect_part(
+            case, contour, points, keep_phase=keep_phase, jobs=jobs, tell=progress.stage
+        )
+    record = inspection.write_inspection(folder, case, part, band)
+    picture = draw(folder, 1e6 * band)
+    if as_json:
+        show_json(record)
+    else:
+        for line in inspection.lines(record):
+            stdout.print(line, markup=False)
+        stdout.print(f"deviations: {picture}", markup=False)
+    return PASSED if record["verdict"] == "pass" else FAILED

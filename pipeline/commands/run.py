@@ -1,0 +1,108 @@
+"""Run a case, report a run again, start a new case."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from geometry.errors import InputError, ResultError
+from pipeline.commands.terminal import (
+    PASSED,
+    CaseArgument,
+    DirArgument,
+    NoCacheOption,
+    progress_shown,
+    show,
+    stdout,
+    use_cache,
+)
+
+TEMPLATE_SUFFIX = ".toml"
+
+
+def run(
+    case: CaseArgument,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run is to lie.")],
+    positions: Annotated[
+        int | None, typer.Option(help="Positions per cam turn, instead of the case's.")
+    ] = None,
+    jobs: Annotated[int | None, typer.Option(help="Processes; all cores by default.")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on after an interruption.")] = False,
+    replace: Annotated[
+        bool, typer.Option("--replace", help="Write over an earlier run of a case of this name.")
+    ] = False,
+    no_cache: NoCacheOption = False,
+) -> int:
+    """Run a case: torque, lift, contour, mesh, contact, checks, report."""
+    from pipeline.case import load_case_file
+
+    use_cache(not no_cache)
+    if jobs is not None and not 1 <= jobs <= 256:
+        raise InputError("--jobs", jobs, ">= 1 and <= 256")
+    design = load_case_file(case)
+    if positions is not None:
+        design = design.with_positions(positions)
+    if not (resume and _finished(out, design.sha256)):
+        from pipeline.run import run_case
+        from pipeline.run_folder import set_aside
+
+        old = set_aside(out, design) if replace else nullcontext()
+        with old, progress_shown() as progress:
+            run_case(design, out, positions=positions, jobs=jobs, resume=resume, progress=progress)
+    from pipeline.results import read_verdict
+
+    show(read_verdict(out), out)
+    return PASSED
+
+
+def _finished(out: Path, sha256: str) -> bool:
+    """Whether `out` already holds this run, by the same versions: nothing is left to resume."""
+    from pipeline.results import read_summary
+    from pipeline.run_folder import versions
+
+    if not (out / "run.json").is_file():
+        return False
+    summary = read_summary(out)
+    return bool(summary["input_sha256"] == sha256 and summary["versions"] == versions())
+
+
+def report(
+    folder: DirArgument,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Print it as 8_report.pdf as well.")] = False,
+    show: Annotated[bool, typer.Option("--open", help="Show the page when it is there.")] = False,
+) -> int:
+    """Write the report of a finished run again; nothing is solved."""
+    from pipeline.results import load_run
+    from reports import page
+
+    found = load_run(folder)
+    made = page.build(folder)
+    stdout.print(f"report: {made}", markup=False)
+    if pdf:
+        stdout.print(f"pdf: {page.printed(made, str(found.summary['case']))}", markup=False)
+    if show:
+        import webbrowser
+
+        webbrowser.open(made.resolve().as_uri())
+    return PASSED
+
+
+def init(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the new case.")],
+) -> int:
+    """Write NAME.toml, a commented case file that runs."""
+    from pipeline.case_template import template
+
+    name = name.removesuffix(TEMPLATE_SUFFIX)
+    text = template(name)
+    path = Path(f"{name}{TEMPLATE_SUFFIX}")
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise ResultError(f"{path}: exists already and is left as it is") from None
+    stdout.print(f"wrote {path}; next: camwright run {path} --out runs/{name}", markup=False)
+    return PASSED

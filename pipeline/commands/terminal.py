@@ -1,0 +1,82 @@
+"""What the commands share: exit codes, the two streams, progress, the verdict in words."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+
+from pipeline.progress import Bars, Lines, Progress
+
+PASSED, FAILED, ERROR, INTERRUPTED = 0, 1, 2, 130
+
+stdout = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 180)
+stderr = Console(stderr=True, highlight=False, soft_wrap=True)
+
+CaseArgument = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
+DirArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Run folder.")]
+NoCacheOption = Annotated[
+    bool, typer.Option("--no-cache", help="Neither read nor write what is kept between runs.")
+]
+
+
+def say(text: str) -> None:
+    """One line on the error stream."""
+    print(f"camwright: {text}", file=sys.stderr)  # noqa: T201 - rich would read markup in it
+
+
+def show_json(document: object) -> None:
+    """A document on the output stream, for machines."""
+    print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - not to be wrapped
+
+
+def use_cache(wanted: bool) -> None:
+    """Switch off what is kept between runs, unless it is wanted."""
+    from pipeline import cache
+
+    if not wanted:
+        cache.switch_off()
+
+
+@contextmanager
+def progress_shown() -> Iterator[Progress]:
+    """Bars on a terminal, plain lines where nobody watches; both on the error stream."""
+    if stderr.is_terminal:
+        with Bars(stderr) as bars:
+            yield bars
+    else:
+        yield Lines(lambda text: print(text, file=sys.stderr, flush=True))  # noqa: T201
+
+
+def show(document: dict[str, Any], folder: Path | None) -> None:
+    """Checks by utilisation, what else is to be known, then the verdict and the report's place."""
+    from pipeline.check_command import consistency_line, remarks, table
+
+    stdout.print(table(document["checks"]))
+    for line in remarks(document["checks"]):
+        stdout.print(line, markup=False)
+    if "changes" in document:
+        from pipeline.baseline import lines
+
+        for line in lines(document["changes"]):
+            stdout.print(f"baseline: {line}", markup=False)
+    if folder is None:
+        stdout.print(f"verdict: {document['verdict']}, a look ahead by closed forms", markup=False)
+    else:
+        count = document["trials"]
+        trials = f"{count} trial{'s' if count > 1 else ''}"
+        stdout.print(f"verdict: {document['verdict']} after {trials}", markup=False)
+        if document["statement"]:
+            stdout.print(document["statement"], markup=False)
+    if document["binding"]:
+        stdout.print(f"binding: {', '.join(document['binding'])}", markup=False)
+    for finding in document.get("consistency", ()):
+        stdout.print(consistency_line(finding), markup=False)
+    if folder is not None:
+        stdout.print(f"report: {folder / '8_report.html'}", markup=False)
