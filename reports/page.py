@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import base64
 import html
-import os
 import re
-import tempfile
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,8 +17,10 @@ from markupsafe import Markup
 
 from geometry.errors import ResultError
 from pipeline.results import Run, TrialRecord, load_run
-from reports import browser, envelope, interactive, scene, tables
+from reports import browser, interactive, tables
 from reports.figures import Figure
+from reports.output import write_whole
+from reports.pictures import Picture, drawn_pictures
 from reports.plots import svg_and_png
 from reports.sheet import Turn, figures
 from reports.verdict import governing_load_case, verdict
@@ -29,7 +28,6 @@ from reports.verdict import governing_load_case, verdict
 PAGE = "8_report.html"
 LONG = 700
 UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
-FIELD = Path("fields") / "contact_worst.vtu"
 GROUPS = (
     ("Torque", ("torque", "torque-components", "crank-speed")),
     ("Shape", ("outline", "pressure-angle", "lift", "radii")),
@@ -56,17 +54,6 @@ ASSUMPTIONS = (
     "The pressure of Hertz's theory takes both bodies for half-planes; a roller of finite size "
     "differs a little, which is part of the difference shown.",
 )
-
-
-@dataclass(frozen=True, eq=False)
-class Picture:
-    """A raster on the page, or the words that stand in its place."""
-
-    title: str
-    caption: str
-    alt: str
-    data: str = ""
-    note: str = ""
 
 
 @dataclass(frozen=True)
@@ -96,12 +83,12 @@ def build(folder: Path) -> Path:
     try:
         (folder / "figures").mkdir(exist_ok=True)
         groups = _drawn(turn, folder / "figures")
-        pictures = _pictures(turn, folder) + _envelope(turn, run.final.path, folder)
+        pictures = drawn_pictures(turn, run.final.path, folder)
         text = _environment().get_template("report.html").render(
             context(run, case, turn, groups, pictures)
             | {"live": interactive.bundle(d.figure for _, drawn in groups for d in drawn)}
         )  # fmt: skip
-        _write(folder / PAGE, text.encode("utf-8", "replace"))
+        write_whole(folder / PAGE, text.encode("utf-8", "replace"))
     except OSError as error:
         raise ResultError(f"{folder}: {error.strerror or error}") from None
     return folder / PAGE
@@ -237,68 +224,6 @@ def _drawn(turn: Turn, folder: Path) -> list[tuple[str, list[Drawn]]]:
     return groups
 
 
-def _pictures(turn: Turn, folder: Path) -> list[Picture]:
-    """The stress field under the roller and in the whole cam."""
-    try:
-        field = scene.read_field(folder / FIELD)
-        point, normal = scene.find_contact(field)
-        half_width = field.notes.get("half_width_mm") or turn.half_width
-        views = [scene.contact_view(field, half_width, point, normal), scene.body_view(field)]
-        rasters = scene.render(folder / FIELD, views)
-    except ResultError as error:
-        return [Picture("Stress field", "", "", note=f"There is no picture of the field: {error}.")]
-    framed = (scene.frame_contact(rasters[0], half_width), scene.frame_body(rasters[1]))
-    for name, png in zip(("field-contact", "field-body"), framed, strict=True):
-        _write(folder / "figures" / f"{name}.png", png)
-    given = field.notes.get("cam_angle_deg", turn.columns["cam_angle_deg"][turn.worst])
-    angle = tables.number(float(given))
-    peak = tables.quantity(views[0].clim[1], "MPa")
-    return [
-        Picture(
-            "Von Mises stress under the roller",
-            f"At {angle} deg of the cam, where the contact pressure is greatest. Lengths count "
-            f"half-widths; lines at 20, 40, 60, 80 and 95 % of the greatest, {peak}. "
-            "Shapes are deformed at true scale.",
-            f"Von Mises stress within four half-widths of the contact; greatest value {peak}.",
-            base64.b64encode(framed[0]).decode(), rasters[0].note,
-        ),
-        Picture(
-            "Von Mises stress in the whole cam",
-            f"The same angle; colours are logarithmic over {scene.DECADES:g} decades, and what "
-            "lies below is shown in the darkest one.",
-            "Von Mises stress in the whole cam and roller on a logarithmic scale.",
-            base64.b64encode(framed[1]).decode(), rasters[1].note,
-        ),
-    ]  # fmt: skip
-
-
-def _envelope(turn: Turn, trial: Path, folder: Path) -> list[Picture]:
-    """The map of greatest stresses under the contour; older runs have none."""
-    if not (trial / envelope.FILE).exists():
-        return []
-    title = "Greatest stress under the contour in one turn"
-    try:
-        found = envelope.read_envelope(trial / envelope.FILE, turn.load_case)
-    except ResultError as error:
-        return [Picture(title, "", "", note=f"There is no map of the turn: {error}.")]
-    png = envelope.drawn(found)
-    _write(folder / "figures" / "envelope.png", png)
-    mises, angle, depth = envelope.worst(found, "von_mises_MPa")
-    where = (
-        f"{tables.quantity(mises, 'MPa')} of von Mises stress at {tables.number(angle)} deg of "
-        f"the cam, {tables.quantity(depth, 'mm')} deep"
-    )
-    return [
-        Picture(
-            title,
-            f"The contour unrolled, with what each place of the material bears as the load rolls "
-            f"over it; greatest {where}. Where the map is brightest the cam will pit first.",
-            f"Maps of von Mises stress and shear range by cam angle and depth; greatest {where}.",
-            base64.b64encode(png).decode(),
-        )
-    ]
-
-
 def _environment() -> Environment:
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent / "templates"), autoescape=True,
@@ -321,15 +246,3 @@ def shortened(text: str, length: int) -> str:
     """One line of at most `length` characters."""
     line = " ".join(plain(text).split())
     return line if len(line) <= length else line[: length - 1] + "…"
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all."""
-    handle, temporary = tempfile.mkstemp(prefix=".", suffix=".tmp", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
-    finally:
-        Path(temporary).unlink(missing_ok=True)

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
 from geometry.errors import ResultError
-from reports import page, scene
+from reports import page, pictures, scene
 
 CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
@@ -42,7 +42,7 @@ def contact(folder):
     g = report_fixture.shape(t)
     cycle = report_fixture.cycle_columns(t, g)
     worst = int(np.argmax(cycle["p0_fe_MPa"]))
-    field = scene.read_field(folder / page.FIELD)
+    field = scene.read_field(folder / pictures.FIELD)
     point, normal = g["contour"][:, worst] * 1e3, g["normal"][:, worst]
     return field, point, normal, float(cycle["half_width_hertz_mm"][worst])
 
@@ -65,7 +65,7 @@ def test_what_the_file_says_of_its_contact_is_believed(contact):
 def test_numbers_of_the_whole_file_are_read(folder, tmp_path):
     import pyvista
 
-    grid = pyvista.read(folder / page.FIELD)
+    grid = pyvista.read(folder / pictures.FIELD)
     grid.field_data["half_width_mm"] = [0.125]
     grid.save(tmp_path / "noted.vtu")
     assert scene.read_field(tmp_path / "noted.vtu").notes["half_width_mm"] == 0.125
@@ -87,7 +87,7 @@ def test_the_rendered_and_the_flat_picture_agree(folder, contact):
     field, point, normal, half_width = contact
     view = scene.contact_view(field, half_width, point, normal)
     body = scene.body_view(field)
-    rendered = scene.render(folder / page.FIELD, [view, body])
+    rendered = scene.render(folder / pictures.FIELD, [view, body])
     if rendered[0].note:
         pytest.skip("no OpenGL device, the flat picture is all there is")
     for raster in rendered:
@@ -116,7 +116,7 @@ def test_without_opengl_the_page_says_so_and_still_shows_the_field(folder, conta
     )  # fmt: skip
     field, point, normal, half_width = contact
     view = scene.contact_view(field, half_width, point, normal)
-    raster = scene.render(folder / page.FIELD, [view])[0]
+    raster = scene.render(folder / pictures.FIELD, [view])[0]
     assert "No OpenGL device" in raster.note
     middle = raster.pixels[raster.pixels.shape[0] // 2 + 80, raster.pixels.shape[1] // 2]
     assert np.ptp(middle.astype(float)) > 60  # a colour, not paper
@@ -124,7 +124,7 @@ def test_without_opengl_the_page_says_so_and_still_shows_the_field(folder, conta
 
 def test_pictures_are_whole_png_files(folder, contact):
     _, point, normal, half_width = contact
-    png = scene.contact_picture(folder / page.FIELD, half_width, point, normal)
+    png = scene.contact_picture(folder / pictures.FIELD, half_width, point, normal)
     assert png.startswith(b"\x89PNG")
     image = imread(io.BytesIO(png), format="png")
     assert min(image.shape[:2]) > 500
