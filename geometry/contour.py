@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from geometry.arrays import Array, positive, readonly, uniform_turn
+from geometry.contact_search import roller_height
 from geometry.errors import GeometryError, InputError
 from geometry.extrema import Extremum, greatest, least
 from geometry.interference import SecondContact, crossings, second_contact
@@ -207,9 +208,16 @@ class Contour:
 
     @cached_property
     def _second_contact(self) -> SecondContact:
-        return second_contact(
-            self.pitch.points, self.points, self.roller_radius, len(self.pitch.lift.theta)
-        )
+        return second_contact(self._gap, len(self.pitch.lift.theta))
+
+    def _gap(self, contact: Array, other: Array) -> Array:
+        """Gap between the follower in contact at one cam angle and the contour at another, m."""
+        away = self.points(other) - self.pitch.points(contact)
+        return np.hypot(away[0], away[1]) - self.roller_radius
+
+    def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
+        """Height (m,) of the follower let down on another closed contour (2, n), m."""
+        return roller_height(polygon, self.roller_radius, self.pitch.offset, theta)
 
     def concave_radius_min(self) -> Extremum:
         """Least radius of the hollow parts of the contour, m > 0, and its cam angle.

@@ -169,7 +169,8 @@ def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float
     corners = [(x, y) for x, y in (drawn.points / _MILLIMETRE).T.tolist()]
     space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "surface"})
     _add_spline(space, outline.contour, "surface")
-    _add_spline(space, outline.contour.pitch, "pitch")
+    if np.isfinite(outline.contour.roller_radius):  # a face has no centre
+        _add_spline(space, outline.contour.pitch, "pitch")
     _add_hole(space, outline)
     said = f"chord error {drawn.error / _MILLIMETRE:.6g} mm, {len(corners)} chords, units mm"
     low = float(drawn.points[1].min()) / _MILLIMETRE - 6.0

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
-from geometry.contact_search import roller_height
 from geometry.contour import Contour
 from geometry.errors import GeometryError, InputError
 from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
 
 POINTS_MIN = 48
 HARMONICS_MAX = 60
@@ -110,7 +108,7 @@ def inspected(contour: Contour, points: ArrayLike) -> Inspection:
 
 
 def real_contour(contour: Contour, found: Inspection, *, keep_phase: bool = False) -> Contour:
-    """The contour whose surface is the measured one, by letting the roller down on it.
+    """The contour whose surface is the measured one, by letting the follower down on it.
 
     Parameters
     ----------
@@ -122,12 +120,11 @@ def real_contour(contour: Contour, found: Inspection, *, keep_phase: bool = Fals
     surface = contour.points(theta) + found.form(theta) * contour.normal(theta)
     if keep_phase:
         surface = _turned(surface, found.phase)
-    offset, angles = contour.pitch.offset, uniform_turn(_SAMPLES)
-    height = roller_height(surface, contour.roller_radius, offset, angles)
+    angles = uniform_turn(_SAMPLES)
+    height = contour.standing(surface, angles)
     rough = Lift(angles, height - height.min())
     base = float(height.min()) + min(rough.lowest.value, 0.0)
-    lift = Lift(angles, height - base)
-    return Contour(PitchCurve(lift, float(np.hypot(base, offset)), offset), contour.roller_radius)
+    return replace(contour, pitch=contour.pitch.moved(Lift(angles, height - base), base))
 
 
 def _checked(points: ArrayLike) -> Array:

@@ -29,11 +29,14 @@ _CANDIDATES_MAX = 32
 _ZOOM_POINTS = np.linspace(-1.0, 1.0, 9)
 _ZOOMS = 20
 
+Gap = Callable[[Array, Array], Array]
+"""Cam angles of the contact and of another contour point, broadcast -> gap there, m."""
+
 
 class SecondContact(NamedTuple):
-    """Least gap (m) between the roller at cam angle `theta` and the contour point of `other`.
+    """Least gap (m) between the follower at cam angle `theta` and the contour point of `other`.
 
-    Infinite, with angles that are not numbers, when no other part of the contour faces the roller.
+    Infinite, with angles that are not numbers, when no other part of the contour faces it.
     """
 
     clearance: float
@@ -42,7 +45,7 @@ class SecondContact(NamedTuple):
 
     @property
     def touches(self) -> bool:
-        """Whether the roller touches the contour in two places at once, or cuts in."""
+        """Whether the follower touches the contour in two places at once, or cuts in."""
         return not self.clearance > 0
 
 
@@ -78,30 +81,22 @@ def crossings(
     return _distinct(*_polished(points, velocity, first, second))
 
 
-def second_contact(
-    centres: Curve, points: Curve, roller_radius: float, count: int
-) -> SecondContact:
-    """Least gap between roller and contour away from where the roller rolls.
+def second_contact(gap: Gap, count: int) -> SecondContact:
+    """Least gap between follower and contour away from where they touch.
 
-    At each position every local minimum along the contour of the distance from the roller
-    counts, but the contact itself; the closest few are refined in both angles.
+    At each position every local minimum of the gap along the contour counts, but the contact
+    itself; the closest few are refined in both angles.
 
     Parameters
     ----------
-    centres, points : callable    roller centre and contact at cam angles (...), (2, ...) m
-    roller_radius : float         m
-    count : int                   positions of the roller, of which at most 720 are used, against
-                                  twice as many contour points
+    gap : callable    angles of contact and other point, broadcast -> gap between follower and
+                      contour there, m
+    count : int       positions of the follower, of which at most 720 are used, against twice as
+                      many contour points
     """
-
-    def gap(contact: Array, other: Array) -> Array:
-        away = points(other) - centres(contact)
-        return np.hypot(away[0], away[1]) - roller_radius
-
     count = min(count, _POSITIONS_MAX)
     position, along = uniform_turn(count), uniform_turn(2 * count)
-    away = points(along)[:, None, :] - centres(position)[:, :, None]
-    distance = np.hypot(away[0], away[1]) - roller_radius
+    distance = gap(position[:, None], along[None, :])
     valley = (distance <= np.roll(distance, 1, axis=1)) & (distance < np.roll(distance, -1, axis=1))
     valley[np.arange(count), 2 * np.arange(count)] = False
     row, column = np.nonzero(valley)

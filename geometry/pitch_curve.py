@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -52,6 +53,10 @@ class PitchCurve:
         """d at zero lift, m."""
         return float(np.sqrt(self.base_radius**2 - self.offset**2))
 
+    def moved(self, lift: Lift, height_base: float) -> Self:
+        """The path under another lift, from another height d (m) at zero lift."""
+        return replace(self, lift=lift, base_radius=float(np.hypot(height_base, self.offset)))
+
     def height(self, theta: ArrayLike) -> Array:
         """d, distance of the roller centre from the cam axis along the follower, m."""
         return self.height_base + self.lift(theta)
@@ -90,6 +95,10 @@ class PitchCurve:
         """Angle from the follower's axis to the contact normal, rad, positive on the rise."""
         along, across = self._velocity(theta)
         return np.arctan2(along, across)
+
+    def push_arm(self, theta: ArrayLike) -> Array:
+        """Way from the stem's axis to the line of the cam's push, m: none through a roller."""
+        return np.zeros(np.shape(theta))
 
     def curvature(self, theta: ArrayLike) -> Array:
         """Signed curvature, 1/m, positive where convex."""

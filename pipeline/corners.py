@@ -16,7 +16,6 @@ import numpy as np
 from geometry.arrays import uniform_turn
 from geometry.contour import Contour
 from geometry.errors import CamError
-from geometry.pitch_curve import PitchCurve
 from pipeline.case import Case
 from pipeline.checks import forces, function, guides, roller, signed
 from pipeline.checks.check import Check
@@ -201,8 +200,7 @@ def _rubbing(guide: Any, factor: float) -> Any:
 
 def _shape(contour: Contour, corner: Corner) -> Contour:
     pitch = contour.pitch
-    moved = PitchCurve(pitch.lift, pitch.base_radius + corner.profile, pitch.offset)
-    return Contour(moved, contour.roller_radius)
+    return replace(contour, pitch=replace(pitch, base_radius=pitch.base_radius + corner.profile))
 
 
 def _turned(given: Turn, case: Case, corner: Corner) -> Turn:

@@ -84,7 +84,7 @@ def flat_face_loads(
     if not worst.value > 0.0:
         where = float(np.degrees(worst.theta))
         raise ContactError(f"the cam of the flat face is undercut at {where:.3f} deg")
-    lift, slope, bend = contour.lift.derivatives(angle, 2)
+    lift, slope, bend = contour.pitch.lift.derivatives(angle, 2)
     demand = system.preload + system.spring_rate * lift + system.mass * bend * cam_speed**2
     demand = demand + system.mass * system.gravity_along_axis
     friction = (system.friction_a + system.friction_b) / system.guide_spacing

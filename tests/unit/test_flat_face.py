@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from geometry.contour import Contour
 from geometry.errors import InputError
-from geometry.flat_face import FlatFaceContour
+from geometry.flat_face import FacePath, FlatFaceContour
 from geometry.lift import Lift
 from geometry.motion import Motion, Segment
+from geometry.pitch_curve import PitchCurve
 
 THETA = np.linspace(0, 2 * np.pi, 200)
 ECCENTRICITY, RADIUS = 0.004, 0.015
@@ -18,9 +20,13 @@ def eccentric_lift():
     return Lift(theta, ECCENTRICITY * (1 - np.cos(theta)))
 
 
+def flat(lift, base_radius, offset=0.0):
+    return FlatFaceContour(FacePath(lift, base_radius, offset))
+
+
 @pytest.fixture
 def circle():
-    return FlatFaceContour(eccentric_lift(), RADIUS - ECCENTRICITY)
+    return flat(eccentric_lift(), RADIUS - ECCENTRICITY)
 
 
 def test_circle_keeps_its_radius(circle):
@@ -35,12 +41,14 @@ def test_contact_travels_by_the_eccentricity(circle):
     assert high.value == pytest.approx(ECCENTRICITY, rel=1e-9)
     assert low.value == pytest.approx(-ECCENTRICITY, rel=1e-9)
     assert circle.face_width_min() == pytest.approx(2 * ECCENTRICITY, rel=1e-9)
-    assert circle.face_width_min(1e-4, 1e-3) == pytest.approx(2 * (5e-3 + 1e-4), rel=1e-9)
+    aside = flat(eccentric_lift(), RADIUS - ECCENTRICITY, 1e-3)
+    assert aside.face_width_min(1e-4) == pytest.approx(2 * (5e-3 + 1e-4), rel=1e-9)
+    np.testing.assert_allclose(aside.points(THETA), circle.points(THETA), atol=0)
 
 
 @pytest.mark.parametrize("share", [0.99, 0.5, np.nan, -1.0])
 def test_face_too_narrow_is_refused(circle, share):
-    with pytest.raises(InputError, match=r"follower\.face_width = .* must be >= 0\.008"):
+    with pytest.raises(InputError, match=r"follower\.face\.width = .* must be > 0\.008 m"):
         circle.require_face(share * 2 * ECCENTRICITY)
     circle.require_face(1.01 * 2 * ECCENTRICITY)
 
@@ -57,16 +65,41 @@ def test_curvature_condition_decides_at_its_limit():
         (Segment("cycloidal", 1.0, 0.01), Segment("cycloidal", 1.0, -0.01),
          Segment("dwell", 2 * np.pi - 2.0))
     ).lift()  # fmt: skip
-    least = FlatFaceContour(lift, 0.01).base_radius_min()
-    assert FlatFaceContour(lift, 0.99 * least).undercut()
-    assert FlatFaceContour(lift, 0.8 * least).self_intersections()
-    sound = FlatFaceContour(lift, 1.01 * least)
-    assert not sound.undercut()
+    least = flat(lift, 0.01).base_radius_min()
+    assert flat(lift, 0.99 * least).undercut().found
+    cut = flat(lift, 0.8 * least)
+    assert cut.self_intersections()
+    assert cut.second_contact().touches
+    sound = flat(lift, 1.01 * least)
+    assert not sound.undercut().found
     assert not sound.self_intersections()
+    assert sound.clearance().value == np.inf
     assert sound.radius_of_curvature_min().value == pytest.approx(0.01 * least, rel=1e-6)
 
 
 @pytest.mark.parametrize("radius", [0.0, -0.01, np.nan, np.inf])
 def test_bad_base_radius_is_refused(radius):
-    with pytest.raises(InputError, match=r"cam\.base_radius"):
-        FlatFaceContour(eccentric_lift(), radius)
+    with pytest.raises(InputError, match=r"cam\.pitch_base_radius"):
+        flat(eccentric_lift(), radius)
+
+
+def test_a_roller_grown_beyond_all_bounds_is_a_face(circle):
+    """The contour under ever larger rollers goes to that under the face, with its first power."""
+    lift = eccentric_lift()
+    missed = []
+    for roller in (10.0, 20.0, 40.0):
+        drawn = Contour(PitchCurve(lift, RADIUS - ECCENTRICITY + roller), roller)
+        away = np.hypot(*(drawn.points(THETA) - circle.points(THETA))).max()
+        bent = np.abs(drawn.curvature(THETA) - circle.curvature(THETA)).max()
+        tilted = np.abs(drawn.pitch.pressure_angle(THETA)).max()
+        missed.append((away, bent, tilted))
+    ratios = np.array(missed)[1:] / np.array(missed)[:-1]
+    np.testing.assert_allclose(ratios, 0.5, rtol=0.01)
+
+
+def test_height_of_the_contour_over_its_tangent(circle):
+    """A circle of the radius R falls off by R - sqrt(R^2 - x^2)."""
+    along = np.linspace(-0.5, 0.5, 11) * RADIUS
+    fall = RADIUS - np.sqrt(RADIUS**2 - along**2)
+    found = circle.surface_offset(THETA[:5], along)
+    np.testing.assert_allclose(found, np.broadcast_to(-fall, found.shape), atol=1e-12)

@@ -5,14 +5,14 @@ import pytest
 
 from geometry.arrays import uniform_turn
 from geometry.errors import ContactError, InputError
-from geometry.flat_face import FlatFaceContour
+from geometry.flat_face import FacePath, FlatFaceContour
 from geometry.lift import Lift
 from pipeline.follower.flat_face import flat_face_loads
 from pipeline.follower.forces import FollowerSystem, turn_integral
 
 THETA = uniform_turn(720)
 E, RADIUS, SPEED, WIDTH, MODULUS = 0.004, 0.015, 200.0, 0.008, 115e9
-CONTOUR = FlatFaceContour(Lift(THETA, E * (1 - np.cos(THETA))), RADIUS - E)
+CONTOUR = FlatFaceContour(FacePath(Lift(THETA, E * (1 - np.cos(THETA))), RADIUS - E))
 
 
 def loads(friction=0.0, contour=CONTOUR, **changes):
@@ -48,12 +48,12 @@ def test_cam_pays_for_the_guides_heat():
 def test_face_carries_the_contact_to_its_edges():
     found = loads()
     assert 2 * E < found.face_needed < 2 * E + 2.01 * found.half_width.max()
-    with pytest.raises(InputError, match="face_width"):
+    with pytest.raises(InputError, match=r"face\.width"):
         CONTOUR.require_face(0.99 * found.face_needed, found.half_width.max())
 
 
 def test_undercut_is_refused():
-    sharp = FlatFaceContour(Lift(THETA, 0.001 * (1 - np.cos(5 * THETA))), 0.02)
+    sharp = FlatFaceContour(FacePath(Lift(THETA, 0.001 * (1 - np.cos(5 * THETA))), 0.02))
     with pytest.raises(ContactError, match="undercut"):
         loads(contour=sharp)
 

@@ -85,7 +85,10 @@ def test_second_contact_in_closed_form(roller_radius):
     def centres(theta):
         return -(0.3 + 0.1 * np.cos(theta - 1.0)) * points(theta)
 
-    found = second_contact(centres, points, roller_radius, 100)
+    def gap(contact, other):
+        return np.hypot(*(points(other) - centres(contact))) - roller_radius
+
+    found = second_contact(gap, 100)
     assert found.clearance == pytest.approx(0.6 - roller_radius, abs=1e-12)
     assert found.touches == (roller_radius > 0.6)
     assert found.theta == pytest.approx(1.0, abs=1e-5)

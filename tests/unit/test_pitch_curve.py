@@ -112,7 +112,9 @@ def test_extremes_bound_a_dense_sampling(offset):
     assert pitch.curvature_max().value >= curvature.max()
     assert pitch.curvature_min().value <= curvature.min()
     assert pitch.least_convex_radius().value == pytest.approx(1 / curvature.max(), rel=1e-7)
-    assert pitch.curvature(pitch.curvature_max().theta) == pitch.curvature_max().value
+    # a rounding apart: sines of one angle alone and of many are not the same to the last bit
+    sharpest = pitch.curvature_max()
+    assert pitch.curvature(sharpest.theta) == pytest.approx(sharpest.value, rel=1e-14)
 
 
 def test_circle_has_one_curvature():

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from geometry.contact_search import face_height, roller_height
 from geometry.contour import Contour
 from geometry.errors import GeometryError, InputError
-from geometry.flat_face import FlatFaceContour
+from geometry.flat_face import FacePath, FlatFaceContour
 from geometry.motion import LAWS, Motion, Segment
 from geometry.pitch_curve import PitchCurve
 
@@ -55,14 +55,13 @@ def test_roller_let_down_on_the_contour_moves_by_the_lift(lift, offset, roller):
 
 
 @settings(max_examples=25, deadline=None)
-@given(lifts())
-def test_face_let_down_on_the_contour_moves_by_the_lift(lift):
-    drawn = FlatFaceContour(lift, 0.01)
-    contour = FlatFaceContour(lift, drawn.base_radius_min(0.003))
+@given(lifts(), st.floats(-0.01, 0.01))
+def test_face_let_down_on_the_contour_moves_by_the_lift(lift, offset):
+    drawn = FlatFaceContour(FacePath(lift, 0.02, offset))
+    base = max(drawn.base_radius_min(0.003), 0.011)
+    contour = FlatFaceContour(FacePath(lift, base, offset))
     found = face_height(contour.polygon(POINTS), THETA)
-    np.testing.assert_allclose(
-        found - contour.base_radius, lift(THETA), rtol=0, atol=TOLERANCE * lift.stroke
-    )
+    np.testing.assert_allclose(found - base, lift(THETA), rtol=0, atol=TOLERANCE * lift.stroke)
 
 
 def test_undercut_contour_cannot_give_its_lift_back():
