@@ -107,19 +107,23 @@ class BearingLine:
         return np.array(corners).T
 
 
-def settle(line: BearingLine, force: Array, moment: Array) -> tuple[Array, Array]:
+def settle(
+    line: BearingLine, force: Array, moment: Array, start: tuple[Array, Array] | None = None
+) -> tuple[Array, Array]:
     """Pushes of the bores in equilibrium with a force and a moment on the beam's end.
 
     The beam and the bores store energy that is convex and piecewise quadratic in the pushes p
     that bend the beam and the end motion r:  p G p/2 + sum K depth^2/2 - load r. Each step of
     the active set solves the linear problem of the knots that touch, exactly, and goes the
     length that lowers the energy most, so that it cannot cycle; it ends when the knots that
-    touch are those it assumed. The first guess is the rigid beam with its play taken up.
+    touch are those it assumed. The first guess is the rigid beam with its play taken up, or what
+    a like load led to.
 
     Parameters
     ----------
     line : BearingLine
     force, moment : array (n,)   N and N m, on the loaded end; positive with shift and tilt
+    start : push, rigid          an earlier answer at the same positions
 
     Returns
     -------
@@ -134,11 +138,15 @@ def settle(line: BearingLine, force: Array, moment: Array) -> tuple[Array, Array
     load = np.stack([force, moment])
     enlargement = line.enlargement(load)
     load = load * enlargement
-    push = np.zeros((len(line.positions), load.shape[1]))
-    corners = line.slack_corners()
-    rigid = corners[:, np.argmax(corners.T @ load, axis=0)]
-    unsettled = np.flatnonzero(np.abs(load).max(axis=0) > 0.0)
-    rigid[:, np.setdiff1d(np.arange(load.shape[1]), unsettled)] = 0.0
+    if start is None:
+        push = np.zeros((len(line.positions), load.shape[1]))
+        corners = line.slack_corners()
+        rigid = corners[:, np.argmax(corners.T @ load, axis=0)]
+    else:
+        push, rigid = start[0] * enlargement, start[1].copy()
+    idle = np.abs(load).max(axis=0) == 0.0
+    push[:, idle], rigid[:, idle] = 0.0, 0.0
+    unsettled = np.flatnonzero(~idle)
     for _ in range(MAX_STEPS):
         if not len(unsettled):
             return push / enlargement, rigid

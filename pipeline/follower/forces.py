@@ -15,6 +15,26 @@ from geometry.pitch_curve import PitchCurve
 JAM_FLOOR = 0.01  # least share of the cam's push that friction is let to leave over
 
 
+@dataclass(frozen=True, eq=False)
+class Rubbing:
+    """Load that rubs in guides A and B over the side force, at cam angles of a turn; each (n,).
+
+    The load sums the pushes of both sides of a bore, so that friction is its mu-fold.
+    """
+
+    theta: Array
+    a: Array
+    b: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, theta=self.theta, a=self.a, b=self.b)
+
+    def at(self, theta: Array) -> tuple[Array, Array]:
+        """The same at other angles, straight lines between."""
+        a, b = (np.interp(theta, self.theta, share, period=FULL_TURN) for share in (self.a, self.b))
+        return np.asarray(a), np.asarray(b)
+
+
 @dataclass(frozen=True)
 class FollowerSystem:
     """Spring, mass and rubbing guides of a follower.
@@ -29,6 +49,8 @@ class FollowerSystem:
     friction_a, friction_b : float  Coulomb coefficients, >= 0
     gravity_along_axis : float      the part of g that presses the follower on the cam, m/s2
     viscous_damping : float         c3 of the guides, N s/m, >= 0
+    rubbing : Rubbing               of guides of finite length, see `guided_loads`; None: of guides
+                                    that support the stem at a point
 
     Raises
     ------
@@ -45,6 +67,7 @@ class FollowerSystem:
     friction_b: float
     gravity_along_axis: float = 0.0
     viscous_damping: float = 0.0
+    rubbing: Rubbing | None = None
 
     def __post_init__(self) -> None:
         for name, unit in (("spring_rate", "N/m"), ("guide_spacing", "m")):
@@ -87,9 +110,13 @@ class FollowerSystem:
         return 1.0 + ratio, ratio
 
     def friction_factor(self, overhang: ArrayLike) -> Array:
-        """c = [mu_A (a+b) + mu_B a]/b, guide friction per unit of side force."""
+        """c = [mu_A (a+b) + mu_B a]/b, friction per unit of side force on point supports."""
         factor_a, factor_b = self.guide_factors(overhang)
         return self.friction_a * factor_a + self.friction_b * factor_b
+
+    def rubbing_factors(self, theta: Array, overhang: Array) -> tuple[Array, Array]:
+        """What guides A and B rub with per unit of side force: as given, or as point supports."""
+        return self.guide_factors(overhang) if self.rubbing is None else self.rubbing.at(theta)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,10 +124,12 @@ class Loads:
     """Everything that acts on the follower at each cam angle; arrays (n,), SI.
 
     `tangential_force` is the side force on the stem, signed like the pressure angle; the
-    reactions carry its sign although A pushes against it and B with it. The friction forces are
-    magnitudes and oppose `velocity`; `viscous_force` is signed like it and opposes it too.
-    `jam_index` is c |tan alpha|; where the follower moves outward it must stay below 1,
-    elsewhere it tells of a cam that is turned backwards.
+    reactions are those of point supports and carry its sign although A pushes against it and B
+    with it. The friction forces are magnitudes and oppose `velocity`; `viscous_force` is signed
+    like it and opposes it too. `rubbing_*` is the load that rubs over the side force, `jam_index`
+    the friction per side force c times |tan alpha|; where the follower moves outward it must stay
+    below 1, elsewhere it tells of a cam that is turned backwards. `jam_index_statics` has the c
+    of point supports.
     """
 
     theta: Array
@@ -123,9 +152,17 @@ class Loads:
     friction_power: Array
     lift_slope: Array
     viscous_force: Array
+    rubbing_a: Array
+    rubbing_b: Array
+    jam_index_statics: Array
 
     def __post_init__(self) -> None:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+
+    @property
+    def rubbing(self) -> Rubbing:
+        """What the guides rub with per unit of side force over the turn."""
+        return Rubbing(self.theta, self.rubbing_a, self.rubbing_b)
 
     @property
     def separated(self) -> NDArray[np.bool_]:
@@ -203,6 +240,11 @@ def jump_speed(pitch: PitchCurve, system: FollowerSystem, theta: ArrayLike) -> t
     return float(np.sqrt(square[first])), float(theta[first])
 
 
+def share_left(lift_slope: Array, jam_index: Array) -> Array:
+    """Share of the cam's axial push that friction leaves over: above 1 on the way back."""
+    return np.asarray(np.maximum(1.0 - np.sign(lift_slope) * jam_index, JAM_FLOOR))
+
+
 def follower_loads(
     pitch: PitchCurve,
     system: FollowerSystem,
@@ -213,7 +255,7 @@ def follower_loads(
     r"""Forces on the follower, guide friction included, at given cam angles.
 
     The cam's push has the axial part F_a and the side part F_t = F_a tan(alpha). The side part
-    loads the guides with c |F_t| of friction against the motion, which F_a must overcome on the
+    loads the guides, which answer with c |F_t| of friction against the motion, which F_a must overcome on the
     way out and is spared on the way back:
 
         F_a = F + sign(v) c |F_t|    hence    F_a = F / (1 - sign(v) c |tan(alpha)|)
@@ -244,8 +286,8 @@ def follower_loads(
 
     References
     ----------
-    Cardoso et al., Energies 18 (2025) 3256, eqs 11-14, with friction made implicit;
-    Rothbart, Cam Design Handbook (2004), ch. 6; Energy loss comparison between kinematically
+    Cardoso et al., Energies 18 (2025) 3256, eqs 11-14, with friction made implicit; for c of
+    guides of finite length see `guided_loads`. Rothbart, Cam Design Handbook (2004), ch. 6; Energy loss comparison between kinematically
     equivalent mechanisms: slider-crank and eccentric cam (2024), eq. 40 for c3.
     """
     theta = finite("theta", theta)
@@ -262,13 +304,14 @@ def follower_loads(
 
     pressure_angle = pitch.pressure_angle(theta)
     overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
+    tangent = np.tan(pressure_angle)
     factor_a, factor_b = system.guide_factors(overhang)
-    jam_index = system.friction_factor(overhang) * np.abs(np.tan(pressure_angle))
-    share = np.maximum(1.0 - np.sign(slope) * jam_index, JAM_FLOOR)
-    axial_force = np.maximum(demand, 0.0) / share
-    side_force = axial_force * np.tan(pressure_angle)
-    friction_a = system.friction_a * factor_a * np.abs(side_force)
-    friction_b = system.friction_b * factor_b * np.abs(side_force)
+    rubbing_a, rubbing_b = system.rubbing_factors(theta, overhang)
+    jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * np.abs(tangent)
+    axial_force = np.maximum(demand, 0.0) / share_left(slope, jam_index)
+    side_force = axial_force * tangent
+    friction_a = system.friction_a * rubbing_a * np.abs(side_force)
+    friction_b = system.friction_b * rubbing_b * np.abs(side_force)
     return Loads(
         theta=theta,
         lift=lift,
@@ -290,4 +333,7 @@ def follower_loads(
         jam_index=jam_index,
         friction_power=((friction_a + friction_b) * np.abs(slope) + viscous_force * slope) * speed,
         viscous_force=viscous_force,
+        rubbing_a=rubbing_a,
+        rubbing_b=rubbing_b,
+        jam_index_statics=system.friction_factor(overhang) * np.abs(tangent),
     )
