@@ -117,6 +117,8 @@ class Bearing(Section):
         filled = {"name": card.name, "source": card.source}
         for key, unit in (("C", "N"), ("C0", "N"), ("speed_limit", "rpm")):
             filled[key] = units.format(getattr(card, key), unit)
+        if card.radial_limit is not None:
+            filled["radial_limit"] = units.format(card.radial_limit, "N")
         return filled | given
 
 

@@ -24,8 +24,9 @@ _UNITS = {
     "pitch_diameter": "mm",
     "ring_thickness": "mm",
     "fatigue_load_limit": "N",
+    "radial_limit": "N",
 }
-_OPTIONAL = {"fatigue_load_limit"}
+_OPTIONAL = {"fatigue_load_limit", "radial_limit"}
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,7 @@ class BearingCard:
     ring_thickness : float    of the outer ring under the groove, m
     source : str              where the numbers come from; "verify" marks recalled ones
     fatigue_load_limit : float   P_u, N; 0 when not given
+    radial_limit : float      N that the outer ring bears without a housing; None when not given
     """
 
     name: str
@@ -56,6 +58,7 @@ class BearingCard:
     ring_thickness: float
     source: str
     fatigue_load_limit: float = 0.0
+    radial_limit: float | None = None
 
     def __post_init__(self) -> None:
         for name in _UNITS.keys() - _OPTIONAL:
