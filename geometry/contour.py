@@ -123,6 +123,10 @@ class Contour:
         """
         return self.pitch.radius_of_curvature(theta) - self.roller_radius
 
+    def curvature_slope(self, theta: ArrayLike) -> Array:
+        """Change of the contour's curvature per radian of cam angle, 1/(m rad)."""
+        return self.pitch.curvature_slope(theta) * reciprocal(self.factor(theta) ** 2)
+
     def surface_offset(self, theta: ArrayLike, xi: ArrayLike) -> Array:
         """Height of the contour over its tangent line at the contact, m, outward positive.
 

@@ -132,6 +132,10 @@ class FlatFaceContour(Contour):
     def curvature(self, theta: ArrayLike) -> Array:
         return reciprocal(self.radius_of_curvature(theta))
 
+    def curvature_slope(self, theta: ArrayLike) -> Array:
+        _, s1, _, s3 = self.pitch.lift.derivatives(theta, 3)
+        return -(s1 + s3) * self.curvature(theta) ** 2
+
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """r + s + s'', m; negative where undercut."""
         return self.pitch.radius_of_curvature(theta)

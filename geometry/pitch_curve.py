@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from geometry import path
 from geometry.arrays import Array, positive
 from geometry.errors import InputError
 from geometry.extrema import Extremum, greatest, least
@@ -107,10 +108,12 @@ class PitchCurve:
     def speed_and_curvature(self, theta: ArrayLike) -> tuple[Array, Array]:
         """Speed, m/rad, and curvature, 1/m, for the price of one."""
         s, s1, s2 = self.lift.derivatives(theta, 2)
-        along, across = s1 - self.offset, self.height_base + s
-        speed = np.hypot(along, across)
-        turning = along * (along + s1) - across * (s2 - across)
-        return speed, turning / speed**3
+        return path.speed_and_curvature(s1 - self.offset, self.height_base + s, s1, s2)
+
+    def curvature_slope(self, theta: ArrayLike) -> Array:
+        """Change of the curvature per radian of cam angle, 1/(m rad)."""
+        s, s1, s2, s3 = self.lift.derivatives(theta, 3)
+        return path.curvature_slope(s1 - self.offset, self.height_base + s, s1, s2, s3)
 
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """Signed radius of curvature, m; infinite at an inflection."""

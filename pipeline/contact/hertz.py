@@ -7,6 +7,7 @@ Coordinates of the subsurface field are those of the half-plane: `x` along the s
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -79,8 +80,12 @@ def line_contact(
     radius = positive("relative_radius", relative_radius, "m")
     stiffness = float(positive("modulus", modulus, "Pa"))
     half_width = np.sqrt(4 * load * radius / (np.pi * stiffness))
-    peak_pressure = np.sqrt(load * stiffness / (np.pi * radius))
-    return half_width, peak_pressure
+    return half_width, np.sqrt(peak_pressure_square(load, 1 / radius, stiffness))
+
+
+def peak_pressure_square(line_load: Any, curvature: Any, modulus: float) -> Any:
+    """p0^2 (...), Pa^2, at the curvature 1/R = 1/R1 + 1/R2, 1/m; linear in load and curvature."""
+    return line_load * curvature * (modulus / np.pi)
 
 
 def subsurface_stress(x: ArrayLike, depth: ArrayLike, friction: float = 0.0) -> Array:

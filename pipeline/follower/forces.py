@@ -100,14 +100,8 @@ class FollowerSystem:
         )
 
     def guide_factors(self, overhang: ArrayLike) -> tuple[Array, Array]:
-        """|A|/F_t = (a+b)/b and |B|/F_t = a/b of a stem on two point supports.
-
-        References
-        ----------
-        Cardoso et al., Energies 18 (2025) 3256, eqs 11-14.
-        """
-        ratio = np.asarray(overhang, dtype=float) / self.guide_spacing
-        return 1.0 + ratio, ratio
+        """|A|/F_t and |B|/F_t, see `levers`."""
+        return levers(np.asarray(overhang, dtype=float), self.guide_spacing)
 
     def friction_factor(self, overhang: ArrayLike) -> Array:
         """c = [mu_A (a+b) + mu_B a]/b, friction per unit of side force on point supports."""
@@ -240,9 +234,21 @@ def jump_speed(pitch: PitchCurve, system: FollowerSystem, theta: ArrayLike) -> t
     return float(np.sqrt(square[first])), float(theta[first])
 
 
-def share_left(lift_slope: Array, jam_index: Array) -> Array:
+def share_left(lift_slope: Any, jam_index: Any) -> Any:
     """Share of the cam's axial push that friction leaves over: above 1 on the way back."""
-    return np.asarray(np.maximum(1.0 - np.sign(lift_slope) * jam_index, JAM_FLOOR))
+    share = 1.0 - np.sign(np.real(lift_slope)) * jam_index
+    return np.where(np.real(share) < JAM_FLOOR, JAM_FLOOR, share)  # NaN stays
+
+
+def levers(overhang: Any, guide_spacing: float) -> tuple[Any, Any]:
+    """|A|/F_t = (a+b)/b and |B|/F_t = a/b of a stem on two point supports.
+
+    References
+    ----------
+    Cardoso et al., Energies 18 (2025) 3256, eqs 11-14.
+    """
+    ratio = overhang / guide_spacing
+    return 1.0 + ratio, ratio
 
 
 def follower_loads(

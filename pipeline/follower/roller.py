@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from geometry.arrays import FULL_TURN, Array, finite, freeze
 from geometry.errors import InputError
+from geometry.path import magnitude
 from geometry.pitch_curve import PitchCurve
 
 BALL_LIFE_EXPONENT = 3.0  # ISO 281: 3 for ball bearings, 10/3 for roller bearings
@@ -96,7 +98,7 @@ def roller_motion(
     lift, slope, bend = pitch.lift.derivatives(theta, 2)
     stretch, curvature = pitch.speed_and_curvature(theta)
     stretch_rate = ((slope - pitch.offset) * bend + (pitch.height_base + lift) * slope) / stretch
-    spin_per_turn = (stretch - roller_radius) / roller_radius
+    spin_per_turn = rolling_share(stretch, roller_radius)
     return RollerMotion(
         theta=theta,
         spin=speed * spin_per_turn,
@@ -105,6 +107,16 @@ def roller_motion(
         pitch_speed=speed * stretch,
         rolling_speed=speed * stretch * (1.0 - roller_radius * curvature),
     )
+
+
+def rolling_share(pitch_speed: Any, roller_radius: float) -> Any:
+    """Spin of the roller against the follower over the cam's, from |dP/dtheta|, m/rad."""
+    return pitch_speed / roller_radius - 1.0
+
+
+def wear(normal_force: Any, spin: Any, exponent: float = BALL_LIFE_EXPONENT) -> Any:
+    """N^p |n| at each place of the turn: its mean decides the rating life; ISO 281:2007, 6.2."""
+    return normal_force**exponent * magnitude(spin)
 
 
 def equivalent_load(
@@ -135,9 +147,8 @@ def equivalent_load(
     largest = float(force.max())
     if largest == 0.0:
         return 0.0
-    return largest * float(np.average((force / largest) ** exponent, weights=turns)) ** (
-        1.0 / exponent
-    )
+    share = wear(force / largest, turns, exponent).mean() / turns.mean()
+    return largest * float(share) ** (1.0 / exponent)
 
 
 def rating_life(

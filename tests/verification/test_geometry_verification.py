@@ -182,3 +182,14 @@ def test_turning_the_cam_changes_nothing(turn):
     assert later.area() == pytest.approx(plain.area(), rel=1e-13)
     assert later.undercut().factor == pytest.approx(plain.undercut().factor, rel=1e-10)
     assert later.clearance().value == pytest.approx(plain.clearance().value, rel=1e-6)
+
+
+@pytest.mark.parametrize("contour", [roller_contour(), face_contour()])
+def test_slope_of_the_curvature_is_its_derivative(contour):
+    theta, step = np.linspace(0.1, 6.2, 50), 1e-5
+    ends = [contour.curvature(theta + side * step) for side in (1, -1)]
+    found = contour.curvature_slope(theta)
+    # a central difference of step 1e-5 keeps about 8 digits
+    np.testing.assert_allclose(
+        (ends[0] - ends[1]) / (2 * step), found, rtol=0, atol=1e-6 * np.abs(found).max()
+    )
