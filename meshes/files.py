@@ -18,6 +18,7 @@ from geometry.errors import MeshError, ResultError
 from meshes.body import BodyMesh
 from meshes.mesher import Index, session
 from meshes.sizing import MILLIMETRE
+from meshes.vtu import QUAD, QUADRATIC_TRIANGLE, Grid, vtu
 
 UNITS = "units_mm_N_MPa"
 """Name of the field data by which every VTU file says its units."""
@@ -99,8 +100,6 @@ def write_vtu(
     ResultError
         If the file cannot be written; one already there is left as it was.
     """
-    import meshio
-
     bodies: Mapping[str, BodyMesh]
     data: Mapping[str, Any]
     if isinstance(meshes, BodyMesh):
@@ -116,16 +115,65 @@ def write_vtu(
     cell_data = {}
     if len(bodies) > 1:
         fields["body"] = np.repeat(np.arange(len(bodies)), np.diff(starts))
-        cell_data["body"] = [np.repeat(np.arange(len(bodies)), [len(s) for s in shifted])]
-    grid = meshio.Mesh(
-        np.column_stack([points.T, np.zeros(points.shape[1])]),
-        [("triangle6", np.vstack(shifted))],
-        point_data=fields,
-        cell_data=cell_data,
+        cell_data["body"] = np.repeat(np.arange(len(bodies)), [len(s) for s in shifted])
+    grid = Grid(
+        _in_space(points),
+        np.vstack(shifted),
+        QUADRATIC_TRIANGLE,
+        fields,
+        cell_data,
+        {UNITS: 1.0, **(field_data or {})},
     )
+    _write_grid(path, grid)
+
+
+def write_sheet(
+    path: str | Path,
+    points: Array,
+    point_data: Fields,
+    field_data: Mapping[str, float] | None = None,
+) -> None:
+    """Write a sheet that closes on itself as quadrilaterals for ParaView.
+
+    Parameters
+    ----------
+    path
+    points : (2, n, k)           m; rows follow one another, the last joins the first
+    point_data : mapping         field name, unit included -> (n, k)
+    field_data : mapping         as for `write_vtu`
+
+    Raises
+    ------
+    MeshError
+        If a field does not fit the points.
+    ResultError
+        If the file cannot be written; one already there is left as it was.
+    """
+    rows, columns = points.shape[1:]
+    for name, values in point_data.items():
+        if np.shape(values) != (rows, columns):
+            raise MeshError(f"field '{name}' = {np.shape(values)}, must be {(rows, columns)}")
+    number = np.arange(rows * columns).reshape(rows, columns)
+    here, there = number, np.roll(number, -1, axis=0)
+    corners = [here[:, :-1], here[:, 1:], there[:, 1:], there[:, :-1]]
+    grid = Grid(
+        _in_space(points.reshape(2, -1) / MILLIMETRE),
+        np.stack(corners, axis=-1).reshape(-1, 4),
+        QUAD,
+        {name: np.asarray(values, dtype=float).ravel() for name, values in point_data.items()},
+        {},
+        {UNITS: 1.0, **(field_data or {})},
+    )
+    _write_grid(path, grid)
+
+
+def _in_space(points: Array) -> Array:
+    return np.column_stack([points.T, np.zeros(points.shape[1])])
+
+
+def _write_grid(path: str | Path, grid: Grid) -> None:
     with replacing(path) as temporary:
-        grid.write(temporary, file_format="vtu")
-        _insert_field_data(temporary, field_data or {})
+        temporary.write_bytes(vtu(grid))
 
 
 def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Any]) -> dict[str, Any]:
@@ -146,18 +194,6 @@ def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Any]) -> dict[str
                 values = np.vstack([values, np.zeros(values.shape[1])])
             parts[name].append(values.T)
     return {name: np.concatenate(values) for name, values in parts.items()}
-
-
-def _insert_field_data(path: Path, values: Mapping[str, float]) -> None:
-    """Add numbers to a VTU file; meshio leaves its field data out, and reads no text there."""
-    rows = (
-        f'<DataArray type="Float64" Name={quoteattr(name)} NumberOfTuples="1" '
-        f'format="ascii">{float(value)!r}</DataArray>'
-        for name, value in ({UNITS: 1.0} | dict(values)).items()
-    )
-    mark = b"<UnstructuredGrid>"
-    block = f"<FieldData>{''.join(rows)}</FieldData>".encode()
-    path.write_bytes(path.read_bytes().replace(mark, mark + block, 1))
 
 
 def write_pvd(path: str | Path, entries: Iterable[tuple[float, str | Path]]) -> None:

@@ -8,8 +8,9 @@ import pytest
 
 from geometry.errors import MeshError, ResultError
 from meshes.body import block_mesh, roller_mesh
-from meshes.files import write_msh, write_pvd, write_vtu
+from meshes.files import UNITS, write_msh, write_pvd, write_sheet, write_vtu
 from meshes.sizing import Sizing
+from meshes.vtu import QUADRATIC_TRIANGLE, Grid, vtu
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +98,45 @@ def test_vtu_carries_numbers_of_the_whole(tmp_path, bodies):
     grid = pyvista.read(tmp_path / "field.vtu")
     assert {name: grid.field_data[name][0] for name in values} == values
     assert set(grid.celltypes) == {22}  # VTK_QUADRATIC_TRIANGLE
-    meshio.read(tmp_path / "field.vtu")  # which knows fewer kinds of field data
+    again = meshio.read(tmp_path / "field.vtu")
+    assert {name: again.field_data[name][0] for name in values} == values
+
+
+@pytest.mark.parametrize("values", [8192, 8193, 20000])
+def test_vtu_keeps_what_fills_one_block_or_many(tmp_path, values):
+    """VTK packs 64 KiB at a time: 8192 numbers fill a block to the last byte."""
+    import pyvista
+
+    rng = np.random.default_rng(7)
+    points = rng.random((values, 3))
+    field = np.r_[np.nan, np.inf, rng.standard_normal(values - 2)]
+    cells = np.arange(values // 6 * 6).reshape(-1, 6)
+    grid = Grid(points, cells, QUADRATIC_TRIANGLE, {"x": field}, {}, {})
+    path = tmp_path / "big.vtu"
+    path.write_bytes(vtu(grid))
+    for read in (meshio.read(path), pyvista.read(path)):
+        np.testing.assert_array_equal(read.points, points)
+        np.testing.assert_array_equal(read.point_data["x"], field)
+        np.testing.assert_array_equal(next(iter(read.cells_dict.values())), cells)
+
+
+def test_a_sheet_closes_on_itself(tmp_path):
+    import pyvista
+
+    angle = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    depth = np.array([0.0, 0.001, 0.003])
+    points = np.stack([np.outer(f(angle), 0.02 - depth) for f in (np.cos, np.sin)])
+    field = np.arange(36.0).reshape(12, 3)
+    path = tmp_path / "sheet.vtu"
+    write_sheet(path, points, {"x_MPa": field}, {"turns": 2.0})
+    grid = meshio.read(path)
+    np.testing.assert_array_equal(grid.point_data["x_MPa"], field.ravel())
+    assert grid.field_data[UNITS][0] == 1.0
+    ring = 0.5 * 12 * np.sin(2 * np.pi / 12) * (20.0**2 - 17.0**2)  # of two dodecagons, mm2
+    sizes = pyvista.read(path).compute_cell_sizes()
+    assert sizes.cell_data["Area"].sum() == pytest.approx(ring, rel=1e-12)
+    with pytest.raises(MeshError, match="field 'x_MPa'"):
+        write_sheet(path, points, {"x_MPa": field.T})
 
 
 def test_vtu_refuses_a_field_that_does_not_fit(tmp_path, bodies):
