@@ -50,6 +50,7 @@ class Ratings:
     curvature_ratio: float | None = None
     undercut_factor: float | None = None
     hollow_radius: float | None = None
+    cam_radius: float | None = None
     pressure: float | None = None
     stiffness_of_contact: float = 0.0
     contact_force_margin: float | None = None
@@ -211,7 +212,17 @@ def shape_utilisations(jet: Jet, machine: Machine, ratings: Ratings) -> dict[str
         found["undercut"] = bend / (1.0 - ratings.undercut_factor)
     if ratings.hollow_radius is not None and ratings.hollow_radius > ratings.roller_radius:
         found["concave_radius"] = -path.curvature * (ratings.hollow_radius - ratings.roller_radius)
+    if ratings.cam_radius is not None:
+        found["cam_envelope"] = _contour_radius(path, ratings) / ratings.cam_radius
     return found
+
+
+def _contour_radius(path: Motion, ratings: Ratings) -> Values:
+    """Distance of the contact point from the shaft, m; see `Contour.local_frame`."""
+    lean = np.sqrt(1.0 + path.tangent**2)  # over the cosine of the pressure angle
+    height = (path.stretch - ratings.roller_radius) / lean
+    aside = ratings.offset + ratings.roller_radius * path.tangent / lean
+    return np.sqrt(height**2 + aside**2)
 
 
 def load_utilisations(

@@ -94,6 +94,7 @@ def ratings_of(case: Case) -> Ratings:
         curvature_ratio=limits.curvature_ratio,
         undercut_factor=limits.undercut_factor,
         hollow_radius=None if limits.tool_radius is None else TOOL_ALLOWANCE * limits.tool_radius,
+        cam_radius=limits.cam_radius,
         pressure=float(allowed),
         stiffness_of_contact=float(np.pi * contact_width(case) * roller.radius / modulus),
         contact_force_margin=limits.contact_force_margin,
