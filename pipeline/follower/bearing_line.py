@@ -15,7 +15,7 @@ MAX_STEPS = 60
 TOLERANCE = 1e-10  # of the contact law, over the largest depth in the bore
 _ROUND_OFF = 1e-14
 _LEAST_DENT = 1e-12  # of the play: smaller loads are solved enlarged, their pushes divided
-_BISECTIONS = 50
+_LEAST_LENGTH = 1e-15  # of a step: none is left out whole
 _TOUCH = 1e-9  # of the play: how far a rigid beam may be into the bore
 
 
@@ -171,10 +171,11 @@ def _linear_step(line: BearingLine, push: Array, rigid: Array, load: Array) -> t
     touch = np.abs(deflection) >= line.play[:, None]
     offset = np.sign(deflection) * line.play[:, None] - line.rigid_modes @ rigid
     push, rigid = np.zeros_like(push), rigid.copy()
-    patterns, group = np.unique(touch.T, axis=0, return_inverse=True)
-    for index, active in enumerate(patterns):
-        here = np.flatnonzero(group.ravel() == index)
-        knots = np.flatnonzero(active)
+    alike: dict[bytes, list[int]] = {}
+    for place, pattern in enumerate(np.packbits(touch, axis=0).T):
+        alike.setdefault(pattern.tobytes(), []).append(place)
+    for here in map(np.array, alike.values()):
+        knots = np.flatnonzero(touch[:, here[0]])
         solution = _bound(line, knots, offset[np.ix_(knots, here)], load[:, here])
         push[np.ix_(knots, here)] = solution[:-2]
         rigid[:, here] += solution[-2:]
@@ -190,7 +191,8 @@ def _bound(line: BearingLine, knots: NDArray[np.intp], offset: Array, load: Arra
     modes = line.rigid_modes[knots] / np.array([1.0, line.positions[-1]])
     softness = line.compliance[np.ix_(knots, knots)] + np.diag(1.0 / line.stiffness[knots])
     scale = float(softness.diagonal().max())
-    system = np.block([[softness / scale, -modes], [modes.T, np.zeros((2, 2))]])
+    system = np.zeros((len(knots) + 2, len(knots) + 2))
+    system[:-2, :-2], system[:-2, -2:], system[-2:, :-2] = softness / scale, -modes, modes.T
     if len(knots) < 2:  # the beam could still swing: hold it back a little
         system[-2:, -2:] = 1e-6 * np.eye(2)
     right = np.vstack([-offset / scale, load / np.array([[1.0], [line.positions[-1]]])])
@@ -205,22 +207,47 @@ def _best_length(
 ) -> Array:
     """Step length in (0, 1] that lowers the energy most, (n,).
 
-    The energy's slope along the step rises, so its zero is found by bisection; a slope still
-    falling at the whole step asks for all of it.
+    The energy's slope along the step rises, so that a slope still falling at the whole step asks
+    for all of it. It is straight between the lengths at which a knot leaves the bore or enters
+    it on the other side: its zero lies on the piece where these turn it positive.
     """
     before, change = line.deflection(push, rigid), line.deflection(push_step, rigid_step)
     bent = line.compliance @ push_step
-
-    def slope(length: Array) -> Array:
-        pushed = push + length * push_step
-        stored = (pushed * bent).sum(axis=0)
-        return stored + (line.law(before + length * change) * change).sum(axis=0) - fixed
-
     fixed = (load * rigid_step).sum(axis=0)
-    low, high = np.zeros(load.shape[1]), np.ones(load.shape[1])
-    too_far = slope(high) > TOLERANCE * np.abs(slope(low))
-    for _ in range(_BISECTIONS if too_far.any() else 0):
-        middle = 0.5 * (low + high)
-        beyond = slope(middle) > 0.0
-        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-    return np.where(too_far, low, 1.0)
+    spread = (push_step * bent).sum(axis=0)
+
+    def slope(length: float) -> Array:
+        stored = (push * bent).sum(axis=0) + length * spread
+        law = line.law(before + length * change)
+        return np.asarray(stored + (law * change).sum(axis=0) - fixed)
+
+    first, last = slope(0.0), slope(1.0)
+    found = np.ones(load.shape[1])
+    far = np.flatnonzero(last > TOLERANCE * np.abs(first))
+    if far.size:
+        found[far] = _zero(line, before[:, far], change[:, far], first[far], spread[far])
+    return found
+
+
+def _zero(line: BearingLine, before: Array, change: Array, first: Array, spread: Array) -> Array:
+    """Where a slope of value `first` at 0, positive at 1, is zero, (n,)."""
+    pace = np.where(change == 0.0, 1e-300, change)
+    toward = np.sign(pace) * line.play[:, None]
+    stiffening = line.stiffness[:, None] * change**2
+    leaves, enters = (np.clip((side - before) / pace, 0.0, 1.0) for side in (-toward, toward))
+    touching = (stiffening * (leaves > 0.0)).sum(axis=0)
+    corners = np.concatenate([leaves, enters, np.ones((1, first.size))])
+    turns = np.concatenate([-stiffening, stiffening, np.zeros((1, first.size))])
+    turns[: len(leaves)] *= leaves > 0.0
+    order = np.argsort(corners, axis=0)
+    corners = np.take_along_axis(corners, order, axis=0)
+    turns = np.take_along_axis(turns, order, axis=0)
+    # Rise on the piece that ends at each corner, and the slope there.
+    rise = np.cumsum(np.vstack([spread + touching, turns[:-1]]), axis=0)
+    width = np.diff(corners, axis=0, prepend=0.0)
+    value = first + np.cumsum(rise * width, axis=0)
+    piece = np.argmax(value >= 0.0, axis=0)[None, :]  # the last, where round-off leaves none
+    end, over, steep = (np.take_along_axis(x, piece, axis=0)[0] for x in (corners, value, rise))
+    back = np.divide(over, steep, out=np.zeros_like(over), where=(steep > 0.0) & (over > 0.0))
+    length = np.where(over >= 0.0, end - back, 1.0)
+    return np.asarray(np.clip(length, _LEAST_LENGTH, 1.0))

@@ -261,8 +261,8 @@ def follower_loads(
     r"""Forces on the follower, guide friction included, at given cam angles.
 
     The cam's push has the axial part F_a and the side part F_t = F_a tan(alpha). The side part
-    loads the guides, which answer with c |F_t| of friction against the motion, which F_a must overcome on the
-    way out and is spared on the way back:
+    loads the guides, which answer with c |F_t| of friction against the motion; F_a must overcome
+    it on the way out and is spared it on the way back:
 
         F_a = F + sign(v) c |F_t|    hence    F_a = F / (1 - sign(v) c |tan(alpha)|)
 
@@ -293,8 +293,9 @@ def follower_loads(
     References
     ----------
     Cardoso et al., Energies 18 (2025) 3256, eqs 11-14, with friction made implicit; for c of
-    guides of finite length see `guided_loads`. Rothbart, Cam Design Handbook (2004), ch. 6; Energy loss comparison between kinematically
-    equivalent mechanisms: slider-crank and eccentric cam (2024), eq. 40 for c3.
+    guides of finite length see `guided_loads`. Rothbart, Cam Design Handbook (2004), ch. 6;
+    Energy loss comparison between kinematically equivalent mechanisms: slider-crank and eccentric
+    cam (2024), eq. 40 for c3.
     """
     theta = finite("theta", theta)
     speed = np.broadcast_to(finite("cam_speed", cam_speed), theta.shape)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import Legendre
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, finite, freeze
+from geometry.arrays import Array, finite, freeze, readonly
 from geometry.errors import ContactError, InputError
 from pipeline.follower.bearing_line import BearingLine, settle
 from pipeline.follower.stem import Stem, end_flexibility, stem_compliance
@@ -201,6 +201,7 @@ def guide_reactions(
     guides: GuidePair,
     end_moment: ArrayLike = 0.0,
     knots: int = KNOTS,
+    start: tuple[Array, Array] | None = None,
 ) -> GuideReactions:
     """Reactions, pressures and tilts of the guides on the elastic stem, at every position.
 
@@ -220,6 +221,7 @@ def guide_reactions(
     end_moment : array (n,)          on the roller end, N m, positive when it turns the stem from
                                      its axis (roller to B) towards F_t
     knots : int                      per guide, odd, >= 3
+    start : push, rigid              where `settle` starts, of like loads at the same positions
 
     Returns
     -------
@@ -236,10 +238,10 @@ def guide_reactions(
     force = finite("tangential_force", tangential_force)
     reach = np.broadcast_to(finite("overhang", overhang), force.shape)
     moment = np.broadcast_to(finite("end_moment", end_moment), force.shape)
-    _fit(stem, guides, reach, knots)
-    line, slopes, half_a = _bearing_line(stem, guides, knots)
+    require_fit(stem, guides, reach, knots)
+    line, slopes, half_a = bearing_line(stem, guides, knots)
     arm = reach - half_a
-    push, rigid = settle(line, force, moment - force * arm)
+    push, rigid = settle(line, force, moment - force * arm, start)
 
     weights_a, weights_b = np.split(line.weights, 2)
     from_a = line.positions[:knots] - half_a
@@ -288,8 +290,14 @@ def guide_reactions(
     return result
 
 
-def _fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> None:
-    """Refuse a stem that does not fit its guides."""
+def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> None:
+    """Refuse a stem that does not fit its guides at overhangs (n,), m.
+
+    Raises
+    ------
+    InputError
+        If the roller would enter guide A, the stem would leave guide B or is thicker than a bore.
+    """
     if knots < 3 or knots % 2 == 0:
         raise InputError("knots", knots, "odd and >= 3")
     for name, guide in (("a", guides.a), ("b", guides.b)):
@@ -307,7 +315,8 @@ def _fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> None:
         raise InputError("follower.stem_length", stem.length, limit)
 
 
-def _bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine, Array, float]:
+@lru_cache(maxsize=8)
+def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine, Array, float]:
     """Beam and foundation in one, from the mouth of A; slope compliance; half length of A."""
     unit, weight = lobatto(knots)
     half_a, half_b = 0.5 * guides.a.length, 0.5 * guides.b.length
@@ -321,7 +330,7 @@ def _bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLin
         compliance=deflection,
         edges=np.array([0, knots - 1, knots, 2 * knots - 1]),
     )
-    return line, slopes, half_a
+    return line, readonly(slopes), half_a
 
 
 def lobatto(count: int) -> tuple[Array, Array]:

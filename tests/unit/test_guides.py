@@ -226,8 +226,8 @@ def test_an_unsettled_position_raises(monkeypatch):
 
 @pytest.mark.parametrize(("spoilt", "name"), [(0, "force_residual"), (1, "complementarity")])
 def test_a_residual_that_is_not_met_raises(monkeypatch, spoilt, name):
-    def careless(line, force, moment):
-        push, rigid = bearing_line.settle(line, force, moment)
+    def careless(line, force, moment, start=None):
+        push, rigid = bearing_line.settle(line, force, moment, start)
         return (push * (1 + 1e-7), rigid) if spoilt == 0 else (push, rigid * (1 + 1e-6))
 
     monkeypatch.setattr(guides_module, "settle", careless)
