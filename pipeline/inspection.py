@@ -19,6 +19,7 @@ from geometry.inspection import Inspection, inspected, real_contour
 from geometry.lift import Lift
 from pipeline import results
 from pipeline import trial as road
+from pipeline.benchmarks import benchmarks
 from pipeline.case import Case, load_case_file
 from pipeline.certify import certified, positions_to_certify
 from pipeline.checks.verdict import binding, verdict
@@ -147,7 +148,7 @@ def inspect_part(
         tell(f"certificate at {len(chosen)} angles")
         points = certified(pair, trial, chosen, jobs, lambda *_: None)
         trial = replace(trial, certificate=points)
-    return RealPart(fit, real, road.checked(case, trial))
+    return RealPart(fit, real, road.checked(case, trial, benchmarks(case.roller.radius)))
 
 
 def _cycle(case: Case, contour: Contour, bodies: CycleBodies, given: Turn) -> Cycle:

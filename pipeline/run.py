@@ -234,7 +234,8 @@ def _trial(
         _write_cycles(journey, number, cycles)
     progress.stage(f"trial {number}: checks")
     with watch.stage("checks"):
-        return road.checked(case, Trial(number, smoother, why, lift, contour, cycles, mesh, ()))
+        made = Trial(number, smoother, why, lift, contour, cycles, mesh, ())
+        return road.checked(case, made, searching=True)
 
 
 def _cycle(
@@ -266,7 +267,7 @@ def _certified(journey: Journey, final: Trial, jobs: int | None) -> Trial:
     case, progress = journey.case, journey.progress
     chosen = positions_to_certify(final, case.solver.certificate_positions)
     if not chosen:
-        return final
+        return road.checked(case, final)
     progress.stage(f"certificate at {len(chosen)} angles")
     with journey.watch.stage("certificate"):
         points = certified(contact_pair(case, final.contour), final, chosen, jobs, progress.advance)

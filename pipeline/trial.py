@@ -210,8 +210,16 @@ def _as_arrays(history: ContactHistory) -> dict[str, Array]:
     return {f.name: getattr(history, f.name) for f in fields(history) if f.name != "method"}
 
 
-def checked(case: Case, trial: Trial, benchmarks: Mapping[str, float] | None = None) -> Trial:
-    """The trial with its checks, certificate and benchmarks included as far as there are any."""
+def checked(
+    case: Case,
+    trial: Trial,
+    benchmarks: Mapping[str, float] | None = None,
+    searching: bool = False,
+) -> Trial:
+    """The trial with its checks, certificate and benchmarks included as far as there are any.
+
+    Of a trial of a search they are not asked for yet; of an answer they are, and missing, fail it.
+    """
     evidence = TrialEvidence(
         case=case,
         contour=trial.contour,
@@ -221,6 +229,7 @@ def checked(case: Case, trial: Trial, benchmarks: Mapping[str, float] | None = N
         benchmarks=benchmarks,
     )
     return replace(trial, checks=all_checks(evidence))
+        searching=searching,
 
 
 def foreseen(case: Case, torques: Mapping[str, Torque], smoother: Smoother) -> tuple[Check, ...]:

@@ -30,6 +30,7 @@ class Check:
     error_share : float      error bar of the demand over the demand; None: not known
     corner : str             the tolerance corner where the demand is worst; "" when none was tried
     corner_demand : float    the demand there; None when none was tried
+    evidence : bool          tells of the numbers, not of the design: nobody can waive it
     """
 
     id: str
@@ -49,6 +50,7 @@ class Check:
     error_share: float | None = None
     corner: str = ""
     corner_demand: float | None = None
+    evidence: bool = False
 
     @property
     def error(self) -> float | None:
@@ -132,7 +134,23 @@ class Check:
             "margin": _json_number(self.margin),
             "corner": self.corner,
             "corner_demand": _json_number(self.corner_demand),
+            "evidence": self.evidence,
         }
+
+
+def not_described(name: str, title: str, unit: str, note: str, *, must_have: bool) -> Check:
+    """The check of a part that the case does not describe: not evaluated, and the note says why."""
+    return Check(
+        id=name,
+        title=title,
+        demand=None,
+        limit=None,
+        unit=unit,
+        source=note,
+        method="not evaluated",
+        must_have=must_have,
+        note=note,
+    )
 
 
 def _json_number(value: float | None) -> float | None:

@@ -13,6 +13,7 @@ from pipeline.checks import (
     function,
     geometry,
     guides,
+    manufacture,
     parts,
     proof,
     roller,
@@ -46,7 +47,7 @@ SLOW = (geometry.self_intersection, geometry.second_contact)
 ALL: tuple[CheckFunction, ...] = (*DESIGN, *rolling.CHECKS, *evidence.CHECKS)
 
 
-SIGNED: tuple[CheckFunction, ...] = signed.CHECKS
+SIGNED: tuple[CheckFunction, ...] = (*signed.CHECKS, *manufacture.CHECKS)
 """What a sign-off asks for besides."""
 
 PROOF: tuple[CheckFunction, ...] = proof.CHECKS
@@ -63,20 +64,20 @@ def all_checks(trial: TrialEvidence) -> tuple[Check, ...]:
     left out.
     """
     found = checked_by(trial, (*ALL, *PROOF, *SIGNED, *PARTS))
-    known = {check.id for check in found} | {"tolerance_corners"}
+    known = {check.id for check in found if not check.evidence} | {"tolerance_corners"}
     idle = [waiver.check for waiver in trial.case.waivers if waiver.check not in known]
     return in_order((*found, _idle_waivers(idle))) if idle else found
 
 
 def _idle_waivers(names: Sequence[str]) -> Check:
-    """A waiver that fits no check: a slip of the pen would otherwise go unseen."""
+    """A waiver that fits no check, or one of the evidence, which stands or falls by itself."""
     return Check(
         id="idle_waivers",
-        title="Waivers of checks that are none",
+        title="Waivers of no effect",
         demand=float(len(names)),
         limit=0.0,
         unit="waivers",
-        source="a waiver names a check",
+        source="a waiver names a check of the design; a wrong number cannot be accepted",
         method="names of the case's waivers against the ids of its checks",
         must_have=False,
         note=", ".join(names),
@@ -94,9 +95,11 @@ def design_checks(trial: TrialEvidence) -> tuple[Check, ...]:
 
 
 def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, ...]:
-    """The checks, each with the waiver the case has for it."""
+    """The checks, each with the waiver the case has for it; the evidence cannot be waived."""
     texts = {w.check: f"{w.name}, {w.date}: {w.reason}" for w in waivers}
-    return tuple(replace(check, waiver=texts.get(check.id)) for check in checks)
+    return tuple(
+        check if check.evidence else replace(check, waiver=texts.get(check.id)) for check in checks
+    )
 
 
 def checked_by(trial: TrialEvidence, functions: Iterable[CheckFunction]) -> tuple[Check, ...]:

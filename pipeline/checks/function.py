@@ -67,6 +67,7 @@ def energy_closure(evidence: TrialEvidence) -> Check:
         unit="-",
         source=evidence.source("energy_closure", "conservation of energy over one turn"),
         method="integral of (F_s + m w^2 s'') s' over the lift's spline, over the energy stored",
+        evidence=True,
         **worst.place,
     )
 
@@ -82,6 +83,7 @@ def friction_balance(evidence: TrialEvidence) -> Check:
         unit="-",
         source=evidence.source("friction_balance", "conservation of energy over one turn"),
         method="cam work less that of spring and inertia, against friction times way, relative",
+        evidence=True,
         **worst.place,
     )
 

@@ -132,7 +132,6 @@ def concave_radius(evidence: TrialEvidence) -> Check | None:
             "tool_radius", "hollow at least a tenth above the tool radius, Rothbart (2004) ch. 6"
         ),
         method="least concave pitch radius plus the roller radius, refined between samples",
-        must_have=tool is not None,
         lift_can_help=True,
         note="" if tool is not None else "no tool radius is given",
     )
@@ -156,7 +155,6 @@ def minimum_wall(evidence: TrialEvidence) -> Check:
         cam_angle_deg=_degrees(theta),
         source=evidence.source("minimum_wall", "hub of 1.75 shaft diameters, common practice"),
         method="least contour radius over bore radius plus keyway depth",
-        must_have=False,
     )
 
 
@@ -173,7 +171,6 @@ def spring_travel(evidence: TrialEvidence) -> Check:
         cam_angle_deg=_degrees(lift.highest.theta),
         source=evidence.source("spring_travel", "travel of the spring as given in the case"),
         method="greatest lift, between samples too",
-        must_have=travel is not None,
         lift_can_help=True,
         note="" if travel is not None else "no spring travel is given",
     )

@@ -13,7 +13,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.errors import GeometryError
-from pipeline.checks.check import Check
+from pipeline.checks.check import Check, not_described
 from pipeline.checks.trial import TrialEvidence, greatest, least, worst_case
 from pipeline.follower.bearing_cards import read_cards
 from pipeline.follower.cam_body import counter_hole, unbalance
@@ -53,7 +53,6 @@ def jam_at_worst_friction(evidence: TrialEvidence) -> Check | None:
         unit="-",
         source=evidence.source("jam_index", "locks at 1, Rothbart (2004) eq. 6.8; half of it held"),
         method="greatest c |tan alpha| on the way out at friction_max of both guides",
-        must_have=bounded,
         lift_can_help=True,
         note="" if bounded else "no greatest friction is given for both guides",
         **worst.place,
@@ -164,7 +163,13 @@ def roller_pin(evidence: TrialEvidence) -> Check | None:
     pin = evidence.case.roller.pin
     share = evidence.limit("pin_share", 0.6)
     if pin is None or share is None:
-        return _missing("roller_pin", "Bending of the roller's pin", "MPa", "no pin is given")
+        return not_described(
+            "roller_pin",
+            "Bending of the roller's pin",
+            "MPa",
+            "no pin is given",
+            must_have=True,
+        )
     material = evidence.case.material(pin.material)
     worst = greatest(evidence, lambda cycle: _given(_parts(cycle).pin_stress))
     return Check(
@@ -187,7 +192,7 @@ def roller_ring(evidence: TrialEvidence) -> Check | None:
     roller, title = evidence.case.roller, "Bending stress range of the roller's outer ring"
     if roller.bearing.card is None:
         note = "a plain bearing is rated in a housing; no card tells of balls and ring"
-        return _missing("roller_ring", title, "MPa", note)
+        return not_described("roller_ring", title, "MPa", note, must_have=False)
     material = evidence.case.material(roller.material)
     worst = greatest(evidence, lambda cycle: _given(_parts(cycle).ring_stress))
     strength = material.fatigue_bending
@@ -211,7 +216,9 @@ def key_pressure(evidence: TrialEvidence) -> Check | None:
     if not _known(evidence):
         return None
     if evidence.case.cam.keyway is None:
-        return _missing("key_pressure", "Pressure on the key", "MPa", "no keyway is given")
+        return not_described(
+            "key_pressure", "Pressure on the key", "MPa", "no keyway is given", must_have=False
+        )
     worst = greatest(evidence, lambda cycle: np.abs(_given(_parts(cycle).key_pressure)))
     limit = evidence.limit("key_pressure", 100e6)
     return Check(
@@ -288,20 +295,6 @@ def cam_unbalance(evidence: TrialEvidence) -> Check | None:
 
 def _given(values: Array | None) -> Array:
     return np.array([np.nan]) if values is None else values
-
-
-def _missing(name: str, title: str, unit: str, note: str) -> Check:
-    return Check(
-        id=name,
-        title=title,
-        demand=None,
-        limit=None,
-        unit=unit,
-        source=note,
-        method="not evaluated",
-        must_have=False,
-        note=note,
-    )
 
 
 CHECKS = (

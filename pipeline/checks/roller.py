@@ -78,7 +78,6 @@ def roller_life(evidence: TrialEvidence) -> Check:
             "roller_life", f"ISO 281; {bearing.name}: {bearing.source}".rstrip(": ")
         ),
         method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force",
-        must_have=target is not None,
         lift_can_help=True,
         note="; ".join(missing),
         **worst.place,

@@ -1,4 +1,4 @@
-"""Limits a sign-off asks for besides: over-speed, life, edges, room, and what the shop makes."""
+"""Limits a sign-off asks for besides: over-speed, life, edges, room."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from geometry.arrays import FULL_TURN, Array
 from pipeline.checks.check import Check
 from pipeline.checks.contact import softer
-from pipeline.checks.trial import TrialEvidence, Worst, greatest, least
+from pipeline.checks.trial import TrialEvidence, greatest, least
 from pipeline.contact import hertz
 
 RPM = 30.0 / math.pi
@@ -81,7 +81,7 @@ def contact_pressure_at_life(evidence: TrialEvidence) -> Check:
     worst = greatest(evidence, lambda cycle: cycle.contact.p0)
     limit = None
     if None not in (slope, intercept, life, safety):
-        speed = max(evidence.cam_speed(cycle) for cycle in evidence.cycles)
+        speed = max((evidence.cam_speed(c) for c in evidence.cycles), default=math.nan)
         modulus = _contact_modulus(evidence)
         limit = pressure_at_life(life * speed / FULL_TURN, slope, intercept, modulus) / safety  # type: ignore[operator,arg-type]
     missing = [text for value, text in (
@@ -99,7 +99,6 @@ def contact_pressure_at_life(evidence: TrialEvidence) -> Check:
         ),
         method="greatest contact pressure by finite elements; every turn loads each place once,"
         " all turns as bad as the worst load case",
-        must_have=life is not None,
         lift_can_help=True,
         note="; ".join(missing),
         **worst.place,
@@ -169,7 +168,6 @@ def shakedown_traction(evidence: TrialEvidence) -> Check:
             f"greatest shear along the surface <= k, Johnson (1985) sec. 9.2; k of {name}",
         ),
         method="greatest contact pressure by finite elements; traction of full sliding",
-        must_have=friction is not None,
         lift_can_help=True,
         note="" if friction is not None else "no friction of the roller on the cam is given",
         **worst.place,
@@ -230,68 +228,8 @@ def cam_envelope(evidence: TrialEvidence) -> Check:
         cam_angle_deg=float(np.rad2deg(theta)) % 360.0,
         source=evidence.source("cam_radius", "room as given in the case"),
         method="greatest radius of the contour, refined between samples",
-        must_have=room is not None,
         lift_can_help=True,
         note="" if room is not None else "no room for the cam is given",
-    )
-
-
-def profile_waviness(evidence: TrialEvidence) -> Check:
-    """Force of the follower riding over the contour's waves beside the contact force."""
-    case = evidence.case
-    depth = getattr(case.cam, "profile_tolerance", None)
-    length = getattr(case.cam, "waviness_length", 5e-3)
-    mass = case.follower.mass
-
-    def force(cycle: Any) -> Array:
-        if depth is None:
-            return np.full(cycle.theta.size, np.nan)
-        along = evidence.cam_speed(cycle) * _path(evidence, cycle.theta)
-        added = mass * depth * (FULL_TURN * along / length) ** 2
-        nominal = np.asarray(cycle.loads.normal_force, dtype=float)
-        return np.where(nominal > 0, added / np.where(nominal > 0, nominal, 1.0), np.inf)
-
-    worst = greatest(evidence, force) if depth is not None else Worst(np.nan, "", None)
-    return Check(
-        id="profile_waviness",
-        title="Force of the contour's waves over the contact force",
-        demand=worst.value,
-        limit=evidence.limit("waviness", 0.2),
-        unit="-",
-        source=evidence.source("waviness", "10 to 20 % of the force, Rothbart (2004) sec. 10.4"),
-        method=f"m delta (2 pi v/lambda)^2, waves of the profile tolerance, {1e3 * length:g} mm"
-        " long",
-        must_have=depth is not None,
-        note="" if depth is not None else "no profile tolerance is given",
-        **worst.place,
-    )
-
-
-def chord_error(evidence: TrialEvidence) -> Check:
-    """What straight lines between the points of the contour's table miss of it."""
-    case = evidence.case
-    tolerance, share = (
-        getattr(case.cam, "profile_tolerance", None),
-        evidence.limit("chord_share", 0.25),
-    )
-    theta = np.linspace(0.0, FULL_TURN, case.solver.positions, endpoint=False)
-    contour = evidence.contour
-    points = contour.points(theta)
-    step = np.hypot(*(np.roll(points, -1, axis=1) - points))
-    bend = np.abs(1.0 / contour.radius_of_curvature(theta))
-    sag = step**2 * np.maximum(bend, np.roll(bend, -1)) / 8.0
-    worst = int(np.argmax(sag))
-    return Check(
-        id="chord_error",
-        title="Chord error of the contour's table",
-        demand=1e6 * float(sag[worst]),
-        limit=None if tolerance is None or share is None else 1e6 * share * tolerance,
-        unit="um",
-        cam_angle_deg=float(np.rad2deg(theta[worst])),
-        source=evidence.source("chord_share", "a quarter of the profile tolerance, geometry"),
-        method="greatest step^2/(8 rho) between neighbouring points of the contour's table",
-        must_have=tolerance is not None,
-        note="" if tolerance is not None else "no profile tolerance is given",
     )
 
 
@@ -310,7 +248,6 @@ def roller_radial(evidence: TrialEvidence) -> Check:
             "radial_limit", f"F_r,max of a track roller; {bearing.name}: {bearing.source}"
         ),
         method="greatest normal force over the turn",
-        must_have=limit is not None,
         lift_can_help=True,
         note=""
         if limit is not None
@@ -337,14 +274,6 @@ def guide_length(evidence: TrialEvidence) -> Check:
         method="outer ends of the two guides over the overhang at the least lift",
         must_have=False,
         lift_can_help=True,
-    )
-
-
-def _path(evidence: TrialEvidence, theta: Array) -> Array:
-    """Way of the contact along the contour per radian (n,), m."""
-    contour = evidence.contour
-    return np.abs(
-        contour.pitch.speed(theta) * (1.0 - contour.roller_radius * contour.pitch.curvature(theta))
     )
 
 
@@ -381,8 +310,6 @@ CHECKS = (
     shakedown_traction,
     guide_clearance,
     cam_envelope,
-    profile_waviness,
-    chord_error,
     roller_radial,
     guide_length,
 )

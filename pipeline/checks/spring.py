@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from pipeline.checks.check import Check
+from pipeline.checks.check import Check, not_described
 from pipeline.checks.trial import TrialEvidence, worst_case
 from pipeline.follower.spring import HelicalSpring, case_spring, surge_harmonics
+
+NOT_WOUND = "no wire, diameter and coils of the spring are given"
 
 
 class Work(NamedTuple):
@@ -98,7 +100,8 @@ def spring_surge(evidence: TrialEvidence) -> Check | None:
         return None
     spring = case_spring(evidence.case)
     if spring is None:
-        return _unknown("spring_surge", "Surge frequency over that of the cam")
+        title = "Surge frequency over that of the cam"
+        return not_described("spring_surge", title, "-", NOT_WOUND, must_have=False)
     fundamental = spring.surge_frequency
 
     def ratio(speed: float) -> tuple[int, float, float]:
@@ -139,7 +142,7 @@ def _check(
     case = evidence.case
     spring = case_spring(case)
     if spring is None:
-        return _unknown(id, title)
+        return not_described(id, title, "-", NOT_WOUND, must_have=True)
     travel = evidence.contour.pitch.lift.highest.value
     greatest = max(evidence.preload(cycle) for cycle in evidence.cycles)
     preload = greatest * (1.0 + case.spring.preload_tolerance)
@@ -154,21 +157,6 @@ def _check(
         source=evidence.source(id, source),
         method=method,
         lift_can_help=lift_can_help,
-    )
-
-
-def _unknown(name: str, title: str) -> Check:
-    note = "no wire, diameter and coils of the spring are given"
-    return Check(
-        id=name,
-        title=title,
-        demand=None,
-        limit=None,
-        unit="-",
-        source=note,
-        method="not evaluated",
-        must_have=False,
-        note=note,
     )
 
 

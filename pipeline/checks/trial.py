@@ -30,6 +30,7 @@ class TrialEvidence:
     mesh_quality : Quality                    None when the trial made no mesh
     certificate : tuple of CertificatePoint   empty when none was asked for
     benchmarks : mapping                      as `pipeline.benchmarks` gives it; None: not solved
+    searching : bool                          one trial of a search; the answer alone is certified
     """
 
     case: Case
@@ -38,6 +39,7 @@ class TrialEvidence:
     mesh_quality: Quality | None = None
     certificate: tuple[CertificatePoint, ...] = ()
     benchmarks: Mapping[str, float] | None = None
+    searching: bool = False
 
     def cam_speed(self, cycle: Cycle) -> float:
         """Cam speed of a load case, rad/s."""

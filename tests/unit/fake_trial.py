@@ -26,6 +26,18 @@ def contour(stroke: float = STROKE, base: float = BASE, roller: float = ROLLER) 
     return Contour(PitchCurve(lift, base), roller)
 
 
+def asked(**changes):
+    """The limits of a fake case, those the code has no default for among them."""
+    plain = {
+        "sources": {},
+        "cam_radius": 0.06,
+        "tool_radius": 0.01,
+        "roller_life": 3600.0,
+        "target_life": 3.6e6,
+    }
+    return SimpleNamespace(**(plain | changes))
+
+
 def case(**changes):
     """A case all of whose limits are met by `evidence()`."""
     steel = SimpleNamespace(
@@ -35,9 +47,15 @@ def case(**changes):
         fatigue_bending=400e6,
         case_depth=1e-3,
         core_yield_strength=400e6,
+        endurance_slope=14.15,
+        endurance_intercept=66.22,
+        E=210e9,
+        nu=0.3,
         source="a card",
     )
-    hard = SimpleNamespace(yield_strength=1500e6, endurance_pressure=None, source="another")
+    hard = SimpleNamespace(
+        yield_strength=1500e6, endurance_pressure=None, E=210e9, nu=0.3, source="another"
+    )
     guide = SimpleNamespace(
         length=0.02,
         diameter=0.01,
@@ -47,7 +65,7 @@ def case(**changes):
         source="maker",
     )
     plain = {
-        "limits": SimpleNamespace(sources={}),
+        "limits": asked(),
         "mechanism": SimpleNamespace(gear_ratio=2.0),
         "spring": SimpleNamespace(rate=RATE, preload=PRELOAD, travel_max=0.02),
         "cam": SimpleNamespace(
@@ -63,9 +81,16 @@ def case(**changes):
             friction=0.1,
             crowned=True,
             roughness=1e-7,
-            bearing=SimpleNamespace(name="625", C=1140.0, C0=600.0, speed_limit=1500.0, source="c"),
+            bearing=SimpleNamespace(
+                name="625",
+                C=1140.0,
+                C0=600.0,
+                radial_limit=1000.0,
+                speed_limit=1500.0,
+                source="c",
+            ),
         ),
-        "solver": SimpleNamespace(positions=720),
+        "tolerances": SimpleNamespace(phase=0.04),
         "follower": SimpleNamespace(mass=MASS, overhang_at_max_lift=0.03),
         "guides": SimpleNamespace(a=guide, b=guide, spacing=0.08),
         "materials": {"steel": steel, "hard": hard},
@@ -117,7 +142,7 @@ def cycle(shape: Contour | None = None, load_case: str = "idle", scale: float = 
         ),
         "rolling": SimpleNamespace(
             traction_demand=0.02 + 0.01 * wave,
-            film_ratio=2.0 + 0.5 * wave,
+            film=SimpleNamespace(ratio=2.0 + 0.5 * wave),
             envelope=SimpleNamespace(
                 crossland=np.array([[150e6, 200e6]]),
                 depth=np.array([[0.0, 0.5e-3]]),
@@ -152,7 +177,7 @@ def evidence(**changes) -> TrialEvidence:
 
 def limits(**values):
     """A case whose limits are these, the rest as in `case()`."""
-    return case(limits=SimpleNamespace(sources={}, **values))
+    return case(limits=asked(**values))
 
 
 def changed(base, **values):

@@ -42,11 +42,23 @@ def test_the_fake_trial_passes():
     checks = all_checks(fake.evidence())
     assert verdict(checks) == "pass"
     assert binding(checks) == ()
-    # Listed first: an optional check without a limit.
-    not_asked_for = ["cam_envelope", "contact_pressure_at_life", "roller_life", "roller_radial"]
-    assert [c.id for c in checks if c.status == "not_evaluated"] == not_asked_for
-    assert [c.id for c in checks[:4]] == not_asked_for
-    assert not any(c.must_have for c in checks[:4])
+    assert not [c.id for c in checks if c.status == "not_evaluated"]
+
+
+@pytest.mark.parametrize(
+    ("limit", "check"),
+    [
+        ("cam_radius", "cam_envelope"),
+        ("target_life", "contact_pressure_at_life"),
+        ("roller_life", "roller_life"),
+    ],
+)
+def test_what_nobody_asks_for_is_listed_first_and_fails_the_verdict(limit, check):
+    """Must-haves of a sign-off stay so when an input is missing."""
+    checks = all_checks(fake.evidence(case=fake.limits(**{limit: None})))
+    assert (checks[0].id, checks[0].status) == (check, "not_evaluated")
+    assert binding(checks) == (check,)
+    assert verdict(checks) == "fail"
 
 
 def test_ids_are_unique_and_records_complete():
@@ -259,10 +271,13 @@ def test_static_safety_by_hand():
 
 
 def test_an_unrated_bearing_is_not_evaluated_and_fails():
-    bearing = SimpleNamespace(name="plain", C=None, C0=None, speed_limit=None, source="")
+    bearing = SimpleNamespace(
+        name="plain", C=None, C0=None, radial_limit=None, speed_limit=None, source=""
+    )
     case = fake.case(roller=fake.changed(fake.case().roller, bearing=bearing))
     checks = all_checks(fake.evidence(case=case))
-    assert set(binding(checks)) == {"roller_static", "roller_speed"}
+    missing = {"roller_static", "roller_speed", "roller_life", "roller_radial"}
+    assert set(binding(checks)) == missing
     notes = {c.id: c.note for c in checks}
     assert notes["roller_static"] == "no static rating is given for plain"
     assert notes["roller_speed"] == "no limiting speed is given for plain"
@@ -369,13 +384,16 @@ def test_friction_with_the_wrong_sign_on_the_return_is_seen():
 # --- evidence --------------------------------------------------------------------------------
 
 
-def test_without_certificate_or_mesh_nothing_is_claimed():
-    checks = {c.id: c for c in all_checks(fake.evidence(certificate=(), mesh_quality=None))}
-    for name in ("certificate_spread", "certificate_gci", "mesh_angle", "mesh_edges"):
+@pytest.mark.parametrize("searching", [True, False])
+def test_without_certificate_or_mesh_nothing_is_claimed(searching):
+    """A trial of a search may go without; an answer without them does not pass."""
+    bare = fake.evidence(certificate=(), mesh_quality=None, benchmarks=None, searching=searching)
+    checks = {c.id: c for c in all_checks(bare)}
+    for name in ("certificate_spread", "certificate_gci", "mesh_angle", "mesh_edges", "mesh_p0"):
         assert checks[name].status == "not_evaluated"
-        assert not checks[name].must_have
+        assert checks[name].must_have is not searching
         assert "carries no" in checks[name].note
-    assert verdict(checks.values()) == "pass"
+    assert verdict(checks.values()) == ("pass" if searching else "fail")
 
 
 def test_the_worst_certified_angle_is_named():
@@ -409,6 +427,21 @@ def test_a_waiver_is_applied_and_says_who_why_and_when():
     assert checks["spring_travel"].status == "waived"
     assert checks["spring_travel"].waiver == "A. Engineer, 2025-01-02: proven"
     assert verdict(checks.values()) == "pass"
+
+
+@pytest.mark.parametrize("name", ["contact_equilibrium", "energy_closure", "benchmark_hertz"])
+def test_evidence_cannot_be_waived(name):
+    """A person may accept a risk, not a wrong number."""
+    plain = fake.cycle()
+    wrong = fake.changed(plain.contact, residual_equilibrium=np.full(fake.POSITIONS, 1e-3))
+    given = fake.evidence(
+        case=fake.case(waivers=(waiver(name),)),
+        cycles=(fake.changed(plain, contact=wrong),),
+    )
+    checks = {c.id: c for c in all_checks(given)}
+    assert checks[name].waiver is None
+    assert checks["contact_equilibrium"].status == "fail"
+    assert checks["idle_waivers"].note == name
 
 
 def test_the_case_s_own_source_is_printed():
@@ -446,7 +479,7 @@ def test_grip_counts_where_the_roller_is_loaded():
 def test_film_counts_where_the_roller_is_loaded():
     ratio = np.full(fake.POSITIONS, np.nan)
     ratio[5] = 1.3
-    parts = fake.changed(fake.cycle().rolling, film_ratio=ratio)
+    parts = fake.changed(fake.cycle().rolling, film=SimpleNamespace(ratio=ratio))
     assert rolling("film_ratio", cycles=(fake.cycle(rolling=parts),)).demand == 1.3
 
 

@@ -7,7 +7,7 @@ import fake_trial as fake
 import numpy as np
 import pytest
 
-from pipeline.checks import signed
+from pipeline.checks import manufacture, signed
 from pipeline.checks.everything import SIGNED, all_checks
 from pipeline.checks.signed import pressure_at_life, shakedown_factor
 
@@ -80,6 +80,7 @@ CASES = {
     "cam_envelope": lambda limit: with_limits(cam_radius=limit and 1e-3 * limit),
     "profile_waviness": lambda limit: with_limits(waviness=limit),
     "chord_error": by_tolerance,
+    "phase_tolerance": lambda limit: with_limits(torque_reduction=limit),
 }
 
 
@@ -116,12 +117,15 @@ def test_without_a_limit_nothing_is_evaluated(name):
         ("edge_pressure", "contact", "p0"),
         ("shakedown_traction", "contact", "p0"),
         ("roller_radial", "loads", "normal_force"),
+        ("profile_waviness", "loads", "normal_force"),
+        ("phase_tolerance", None, "torque_before"),
     ],
 )
 def test_a_nan_is_a_missing_number(name, part, field):
     plain = fake.cycle()
-    poisoned = fake.changed(getattr(plain, part), **{field: np.full(fake.POSITIONS, np.nan)})
-    cycles = (plain, fake.changed(plain, **{part: poisoned, "load_case": "bad"}))
+    nan = {field: np.full(fake.POSITIONS, np.nan)}
+    bad = nan if part is None else {part: fake.changed(getattr(plain, part), **nan)}
+    cycles = (plain, fake.changed(plain, **bad, load_case="bad"))
     given = fake.evidence(case=life_case(), cycles=cycles)
     assert FUNCTIONS[name](given).status == "not_evaluated"
 
@@ -194,21 +198,32 @@ def test_force_on_the_roller_by_hand():
 
 
 def test_waviness_by_hand():
-    """m delta (2 pi v / lambda)^2 over the force on a plain ring: v = w (R - r)."""
-    check = signed.profile_waviness(fake.evidence())
+    """m delta (2 pi v / lambda)^2 over the force on a ring: v = w (R - r), delta half of 4 um."""
+    check = manufacture.profile_waviness(fake.evidence())
     assert check.source.startswith("10 to 20 %")
     ring = replace(fake.evidence(), contour=fake.contour(stroke=1e-9))
     flat = SimpleNamespace(normal_force=np.full(fake.POSITIONS, 300.0))
     ring = replace(ring, cycles=(fake.changed(fake.cycle(), loads=flat),))
-    wave = fake.MASS * 4e-6 * (2.0 * np.pi * 80.0 * 0.042 / 5e-3) ** 2 / 300.0
-    assert signed.profile_waviness(ring).demand == pytest.approx(wave, rel=1e-5)
+    wave = fake.MASS * 2e-6 * (2.0 * np.pi * 80.0 * 0.042 / 5e-3) ** 2 / 300.0
+    assert manufacture.profile_waviness(ring).demand == pytest.approx(wave, rel=1e-5)
+
+
+def test_phase_by_hand():
+    """sin against half of it, 0.02 rad of cam off: the rest is the root of 1.25 - cos(0.02)."""
+    check = manufacture.phase_tolerance(fake.evidence())
+    assert check.demand == pytest.approx(1.0 - np.sqrt(1.25 - np.cos(0.02)), rel=1e-9)
+    assert not check.must_have
+    sharp = fake.changed(fake.case(), tolerances=SimpleNamespace(phase=0.0))
+    assert manufacture.phase_tolerance(fake.evidence(case=sharp)).status == "not_evaluated"
+    unmoved = fake.cycle(torque_before=None, residual_torque=None)
+    assert manufacture.phase_tolerance(fake.evidence(cycles=(unmoved,))) is None
 
 
 def test_chord_error_by_hand():
     """One step in 720 of a ring of 42 mm: r (pi/360)^2 / 2 / 4."""
     ring = replace(fake.evidence(), contour=fake.contour(stroke=1e-9))
     step = 42e3 * np.pi / 360.0
-    assert signed.chord_error(ring).demand == pytest.approx(step**2 / (8.0 * 42e3), rel=1e-4)
+    assert manufacture.chord_error(ring).demand == pytest.approx(step**2 / (8.0 * 42e3), rel=1e-4)
 
 
 def test_a_waiver_of_no_check_is_told():
