@@ -80,6 +80,7 @@ class Case(Section):
         _check_road(self)
         _check_geometry(self)
         _check_names(self)
+        _check_film(self)
         return self
 
     def to_toml(self) -> str:
@@ -257,6 +258,20 @@ def _check_road(case: Case) -> None:
             raise InputError(f"load_case[{k}].preload", load_case.preload, limit)
         if case.engine is None and load_case.torque is not None:
             raise InputError(f"load_case[{k}].torque", load_case.torque, "left out with a lift")
+
+
+def _check_film(case: Case) -> None:
+    if case.lubricant is None or case.lubricant.film == "smooth":
+        return
+    names = (case.cam.material, case.roller.material)
+    needed = {
+        "cam.roughness": case.cam.roughness,
+        "roller.roughness": case.roller.roughness,
+        **{f"materials.{name}.hardness": case.material(name).hardness for name in names},
+    }
+    for field, value in needed.items():
+        if value is None:
+            raise InputError(field, "missing", 'given, as lubricant.film is "mixed"')
 
 
 def _check_geometry(case: Case) -> None:

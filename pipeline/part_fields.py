@@ -133,10 +133,14 @@ class Pin(Section):
 
 
 class Oil(Section):
-    """What wets the contact of cam and roller, at the temperature it has there."""
+    """What wets the contact of cam and roller, at the temperature it has there.
+
+    film "mixed" adds the film of rough surfaces by a regression whose source is unverified.
+    """
 
     viscosity: Annotated[float, In("mPa s", above=0, at_most=1e5)]
     pressure_viscosity: Annotated[float, In("1/GPa", above=0, at_most=1000)]
+    film: Literal["smooth", "mixed"] = "smooth"
     source: Text = ""
 
 

@@ -90,6 +90,8 @@ CYCLE = _columns(
     "torque_before?~ [N m]; torque_after?~ [N m]; residual_equilibrium~; residual_complementarity~;"
     "residual_guide_force; residual_guide_moment;"
     "traction_demand?~; creepage?~; slip?~ [m/s]; skid?~; film_thickness?~ [um]; lambda_ratio?~;"
+    "mixed_film?~ [um]; mixed_film_central?~ [um]; asperity_share?~;"
+    "tau_max_rolling?~ [MPa]; von_mises_rolling?~ [MPa];"
     "shear_range?~ [MPa]; bore_stress?~ [MPa]; bore_stress_at_edge?~;"
     "bore_stress_off_edges?~ [MPa];"
     "bush_peak_A? [MPa]; bush_peak_B? [MPa]; rubbing_load_A? [N]; rubbing_load_B? [N];"

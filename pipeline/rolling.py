@@ -12,20 +12,14 @@ from geometry.arrays import FULL_TURN, Array, freeze, uniform_turn
 from pipeline.case import Case
 from pipeline.contact.bore import BoreStress, bore_stress
 from pipeline.contact.envelope import STATIONS, Envelope, FatigueLimits, rolling_pass, swept
-from pipeline.contact.film import (
-    LineFilm,
-    Lubricant,
-    entrainment_speed,
-    lambda_ratio,
-    minimum_film,
-)
+from pipeline.contact.film import entrainment_speed
 from pipeline.contact.history import ContactHistory
 from pipeline.contact.pair import ContactPair, CycleBodies
 from pipeline.contact.patch_tangential import rolling_increase
 from pipeline.contact.tangential import Drag, RollingContact, ring_inertia, rolling_contact
+from pipeline.film_history import FilmHistory, film_history
 from pipeline.follower.forces import FollowerSystem, follower_loads
 from pipeline.follower.roller import RollerMotion, roller_motion
-from pipeline.part_fields import Oil
 
 # Of the contact angles, every so many tell what the real body adds.
 _THINNED = 4
@@ -40,7 +34,7 @@ class RollingHistory:
     traction_demand, tangential over normal force that rolling without slip asks for, NaN where
     the contact is open; shear_range of the shear along the surface, in the cam; envelope, the map
     of greatest stresses; contact, with creep and skid; tau_max and von_mises in the cam with the
-    traction of rolling added, Pa; film m and its lambda ratio.
+    traction of rolling added, Pa; film.
     """
 
     traction_demand: Array
@@ -50,8 +44,7 @@ class RollingHistory:
     contact: RollingContact | None = None
     tau_max: Array | None = None
     von_mises: Array | None = None
-    film: Array | None = None
-    film_ratio: Array | None = None
+    film: FilmHistory | None = None
 
     def __post_init__(self) -> None:
         freeze(self, traction_demand=self.traction_demand, shear_range=self.shear_range)
@@ -75,9 +68,7 @@ class RollingHistory:
         if self.tau_max is not None and self.von_mises is not None:
             found |= {"tau_max_rolling": self.tau_max, "von_mises_rolling": self.von_mises}
         if self.film is not None:
-            found["film_thickness"] = self.film
-        if self.film_ratio is not None:
-            found["lambda_ratio"] = self.film_ratio
+            found |= self.film.columns()
         return found
 
 
@@ -98,16 +89,13 @@ def rolling_history(
     driven = _driven(case, motion, normal_force, contact, cam_speed, given or np.inf)
     loaded = normal_force > 0
     demand = np.abs(driven.demand) / np.where(loaded, normal_force, np.nan)
-    shear = mises = film = ratio = None
+    shear = mises = None
     if given is not None:
         carried = driven.force / np.where(loaded, given * normal_force, 1.0)
         more = rolling_increase(pair.cam.poisson, given, np.clip(np.abs(carried), 0.0, 1.0))
         shear, mises = contact.tau_max * more[0], contact.von_mises * more[1]
-    if case.lubricant is not None:
-        slip = driven.slip if given is not None else 0.0
-        film = _film(case.lubricant, pair, contact, entrainment_speed(motion.rolling_speed, slip))
-        if case.cam.roughness is not None and case.roller.roughness is not None:
-            ratio = lambda_ratio(film, case.cam.roughness, case.roller.roughness)
+    slip = driven.slip if given is not None else 0.0
+    entrained = entrainment_speed(motion.rolling_speed, slip)
     reach = rolling_pass(pair.cam.poisson).shear_range.max()
     return RollingHistory(
         traction_demand=demand,
@@ -119,8 +107,7 @@ def rolling_history(
         contact=driven if given is not None else None,
         tau_max=shear,
         von_mises=mises,
-        film=film,
-        film_ratio=ratio,
+        film=film_history(case, contact, pair.contact_modulus, entrained),
     )
 
 
@@ -153,17 +140,6 @@ def _driven(
         radius=roller.radius,
         period=FULL_TURN / cam_speed,
     )
-
-
-def _film(oil: Oil, pair: ContactPair, contact: ContactHistory, speed: Array) -> Array:
-    groups = LineFilm.of(
-        contact.line_load,
-        contact.relative_radius,
-        pair.contact_modulus,
-        speed,
-        Lubricant(oil.viscosity, oil.pressure_viscosity),
-    )
-    return minimum_film(groups)
 
 
 def _envelope(
@@ -247,4 +223,6 @@ def _worst(turn: RollingHistory) -> dict[str, Any]:
         loss = turn.contact.loss
         record["sliding_loss_J_per_cam_turn"] = loss if np.isfinite(loss) else None
         record["skidding_share"] = float(turn.contact.skidding.mean())
+    if turn.film is not None and turn.film.mixed is not None:
+        record["mixed_film"] = turn.film.record()
     return record

@@ -124,7 +124,8 @@ def _demand(cycle: Cycle) -> Array:
 
 def _lambda(cycle: Cycle) -> Array:
     """Lambda ratio (n,), beyond all bounds where there is no load; NaN where it is not known."""
-    ratio = None if cycle.rolling is None else cycle.rolling.film_ratio
+    film = None if cycle.rolling is None else cycle.rolling.film
+    ratio = None if film is None else film.ratio
     if ratio is None:
         return np.full(cycle.theta.size, np.nan)
     return np.where(np.isnan(ratio), np.inf, ratio)

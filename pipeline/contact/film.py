@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from geometry.arrays import Array, finite, freeze, positive
 from geometry.errors import InputError
@@ -151,28 +152,72 @@ def mixed_film(film: LineFilm, roughness: float, hardness: float, modulus: float
     ----------
     Masjedi and Khonsari, ASME J. Tribol. 134 (2012) 011503; coefficients as recalled: verify.
     """
-    groups = {
-        "load": film.load,
-        "speed": film.speed,
-        "material": np.asarray(film.material),
-        "roughness": roughness / film.radius,
-        "hardness": np.asarray(hardness / (2 * modulus)),
+    refused = next(_refusals(film, roughness, hardness, modulus), None)
+    if refused is not None:
+        raise refused[1]
+    return _regression(film, roughness, hardness, modulus)
+
+
+def mixed_film_where_it_holds(
+    film: LineFilm, roughness: float, hardness: float, modulus: float
+) -> tuple[MixedFilm, str]:
+    """`mixed_film` at each of many positions, NaN where it refuses; and the first refusal's words.
+
+    Parameters, references as those of `mixed_film`; a position without load is not refused but
+    has no film either.
+    """
+    loaded = film.load > 0
+    at_work = LineFilm(film.load[loaded], film.speed[loaded], film.material, film.radius[loaded])
+    refusals = list(_refusals(at_work, roughness, hardness, modulus))
+    holds = loaded.copy()
+    for where, _ in refusals:
+        holds[loaded] &= ~where
+    held = LineFilm(np.where(holds, film.load, np.nan), film.speed, film.material, film.radius)
+    words = str(refusals[0][1]) if refusals else ""
+    return _regression(held, roughness, hardness, modulus), words
+
+
+def _groups(film: LineFilm, roughness: float, hardness: float, modulus: float) -> dict[str, Array]:
+    shape = np.shape(film.load)
+    return {
+        "load": np.asarray(film.load),
+        "speed": np.asarray(film.speed),
+        "material": np.full(shape, film.material),
+        "roughness": np.asarray(roughness / film.radius),
+        "hardness": np.full(shape, hardness / (2 * modulus)),
     }
-    for name, values in groups.items():
+
+
+def _refusals(
+    film: LineFilm, roughness: float, hardness: float, modulus: float
+) -> Iterator[tuple[NDArray[np.bool_], InputError]]:
+    """Where (...) a group or the answer lies outside the range of the fit, and the error."""
+    for name, values in _groups(film, roughness, hardness, modulus).items():
         low, high = _RANGE[name]
         outside = ~((values >= low) & (values <= high))
         if outside.any():
             value = float(np.atleast_1d(values)[np.atleast_1d(outside)].flat[0])
-            raise InputError(f"mixed film, {name} group", value, f"in [{low:g}, {high:g}]")
-    W, U, G, s, V = groups.values()
+            yield outside, InputError(f"mixed film, {name} group", value, f"in [{low:g}, {high:g}]")
+    with np.errstate(all="ignore"):  # refused above where it has no value
+        share = _asperity_share(film, roughness, hardness, modulus)
+    above = np.asarray(share > 1)
+    if above.any():
+        value = 100 * float(share[above].max() if share.ndim else share)
+        yield above, InputError("mixed film, asperity load share", value, "<= 100 %")
+
+
+def _asperity_share(film: LineFilm, roughness: float, hardness: float, modulus: float) -> Array:
+    W, U, G, s, V = _groups(film, roughness, hardness, modulus).values()
+    rough = np.log1p(4470 * s**6.015 * V**1.168 * W**0.485 * U**-3.741 * G**-2.898)
+    return np.asarray(0.005 * W**-0.408 * U**-0.088 * G**0.103 * rough / 100)
+
+
+def _regression(film: LineFilm, roughness: float, hardness: float, modulus: float) -> MixedFilm:
+    W, U, G, s, V = _groups(film, roughness, hardness, modulus).values()
     central = 1 + 0.2 * s**1.222 * V**0.223 * W**-0.229 * U**-0.748 * G**-0.842
     least = 1 + 0.026 * s**1.120 * V**0.185 * W**-0.312 * U**-0.809 * G**-0.977
-    rough = np.log1p(4470 * s**6.015 * V**1.168 * W**0.485 * U**-3.741 * G**-2.898)
-    percent = 0.005 * W**-0.408 * U**-0.088 * G**0.103 * rough
-    if not (percent <= 100).all():
-        raise InputError("mixed film, asperity load share", float(percent.max()), "<= 100 %")
     return MixedFilm(
         central=2.691 * W**-0.135 * U**0.705 * G**0.556 * central * film.radius,
         minimum=1.652 * W**-0.077 * U**0.716 * G**0.695 * least * film.radius,
-        asperity_share=percent / 100,
+        asperity_share=_asperity_share(film, roughness, hardness, modulus),
     )

@@ -11,6 +11,7 @@ from pipeline.contact.film import (
     lambda_ratio,
     minimum_film,
     mixed_film,
+    mixed_film_where_it_holds,
 )
 
 OIL = Lubricant(0.03, 2e-8)
@@ -118,3 +119,27 @@ def test_the_regression_within_its_range():
 def test_the_regression_refuses_outside_its_range(change, group):
     with pytest.raises(InputError, match=group):
         mixed(**change)
+
+
+def test_along_a_turn_the_regression_answers_where_it_holds_and_says_what_it_refused():
+    """An unloaded position is no refusal; one out of range is NaN and named, the rest stand."""
+    load = np.array([0.0, 1e-6, 1e-4, 2e-4])
+    film = LineFilm(load, np.full(4, MIXED["U"]), MIXED["G"], np.full(4, 0.0065))
+    found, words = mixed_film_where_it_holds(film, 1e-7, 3e9, MODULUS)
+    assert np.isnan(found.minimum[:2]).all()
+    assert found.minimum[2] == mixed().minimum
+    assert found.minimum[3] == mixed(W=2e-4).minimum
+    assert words == "mixed film, load group = 1e-06, must be in [2e-05, 0.0005]"
+
+
+def test_nothing_refused_is_nothing_said():
+    film = LineFilm(np.array([0.0, 1e-4]), np.full(2, MIXED["U"]), MIXED["G"], np.full(2, 0.0065))
+    _, words = mixed_film_where_it_holds(film, 1e-7, 3e9, MODULUS)
+    assert words == ""
+
+
+def test_a_load_share_above_one_is_refused_though_every_group_is_within_range():
+    film = LineFilm(np.array([2.7e-5]), np.array([1.5e-12]), 4600.0, np.array([0.0065]))
+    found, words = mixed_film_where_it_holds(film, 4.8e-5 * 0.0065, 0.0078 * 2 * MODULUS, MODULUS)
+    assert np.isnan(found.minimum).all()
+    assert "asperity load share" in words

@@ -50,3 +50,29 @@ def test_bad_values_are_named(old, new, field):
     with pytest.raises(InputError) as found:
         parse_case(with_fields().replace(old, new))
     assert found.value.field == field
+
+
+def mixed():
+    text = with_fields().replace("density = ", "hardness = 600\ndensity = ")
+    return text + 'film = "mixed"\n'
+
+
+def test_the_mixed_film_is_asked_for_in_the_case():
+    case = parse_case(mixed())
+    assert case.lubricant is not None
+    assert case.lubricant.film == "mixed"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "field"),
+    [
+        ('"mixed"', '"thick"', "lubricant.film"),
+        ('roughness = "0.8 um"', "", "cam.roughness"),
+        ('roughness = "100 nm"', "", "roller.roughness"),
+        ("hardness = 600\n", "", "materials"),
+    ],
+)
+def test_the_mixed_film_needs_roughness_and_hardness(old, new, field):
+    with pytest.raises(InputError) as found:
+        parse_case(mixed().replace(old, new))
+    assert found.value.field.startswith(field)

@@ -1,0 +1,85 @@
+"""A case that gives everything it may: every optional result comes out, in its column."""
+
+import csv
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pipeline.case import Case
+from pipeline.progress import Silent
+from pipeline.run import run_case
+
+GX120 = Path(__file__).resolve().parents[2] / "cases" / "gx120.toml"
+OPTIONS = {
+    "cam": {"roughness": "0.3 um", "profile_tolerance": "0.02 mm"},
+    "camshaft": {
+        "bearing_spacing": "60 mm",
+        "cam_position": "30 mm",
+        "gear_position": "75 mm",
+        "gear_radius": "30 mm",
+        "drag": "0.05 N m",
+    },
+    "roller": {"roughness": "0.1 um", "friction": 0.1, "inertia": "0.3 kg mm^2"},
+    "follower": {"stiffness": "20000 N/mm", "viscous_damping": "2 N s/m"},
+    "lubricant": {
+        "viscosity": "60 mPa s",
+        "pressure_viscosity": "20 1/GPa",
+        "film": "mixed",
+    },
+    "smoothing": {"kind": "moving_average"},
+    "solver": {"positions": 36, "certificate_positions": 1, "max_trials": 1},
+}
+COLUMNS = (
+    "tau_max_rolling_MPa",
+    "von_mises_rolling_MPa",
+    "creepage",
+    "slip_m_s",
+    "film_thickness_um",
+    "lambda_ratio",
+    "mixed_film_um",
+    "asperity_share",
+    "elastic_contact_force_N",
+    "shaft_bearing_1_N",
+)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    given = tomllib.loads(GX120.read_text(encoding="utf-8"))
+    for section, values in OPTIONS.items():
+        given[section] = given.get(section, {}) | values
+    for card in given["materials"].values():
+        card.setdefault("hardness", 600)
+    folder = tmp_path_factory.mktemp("full") / "run"
+    run_case(Case.model_validate(given), folder, progress=Silent(), jobs=1)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def cycle(run):
+    rows = list(csv.DictReader((run / "trial_1" / "5_cycle.csv").open(encoding="utf-8")))
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+@pytest.mark.parametrize("name", COLUMNS)
+def test_every_option_has_its_column(cycle, name):
+    values = np.array([float(text) if text else np.nan for text in cycle[name]])
+    assert np.isfinite(values).any()
+
+
+def test_traction_of_rolling_never_eases_the_stress(cycle):
+    """Within the table's rounding."""
+    plain, rolling = (cycle[name].astype(float) for name in ("tau_max_MPa", "tau_max_rolling_MPa"))
+    assert (rolling >= plain * (1 - 1e-5)).all()
+    assert (rolling > plain * (1 + 1e-5)).any()
+
+
+def test_mixed_film_says_what_it_is_worth(run):
+    trial = json.loads((run / "trial_1" / "trial.json").read_text(encoding="utf-8"))
+    (film,) = {json.dumps(case["mixed_film"]) for case in trial["rolling"].values()}
+    found = json.loads(film)
+    assert "verify" in found["source"]
+    assert bool(found["refusal"]) == bool(found["positions_refused"])
