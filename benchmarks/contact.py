@@ -21,7 +21,9 @@ from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from pipeline.contact import hertz
 from pipeline.contact.certificate import ContactSide, solve_contact
-from pipeline.contact.pair import ContactPair, CycleBodies, Elastic, elastic_body, pair_history
+from pipeline.contact.elastic_body import Elastic
+from pipeline.contact.follower_body import RollerBody
+from pipeline.contact.pair import ContactPair, CycleBodies, elastic_body, pair_history
 from pipeline.contact.pair_certificate import certificate_point, solve_pair
 from pipeline.contact.patch import contact_patch
 
@@ -36,7 +38,9 @@ def balancing_cam() -> tuple[ContactPair, np.ndarray, np.ndarray]:
     lift = Lift(theta, 8e-3 * (1 - np.cos(2 * theta)))
     contour = Contour(PitchCurve(lift, 50e-3), 8e-3)
     steel = Elastic(210e9, 0.3)
-    pair = ContactPair(contour, 4.4e-3, 8.5e-3, None, 4.2e-3, steel, steel)
+    pair = ContactPair(
+        contour, 4.4e-3, 8.5e-3, None, steel, RollerBody(contour.roller_radius, 4.2e-3, steel)
+    )
     return pair, theta, 242.0 + 24.2e3 * lift(theta)
 
 
@@ -49,7 +53,7 @@ def cpu(function):
 
 def certificate_with_meshes_given(pair, solved, theta, force):
     """CPU seconds of one full solution at h = a/8 on the meshes of an earlier one."""
-    materials = (pair.cam, pair.roller)
+    materials = (pair.cam, pair.follower.material)
     sides = tuple(
         ContactSide(elastic_body(side.body.mesh, material, side.body.held), side.surface)
         for side, material in zip(solved.sides, materials, strict=True)

@@ -237,6 +237,41 @@ def block_mesh(width: float, depth: float, sizing: Sizing) -> BodyMesh:
     positive("block.width", width, "m")
     positive("block.depth", depth, "m")
     half = 0.5 * width
+    back = [line("bottom", np.array([-half, -depth]), np.array([half, -depth]))]
+    return _rectangle(width, depth, back, sizing)
+
+
+def face_mesh(width: float, thickness: float, stem_diameter: float, sizing: Sizing) -> BodyMesh:
+    """The block of a flat face on its stem, as a block whose back tells where the stem stands.
+
+    Returns
+    -------
+    BodyMesh
+        With boundaries "top", "left", "right", "stem" and, where the stem is not as wide as
+        the face, "back_left" and "back_right".
+
+    Raises
+    ------
+    InputError
+        If a length is not positive, or the contact is not on the top.
+    """
+    positive("follower.face.width", width, "m")
+    positive("follower.face.thickness", thickness, "m")
+    positive("follower.stem_diameter", stem_diameter, "m")
+    half, stem = 0.5 * width, 0.5 * min(stem_diameter, width)
+    places = [(x, -thickness) for x in (-half, -stem, stem, half)]
+    names = ("back_left", "stem", "back_right")
+    back = [
+        line(name, np.array(start), np.array(end))
+        for name, start, end in zip(names, places[:-1], places[1:], strict=True)
+        if start != end
+    ]
+    return _rectangle(width, thickness, back, sizing)
+
+
+def _rectangle(width: float, depth: float, back: list[Piece], sizing: Sizing) -> BodyMesh:
+    """[-width/2, width/2] x [-depth, 0] with a back of pieces from left to right."""
+    half = 0.5 * width
     zone = None
     if sizing.contact_point is not None:
         x, y = sizing.contact_point
@@ -245,12 +280,7 @@ def block_mesh(width: float, depth: float, sizing: Sizing) -> BodyMesh:
         zone = _zone(sizing, half - x)
     a, b, c, d = np.array([[-half, -depth], [half, -depth], [half, 0.0], [-half, 0.0]])
     size = sizing.field().capped(0.5 * min(width, depth))
-    loop = [
-        line("bottom", a, b),
-        line("right", b, c),
-        line("top", c, d, zone),
-        line("left", d, a),
-    ]
+    loop = [*back, line("right", b, c), line("top", c, d, zone), line("left", d, a)]
     return _body(triangulate(_discretised([loop], size), size))
 
 

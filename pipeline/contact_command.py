@@ -15,7 +15,7 @@ from geometry.errors import InputError
 from meshes.body import BodyMesh
 from pipeline import units
 from pipeline.contact import hertz, stress
-from pipeline.contact.pair import Elastic
+from pipeline.contact.elastic_body import Elastic
 from pipeline.contact.two_cylinders import (
     HALF_ANGLE_MAX,
     ConformingContact,

@@ -10,8 +10,10 @@ import numpy as np
 from geometry.arrays import Array, freeze, uniform_turn
 from geometry.contour import Contour
 from pipeline.case import Case
+from pipeline.contact.elastic_body import Elastic
+from pipeline.contact.follower_body import RollerBody
 from pipeline.contact.history import ContactHistory
-from pipeline.contact.pair import ContactPair, Elastic, closed_form_history
+from pipeline.contact.pair import ContactPair, closed_form_history
 from pipeline.engine.torque import Torque
 from pipeline.follower.forces import FollowerSystem, Loads, follower_loads
 from pipeline.follower.guides import KNOTS, GuidePair, GuideReactions, guide_reactions
@@ -113,16 +115,17 @@ def contact_width(case: Case) -> float:
 
 
 def contact_pair(case: Case, contour: Contour) -> ContactPair:
-    """Cam and roller of a case."""
+    """Cam and follower of a case."""
     cam, roller = case.material(case.cam.material), case.material(case.roller.material)
     return ContactPair(
         contour=contour,
         width=contact_width(case),
         bore_radius=case.cam.bore_radius,
         keyway=case.cam.keyway,
-        hub_radius=case.roller.hub_radius,
         cam=Elastic(cam.E, cam.nu),
-        roller=Elastic(roller.E, roller.nu),
+        follower=RollerBody(
+            case.roller.radius, case.roller.hub_radius, Elastic(roller.E, roller.nu)
+        ),
     )
 
 

@@ -31,29 +31,29 @@ def force_at(cycle: results.Table, load_case: str, theta: float) -> float:
     angle = np.degrees(theta % FULL_TURN)
     force = float(np.interp(angle, rows["cam_angle_deg"], rows["normal_force_N"], period=360.0))
     if not force > 0:
-        raise InputError("--angle", f"{angle:g} deg", "where the roller is loaded")
+        raise InputError("--angle", f"{angle:g} deg", "where the follower is loaded")
     return force
 
 
 def nodal_forces(pair: ContactPair, solved: SolvedPair) -> tuple[Array, Array]:
-    """Forces (2, nodes), N, that the contact pressure puts on the nodes of cam and roller."""
-    on_cam, on_roller = (
+    """Forces (2, nodes), N, that the contact pressure puts on the nodes of cam and follower."""
+    on_cam, on_follower = (
         pair.width * side.body.surface_forces(moved, side.surface)
         for side, moved in zip(solved.sides, solved.solution.displacements, strict=True)
     )
-    return on_cam, on_roller
+    return on_cam, on_follower
 
 
 def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> None:
     """Write the bodies at one angle with the pressures of the contact on their nodes."""
-    forces = nodal_forces(pair, solved)
+    other, forces = pair.follower, nodal_forces(pair, solved)
     bodies = {
         name: DeckBody(side.body.mesh, material.modulus, material.poisson, held, force)
         for name, side, material, held, force in zip(
-            ("cam", "roller"),
+            ("cam", other.name),
             solved.sides,
-            (pair.cam, pair.roller),
-            ("bore", "hub"),
+            (pair.cam, other.material),
+            ("bore", other.held),
             forces,
             strict=True,
         )
@@ -66,7 +66,7 @@ def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> Non
         (
             f"contact at cam angle {np.degrees(solved.theta):.6f} deg, normal force {load:.6f} N",
             "the contact pressure acts as consistent nodal forces along the contact normal",
-            "the bore and the roller's hub are held",
+            f"the bore and the {other.name}'s {other.held} are held",
         ),
     )
 

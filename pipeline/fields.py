@@ -19,18 +19,21 @@ _MILLIMETRE, _MEGAPASCAL = 1e-3, 1e6
 UNITS = {"length": "mm", "stress": "MPa", "force": "N"}
 
 
-def write_contact(path: Path, solved: SolvedPair) -> None:
-    """Both bodies at one angle, as solved: displacement, stress, in the cam's frame."""
-    sides = zip(("cam", "roller"), solved.sides, solved.solution.displacements, strict=True)
-    # The roller was held still; what it has come nearer is its rigid motion.
-    rigid = {"cam": np.zeros(2), "roller": -solved.solution.approach * solved.frame.normal}
+def write_contact(path: Path, solved: SolvedPair, name: str) -> None:
+    """Both bodies at one angle, as solved: displacement, stress, in the cam's frame.
+
+    `name` is that of the follower's body in the file.
+    """
+    sides = zip(("cam", name), solved.sides, solved.solution.displacements, strict=True)
+    # The follower was held still; what it has come nearer is its rigid motion.
+    rigid = {"cam": np.zeros(2), name: -solved.solution.approach * solved.frame.normal}
     data = {
-        name: _point_data(side.body, moved + rigid[name][:, None], _recovered(side.body, moved))
-        for name, side, moved in sides
+        body: _point_data(side.body, moved + rigid[body][:, None], _recovered(side.body, moved))
+        for body, side, moved in sides
     }
     write_vtu(
         path,
-        {"cam": solved.cam, "roller": solved.roller},
+        {"cam": solved.cam, name: solved.follower},
         data,
         {
             "cam_angle_deg": float(np.degrees(solved.theta)),
@@ -54,7 +57,7 @@ def write_turn(
 ) -> Path:
     """The loaded cam every `step_deg` of the turn, as ``cam_cycle.pvd`` with its pieces.
 
-    Under the roller the stress is that of the contact's ellipse in the half-plane, elsewhere
+    Under the follower the stress is that of the contact's ellipse in the half-plane, elsewhere
     the finite-element correction joins it; the mesh is that of the body, too coarse to show
     the contact itself.
     """

@@ -136,7 +136,7 @@ def trial_record(case: Case, trial: Trial) -> dict[str, Any]:
         else {
             "cam_angle_deg": float(np.degrees(mesh.theta)),
             "half_width_mm": _MM * mesh.half_width,
-            "sha256": {"cam": mesh.cam.sha256, "roller": mesh.roller.sha256},
+            "sha256": {"cam": mesh.cam.sha256, mesh.name: mesh.follower.sha256},
             **asdict(mesh.quality),
         },
         "certificate": [certificate_record(point) for point in trial.certificate],

@@ -346,7 +346,8 @@ def _write_fields(journey: Journey, final: Trial) -> None:
     loads = [cycle.loads.normal_force for cycle in final.cycles]
     index = round(final.mesh.theta / (final.cycles[0].theta[1] - final.cycles[0].theta[0]))
     force = max(float(load[index]) for load in loads)
-    write_contact(folder.fields / "contact_worst.vtu", solve_pair(pair, final.mesh.theta, force))
+    solved = solve_pair(pair, final.mesh.theta, force)
+    write_contact(folder.fields / "contact_worst.vtu", solved, pair.follower.name)
     bodies = CycleBodies.meshed(pair)
     write_turn(folder.fields, pair, bodies, final.cycles[0], _FIELD_STEP_DEG, progress.advance)
     write_patches(folder.fields, pair, bodies, final.cycles[0], progress.advance)

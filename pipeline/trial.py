@@ -47,12 +47,16 @@ _OUTLOOK_POSITIONS = 360
 
 @dataclass(frozen=True, eq=False)
 class ContactMesh:
-    """Cam and roller meshed for the contact at their worst angle (rad)."""
+    """Cam and follower meshed for the contact at their worst angle (rad).
+
+    `name` is that of the follower's body: roller or face.
+    """
 
     theta: float
     half_width: float
     cam: BodyMesh
-    roller: BodyMesh
+    follower: BodyMesh
+    name: str
     quality: Quality
 
 
@@ -140,9 +144,9 @@ def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:
     if worst is None:
         return None
     _, theta, half_width = worst
-    cam, roller = contact_meshes(pair, theta, half_width, EDGES[1])
+    bodies = contact_meshes(pair, theta, half_width, EDGES[1])
     contact = pair.contour.points(theta)
-    found = [gate(quality(body, contact, half_width), edges_min=EDGES[1]) for body in (cam, roller)]
+    found = [gate(quality(body, contact, half_width), edges_min=EDGES[1]) for body in bodies]
     both = Quality(
         min_angle_deg=min(q.min_angle_deg for q in found),
         min_scaled_jacobian=min(q.min_scaled_jacobian for q in found),
@@ -150,12 +154,12 @@ def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:
         elements=sum(q.elements for q in found),
         nodes=sum(q.nodes for q in found),
     )
-    return ContactMesh(theta, half_width, cam, roller, both)
+    return ContactMesh(theta, half_width, *bodies, pair.follower.name, both)
 
 
 def write_mesh(path: Path, mesh: ContactMesh) -> None:
     """``4_mesh.msh``: both bodies in the cam's frame."""
-    write_msh(path, {"cam": mesh.cam, "roller": mesh.roller})
+    write_msh(path, {"cam": mesh.cam, mesh.name: mesh.follower})
 
 
 def contact_chunks(
@@ -180,9 +184,7 @@ def chunk_key(pair: ContactPair, given: Turn) -> str:
     """Fingerprint of all that decides the contact of a turn."""
     digest = hashlib.sha256(pair.contour.pitch.lift.values.tobytes())
     digest.update(given.loads.normal_force.tobytes())
-    digest.update(
-        repr((pair.width, pair.bore_radius, pair.hub_radius, pair.cam, pair.roller)).encode()
-    )
+    digest.update(repr((pair.width, pair.bore_radius, pair.cam, pair.follower)).encode())
     return digest.hexdigest()
 
 

@@ -24,6 +24,18 @@ def lame_parameters(modulus: float, poisson: float) -> tuple[float, float]:
     return modulus * poisson / ((1 + poisson) * (1 - 2 * poisson)), shear
 
 
+@dataclass(frozen=True)
+class Elastic:
+    """Young's modulus (Pa) and Poisson ratio."""
+
+    modulus: float
+    poisson: float
+
+    @property
+    def plane_strain_modulus(self) -> float:
+        return self.modulus / (1 - self.poisson**2)
+
+
 @dataclass(frozen=True, eq=False)
 class ElasticBody:
     """Second-order finite elements on curved triangles, held on named boundaries.

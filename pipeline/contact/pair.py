@@ -1,4 +1,4 @@
-"""Cam and roller as a contact pair: shapes, materials, and the tiers that solve them.
+"""Cam and follower as a contact pair: shapes, materials, and the tiers that solve them.
 
 Three tiers answer the same question with growing cost: the closed form; the two-scale
 finite-element solution of every angle (`pair_history`); the full two-body finite elements at
@@ -15,12 +15,13 @@ from numpy.typing import ArrayLike
 from geometry.arrays import Array
 from geometry.contour import Contour
 from geometry.errors import ContactError
-from meshes.body import BodyMesh, cam_mesh, roller_mesh
+from meshes.body import BodyMesh, cam_mesh
 from meshes.cam_outline import KeywayLike
 from meshes.sizing import Sizing
 from pipeline.contact import hertz, stress
 from pipeline.contact.bodies import Correction, LoadedBody
-from pipeline.contact.elastic_body import ElasticBody
+from pipeline.contact.elastic_body import Elastic, ElasticBody
+from pipeline.contact.follower_body import EDGES_ACROSS_WALL, FollowerBody
 from pipeline.contact.history import ContactHistory
 from pipeline.contact.patch import contact_patch, solve_patches
 
@@ -28,57 +29,44 @@ from pipeline.contact.patch import contact_patch, solve_patches
 _FLAT_LIMIT = 0.1
 # Finer changes the largest shear by less than 1e-4.
 _GRID_OF_CYCLE_MESH = 120
-# What a body adds varies over its wall's thickness; fewer would smooth it away.
-_EDGES_ACROSS_WALL = 4
 TWO_SCALE = "two-scale finite elements: contact patch and bodies"
-
-
-@dataclass(frozen=True)
-class Elastic:
-    """Young's modulus (Pa) and Poisson ratio."""
-
-    modulus: float
-    poisson: float
-
-    @property
-    def plane_strain_modulus(self) -> float:
-        return self.modulus / (1 - self.poisson**2)
 
 
 @dataclass(frozen=True, eq=False)
 class ContactPair:
-    """Cam and roller: contour, effective width of the line contact (m), bodies, materials."""
+    """Cam and follower: contour, effective width of the line contact (m), bodies, materials."""
 
     contour: Contour
     width: float
     bore_radius: float
     keyway: KeywayLike | None
-    hub_radius: float
     cam: Elastic
-    roller: Elastic
+    follower: FollowerBody
 
     @property
     def contact_modulus(self) -> float:
+        other = self.follower.material
         return hertz.contact_modulus(
-            self.cam.modulus, self.cam.poisson, self.roller.modulus, self.roller.poisson
+            self.cam.modulus, self.cam.poisson, other.modulus, other.poisson
         )
 
     def relative_radius(self, theta: ArrayLike) -> Array:
-        """Relative radius of curvature (...), m; 1/R = 1/r_r + 1/r_c.
+        """Relative radius of curvature (...), m; 1/R = 1/r_r + 1/r_c; a face is endlessly round.
 
         Raises
         ------
         ContactError
-            If the cam is so hollow that the roller does not fit.
+            If the cam is so hollow that the follower does not fit.
         """
         curvature = 1 / self.contour.roller_radius + self.contour.curvature(theta)
         if not (curvature > 0).all():
             worst = float(np.degrees(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))]))
-            raise ContactError(f"the roller does not fit the hollow of the cam at {worst:.3f} deg")
+            name = self.follower.name
+            raise ContactError(f"the {name} does not fit the hollow of the cam at {worst:.3f} deg")
         return 1 / curvature
 
     def gap(self, theta: Array, xi: Array) -> Array:
-        """Distance (n, q) between contour and roller circle, along the normal, before loading.
+        """Distance (n, q) between contour and follower, along the normal, before loading.
 
         theta (n,) rad; xi (n, q) m along the tangent of a contact frame, which runs clockwise,
         against the contour's own.
@@ -90,15 +78,14 @@ class ContactPair:
 
 @dataclass(frozen=True, eq=False)
 class CycleBodies:
-    """Cam and roller on coarse meshes, factored once, for the contact at every angle."""
+    """Cam and follower on coarse meshes, factored once, for the contact at every angle."""
 
     cam: LoadedBody
-    roller: LoadedBody
+    follower: LoadedBody
 
     @classmethod
     def meshed(cls, pair: ContactPair) -> CycleBodies:
         """Bodies of a pair; the element size follows the outline and the thinnest wall."""
-        radius = pair.contour.roller_radius
         outline = float(pair.contour.perimeter())
         depth = 0.0 if pair.keyway is None else pair.keyway.depth
         wall = float(pair.contour.radius_min().value) - pair.bore_radius - depth
@@ -106,14 +93,14 @@ class CycleBodies:
             pair.contour,
             pair.bore_radius,
             pair.keyway,
-            Sizing(far_size=min(outline / _GRID_OF_CYCLE_MESH, wall / _EDGES_ACROSS_WALL)),
+            Sizing(far_size=min(outline / _GRID_OF_CYCLE_MESH, wall / EDGES_ACROSS_WALL)),
         )
-        rim = Sizing(far_size=min(radius / 8, (radius - pair.hub_radius) / _EDGES_ACROSS_WALL))
-        roller = roller_mesh(radius, pair.hub_radius, 0.5 * np.pi, rim)
         keyed = ("keyway",) if "keyway" in cam.boundaries else ()
+        other = pair.follower
+        facing = elastic_body(other.coarse_mesh(), other.material, other.held)
         return cls(
             LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", keyed),
-            LoadedBody(elastic_body(roller, pair.roller, "hub"), "rim"),
+            LoadedBody(facing, other.surface, other.free),
         )
 
 
@@ -206,17 +193,15 @@ def _loaded_positions(
     half_width: Array,
     p0: Array,
 ) -> dict[str, Array]:
-    patches = (contact_patch(pair.cam.poisson), contact_patch(pair.roller.poisson))
-    shares = tuple(
-        pair.contact_modulus / material.plane_strain_modulus for material in (pair.cam, pair.roller)
-    )
+    materials = (pair.cam, pair.follower.material)
+    patches = (contact_patch(materials[0].poisson), contact_patch(materials[1].poisson))
+    shares = tuple(pair.contact_modulus / each.plane_strain_modulus for each in materials)
     cam = bodies.cam.correction(pair.contour.points(theta), pair.contour.normal(theta))
-    rim = pair.contour.roller_radius
-    roller = bodies.roller.correction(np.array([[0.0], [rim]]), np.array([[0.0], [1.0]]))
+    other = bodies.follower.correction(*pair.follower.contacts(pair.contour, theta))
 
     unit_xi, _ = patches[0].shapes.quadrature()
     xi = half_width[:, None] * unit_xi
-    bend = load * (roller.bend[0] + cam.bend)
+    bend = load * (other.bend + cam.bend)
     # A surface that bulges under its load leaves less of a gap at the middle than beside it.
     gap = pair.gap(theta, xi) - 0.5 * bend[:, None] * xi**2
     contacts = solve_patches(

@@ -1,4 +1,4 @@
-"""The certificate: cam and roller in full at one angle, on three meshes."""
+"""The certificate: cam and follower in full at one angle, on three meshes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.errors import ContactError
-from meshes.body import BodyMesh, cam_mesh, roller_mesh
+from meshes.body import BodyMesh, cam_mesh
 from meshes.sizing import Sizing
 from pipeline.contact import hertz
 from pipeline.contact.certificate import ContactSide, ContactSolution, solve_contact
@@ -23,7 +23,7 @@ EDGES = (4.0, 8.0, 16.0)
 # Equal elements this far from the contact, in half-widths, and their growth beyond. Finer ones
 # move the extrapolated figures by less than 2e-4 and cost half as much again.
 _REACH, _GROWTH = 1.8, 0.2
-# Elements far from the contact on the cam: so many to its outline; on the roller, its radius.
+# Elements far from the contact on the cam: so many to its outline.
 _FAR_ON_OUTLINE = 50
 
 
@@ -34,7 +34,7 @@ class SolvedPair:
     theta: float
     frame: ContactFrame
     cam: BodyMesh
-    roller: BodyMesh
+    follower: BodyMesh
     sides: tuple[ContactSide, ContactSide]
     half_width_hertz: float
     solution: ContactSolution
@@ -43,9 +43,8 @@ class SolvedPair:
 def contact_meshes(
     pair: ContactPair, theta: float, half_width: float, edges: float
 ) -> tuple[BodyMesh, BodyMesh]:
-    """Cam and roller in the cam's frame, `edges` element edges across the half-width."""
-    contact, normal = pair.contour.points(theta), pair.contour.normal(theta)
-    radius = pair.contour.roller_radius
+    """Cam and follower in the cam's frame, `edges` element edges across the half-width."""
+    contact = pair.contour.points(theta)
 
     def sizing(far_size: float) -> Sizing:
         return Sizing.from_half_width(
@@ -59,15 +58,14 @@ def contact_meshes(
 
     far = float(pair.contour.perimeter()) / _FAR_ON_OUTLINE
     cam = cam_mesh(pair.contour, pair.bore_radius, pair.keyway, sizing(far))
-    facing = float(np.arctan2(-normal[1], -normal[0]))
-    roller = roller_mesh(radius, pair.hub_radius, facing, sizing(radius))
-    return cam, roller.transformed(0.0, contact + radius * normal)
+    other = pair.follower
+    return cam, other.mesh_at(pair.contour, theta, sizing(other.far_size))
 
 
 def solve_pair(
     pair: ContactPair, theta: float, normal_force: float, edges: float = EDGES[1]
 ) -> SolvedPair:
-    """Cam and roller in full at the cam angle theta (rad) under a normal force (N).
+    """Cam and follower in full at the cam angle theta (rad) under a normal force (N).
 
     Raises
     ------
@@ -78,18 +76,19 @@ def solve_pair(
     if not load > 0:
         raise ContactError(f"no load at {np.degrees(theta):.3f} deg, nothing to certify")
     half_width, _ = hertz.line_contact(load, pair.relative_radius(theta), pair.contact_modulus)
-    cam, roller = contact_meshes(pair, theta, float(half_width), edges)
+    other = pair.follower
+    cam, facing = contact_meshes(pair, theta, float(half_width), edges)
     frame = ContactFrame(pair.contour.points(theta), pair.contour.normal(theta))
     sides = (
         ContactSide(elastic_body(cam, pair.cam, "bore"), "contour"),
-        ContactSide(elastic_body(roller, pair.roller, "hub"), "rim"),
+        ContactSide(elastic_body(facing, other.material, other.held), other.surface),
     )
 
     def gap(xi: Array) -> Array:
         return pair.gap(np.array([theta]), xi[None])[0]
 
     solution = solve_contact(sides, frame, gap, load, float(half_width))
-    return SolvedPair(theta, frame, cam, roller, sides, float(half_width), solution)
+    return SolvedPair(theta, frame, cam, facing, sides, float(half_width), solution)
 
 
 def certificate_point(

@@ -18,9 +18,8 @@ from geometry.errors import ContactError, InputError
 from meshes.body import BodyMesh
 from meshes.mesher import Index
 from pipeline.contact import hertz, stress
-from pipeline.contact.elastic_body import elements_near
+from pipeline.contact.elastic_body import Elastic, elements_near
 from pipeline.contact.harmonics import Bush, Pin
-from pipeline.contact.pair import Elastic
 from pipeline.contact.patch import (
     STRESS_REACH,
     ContactPatch,

@@ -10,7 +10,9 @@ from geometry.contour import Contour
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from pipeline.contact import hertz
-from pipeline.contact.pair import ContactPair, CycleBodies, Elastic, pair_history
+from pipeline.contact.elastic_body import Elastic
+from pipeline.contact.follower_body import RollerBody
+from pipeline.contact.pair import ContactPair, CycleBodies, pair_history
 
 STEEL = Elastic(210e9, 0.3)
 
@@ -19,7 +21,9 @@ def round_cam(cam: Elastic = STEEL) -> ContactPair:
     """A circle of 42 mm under a roller of 8 mm."""
     theta = uniform_turn(36)
     contour = Contour(PitchCurve(Lift(theta, np.zeros(36)), 50e-3), 8e-3)
-    return ContactPair(contour, 5e-3, 10e-3, None, 4e-3, cam, STEEL)
+    return ContactPair(
+        contour, 5e-3, 10e-3, None, cam, RollerBody(contour.roller_radius, 4e-3, STEEL)
+    )
 
 
 @pytest.fixture(scope="module")

@@ -21,8 +21,9 @@ from meshes.deck import DeckBody, write_deck
 from meshes.sizing import Sizing
 from pipeline import results
 from pipeline.contact import stress
-from pipeline.contact.elastic_body import StressRecovery
-from pipeline.contact.pair import ContactPair, Elastic
+from pipeline.contact.elastic_body import Elastic, StressRecovery
+from pipeline.contact.follower_body import RollerBody
+from pipeline.contact.pair import ContactPair
 from pipeline.contact.pair_certificate import SolvedPair, solve_pair
 from pipeline.deck import force_at, nodal_forces, write_contact_deck
 
@@ -36,8 +37,8 @@ def solved() -> tuple[ContactPair, SolvedPair]:
     lift = Lift(theta, 0.008 * (1 - np.cos(theta)))
     contour = Contour(PitchCurve(lift, 0.045), 0.008)
     pair = ContactPair(
-        contour, 0.0044, 0.010, Keyway(0.004, 0.002, 3.0), 0.0025,
-        Elastic(206e9, 0.3), Elastic(208e9, 0.3),
+        contour, 0.0044, 0.010, Keyway(0.004, 0.002, 3.0),
+        Elastic(206e9, 0.3), RollerBody(0.008, 0.0025, Elastic(208e9, 0.3)),
     )  # fmt: skip
     return pair, solve_pair(pair, THETA, FORCE, 4.0)
 

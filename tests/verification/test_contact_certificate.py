@@ -12,8 +12,7 @@ from meshes.sizing import Sizing
 from pipeline.contact import hertz
 from pipeline.contact.certificate import ContactSide, solve_contact
 from pipeline.contact.convergence import converged
-from pipeline.contact.elastic_body import ElasticBody, lame_parameters
-from pipeline.contact.pair import Elastic
+from pipeline.contact.elastic_body import Elastic, ElasticBody, lame_parameters
 from pipeline.contact.pressure import PressureShapes
 from pipeline.contact.surface import ContactFrame
 from pipeline.contact.two_cylinders import TwoCylinders, finite_elements

@@ -12,7 +12,9 @@ from geometry.arrays import uniform_turn
 from geometry.contour import Contour
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
-from pipeline.contact.pair import ContactPair, CycleBodies, Elastic, pair_history
+from pipeline.contact.elastic_body import Elastic
+from pipeline.contact.follower_body import RollerBody
+from pipeline.contact.pair import ContactPair, CycleBodies, pair_history
 from pipeline.contact.pair_certificate import solve_pair
 
 STEEL = Elastic(210e9, 0.3)
@@ -24,7 +26,9 @@ def round_cam(ratio, cam, roller):
     """A roller of 10 mm on a round cam `ratio` times as large, of walls as thick as its half."""
     radius = ratio * ROLLER
     contour = Contour(PitchCurve(Lift(uniform_turn(90), np.zeros(90)), radius + ROLLER), ROLLER)
-    return ContactPair(contour, WIDTH, radius / 2, None, ROLLER / 2, cam, roller)
+    return ContactPair(
+        contour, WIDTH, radius / 2, None, cam, RollerBody(ROLLER, ROLLER / 2, roller)
+    )
 
 
 def both_tiers(pair, line_load):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pipeline.contact.pair import Elastic
+from pipeline.contact.elastic_body import Elastic
 from pipeline.contact.two_cylinders import (
     TwoCylinders,
     closed_form,
