@@ -363,6 +363,6 @@ def _write_shop(journey: Journey, final: Trial) -> None:
 
 def _write_report(path: Path) -> None:
     # The page is drawn from the files alone, as `camwright report` does it later.
-    from reports.page import build
+    from reports.parts import build
 
     build(path)

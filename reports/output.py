@@ -6,9 +6,13 @@ import os
 import tempfile
 from pathlib import Path
 
+FIGURES = "figures"
+"""Folder of the pictures, in a run folder."""
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all."""
+
+def write_whole(path: Path, content: bytes) -> Path:
+    """Write a file whole or not at all; folders it lies in are made."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     handle, temporary = tempfile.mkstemp(prefix=".", suffix=".tmp", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as file:
@@ -17,3 +21,4 @@ def write_whole(path: Path, content: bytes) -> None:
         Path(temporary).replace(path)
     finally:
         Path(temporary).unlink(missing_ok=True)
+    return path

@@ -2,39 +2,27 @@
 
 from __future__ import annotations
 
-import html
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
 
-from geometry.errors import ResultError
-from pipeline.results import Run, TrialRecord, load_run
-from reports import browser, interactive, tables
-from reports.figures import Figure
+from pipeline.results import TrialRecord
+from reports import interactive, tables
+from reports.drawings import drawn_groups
+from reports.material import Material
 from reports.output import write_whole
-from reports.pictures import Picture, drawn_pictures
-from reports.plots import svg_and_png
-from reports.sheet import Turn, figures
-from reports.verdict import governing_load_case, verdict
+from reports.pictures import PICTURES
+from reports.sheet import Turn
+from reports.verdict import verdict
 
 PAGE = "8_report.html"
 LONG = 700
 UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
-GROUPS = (
-    ("Torque", ("torque", "torque-components", "crank-speed")),
-    ("Shape", ("outline", "pressure-angle", "lift", "radii")),
-    ("Contact", ("pressure", "half-width", "stress")),
-    ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
-    ("Parts", ("bushes", "elastic", "parts")),
-)
 ASSUMPTIONS = (
     "The contact is two-dimensional and in plane strain: every slice across the width carries the "
     "same load. Edge stress at the ends of the roller, tilt and crowning are not in the numbers.",
@@ -56,81 +44,17 @@ ASSUMPTIONS = (
 )
 
 
-@dataclass(frozen=True)
-class Drawn:
-    """A sheet figure with its SVG."""
-
-    figure: Figure
-    svg: Markup
+def write(material: Material) -> list[Path]:
+    """Write ``8_report.html``."""
+    return [write_whole(material.folder / PAGE, text(material))]
 
 
-def build(folder: Path) -> Path:
-    """Rebuild ``8_report.html`` and ``figures/*.png`` from the run folder alone.
-
-    Returns
-    -------
-    page : Path
-
-    Raises
-    ------
-    ResultError
-        If the folder does not hold a finished run, or the page cannot be written.
-    """
-    folder = Path(folder)
-    run = load_run(folder)
-    case = _case(run)
-    turn = the_turn(run, case)
-    try:
-        (folder / "figures").mkdir(exist_ok=True)
-        groups = _drawn(turn, folder / "figures")
-        pictures = drawn_pictures(turn, run.final.path, folder)
-        text = _environment().get_template("report.html").render(
-            context(run, case, turn, groups, pictures)
-            | {"live": interactive.bundle(d.figure for _, drawn in groups for d in drawn)}
-        )  # fmt: skip
-        write_whole(folder / PAGE, text.encode("utf-8", "replace"))
-    except OSError as error:
-        raise ResultError(f"{folder}: {error.strerror or error}") from None
-    return folder / PAGE
-
-
-def printed(page: Path, name: str) -> Path:
-    """Print the page to A4 beside it, with page numbers, by a headless Chromium.
-
-    Raises
-    ------
-    ResultError
-        If no Chromium is there, or the file cannot be written.
-    """
-    pdf = page.with_suffix(".pdf")
-    browser.print_pdf(page, pdf, html.escape(f"Camwright · {shortened(name, 60)}"))
-    return pdf
-
-
-def the_turn(run: Run, case: Mapping[str, Any]) -> Turn:
-    """What the sheet draws: the load case that governs, in the final trial."""
-    final = run.final
-    names = [str(name) for name in dict.fromkeys(final.cycle["load_case"].tolist())]
-    if not names:
-        raise ResultError(f"{final.path}: the cycle has no rows")
-    by_name = {name: _numbers(final.cycle.where("load_case", name).columns) for name in names}
-    drawn = governing_load_case(final.checks, names)
-    return Turn(
-        by_name[drawn], tuple(by_name.values()), final.lift.columns, final.contour.columns,
-        None if run.torque is None else run.torque.columns, final.checks, case, drawn,
-        None if run.speed is None else run.speed.columns,
-    )  # fmt: skip
-
-
-def _numbers(columns: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: values for name, values in columns.items() if values.dtype.kind == "f"}
-
-
-def _case(run: Run) -> dict[str, Any]:
-    try:
-        return tomllib.loads(run.case_text)
-    except tomllib.TOMLDecodeError as error:
-        raise ResultError(f"{run.path / 'case.toml'}: {error}") from None
+def text(material: Material, *, live: bool = True) -> bytes:
+    """The page in UTF-8; its plots answer to the pointer when `live`."""
+    figures = [drawn.figure for _, group in drawn_groups(material) for drawn in group]
+    shown = context(material) | {"live": interactive.bundle(figures) if live else None}
+    page: str = _environment().get_template("report.html").render(shown)
+    return page.encode("utf-8", "replace")
 
 
 def titled(text: str, checks: Sequence[Mapping[str, Any]]) -> str:
@@ -139,11 +63,9 @@ def titled(text: str, checks: Sequence[Mapping[str, Any]]) -> str:
     return re.sub(r"\b\w+\b", lambda word: titles.get(word.group(), word.group()), text)
 
 
-def context(
-    run: Run, case: Mapping[str, Any], turn: Turn, groups: list[tuple[str, list[Drawn]]],
-    pictures: list[Picture],
-) -> dict[str, Any]:  # fmt: skip
+def context(material: Material) -> dict[str, Any]:
     """Everything the template prints."""
+    run, case, turn = material.run, material.case, material.turn
     summary, final = run.summary, run.final
     headline = summary["headline"]
     statement = titled(str(summary.get("statement") or ""), final.checks)
@@ -155,11 +77,11 @@ def context(
         "tiles": tables.tiles(headline),
         "headline": tables.headline_rows(headline),
         "checks": tables.check_rows(final.checks),
-        "groups": groups,
+        "groups": drawn_groups(material),
         "load_case": turn.load_case,
         "load_cases": len(turn.others),
         "trials": [_trial(trial) for trial in run.trials],
-        "pictures": pictures,
+        "pictures": [picture for draw in PICTURES for picture in draw(material)],
         "certificate_head": tables.CERTIFICATE_HEAD,
         "certificate": tables.certificate_rows(final.record.get("certificate") or ()),
         "figures_head": tables.FIGURES_HEAD,
@@ -209,21 +131,6 @@ def _trial(trial: TrialRecord) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _drawn(turn: Turn, folder: Path) -> list[tuple[str, list[Drawn]]]:
-    """Figures by group, drawn to `folder` and as SVG."""
-    by_id = {figure.id: figure for figure in figures(turn)}
-    groups = []
-    for title, ids in GROUPS:
-        drawn = [
-            Drawn(by_id[i], Markup(svg_and_png(by_id[i], folder / f"{i}.png")))  # noqa: S704
-            for i in ids
-            if i in by_id
-        ]
-        if drawn:
-            groups.append((title, drawn))
-    return groups
-
-
 def _environment() -> Environment:
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent / "templates"), autoescape=True,
@@ -237,9 +144,7 @@ def _environment() -> Environment:
 
 def plain(text: object) -> str:
     """Text without the control characters that HTML cannot hold; everything else stays."""
-    return re.sub(
-        r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]", "\ufffd", str(text)
-    )
+    return UNPRINTABLE.sub("\ufffd", str(text))
 
 
 def shortened(text: str, length: int) -> str:

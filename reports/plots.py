@@ -11,7 +11,6 @@ import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -85,15 +84,16 @@ def draw(figure: Figure) -> Canvas:
     return _angles(figure) if isinstance(figure, AngleFigure) else _outline(figure)
 
 
-def svg_and_png(figure: Figure, png: Path | None = None) -> str:
-    """The figure as themed SVG text; also written to `png` when a path is given."""
+def svg_and_png(figure: Figure) -> tuple[str, bytes]:
+    """The figure as themed SVG text and as a PNG file in the colours of the light theme."""
     with style(figure.id):
         canvas = draw(figure)
-        stream = io.StringIO()
-        canvas.savefig(stream, format="svg", metadata={"Date": None})
-        if png is not None:
-            canvas.savefig(png, dpi=150, facecolor=COLOURS["card"], metadata={"Software": None})
-    return themed(stream.getvalue(), figure.id)
+        svg, png = io.StringIO(), io.BytesIO()
+        canvas.savefig(svg, format="svg", metadata={"Date": None})
+        canvas.savefig(
+            png, format="png", dpi=150, facecolor=COLOURS["card"], metadata={"Software": None}
+        )
+    return themed(svg.getvalue(), figure.id), png.getvalue()
 
 
 def themed(svg: str, figure_id: str) -> str:

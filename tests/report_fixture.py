@@ -508,3 +508,10 @@ def write_run(
             float(cycle["half_width_hertz_mm"][worst]) / 1e3,
         )  # fmt: skip
     return folder
+
+
+def page_of(folder: Path) -> Path:
+    """The page of a run folder, drawn with everything else that a report has."""
+    from reports import parts
+
+    return parts.build(folder)["page"][0]

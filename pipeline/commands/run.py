@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
@@ -72,22 +73,38 @@ def _finished(out: Path, sha256: str) -> bool:
 def report(
     folder: DirArgument,
     pdf: Annotated[bool, typer.Option("--pdf", help="Print it as 8_report.pdf as well.")] = False,
+    only: Annotated[
+        list[str] | None,
+        typer.Option("--only", metavar="PART", help="This part alone; may be given several times."),
+    ] = None,
     show: Annotated[bool, typer.Option("--open", help="Show the page when it is there.")] = False,
 ) -> int:
     """Write the report of a finished run again; nothing is solved."""
-    from pipeline.results import load_run
-    from reports import page
+    from reports import parts
+    from reports.page import PAGE
 
-    found = load_run(folder)
-    made = page.build(folder)
-    stdout.print(f"report: {made}", markup=False)
-    if pdf:
-        stdout.print(f"pdf: {page.printed(made, str(found.summary['case']))}", markup=False)
+    names = [part.name for part in parts.chosen(only or ())]
+    made = parts.build(folder, parts.chosen([*names, "pdf"] if pdf else names))
+    for name, files in made.items():
+        stdout.print(f"{name}: {_told(files)}", markup=False)
     if show:
-        import webbrowser
-
-        webbrowser.open(made.resolve().as_uri())
+        _shown(folder / PAGE)
     return PASSED
+
+
+def _told(files: Sequence[Path]) -> str:
+    """The file of a part; of several, their count and folder."""
+    if len(files) == 1:
+        return str(files[0])
+    return f"{len(files)} files in {files[0].parent}" if files else "nothing to show in this run"
+
+
+def _shown(page: Path) -> None:
+    import webbrowser
+
+    if not page.is_file():
+        raise ResultError(f"{page}: no such page; `camwright report` writes it")
+    webbrowser.open(page.resolve().as_uri())
 
 
 def init(

@@ -13,7 +13,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
 from geometry.errors import ResultError
-from reports import browser, interactive, page
+from reports import browser, interactive, parts
 
 ALL_DRAWN = "[...document.querySelectorAll('.live')].every(e => e.dataset.drawn === 'done')"
 PLACE = """(() => { const r = document.querySelector('#pressure .live .nsewdrag')
@@ -26,7 +26,7 @@ HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </s
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("browser") / "run"
     report_fixture.write_run(folder, title=HOSTILE)
-    return page.build(folder)
+    return report_fixture.page_of(folder)
 
 
 @pytest.fixture(scope="module")
@@ -90,15 +90,19 @@ def test_page_without_the_library_is_still_whole(
     report: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(interactive, "_library", lambda: None)
-    text = page.build(report.parent).read_text(encoding="utf-8")
+    text = report_fixture.page_of(report.parent).read_text(encoding="utf-8")
     assert "<script" not in text and "plotly is not installed" in text
     assert text.count("<svg") >= 10
 
 
-def test_pdf_has_its_pages_and_fonts(report: Path, tmp_path: Path) -> None:
+def printed(folder: Path) -> Path:
+    return parts.build(folder, parts.chosen(["pdf"]))["pdf"][0]
+
+
+def test_pdf_has_its_pages_and_fonts(report: Path) -> None:
     if browser.executable() is None:
         pytest.skip("no Chromium here: Debian has it in the package chromium")
-    data = page.printed(report, HOSTILE).read_bytes()
+    data = printed(report.parent).read_bytes()
     assert data.startswith(b"%PDF") and len(data) > 50_000
     assert len(re.findall(rb"/Type\s*/Page\b", data)) >= 3
     box = re.search(rb"/MediaBox\s*\[0 0 ([\d.]+) ([\d.]+)\]", data)
@@ -111,4 +115,4 @@ def test_pdf_without_a_browser_says_what_is_missing(
 ) -> None:
     monkeypatch.setattr(browser, "executable", lambda: None)
     with pytest.raises(ResultError, match="chromium"):
-        page.printed(report, "x")
+        printed(report.parent)

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
 from geometry.errors import ResultError
-from reports import page, pictures, scene
+from reports import pictures, scene
 
 CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
@@ -32,7 +32,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def built(folder):
-    return page.build(folder)
+    return report_fixture.page_of(folder)
 
 
 @pytest.fixture(scope="module")

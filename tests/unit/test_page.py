@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
 from geometry.errors import ResultError
-from reports import interactive, output, page
+from reports import drawings, interactive, output, page
 
 HOSTILE = "<script>alert(1)</script>\"'&lt;../../x " + "אבג \u202e \U0001f527 "
 
@@ -63,13 +63,15 @@ class Outline(HTMLParser):
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     folder = report_fixture.write_run(tmp_path_factory.mktemp("run"), positions=72, field=False)
-    return page.build(folder)
+    return report_fixture.page_of(folder)
 
 
 @pytest.fixture
 def undrawn(monkeypatch):
     """Figures left blank, for tests of words."""
-    monkeypatch.setattr(page, "svg_and_png", lambda figure, _png: f"<svg>{figure.id}</svg>")
+    monkeypatch.setattr(
+        drawings, "svg_and_png", lambda figure: (f"<svg>{figure.id}</svg>", b"\x89PNG")
+    )
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +113,7 @@ def test_the_verdict_comes_first_and_names_what_binds(html):
 
 
 def test_every_figure_of_the_sheet_is_there_with_words_for_it(built, html):
-    wanted = [name for _, names in page.GROUPS for name in names]
+    wanted = [name for _, names in drawings.GROUPS for name in names]
     for name in wanted:
         assert f'<figure id="{name}">' in html
         assert f'id="{name}-alt"' in html
@@ -134,9 +136,9 @@ def test_a_missing_field_is_told_in_words(html):
 
 def test_rebuilding_needs_only_the_folder_and_gives_the_same_page(tmp_path, undrawn):
     folder = report_fixture.write_run(tmp_path / "run", positions=36, field=False)
-    first = page.build(folder).read_bytes()
+    first = report_fixture.page_of(folder).read_bytes()
     (folder / page.PAGE).unlink()
-    assert page.build(folder.rename(tmp_path / "moved")).read_bytes() == first
+    assert report_fixture.page_of(folder.rename(tmp_path / "moved")).read_bytes() == first
 
 
 def test_hostile_text_comes_out_harmless_and_whole(tmp_path, undrawn):
@@ -147,7 +149,7 @@ def test_hostile_text_comes_out_harmless_and_whole(tmp_path, undrawn):
     folder = report_fixture.write_run(
         tmp_path / "run", positions=36, title=text, notes=text, records=records, field=False
     )
-    html = page.build(folder).read_text(encoding="utf-8")
+    html = report_fixture.page_of(folder).read_text(encoding="utf-8")
     assert "<script" not in html
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in html
     assert "x" * 10_000 in html
@@ -174,7 +176,7 @@ def test_a_run_without_engine_or_optional_columns_is_reported(tmp_path, undrawn)
     drop = [k for k, name in enumerate(lines[0]) if name.startswith("torque_")]
     kept = [",".join(cell for k, cell in enumerate(row) if k not in drop) for row in lines]
     cycle.write_text("\n".join(kept) + "\n")
-    html = page.build(folder).read_text(encoding="utf-8")
+    html = report_fixture.page_of(folder).read_text(encoding="utf-8")
     assert '<figure id="torque">' not in html
     assert '<figure id="torque-components">' not in html
     assert '<figure id="pressure">' in html
@@ -192,8 +194,10 @@ def test_several_load_cases_show_the_governing_one_and_a_ribbon(tmp_path, monkey
     next(r for r in records if r["id"] == "contact_force_margin")["status"] = "not_evaluated"
     (trial / "6_checks.json").write_text(json.dumps(records))
     seen = []
-    monkeypatch.setattr(page, "svg_and_png", lambda figure, _png: seen.append(figure) or "")
-    html = page.build(folder).read_text(encoding="utf-8")
+    monkeypatch.setattr(
+        drawings, "svg_and_png", lambda figure: (seen.append(figure) or "", b"\x89PNG")
+    )
+    html = report_fixture.page_of(folder).read_text(encoding="utf-8")
     pressure = next(figure for figure in seen if figure.id == "pressure")
     assert pressure.panels[0].curves[0].band is not None
     assert pressure.panels[0].curves[1].band is None
@@ -206,17 +210,17 @@ def test_a_passing_run_says_pass(tmp_path, undrawn):
     folder = report_fixture.write_run(
         tmp_path / "run", positions=36, records=records, field=False
     )  # fmt: skip
-    html = page.build(folder).read_text(encoding="utf-8")
+    html = report_fixture.page_of(folder).read_text(encoding="utf-8")
     assert ">PASS</h2>" in html
     assert "FAIL" not in html
 
 
 def test_what_is_not_a_run_is_refused_and_left_alone(tmp_path):
     with pytest.raises(ResultError, match=r"run\.json is missing"):
-        page.build(tmp_path)
+        report_fixture.page_of(tmp_path)
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(ResultError, match="no such folder"):
-        page.build(tmp_path / "nowhere")
+        report_fixture.page_of(tmp_path / "nowhere")
 
 
 def test_a_failed_write_leaves_the_old_page(built, html, undrawn, monkeypatch):
@@ -225,7 +229,7 @@ def test_a_failed_write_leaves_the_old_page(built, html, undrawn, monkeypatch):
 
     monkeypatch.setattr(output.os, "fdopen", full)
     with pytest.raises(ResultError, match="No space left on device"):
-        page.build(built.parent)
+        report_fixture.page_of(built.parent)
     assert built.read_text(encoding="utf-8") == html
     assert not [p for p in built.parent.iterdir() if p.name.endswith(".tmp")]
 

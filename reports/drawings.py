@@ -1,0 +1,58 @@
+"""The plots of the sheet, drawn once: as SVG for the page, as PNG beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from markupsafe import Markup
+
+from reports.figures import Figure
+from reports.material import Material
+from reports.output import FIGURES, write_whole
+from reports.plots import svg_and_png
+from reports.sheet import figures
+
+GROUPS = (
+    ("Torque", ("torque", "torque-components", "crank-speed")),
+    ("Shape", ("outline", "pressure-angle", "lift", "radii")),
+    ("Contact", ("pressure", "half-width", "stress")),
+    ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
+    ("Parts", ("bushes", "elastic", "parts")),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A figure of the sheet with its drawings."""
+
+    figure: Figure
+    svg: Markup
+    png: bytes
+
+
+@lru_cache(maxsize=1)
+def drawn_groups(material: Material) -> Sequence[tuple[str, Sequence[Drawn]]]:
+    """The figures that a run has columns for, by group, in reading order."""
+    by_id = {figure.id: figure for figure in figures(material.turn)}
+    groups = (
+        (title, tuple(_drawn(by_id[name]) for name in names if name in by_id))
+        for title, names in GROUPS
+    )
+    return tuple((title, drawn) for title, drawn in groups if drawn)
+
+
+def write(material: Material) -> list[Path]:
+    """Write ``figures/ID.png`` for every figure of the sheet."""
+    return [
+        write_whole(material.folder / FIGURES / f"{one.figure.id}.png", one.png)
+        for _, drawn in drawn_groups(material)
+        for one in drawn
+    ]
+
+
+def _drawn(figure: Figure) -> Drawn:
+    svg, png = svg_and_png(figure)
+    return Drawn(figure, Markup(svg), png)  # noqa: S704 - matplotlib's, its texts escaped
