@@ -229,9 +229,9 @@ def checked(
         mesh_quality=None if trial.mesh is None else trial.mesh.quality,
         certificate=trial.certificate,
         benchmarks=benchmarks,
+        searching=searching,
     )
     return replace(trial, checks=all_checks(evidence))
-        searching=searching,
 
 
 def foreseen(case: Case, torques: Mapping[str, Torque], smoother: Smoother) -> tuple[Check, ...]:
