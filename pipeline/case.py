@@ -37,6 +37,7 @@ from pipeline.given_lift import motion_of
 from pipeline.lift_fields import LIFT_KINDS, GivenLift, LiftSegments, LiftTable
 from pipeline.part_fields import Cam, Camshaft, Follower, Guides, Material, Oil, Roller, Spring
 from pipeline.results import hash_inputs
+from pipeline.shop_fields import Shop
 
 CASE_BYTES = 256 * 1024
 INCLUDE_BYTES = 16 * 1024 * 1024
@@ -67,6 +68,7 @@ class Case(Section):
     limits: Limits = Limits()
     solver: Solver = Solver()
     tolerances: Tolerances = Tolerances()
+    shop: Shop = Shop()
     waivers: Annotated[tuple[Waiver, ...], Field(strict=False, max_length=64)] = ()
     load_cases: Annotated[
         tuple[LoadCase, ...], Field(alias="load_case", strict=False, min_length=1, max_length=64)
@@ -290,6 +292,9 @@ def _check_geometry(case: Case) -> None:
         cam.bore_radius < surface,
         f"< {surface:.6g} m, the base circle of the surface",
     )
+    tool, largest = case.shop.tool_radius, case.limits.tool_radius
+    if tool is not None and largest is not None:
+        _require("shop.tool_radius", tool, tool <= largest, "<= limits.tool_radius")
     if cam.keyway is not None:
         reach = cam.bore_radius + cam.keyway.depth
         _require(

@@ -141,6 +141,12 @@ positions = 72                       # per cam turn; 720 for the real answer
 max_trials = 3                       # lifts tried, each gentler than the last
 certificate_positions = 1            # angles solved again on ever finer meshes
 
+# --- What the files in shop/ are written for
+[shop]
+table_step = "0.5 deg"               # between the rows of the contour's table, 0.1 to 1 deg
+# tool_radius = "10 mm"              # cutter or grinding wheel; left out: that of the roller
+# chord_error = "1 um"               # of the drawing's polyline
+
 # --- One table for each state the cam has to bear
 [[load_case]]
 name = "idle"

@@ -37,16 +37,20 @@ _INSPECTION = (
 )  # fmt: skip
 
 
+FORM_TOLERANCE = 20e-6
+"""m: band of the inspection sheet where the case states no profile tolerance."""
+
+
 @dataclass(frozen=True)
 class ShopOrder:
-    """What the case does not say: step of the tables, rad; tool, tolerance, chord error, m.
+    """Step of the tables, rad; tool, tolerance band of the form, chord error, m.
 
     A tool of the roller's radius is taken where none is given: it fits wherever the roller does.
     """
 
     step: float = float(np.radians(0.5))
     tool_radius: float | None = None
-    tolerance: float = 20e-6
+    tolerance: float = FORM_TOLERANCE
     chord_error: float | None = None
 
     def __post_init__(self) -> None:
@@ -62,6 +66,20 @@ class ShopOrder:
         return uniform_turn(count)
 
 
+def largest_tool(case: Case) -> float | None:
+    """Radius of the tool that the hollows have to let in, m: the limit's, else the shop's own."""
+    limit = case.limits.tool_radius
+    return case.shop.tool_radius if limit is None else limit
+
+
+def order_of(case: Case) -> ShopOrder:
+    """What a case orders of the shop."""
+    shop = case.shop
+    tool = largest_tool(case) if shop.tool_radius is None else shop.tool_radius
+    band = FORM_TOLERANCE if case.cam.profile_tolerance is None else case.cam.profile_tolerance
+    return ShopOrder(shop.table_step, tool, band, shop.chord_error)
+
+
 def outline_of(case: Case, contour: Contour) -> Outline:
     """Contour, bore and keyway of a case."""
     return Outline(contour, case.cam.bore_radius, case.cam.keyway)
@@ -71,7 +89,6 @@ def write_shop(
     folder: Path,
     case: Case,
     contour: Contour,
-    order: ShopOrder = ShopOrder(),
     note: Callable[[str], None] = lambda _: None,
 ) -> None:
     """Write ``contour.csv``, ``contour.dxf``, ``cam.step``, ``cutter.csv``, ``inspection.csv``.
@@ -80,7 +97,7 @@ def write_shop(
     left out and `note` is told why; all others are written.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    outline = outline_of(case, contour)
+    outline, order = outline_of(case, contour), order_of(case)
     tool = order.tool_radius or contour.roller_radius
     jobs: dict[str, Callable[[Path], object]] = {
         "contour.csv": lambda path: write_atomic(path, contour_table(contour, order.theta)),

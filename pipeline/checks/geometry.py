@@ -7,6 +7,7 @@ import numpy as np
 from geometry.arrays import FULL_TURN
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence
+from pipeline.shop import largest_tool
 
 TOOL_ALLOWANCE = 1.1  # a hollow is ground by a wheel at least a tenth smaller
 SECOND_CONTACT_DEPTH = 1e-6  # m, the depth no cam is ground to
@@ -119,7 +120,7 @@ def concave_radius(evidence: TrialEvidence) -> Check | None:
     value, theta = evidence.contour.pitch.curvature_min()
     if value >= 0:
         return None
-    tool = evidence.limit("tool_radius")
+    tool = largest_tool(evidence.case)
     return Check(
         id="concave_radius",
         title="Least hollow radius of the contour",

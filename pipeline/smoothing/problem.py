@@ -18,6 +18,7 @@ from pipeline.cycle import contact_width
 from pipeline.design_fields import LoadCase
 from pipeline.engine.torque import Torque
 from pipeline.part_fields import Guide
+from pipeline.shop import largest_tool
 from pipeline.smoothing.constrained import Problem
 from pipeline.smoothing.constraints import LIFE_UNIT, Correction, Machine, Ratings, Scenario
 
@@ -81,7 +82,7 @@ def ratings_of(case: Case) -> Ratings:
     if softer.endurance_pressure is not None:
         allowed = min(allowed, softer.endurance_pressure / limits.contact_safety)
     modulus = contact_modulus(cards[0].E, cards[0].nu, cards[1].E, cards[1].nu)
-    bearing = roller.bearing
+    bearing, tool = roller.bearing, largest_tool(case)
     wear = None
     if bearing.C is not None and limits.roller_life is not None:
         wear = bearing.C**3 * LIFE_UNIT / (limits.roller_life / 3600.0)
@@ -93,7 +94,7 @@ def ratings_of(case: Case) -> Ratings:
         jam_index=limits.jam_index,
         curvature_ratio=limits.curvature_ratio,
         undercut_factor=limits.undercut_factor,
-        hollow_radius=None if limits.tool_radius is None else TOOL_ALLOWANCE * limits.tool_radius,
+        hollow_radius=None if tool is None else TOOL_ALLOWANCE * tool,
         cam_radius=limits.cam_radius,
         pressure=float(allowed),
         stiffness_of_contact=float(np.pi * contact_width(case) * roller.radius / modulus),

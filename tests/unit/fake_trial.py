@@ -91,6 +91,7 @@ def case(**changes):
             ),
         ),
         "tolerances": SimpleNamespace(phase=0.04),
+        "shop": SimpleNamespace(table_step=np.radians(0.5), tool_radius=None, chord_error=None),
         "follower": SimpleNamespace(mass=MASS, overhang_at_max_lift=0.03),
         "guides": SimpleNamespace(a=guide, b=guide, spacing=0.08),
         "materials": {"steel": steel, "hard": hard},

@@ -1,0 +1,122 @@
+"""The shop in a case file: what it orders, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.cutter import cutter_path
+from geometry.errors import InputError
+from geometry.lift import Lift
+from pipeline import trial as road
+from pipeline.case import Case, parse_case
+from pipeline.case_template import template
+from pipeline.shop import largest_tool, order_of, write_shop
+
+LIMITS = "[limits]\n"
+ORDER = '[shop]\ntable_step = "0.25 deg"\ntool_radius = "6 mm"\nchord_error = "2 um"\n'
+
+
+def case(shop: str = ORDER, limits: str = "", cam: str = "") -> Case:
+    text = template("part")
+    own = text[text.index("[shop]") : text.index("# --- One table")]
+    text = text.replace(own, shop).replace(LIMITS, LIMITS + limits)
+    return parse_case(text.replace("[cam]\n", "[cam]\n" + cam))
+
+
+def contour(of: Case) -> Contour:
+    theta = uniform_turn(360)
+    return road.cam_contour(of, Lift(theta, 0.005 * (1 - np.cos(theta))))
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
+
+
+def test_the_files_are_those_ordered(tmp_path: Path) -> None:
+    import ezdxf
+
+    of = case(cam='profile_tolerance = "16 um"\n')
+    drawn, said = contour(of), []
+    write_shop(tmp_path, of, drawn, said.append)
+    assert said == []
+    table, cutter = rows(tmp_path / "contour.csv"), rows(tmp_path / "cutter.csv")
+    assert len(table) == len(cutter) == 1440
+    assert [float(row["cam_angle_deg"]) for row in table[:3]] == [0.0, 0.25, 0.5]
+    theta = np.radians([float(row["cam_angle_deg"]) for row in cutter])
+    centre = np.array([[float(row["x_mm"]), float(row["y_mm"])] for row in cutter]).T
+    # the writer rounds nothing: the same point to the last digits of a double
+    np.testing.assert_allclose(1e-3 * centre, cutter_path(drawn, 6e-3, theta).centre, atol=1e-15)
+    sheet = rows(tmp_path / "inspection.csv")
+    assert {row["deviation_max_mm"] for row in sheet} == {"0.008"}  # half of the band
+    notes = ezdxf.readfile(tmp_path / "contour.dxf").modelspace().query("TEXT")
+    assert notes[0].dxf.text.startswith("chord error 0.002 mm")
+
+
+def test_without_an_order_the_tables_are_half_a_degree_apart_and_the_roller_is_the_tool() -> None:
+    order = order_of(case(""))
+    assert np.degrees(order.step) == pytest.approx(0.5)
+    assert (order.tool_radius, order.chord_error, order.tolerance) == (None, None, 20e-6)
+
+
+def test_the_tool_of_the_limits_is_the_shops_unless_it_has_its_own() -> None:
+    assert order_of(case("", 'tool_radius = "9 mm"\n')).tool_radius == pytest.approx(9e-3)
+    both = case(limits='tool_radius = "9 mm"\n')
+    assert order_of(both).tool_radius == pytest.approx(6e-3)
+    assert largest_tool(both) == pytest.approx(9e-3)  # which the hollows have to let in
+    assert largest_tool(case()) == pytest.approx(6e-3)
+    assert largest_tool(case("")) is None
+
+
+def test_a_resolved_case_orders_the_same() -> None:
+    of = case()
+    assert order_of(parse_case(of.to_toml())) == order_of(of)
+
+
+def test_a_tool_too_large_for_a_hollow_leaves_its_file_out_and_says_so(tmp_path: Path) -> None:
+    of = case('[shop]\ntool_radius = "400 mm"\n')
+    theta = uniform_turn(360)
+    hollow = road.cam_contour(of, Lift(theta, 0.012 * np.sin(1.5 * theta) ** 4))
+    assert hollow.concave_radius_min().value < 0.4
+    said: list[str] = []
+    write_shop(tmp_path, of, hollow, said.append)
+    assert "cutter.csv is left out" in said[0]
+    assert not (tmp_path / "cutter.csv").exists()
+    assert (tmp_path / "contour.dxf").is_file()
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ('table_step = "0.099 deg"', "shop.table_step = 0.099 deg, must be >= 0.1 and <= 1 deg"),
+        ('table_step = "1.001 deg"', "shop.table_step = 1.001 deg, must be >= 0.1 and <= 1 deg"),
+        ("table_step = 0.5", "shop.table_step = 0.5, must be a number with a unit"),
+        ('table_step = "nan deg"', "shop.table_step = nan deg, must be finite"),
+        ('table_step = "0.5 mm"', "shop.table_step = 0.5 mm, must be in a unit of"),
+        ("table_step = []", "shop.table_step = "),
+        ('tool_radius = "0 mm"', "shop.tool_radius = 0 mm, must be > 0"),
+        ('tool_radius = "-5 mm"', "shop.tool_radius = -5 mm, must be > 0"),
+        ('tool_radius = "inf mm"', "shop.tool_radius = inf mm, must be finite"),
+        ('tool_radius = "1e5 mm"', "shop.tool_radius = 1e5 mm, must be > 0 and <= 10000 mm"),
+        ("tool_radius = true", "shop.tool_radius = True, must be a number with a unit"),
+        ('chord_error = "0 um"', "shop.chord_error = 0 um, must be >= 0.001 and <= 1000 um"),
+        ('chord_error = "2 mm"', "shop.chord_error = 2 mm, must be >= 0.001 and <= 1000 um"),
+        ('chord_eror = "1 um"', "did you mean chord_error?"),
+        ('tool_radius = "<script>alert(1)</script>"', "must be a number with a unit"),
+    ],
+)
+def test_what_no_shop_could_mean_is_refused(line: str, message: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        case(f"[shop]\n{line}\n")
+    assert message in str(refusal.value)
+
+
+def test_a_tool_larger_than_the_hollows_are_checked_for_is_refused() -> None:
+    with pytest.raises(InputError, match=r"shop\.tool_radius = 0\.006 m, must be <= limits"):
+        case(limits='tool_radius = "5 mm"\n')
