@@ -82,7 +82,7 @@ def test_a_resolved_case_orders_the_same() -> None:
 def test_a_tool_too_large_for_a_hollow_leaves_its_file_out_and_says_so(tmp_path: Path) -> None:
     of = case('[shop]\ntool_radius = "400 mm"\n')
     theta = uniform_turn(360)
-    hollow = road.cam_contour(of, Lift(theta, 0.012 * np.sin(1.5 * theta) ** 4))
+    hollow = road.cam_contour(of, Lift(theta, 0.010 * (1 - np.cos(3 * theta))))
     assert hollow.concave_radius_min().value < 0.4
     said: list[str] = []
     write_shop(tmp_path, of, hollow, said.append)
