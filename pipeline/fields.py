@@ -1,13 +1,16 @@
-"""Fields of a run for analysts: VTU files of the contact and of the cam over the turn."""
+"""Fields of a run for analysts: VTU files of the contact and of both bodies over the turn."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.arrays import Array
+from meshes.body import BodyMesh
 from meshes.files import write_pvd, write_vtu
 from pipeline.contact import stress
 from pipeline.contact.elastic_body import ElasticBody, StressRecovery
@@ -16,7 +19,10 @@ from pipeline.contact.pair_certificate import SolvedPair
 from pipeline.cycle import Cycle
 
 _MILLIMETRE, _MEGAPASCAL = 1e-3, 1e6
-UNITS = {"length": "mm", "stress": "MPa", "force": "N"}
+_TOGETHER = 24  # positions whose fields are held at once
+BODIES_INDEX = "bodies_cycle.pvd"
+
+IntArray = NDArray[np.int64]
 
 
 def write_contact(path: Path, solved: SolvedPair, name: str) -> None:
@@ -47,46 +53,135 @@ def write_contact(path: Path, solved: SolvedPair, name: str) -> None:
     )
 
 
-def write_turn(
+def write_bodies(
     folder: Path,
     pair: ContactPair,
     bodies: CycleBodies,
     cycle: Cycle,
-    step_deg: float,
-    tell: Callable[[int, int], None],
+    indices: IntArray,
+    number: int,
+    tell: Callable[[int, int], None] = lambda *_: None,
 ) -> Path:
-    """The loaded cam every `step_deg` of the turn, as ``cam_cycle.pvd`` with its pieces.
+    """Both bodies at some positions of a turn, as ``bodies_cycle.pvd`` with its pieces.
 
-    Under the follower the stress is that of the contact's ellipse in the half-plane, elsewhere
-    the finite-element correction joins it; the mesh is that of the body, too coarse to show
-    the contact itself.
+    In the cam's frame, so the follower goes round. Displacements are each body's own, against
+    where it is held. At the contact the stress is that of its ellipse in the half-plane,
+    elsewhere the finite-element correction joins it; the meshes are those of the bodies, too
+    coarse to show the contact itself. Times are cam angles in degrees.
+
+    Parameters
+    ----------
+    indices : (n,)   positions of the cycle, in order
+    number : int     of the load case, from 1; stated in the files
     """
-    stride = max(1, round(np.radians(step_deg) / (cycle.theta[1] - cycle.theta[0])))
-    indices = np.arange(0, cycle.theta.size, stride)
-    cam = bodies.cam
-    entries = []
-    for count, k in enumerate(indices):
-        theta = cycle.theta[k : k + 1]
-        load = float(cycle.contact.line_load[k])
-        moved, stressed = cam.field(
-            pair.contour.points(theta),
-            pair.contour.normal(theta),
-            load,
-            float(cycle.contact.half_width[k]),
-        )
-        angle = float(np.degrees(theta[0]))
-        name = f"cam_{round(1000 * angle):06d}.vtu"
-        write_vtu(
-            folder / name,
-            cam.body.mesh,
-            _point_data(cam.body, moved, stressed),
-            {"cam_angle_deg": angle, "line_load_N_per_mm": load * _MILLIMETRE},
-        )
-        entries.append((angle, name))
-        tell(count + 1, indices.size)
-    index = folder / "cam_cycle.pvd"
+    pieces = folder / "bodies"
+    pieces.mkdir(exist_ok=True)
+    entries, other = [], pair.follower.name
+    for start in range(0, indices.size, _TOGETHER):
+        part = indices[start : start + _TOGETHER]
+        places = follower_places(pair, cycle.theta[part])
+        found = _loaded(pair, bodies, cycle, part)
+        for k, place, (on_cam, facing) in zip(part, places, found, strict=True):
+            angle = float(np.degrees(cycle.theta[k]))
+            name = f"bodies_{round(1000 * angle):06d}.vtu"
+            there = facing.turned(place.turn)
+            write_vtu(
+                pieces / name,
+                {"cam": bodies.cam.body.mesh, other: place.mesh(bodies.follower.body.mesh)},
+                {
+                    "cam": _point_data(bodies.cam.body, on_cam.moved, on_cam.stress),
+                    other: _point_data(bodies.follower.body, there.moved, there.stress),
+                },
+                position_notes(pair, cycle, int(k), number),
+            )
+            entries.append((angle, f"bodies/{name}"))
+        tell(min(start + _TOGETHER, indices.size), indices.size)
+    index = folder / BODIES_INDEX
     write_pvd(index, entries)
     return index
+
+
+@dataclass(frozen=True, eq=False)
+class BodyField:
+    """Displacement (2, n), m, and stress xx, yy, xy (3, n), Pa, at the nodes of a body."""
+
+    moved: Array
+    stress: Array
+
+    def turned(self, turn: Array) -> BodyField:
+        """In other axes: `turn` (2, 2) takes a vector from the old to the new ones."""
+        xx, yy, xy = self.stress
+        tensor = turn @ np.array([[xx, xy], [xy, yy]]).transpose(2, 0, 1) @ turn.T
+        turned = np.stack([tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 0, 1]])
+        return BodyField(turn @ self.moved, turned)
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """Where a body is: origin (2,) m of its own frame, and the turn (2, 2) of its axes."""
+
+    origin: Array
+    turn: Array
+
+    @property
+    def angle(self) -> float:
+        """Of the turn, rad."""
+        return float(np.arctan2(self.turn[1, 0], self.turn[0, 0]))
+
+    def mesh(self, own: BodyMesh) -> BodyMesh:
+        return own.transformed(self.angle, self.origin)
+
+
+def follower_places(pair: ContactPair, theta: Array) -> list[Place]:
+    """The follower's body in the cam's frame at cam angles (n,), facing the cam."""
+    contacts, normals = pair.contour.points(theta), pair.contour.normal(theta)
+    at, up = (np.broadcast_to(v, contacts.shape) for v in facing(pair, theta))
+    places = []
+    for k in range(theta.size):
+        n, u = -normals[:, k], up[:, k]
+        cosine, sine = u @ n, u[0] * n[1] - u[1] * n[0]
+        turn = np.array([[cosine, -sine], [sine, cosine]])
+        places.append(Place(contacts[:, k] - turn @ at[:, k], turn))
+    return places
+
+
+def facing(pair: ContactPair, theta: Array) -> tuple[Array, Array]:
+    """Contacts (2, n) on the follower and outward normals (2, n), in its own frame."""
+    at, up = pair.follower.contacts(pair.contour, theta)
+    return np.repeat(at, theta.size // at.shape[1], 1), np.repeat(up, theta.size // up.shape[1], 1)
+
+
+def position_notes(pair: ContactPair, cycle: Cycle, k: int, number: int) -> dict[str, float]:
+    """Numbers that belong to a position of the cycle as a whole; `number` is its load case's."""
+    contact, theta = cycle.contact, float(cycle.theta[k])
+    point, normal = pair.contour.points(theta), pair.contour.normal(theta)
+    return {
+        "cam_angle_deg": float(np.degrees(theta)),
+        "load_case_number": float(number),
+        "line_load_N_per_mm": float(contact.line_load[k]) * _MILLIMETRE,
+        "half_width_mm": float(contact.half_width[k]) / _MILLIMETRE,
+        "half_width_hertz_mm": float(contact.half_width_hertz[k]) / _MILLIMETRE,
+        "peak_pressure_MPa": float(contact.p0[k]) / _MEGAPASCAL,
+        "contact_x_mm": float(point[0]) / _MILLIMETRE,
+        "contact_y_mm": float(point[1]) / _MILLIMETRE,
+        "normal_x": float(normal[0]),
+        "normal_y": float(normal[1]),
+    }
+
+
+def _loaded(
+    pair: ContactPair, bodies: CycleBodies, cycle: Cycle, part: IntArray
+) -> Iterator[tuple[BodyField, BodyField]]:
+    """Cam and follower, each in its own frame, at some positions."""
+    theta, contact = cycle.theta[part], cycle.contact
+    load = contact.line_load[part], contact.half_width_hertz[part]
+    cam = bodies.cam.fields(pair.contour.points(theta), pair.contour.normal(theta), *load)
+    other = bodies.follower.fields(*facing(pair, theta), *load)
+    for k in range(part.size):
+        yield (
+            BodyField(cam[0][..., k], cam[1][..., k]),
+            BodyField(other[0][..., k], other[1][..., k]),
+        )
 
 
 def _recovered(body: ElasticBody, displacement: Array) -> Array:

@@ -170,15 +170,15 @@ def _elastic(
     return response, deflection, jump.flights, float(jump.contact_force.max())
 
 
-def _bush_peak(case: Case, guide: Guide, line_pressure: Array) -> Array:
+def bush_pair(case: Case, guide: Guide) -> tuple[Pin, Bush]:
+    """Stem and bore of a guide as the bodies of a pin in a hole."""
     stem, bush = case.material(case.follower.stem_material), case.material(guide.material)
-    peak, _ = peak_pressure(
-        line_pressure,
-        0.5 * case.follower.stem_diameter,
-        0.5 * guide.clearance,
-        Pin(stem.E, stem.nu),
-        Bush(bush.E, bush.nu, 2.0 * WALL_SHARE),
-    )
+    return Pin(stem.E, stem.nu), Bush(bush.E, bush.nu, 2.0 * WALL_SHARE)
+
+
+def _bush_peak(case: Case, guide: Guide, line_pressure: Array) -> Array:
+    radius, clearance = 0.5 * case.follower.stem_diameter, 0.5 * guide.clearance
+    peak, _ = peak_pressure(line_pressure, radius, clearance, *bush_pair(case, guide))
     return peak
 
 

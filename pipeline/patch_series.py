@@ -24,6 +24,7 @@ from pipeline.contact.patch import (
 )
 from pipeline.contact.surface import ContactFrame
 from pipeline.cycle import Cycle
+from pipeline.fields import position_notes
 
 _MILLIMETRE, _MEGAPASCAL = 1e-3, 1e6
 _TOGETHER = 45  # positions whose stress is held at once
@@ -35,12 +36,14 @@ def write_patches(
     pair: ContactPair,
     bodies: CycleBodies,
     cycle: Cycle,
+    number: int,
     tell: Callable[[int, int], None] = lambda *_: None,
 ) -> Path:
     """Write ``patch_cycle.pvd`` with a piece for every position, in the cam's frame.
 
     The stress is that from which the cycle took its peaks: pressures of the position and what
-    the real body adds; zero where the surfaces carry no load. Times are cam angles in degrees.
+    the real body adds; zero where the surfaces carry no load. Times are cam angles in degrees;
+    `number` is that of the load case, from 1.
     """
     pieces = folder / "patch"
     pieces.mkdir(exist_ok=True)
@@ -53,9 +56,8 @@ def write_patches(
             angle = float(np.degrees(cycle.theta[k]))
             name = f"patch_{round(1000 * angle):06d}.vtu"
             mesh = BodyMesh(_placed(pair, cycle, k, points), triangles, {})
-            write_vtu(
-                pieces / name, mesh, _fields(nodal, pair.cam.poisson), _notes(cycle, k, angle)
-            )
+            notes = position_notes(pair, cycle, k, number)
+            write_vtu(pieces / name, mesh, _fields(nodal, pair.cam.poisson), notes)
             entries.append((angle, f"patch/{name}"))
         tell(min(start + _TOGETHER, count), count)
     index = folder / INDEX
@@ -119,14 +121,4 @@ def _fields(nodal: Array, poisson: float) -> dict[str, Array]:
         "stress_along_MPa": shown[0],
         "stress_into_depth_MPa": shown[1],
         "shear_MPa": shown[2],
-    }
-
-
-def _notes(cycle: Cycle, k: int, angle: float) -> dict[str, float]:
-    contact = cycle.contact
-    return {
-        "cam_angle_deg": angle,
-        "line_load_N_per_mm": float(contact.line_load[k]) * _MILLIMETRE,
-        "half_width_mm": float(contact.half_width[k]) / _MILLIMETRE,
-        "peak_pressure_MPa": float(contact.p0[k]) / _MEGAPASCAL,
     }

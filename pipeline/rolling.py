@@ -24,7 +24,7 @@ from pipeline.follower.roller import RollerMotion, roller_motion
 # Of the contact angles, every so many tell what the real body adds.
 _THINNED = 4
 _MM, _MPA = 1e3, 1e-6
-_MAPS = ("von_mises", "tau_max", "shear_range", "crossland", "dang_van")
+MAPS = ("von_mises", "tau_max", "shear_range", "crossland", "dang_van")
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +183,7 @@ def envelope_arrays(turns: Mapping[str, RollingHistory | None]) -> dict[str, Arr
         found[f"{load_case}.cam_angle_deg"] = np.degrees(map_.theta)
         found[f"{load_case}.arc_mm"] = _MM * map_.arc
         found[f"{load_case}.depth_mm"] = _MM * map_.depth
-        for name in _MAPS:
+        for name in MAPS:
             values = getattr(map_, name)
             if values is not None:
                 found[f"{load_case}.{name}_MPa"] = _MPA * values
@@ -197,7 +197,7 @@ def rolling_record(turns: Mapping[str, RollingHistory | None]) -> dict[str, Any]
 
 def _worst(turn: RollingHistory) -> dict[str, Any]:
     record: dict[str, Any] = {}
-    for name in _MAPS:
+    for name in MAPS:
         if getattr(turn.envelope, name) is not None:
             value, theta, depth = turn.envelope.worst(name)
             if not np.isfinite(value):  # somewhere the contact is not known

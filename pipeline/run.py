@@ -16,19 +16,18 @@ from geometry.errors import CamError
 from geometry.lift import Lift
 from pipeline import trial as road
 from pipeline.benchmarks import benchmarks
+from pipeline.bushes import bush_arrays
 from pipeline.case import Case
 from pipeline.certify import certified, positions_to_certify
 from pipeline.checks.verdict import binding, in_order, verdict
 from pipeline.contact.pair import ContactPair, CycleBodies
-from pipeline.contact.pair_certificate import solve_pair
 from pipeline.corners import governed, outcomes
 from pipeline.corners import record as corners_record
 from pipeline.cycle import Cycle, Turn, contact_pair, finished
 from pipeline.engine.torque import Torque
-from pipeline.fields import write_contact, write_turn
+from pipeline.field_files import write_fields
 from pipeline.given_lift import lift_origin
 from pipeline.measured import measurement_record
-from pipeline.patch_series import write_patches
 from pipeline.progress import Progress
 from pipeline.records import contour_columns, headline, lift_columns, pressure_arrays, trial_record
 from pipeline.rolling import envelope_arrays, rolling_history, rolling_record
@@ -43,8 +42,6 @@ from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 from pipeline.speed import consistency, speed_record, study_of
 from pipeline.trial import Trial
-
-_FIELD_STEP_DEG = 5.0
 
 
 @dataclass
@@ -333,24 +330,15 @@ def _write_cycles(journey: Journey, number: int, cycles: tuple[Cycle, ...]) -> N
         number, {name: np.concatenate([t.get(name, unknown) for t in tables]) for name in names}
     )
     journey.folder.write_pressure(number, pressure_arrays(cycles))
+    journey.folder.write_bushes(number, bush_arrays(journey.case, cycles))
     turns = {cycle.load_case: cycle.rolling for cycle in cycles}
     journey.folder.write_envelope(number, envelope_arrays(turns))
 
 
 def _write_fields(journey: Journey, final: Trial) -> None:
-    if final.mesh is None:
-        return
-    case, folder, progress = journey.case, journey.folder, journey.progress
-    progress.stage("fields")
-    pair = contact_pair(case, final.contour)
-    loads = [cycle.loads.normal_force for cycle in final.cycles]
-    index = round(final.mesh.theta / (final.cycles[0].theta[1] - final.cycles[0].theta[0]))
-    force = max(float(load[index]) for load in loads)
-    solved = solve_pair(pair, final.mesh.theta, force)
-    write_contact(folder.fields / "contact_worst.vtu", solved, pair.follower.name)
-    bodies = CycleBodies.meshed(pair)
-    write_turn(folder.fields, pair, bodies, final.cycles[0], _FIELD_STEP_DEG, progress.advance)
-    write_patches(folder.fields, pair, bodies, final.cycles[0], progress.advance)
+    journey.progress.stage("fields")
+    with journey.watch.stage("fields"):
+        write_fields(journey.folder.fields, journey.case, final, journey.progress.advance)
 
 
 def _write_shop(journey: Journey, final: Trial) -> None:

@@ -32,7 +32,7 @@ from pipeline.case import Case
 _STATE, _CHUNKS, _LOCK = ".state.json", ".chunks", ".lock"
 _OURS = re.compile(
     r"case\.toml|(run|signoff|corners)\.json|inputs|fields|figures|exports|shop|inspection|trial_\d+"
-    r"|\d+_\w+\.(csv|html|json|pdf)"
+    r"|scene\.html|\d+_\w+\.(csv|html|json|pdf)"
 )
 _LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib")
 
@@ -143,6 +143,10 @@ class RunFolder:
     def write_pressure(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
         """``5_pressure.npz``: contact pressure at every position of every load case."""
         write_atomic(self._file(f"trial_{trial}/5_pressure.npz"), _npz(arrays))
+
+    def write_bushes(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
+        """``5_bushes.npz``: pressure along the guides at every position, and round the bores."""
+        write_atomic(self._file(f"trial_{trial}/5_bushes.npz"), _npz(arrays))
 
     def write_envelope(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
         """``5_envelope.npz``: greatest stresses of a turn in a band under the contour."""

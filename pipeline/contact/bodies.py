@@ -153,37 +153,32 @@ class LoadedBody:
         """Correction's displacement (2, nodes, count) of the whole body, m per N/m."""
         return self.body.displacement(*self._cancelling(contacts, normals))
 
-    def field(
-        self, contact: Array, normal: Array, line_load: float, half_width: float
+    def fields(
+        self, contacts: Array, normals: Array, line_load: Array, half_width: Array
     ) -> tuple[Array, Array]:
-        """Displacement (2, nodes) m and stress (3, nodes) Pa of the body under one contact.
+        """Displacement (2, nodes, count) m and stress (3, nodes, count) Pa under contacts.
 
-        contact, normal (2, 1); the half-plane part is that of a Hertz pressure, in closed form.
+        contacts, normals (2, count); line_load (count,) N/m, half_width (count,) m, zero where
+        nothing touches. The half-plane part is that of a Hertz pressure, in closed form.
         """
-        moved = self.moved(contact, normal)
-        nodal = np.zeros((3, self.body.mesh.points.shape[1]))
-        nodal[:, self._everywhere.nodes] = self._everywhere(moved)[:, :, 0]
-        if line_load <= 0:
-            return np.zeros_like(moved[:, :, 0]), np.zeros_like(nodal)
-        tangent = np.array([normal[1, 0], -normal[0, 0]])
-        arm = self.body.mesh.points - contact
-        x, depth = tangent @ arm, -normal[:, 0] @ arm
-        # A hollow flank rises above the tangent: its points take the stress of the surface.
-        near = subsurface_stress(x / half_width, np.maximum(depth, 0.0) / half_width)
-        along, into, shear = near * (2 / (np.pi * half_width))
-        t, n = tangent[:, None], normal
-        half_plane = np.stack(
-            [
-                along * t[0] ** 2 + into * n[0] ** 2 - 2 * shear * t[0] * n[0],
-                along * t[1] ** 2 + into * n[1] ** 2 - 2 * shear * t[1] * n[1],
-                along * t[0] * t[1] + into * n[0] * n[1] - shear * (t[0] * n[1] + t[1] * n[0]),
-            ]
-        )
+        points = self.body.mesh.points
+        moved, nodal = self.correction_fields(contacts, normals)
+        near = hertz_stress(points, contacts, normals, half_width)
+        x, depth, tangents = _seen_from(points, contacts, normals)
         # The logarithm of a point force stops where its pressure spreads out.
         deep = np.where(np.hypot(x, depth) < half_width, half_width, depth)
-        sideways, down = self._unit_displacement(x, deep)
-        settled = sideways * t - down * n
-        return line_load * (moved[:, :, 0] + settled), line_load * (nodal + half_plane)
+        touching = line_load > 0
+        sideways, down = self._unit_displacement(x, np.where(touching, deep, 1.0))
+        settled = sideways * tangents[:, None, :] - down * normals[:, None, :]
+        load = np.where(touching, line_load, 0.0)
+        return load * (moved + settled), load * (nodal + near)
+
+    def correction_fields(self, contacts: Array, normals: Array) -> tuple[Array, Array]:
+        """Correction's displacement (2, nodes, count) and stress (3, nodes, count) per N/m."""
+        moved = self.moved(contacts, normals)
+        nodal = np.zeros((3, *moved.shape[1:]))
+        nodal[:, self._everywhere.nodes] = self._everywhere(moved)
+        return moved, nodal
 
     @cached_property
     def _everywhere(self) -> StressRecovery:
@@ -209,7 +204,7 @@ class LoadedBody:
         return loads, -self._half_plane_displacement(contacts, normals)
 
     def _half_plane_displacement(self, contacts: Array, normals: Array) -> Array:
-        """Displacement (2, nodes, count) of the half-plane field on the held boundary."""
+        """Displacement (2, nodes, count) of the half-plane field where the body is held."""
         mesh, body = self.body.mesh, self.body
         nodes = body.held_nodes
         arm = mesh.points[:, nodes, None] - contacts[:, None, :]
@@ -247,3 +242,32 @@ class LoadedBody:
         slope = np.einsum("km,km->k", inverse[:, 1], sideways) / reach
         bend = 2 * np.einsum("km,km->k", inverse[:, 2], outward) / reach**2
         return np.stack([slope, bend])
+
+
+def hertz_stress(points: Array, contacts: Array, normals: Array, half_width: Array) -> Array:
+    """Stress xx, yy, xy (3, m, count), 1/m, of a half-plane under Hertz pressures of 1 N/m.
+
+    At points (2, m); the surfaces lie at contacts (2, count) with outward normals (2, count);
+    half_width (count,) m, and where it is not positive there is no stress.
+    """
+    x, depth, tangents = _seen_from(points, contacts, normals)
+    size = np.where(half_width > 0, half_width, np.inf)
+    # A hollow flank rises above the tangent: its points take the stress of the surface.
+    near = subsurface_stress(x / size, np.maximum(depth, 0.0) / size) * (2 / (np.pi * size))
+    along, into, shear = near
+    t, n = tangents[:, None, :], normals[:, None, :]
+    return np.stack(
+        [
+            along * t[0] ** 2 + into * n[0] ** 2 - 2 * shear * t[0] * n[0],
+            along * t[1] ** 2 + into * n[1] ** 2 - 2 * shear * t[1] * n[1],
+            along * t[0] * t[1] + into * n[0] * n[1] - shear * (t[0] * n[1] + t[1] * n[0]),
+        ]
+    )
+
+
+def _seen_from(points: Array, contacts: Array, normals: Array) -> tuple[Array, Array, Array]:
+    """Places along (m, count) and below (m, count) the surfaces, m; tangents (2, count)."""
+    arm = points[:, :, None] - contacts[:, None, :]
+    tangents = np.stack([normals[1], -normals[0]])
+    x = np.einsum("cmk,ck->mk", arm, tangents)
+    return x, -np.einsum("cmk,ck->mk", arm, normals), tangents

@@ -1,4 +1,4 @@
-"""The series of the contact patch: a step per position, its peaks those of the cycle."""
+"""Series of patch and bodies, bushes and the view of a turn: they say what the cycle found."""
 
 from __future__ import annotations
 
@@ -12,13 +12,18 @@ from geometry.arrays import uniform_turn
 from geometry.lift import Lift
 from meshes.files import UNITS
 from pipeline import trial as road
+from pipeline.bushes import bush_arrays
 from pipeline.case import parse_case
 from pipeline.case_template import template
 from pipeline.contact import stress
 from pipeline.contact.pair import CycleBodies, pair_history
 from pipeline.contact.patch import contact_patch
 from pipeline.cycle import contact_pair, finished
+from pipeline.field_files import shown_positions
+from pipeline.fields import facing, write_bodies
+from pipeline.follower.guides import lobatto
 from pipeline.patch_series import INDEX, patch_mesh, patch_stress, write_patches
+from pipeline.turn_view import bore_reach, turn_view
 
 POSITIONS = 12
 
@@ -34,7 +39,7 @@ def series(tmp_path_factory: pytest.TempPathFactory):
     contact = pair_history(pair, bodies, given.theta, given.loads.normal_force)
     cycle = finished(case, contour, given, contact)
     folder = tmp_path_factory.mktemp("fields")
-    return folder, write_patches(folder, pair, bodies, cycle), pair, bodies, cycle
+    return folder, write_patches(folder, pair, bodies, cycle, 1), pair, bodies, cycle
 
 
 def test_series_has_as_many_steps_as_the_cycle_has_positions(series) -> None:
@@ -89,3 +94,142 @@ def test_triangles_of_the_patch_fill_it_once() -> None:
     assert areas.min() > 0
     half_disc = 0.5 * np.pi * 1.6**2
     assert areas.sum() == pytest.approx(half_disc, rel=0.1)  # whole elements reach past 1.6
+
+
+def sets_of(index) -> list[tuple[float, str]]:
+    found = ET.parse(index).getroot().findall("Collection/DataSet")
+    return [(float(entry.get("timestep")), entry.get("file")) for entry in found]
+
+
+@pytest.fixture(scope="module")
+def body_series(series):
+    folder, _, pair, bodies, cycle = series
+    indices = shown_positions(cycle, [7])
+    return indices, write_bodies(folder, pair, bodies, cycle, indices, 1)
+
+
+def test_bodies_are_shown_every_five_degrees_and_where_certified() -> None:
+    class Turn:
+        theta = uniform_turn(720)
+
+    shown = 0.5 * shown_positions(Turn, [475, 10, 475])
+    assert shown.tolist() == sorted([*np.arange(0, 360, 5.0), 237.5])
+
+
+def test_fields_of_the_bodies_read_back_to_the_last_bit(series, body_series) -> None:
+    folder, _, pair, bodies, cycle = series
+    indices, index = body_series
+    theta, contact = cycle.theta[indices], cycle.contact
+    load = contact.line_load[indices], contact.half_width_hertz[indices]
+    moved, nodal = bodies.cam.fields(pair.contour.points(theta), pair.contour.normal(theta), *load)
+    _, own = bodies.follower.fields(*facing(pair, theta), *load)
+    count = moved.shape[1]
+    for k, (angle, name) in enumerate(sets_of(index)):
+        mesh = meshio.read(folder / name)
+        data = mesh.point_data
+        assert angle == np.degrees(theta[k]) == mesh.field_data["cam_angle_deg"][0]
+        assert [block.type for block in mesh.cells] == ["triangle6"]
+        np.testing.assert_allclose(
+            data["displacement_mm"][:count, :2].T, 1e3 * moved[:, :, k], rtol=1e-14
+        )
+        for row, component in enumerate(("xx", "yy", "xy")):
+            cam = data[f"stress_{component}_MPa"][:count]
+            np.testing.assert_allclose(cam, 1e-6 * nodal[row, :, k], rtol=1e-14)
+        # the same stress in other axes; turning them costs a few bits
+        mises = 1e-6 * stress.von_mises(own[:, :, k], pair.follower.material.poisson)
+        np.testing.assert_allclose(data["von_mises_MPa"][count:], mises, rtol=1e-9, atol=1e-9)
+
+
+def test_the_roller_touches_the_cam_and_is_pressed_there(series, body_series) -> None:
+    folder, _, _, bodies, cycle = series
+    indices, index = body_series
+    count = bodies.cam.body.mesh.points.shape[1]
+    for k, (_, name) in zip(indices, sets_of(index), strict=True):
+        mesh = meshio.read(folder / name)
+        notes = {key: value[0] for key, value in mesh.field_data.items()}
+        contact = np.array([notes["contact_x_mm"], notes["contact_y_mm"]])
+        normal = np.array([notes["normal_x"], notes["normal_y"]])
+        away = np.hypot(*(mesh.points[count:, :2] - contact).T)
+        touching = count + int(away.argmin())
+        assert away.min() < 1e-9
+        xx, yy, xy = (mesh.point_data[f"stress_{c}_MPa"][touching] for c in ("xx", "yy", "xy"))
+        pressed = normal @ np.array([[xx, xy], [xy, yy]]) @ normal
+        # the pressure there, but for the small stress by which a real roller differs
+        assert pressed == pytest.approx(-1e-6 * cycle.contact.p0_hertz[k], rel=5e-3)
+
+
+def test_a_body_without_load_is_at_rest(series) -> None:
+    _, _, pair, bodies, cycle = series
+    theta = cycle.theta[:2]
+    at, normal = pair.contour.points(theta), pair.contour.normal(theta)
+    loaded = np.array([0.0, 1e5]), np.array([0.0, 1e-4])
+    moved, nodal = bodies.cam.fields(at, normal, *loaded)
+    assert not moved[:, :, 0].any() and not nodal[:, :, 0].any()
+    assert np.isfinite(nodal).all() and nodal[:, :, 1].any()
+
+
+@pytest.fixture(scope="module")
+def view(series):
+    _, _, pair, bodies, cycle = series
+    return turn_view(pair, bodies, cycle)
+
+
+def test_view_of_the_turn_shows_the_contact_where_it_is(series, view) -> None:
+    _, _, pair, _, cycle = series
+    assert view["position"].tolist() == list(range(POSITIONS))
+    under = view["cam_MPa"][np.arange(POSITIONS), 2 * np.arange(POSITIONS), 0]
+    # Johnson (1985) eq. 4.46: at the middle of the contact both stresses are -p0, so that von
+    # Mises is (1 - 2 nu) p0; the body's own bending adds a little.
+    poisson = pair.cam.poisson
+    expected = 1e-6 * (1 - 2 * poisson) * cycle.contact.p0_hertz
+    np.testing.assert_allclose(under, expected, rtol=0.03)
+    surface = view["cam_mm"][:, ::2, 0]
+    np.testing.assert_allclose(surface, 1e3 * pair.contour.points(cycle.theta), rtol=1e-12)
+
+
+def test_view_lays_the_follower_against_the_cam(series, view) -> None:
+    _, _, pair, _, cycle = series
+    centre = 1e-3 * view["follower_origin_mm"].T
+    radius = pair.contour.roller_radius
+    expected = pair.contour.points(cycle.theta) + radius * pair.contour.normal(cycle.theta)
+    np.testing.assert_allclose(centre, expected, atol=1e-12)
+    assert np.abs(np.hypot(*view["follower_mm"])).max() == pytest.approx(1e3 * radius, rel=1e-6)
+    peak = view["follower_MPa"].max(axis=1)
+    assert (peak > 1e-6 * 0.39 * cycle.contact.p0_hertz).all()
+
+
+def test_edge_of_bore_and_keyway() -> None:
+    from meshes.cam_outline import Keyway
+
+    angle = np.radians([0.0, 20.0, 90.0, 180.0])
+    np.testing.assert_allclose(bore_reach(0.01, None, angle), 0.01)
+    reach = bore_reach(0.01, Keyway(0.01, 0.003, np.pi), angle)
+    np.testing.assert_allclose(reach, [0.01, 0.01, 0.01, 0.013])
+    edge = np.pi - np.arctan2(0.005, 0.013)  # corner of the slot
+    assert bore_reach(0.01, Keyway(0.01, 0.003, np.pi), np.array([edge]))[0] == pytest.approx(
+        np.hypot(0.005, 0.013)
+    )
+
+
+@pytest.fixture(scope="module")
+def bushes(series):
+    case = parse_case(template("series"))
+    return case, bush_arrays(case, [series[-1]])
+
+
+@pytest.mark.parametrize("side", ["A", "B"])
+def test_pressure_in_a_bush_adds_up_to_the_reaction(series, bushes, side) -> None:
+    case, found = bushes
+    guides = series[-1].guides
+    along, line = found[f"{side}_along_mm"], found[f"{side}_line_N_per_mm"]
+    weights = lobatto(along.size)[1] * along.max()
+    reaction = guides.reaction_a if side == "A" else -guides.reaction_b
+    np.testing.assert_allclose(line @ weights, reaction, rtol=1e-9, atol=1e-9)
+    # Round the bore: what presses along the line of action is the push of the slice. The straight
+    # lines between angles 0.5 deg apart miss the round top and steep end by less than 0.5 %.
+    angle, row = np.radians(found[f"{side}_round_deg"]), int(found[f"{side}_row"])
+    pressure = found[f"{side}_pressure_MPa"]
+    force = np.trapezoid(pressure * np.cos(angle), angle, axis=1)
+    force *= 0.5e3 * case.follower.stem_diameter
+    np.testing.assert_allclose(force, line[row], rtol=5e-3, atol=1e-3 * np.abs(line).max())
+    assert np.abs(line).max() == np.abs(line[row]).max()

@@ -1,0 +1,139 @@
+"""Stress of both bodies over the turn, made to be looked at: for the film of a report.
+
+The cam's mesh is too coarse for the eye: the load would flicker from node to node as it passes. So
+the cam has a grid with a line of points under every contact shown, graded towards the surface;
+the half-plane's part of the field is taken there in closed form, the smooth rest from the mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.spatial import Delaunay
+
+from geometry.arrays import Array, uniform_turn
+from meshes.cam_outline import KeywayLike
+from pipeline.contact import stress
+from pipeline.contact.bodies import LoadedBody, hertz_stress
+from pipeline.contact.pair import ContactPair, CycleBodies
+from pipeline.cycle import Cycle
+from pipeline.fields import IntArray, facing, follower_places
+
+FRAMES = 360
+"""Positions shown at most; a turn of fewer is shown whole."""
+
+_MM, _MPA = 1e3, 1e-6
+_LAYERS, _GRADING = 19, 4.5
+_TOGETHER = 24
+_INWARD = 1e-3  # a point on the surface may lie outside of the mesh's chords by less
+
+
+def turn_view(
+    pair: ContactPair,
+    bodies: CycleBodies,
+    cycle: Cycle,
+    tell: Callable[[int, int], None] = lambda *_: None,
+) -> Mapping[str, NDArray[Any]]:
+    """Arrays of ``fields/turn.npz``.
+
+    Returns
+    -------
+    mapping   load_case; position (f,) and cam_angle_deg (f,) of what is shown; cam_mm
+              (2, stations, layers) in the cam's frame, the surface first, and the follower's
+              mesh, follower_mm (2, n) with follower_triangles (6, m), in its own frame, which
+              has its origin at follower_origin_mm (f, 2) of the cam's and is turned by
+              follower_turn_deg (f,); cam_MPa (f, stations, layers) and follower_MPa (f, n), von
+              Mises stress in half precision, which is finer than any colour shows
+    """
+    count = cycle.theta.size
+    shown = np.arange(0, count, -(-count // FRAMES))
+    points = cam_points(pair, 2 * shown.size)
+    between = linear(bodies.cam.body.mesh.points, points)
+    places = follower_places(pair, cycle.theta[shown])
+    on_cam, on_other = [], []
+    for start in range(0, shown.size, _TOGETHER):
+        part = shown[start : start + _TOGETHER]
+        on_cam.append(_cam_stress(pair, bodies.cam, cycle, part, points, between))
+        on_other.append(_follower_stress(pair, bodies.follower, cycle, part))
+        tell(start + part.size, shown.size)
+    mesh = bodies.follower.body.mesh
+    return {
+        "load_case": np.array(cycle.load_case),
+        "position": shown,
+        "cam_angle_deg": np.degrees(cycle.theta[shown]),
+        "cam_mm": _MM * points,
+        "cam_MPa": (_MPA * np.concatenate(on_cam)).astype(np.float16),
+        "follower_mm": _MM * mesh.points,
+        "follower_triangles": mesh.triangles,
+        "follower_origin_mm": _MM * np.stack([place.origin for place in places]),
+        "follower_turn_deg": np.degrees([place.angle for place in places]),
+        "follower_MPa": (_MPA * np.concatenate(on_other)).astype(np.float16),
+    }
+
+
+def _cam_stress(
+    pair: ContactPair,
+    cam: LoadedBody,
+    cycle: Cycle,
+    part: IntArray,
+    points: Array,
+    between: sparse.csr_array,
+) -> Array:
+    """Von Mises stress (k, stations, layers), Pa."""
+    theta, contact = cycle.theta[part], cycle.contact
+    at, normal = pair.contour.points(theta), pair.contour.normal(theta)
+    _, nodal = cam.correction_fields(at, normal)
+    half_plane = hertz_stress(points.reshape(2, -1), at, normal, contact.half_width_hertz[part])
+    whole = np.stack([between @ component for component in nodal]) + half_plane
+    found = contact.line_load[part] * stress.von_mises(whole, cam.body.poisson)
+    return np.asarray(found.T.reshape(part.size, *points.shape[1:]))
+
+
+def _follower_stress(pair: ContactPair, other: LoadedBody, cycle: Cycle, part: IntArray) -> Array:
+    """Von Mises stress (k, nodes), Pa; a roller has a node where it touches."""
+    load, half_width = cycle.contact.line_load[part], cycle.contact.half_width_hertz[part]
+    _, nodal = other.fields(*facing(pair, cycle.theta[part]), load, half_width)
+    return np.asarray(stress.von_mises(nodal, other.body.poisson).T)
+
+
+def cam_points(pair: ContactPair, stations: int) -> Array:
+    """Points (2, stations, layers) of the cam, m, from the contour straight towards the axis."""
+    outer = pair.contour.points(uniform_turn(stations))
+    radius, angle = np.hypot(*outer), np.arctan2(outer[1], outer[0])
+    return _graded(outer, outer * (bore_reach(pair.bore_radius, pair.keyway, angle) / radius))
+
+
+def bore_reach(bore_radius: float, keyway: KeywayLike | None, angle: Array) -> Array:
+    """Distance (...) from the axis to the edge of bore and keyway, m, in directions (...), rad."""
+    reach = np.full(angle.shape, bore_radius)
+    if keyway is None:
+        return reach
+    off = np.abs((angle - keyway.angle + np.pi) % (2 * np.pi) - np.pi)
+    half, floor = 0.5 * keyway.width, bore_radius + keyway.depth
+    with np.errstate(divide="ignore"):
+        slot = np.minimum(floor / np.maximum(np.cos(off), 1e-9), half / np.sin(off))
+    return np.where(off < np.arcsin(half / bore_radius), slot, reach)
+
+
+def _graded(outer: Array, inner: Array) -> Array:
+    """Points (2, stations, layers) between two rings (2, stations), closest at the outer one."""
+    share = np.expm1(_GRADING * np.linspace(0.0, 1.0, _LAYERS)) / np.expm1(_GRADING)
+    return outer[:, :, None] + (inner - outer)[:, :, None] * share
+
+
+def linear(nodes: Array, points: Array) -> sparse.csr_array:
+    """What takes values at nodes (2, n) to points (2, ...) inside of them, by straight lines."""
+    mesh = Delaunay(nodes.T)
+    at = (1 - _INWARD) * points.reshape(2, -1).T
+    simplex = mesh.find_simplex(at)
+    frame = mesh.transform[simplex]
+    part = np.einsum("mij,mj->mi", frame[:, :2], at - frame[:, 2])
+    weights = np.column_stack([part, 1 - part.sum(axis=1)])
+    rows = np.repeat(np.arange(len(at)), 3)
+    columns = mesh.simplices[simplex].ravel()
+    shape = (len(at), nodes.shape[1])
+    return sparse.coo_array((weights.ravel(), (rows, columns)), shape=shape).tocsr()
