@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from math import radians
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import AfterValidator, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
-from pipeline import units
+from geometry.errors import InputError
 from pipeline.case_fields import (
     Angle,
     Force,
@@ -89,10 +89,40 @@ class Camshaft(Section):
     source: Text = ""
 
 
-class Bearing(Section):
-    """The roller's bearing as its maker rates it; a shipped card fills in what is left out."""
+class OuterRing(Section):
+    """A bearing's outer ring where it is itself the roller: carried by its balls alone.
 
-    card: Name | None = None
+    The thickness is that under the groove, the pitch diameter that of the balls' middles; the
+    strengths are those of the ring's steel.
+    """
+
+    outer_diameter: Length
+    thickness: Length
+    pitch_diameter: Length
+    balls: Annotated[int, Field(ge=3, le=100)]
+    fatigue_bending: Pressure | None = None
+    tensile_strength: Pressure | None = None
+    source: Text = ""
+
+    @property
+    def ball_diameter(self) -> float:
+        """What ring and pitch circle leave for the balls, m."""
+        return self.outer_diameter - 2.0 * self.thickness - self.pitch_diameter
+
+    @model_validator(mode="after")
+    def _leaves_room_for_balls(self) -> Self:
+        if not 0.0 < self.ball_diameter < self.pitch_diameter:
+            raise refusal(
+                "of outer_diameter > pitch_diameter + 2 thickness, to leave the balls room"
+            )
+        if not self.thickness < 0.2 * self.outer_diameter:
+            raise refusal("of thickness < 0.2 outer_diameter, a thin ring")
+        return self
+
+
+class Bearing(Section):
+    """The roller's bearing as its maker rates it."""
+
     name: Text
     C: Force | None = None
     C0: Force | None = None
@@ -100,26 +130,8 @@ class Bearing(Section):
     speed_limit: Annotated[float, In("rpm", above=0, at_most=1e6)] | None = None
     drag_torque: Annotated[float, In("N mm", at_least=0, at_most=1e6)] | None = None
     friction: Annotated[float, In(at_least=0, below=1)] | None = None
+    ring: OuterRing | None = None
     source: Text = ""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_card(cls, given: Any) -> Any:
-        """Fill in from the card; what the case gives itself stands."""
-        if not isinstance(given, dict) or not isinstance(given.get("card"), str):
-            return given
-        from pipeline.follower.bearing_cards import read_cards
-
-        cards = read_cards()
-        if given["card"] not in cards:
-            raise refusal(f"without card, or with one of: {', '.join(sorted(cards))}")
-        card = cards[given["card"]]
-        filled = {"name": card.name, "source": card.source}
-        for key, unit in (("C", "N"), ("C0", "N"), ("speed_limit", "rpm")):
-            filled[key] = units.format(getattr(card, key), unit)
-        if card.radial_limit is not None:
-            filled["radial_limit"] = units.format(card.radial_limit, "N")
-        return filled | given
 
 
 class Pin(Section):
@@ -162,11 +174,44 @@ class Roller(Section):
     bearing: Bearing
     pin: Pin | None = None
 
+    @property
+    def line_width(self) -> float:
+        """Width of the line contact it can carry, m: chamfers left out."""
+        return self.width - 2.0 * self.chamfer
+
+
+class Face(Section):
+    """The flat face of a follower, square to the stem, centred on it and held by it.
+
+    width is its length in the plane of motion, depth that along the line of contact, thickness
+    that of the block along the stem; friction is that of the face sliding on the cam.
+    """
+
+    crowned: ClassVar[bool] = False
+
+    width: Length
+    depth: Length
+    thickness: Length
+    friction: Annotated[float, In(above=0, below=2)] | None = None
+    roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
+    pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e9)] | None = None
+    material: Name
+    source: Text = ""
+
+    @property
+    def line_width(self) -> float:
+        """Width of the line contact it can carry, m."""
+        return self.depth
+
 
 class Follower(Section):
-    """The translating follower; the overhang is from guide A to the roller's centre."""
+    """The translating follower: a roller, or a flat face that slides.
+
+    The overhang is from guide A to the roller's centre, or to the face.
+    """
 
     kind: Literal["roller", "flat"] = "roller"
+    face: Face | None = None
     mass: Mass
     stem_diameter: Length
     stem_length: Length | None = None
@@ -176,6 +221,20 @@ class Follower(Section):
     stiffness: Annotated[float, In("N/mm", above=0, at_most=1e12)] | None = None
     damping_ratio: Annotated[float, In(at_least=0, below=1)] = 0.05
     source: Text = ""
+
+    @model_validator(mode="after")
+    def _has_its_face(self) -> Self:
+        if self.kind == "flat" and self.face is None:
+            raise InputError("follower.face", "missing", 'given with follower.kind = "flat"')
+        if self.kind == "roller" and self.face is not None:
+            limit = 'left out, or follower.kind = "flat"'
+            raise InputError("follower.face", "a table", limit)
+        return self
+
+    @property
+    def face_friction(self) -> float:
+        """Friction of a face on the cam; 0 where it is not given, and for a roller."""
+        return 0.0 if self.face is None else self.face.friction or 0.0
 
 
 def _no_press_fit(clearance: float) -> float:

@@ -15,8 +15,9 @@ from typing import Any
 
 from geometry.errors import InputError
 from pipeline import units
+from pipeline.follower import bearing_cards
 
-KINDS = ("materials", "bushes", "oils", "wires")
+KINDS = ("materials", "bushes", "oils", "wires", "bearings")
 USER_FILE = "cards.toml"
 USER_BYTES = 256 * 1024
 CELSIUS = 273.15
@@ -48,6 +49,8 @@ def filled(data: Mapping[str, Any], folder: Path | None) -> dict[str, Any]:
         if card is None:
             raise InputError(f"{field}.card", name, f"one of: {', '.join(sorted(cards[kind]))}")
         card = _oil(card, table, field) if kind == "oils" else card
+        if kind == "bearings":
+            card = bearing_cards.as_case_table(bearing_cards.read_card(name, card))
         given = dict(table)
         table.update(card)
         table.update(given)
@@ -87,11 +90,11 @@ def viscosity(at_40: float, at_100: float, temperature: float) -> float:
 
 @cache
 def _shipped() -> Cards:
-    here = Path(__file__).parent
+    here, files = Path(__file__).parent, {"bearings": bearing_cards.CARDS}
     return {
         kind: {
             name: _sourced(card, f"{kind}.{name}")
-            for name, card in _read(here / f"{kind}.toml").items()
+            for name, card in _read(files.get(kind, here / f"{kind}.toml")).items()
         }
         for kind in KINDS
     }
@@ -132,6 +135,7 @@ def _places(case: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
         yield f"guides.{side}", "bushes", table("guides", side)
     yield "lubricant", "oils", table("lubricant")
     yield "spring.design", "wires", table("spring", "design")
+    yield "roller.bearing", "bearings", table("roller", "bearing")
 
 
 def _with_material(case: dict[str, Any], name: Any, cards: Mapping[str, Any]) -> None:

@@ -2,9 +2,9 @@
 
 The field of a loaded body is the half-plane's field under the same pressure plus a correction
 that cancels the half-plane's tractions on the real boundary and its displacements where the
-body is held. The correction is smooth right up to the contact (on a circle of radius R the
-tractions of a point force vanish there), so one coarse mesh, factored once, gives it for the
-contact at every angle.
+body is held, by force or by springs. The correction is smooth right up to the contact (on a
+circle of radius R the tractions of a point force vanish there), so one coarse mesh, factored
+once, gives it for the contact at every angle.
 """
 
 from __future__ import annotations
@@ -118,8 +118,19 @@ class LoadedBody:
         return (
             body.mesh.sha256,
             *(hashlib.sha256(v.tobytes()).hexdigest() for v in (free, body.held_dofs, places)),
+            *self._springs_asked,
             (float(body.modulus), float(body.poisson)),
             back_end(),
+        )
+
+    @property
+    def _springs_asked(self) -> tuple[str, ...]:
+        springs = self.body.springs
+        if springs is None:
+            return ()
+        return tuple(
+            hashlib.sha256(np.ascontiguousarray(part, dtype="<f8").tobytes()).hexdigest()
+            for part in (springs.ways, springs.stiffness)
         )
 
     def _found(self, contacts: Array, normals: Array) -> dict[str, Array]:
@@ -201,16 +212,18 @@ class LoadedBody:
         intensity = np.where(near, 0.0, 2 / np.pi * depth * flux / np.where(near, 1, square) ** 2)
         traction = arm * intensity
         loads = np.stack([operator @ component for component in traction])
-        return loads, -self._half_plane_displacement(contacts, normals)
+        far = self._half_plane_displacement(contacts, normals)
+        if self.body.springs is not None:
+            loads += self.body.springs.forces(far)
+        return loads, -far
 
     def _half_plane_displacement(self, contacts: Array, normals: Array) -> Array:
         """Displacement (2, nodes, count) of the half-plane field where the body is held."""
         mesh, body = self.body.mesh, self.body
         nodes = body.held_nodes
-        arm = mesh.points[:, nodes, None] - contacts[:, None, :]
-        tangents = np.stack([normals[1], -normals[0]])
-        x = np.einsum("cqk,ck->qk", arm, tangents)
-        depth = -np.einsum("cqk,ck->qk", arm, normals)
+        if body.springs is not None:
+            nodes = np.union1d(nodes, np.flatnonzero(body.springs.ways.any(axis=(0, 1))))
+        x, depth, tangents = _seen_from(mesh.points[:, nodes], contacts, normals)
         along, into = self._unit_displacement(x, depth)
         field = np.zeros((2, mesh.points.shape[1], contacts.shape[1]))
         field[:, nodes] = along * tangents[:, None, :] - into * normals[:, None, :]

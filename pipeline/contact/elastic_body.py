@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 from skfem import Basis, ElementTriP2, ElementVector
 
-from geometry.arrays import Array
+from geometry.arrays import Array, freeze
 from geometry.errors import InputError
 from meshes.body import BodyMesh
 from pipeline.contact.factor import Condensed, factorised
@@ -37,8 +37,30 @@ class Elastic:
 
 
 @dataclass(frozen=True, eq=False)
+class Springs:
+    """Springs between a body and the ground, each along a weighted mean of displacements.
+
+    ways (m, 2, nodes) weights of the mean; stiffness (m,), N/m per m of width.
+    """
+
+    ways: Array
+    stiffness: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, ways=self.ways, stiffness=self.stiffness)
+
+    def forces(self, displacement: Array) -> Array:
+        """What the springs do to the nodes, (2, nodes, k), N/m, at displacements of that shape."""
+        return -np.einsum("mcn,mk->cnk", self.ways, self.pulls(displacement))
+
+    def pulls(self, displacement: Array) -> Array:
+        """Force (m, k), N/m, in each spring, positive where it is drawn along its way."""
+        return self.stiffness[:, None] * np.einsum("mcn,cnk->mk", self.ways, displacement)
+
+
+@dataclass(frozen=True, eq=False)
 class ElasticBody:
-    """Second-order finite elements on curved triangles, held on named boundaries.
+    """Second-order finite elements on curved triangles, held on named boundaries or by springs.
 
     `held` names the boundary held fully, or maps boundaries to the components held there:
     ``{"bottom": "y", "left": "x"}`` rolls on the bottom and along the left.
@@ -49,6 +71,7 @@ class ElasticBody:
     modulus: float
     poisson: float
     held: str | Mapping[str, str]
+    springs: Springs | None = None
 
     @cached_property
     def basis(self) -> Any:
@@ -77,7 +100,17 @@ class ElasticBody:
         rows = np.broadcast_to(dofs[:, :, None], (count, 12, 12))
         columns = np.broadcast_to(dofs[:, None, :], rows.shape)
         entries: Any = (local.ravel(), (rows.ravel(), columns.ravel()))
-        return sparse.coo_matrix(entries, shape=(self.basis.N, self.basis.N)).tocsc()
+        own = sparse.coo_matrix(entries, shape=(self.basis.N, self.basis.N)).tocsc()
+        return own if self.springs is None else own + self._stiffness_of(self.springs)
+
+    def _stiffness_of(self, springs: Springs) -> Any:
+        spring, component, node = np.nonzero(springs.ways)
+        entries: Any = (
+            springs.ways[spring, component, node],
+            (spring, self.dofs[component, node]),
+        )
+        ways = sparse.csc_matrix(entries, shape=(springs.stiffness.size, self.basis.N))
+        return (ways.T @ sparse.diags_array(springs.stiffness) @ ways).tocsc()
 
     @cached_property
     def held_dofs(self) -> NDArray[np.int64]:
@@ -97,7 +130,7 @@ class ElasticBody:
                 raise InputError(f"held.{name}", components, "x, y or xy")
             nodes = self.mesh.boundary_nodes(name)
             parts += [self.dofs["xy".index(component), nodes] for component in components]
-        return np.unique(np.concatenate(parts))
+        return np.unique(np.concatenate(parts)) if parts else np.empty(0, dtype=int)
 
     @cached_property
     def free_dofs(self) -> NDArray[np.int64]:

@@ -11,7 +11,7 @@ from geometry.arrays import Array
 from geometry.contour import Contour
 from meshes.body import BodyMesh, face_mesh, roller_mesh
 from meshes.sizing import Sizing
-from pipeline.contact.elastic_body import Elastic
+from pipeline.contact.elastic_body import Elastic, Springs
 
 # What a body adds varies over its wall's thickness; fewer would smooth it away.
 EDGES_ACROSS_WALL = 4
@@ -24,7 +24,8 @@ class FollowerBody(Protocol):
     """What the contact asks of the second body.
 
     `name` is that of the body in files, `surface` and `held` are those boundaries of its mesh
-    that touch the cam and that hold it, `free` others that carry nothing.
+    that touch the cam and that hold it, `free` others that carry nothing. Where `held` is empty
+    `springs` hold it.
     """
 
     @property
@@ -52,6 +53,10 @@ class FollowerBody(Protocol):
 
     def mesh_at(self, contour: Contour, theta: float, sizing: Sizing) -> BodyMesh:
         """Mesh in the cam's frame, fine at the contact."""
+        ...
+
+    def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> Springs | None:
+        """What holds it besides, on its mesh at a cam angle; no contour: in its own frame."""
         ...
 
 
@@ -85,6 +90,9 @@ class RollerBody:
         facing = float(np.arctan2(-normal[1], -normal[0]))
         mesh = roller_mesh(self.radius, self.hub_radius, facing, sizing)
         return mesh.transformed(0.0, contact + self.radius * normal)
+
+    def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> None:
+        """None: the hub holds it."""
 
 
 @dataclass(frozen=True)
@@ -128,3 +136,6 @@ class FaceBody:
         mesh = face_mesh(self.width, self.thickness, self.stem_diameter, here)
         middle = contour.points(theta) - arm * contour.tangent(theta)
         return mesh.transformed(theta + 0.5 * np.pi, middle)
+
+    def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> None:
+        """None: the stem holds it."""

@@ -20,7 +20,7 @@ from meshes.cam_outline import KeywayLike
 from meshes.sizing import Sizing
 from pipeline.contact import hertz, stress
 from pipeline.contact.bodies import Correction, LoadedBody
-from pipeline.contact.elastic_body import Elastic, ElasticBody
+from pipeline.contact.elastic_body import Elastic, ElasticBody, Springs
 from pipeline.contact.follower_body import EDGES_ACROSS_WALL, FollowerBody
 from pipeline.contact.history import ContactHistory
 from pipeline.contact.patch import contact_patch, solve_patches
@@ -97,15 +97,19 @@ class CycleBodies:
         )
         keyed = ("keyway",) if "keyway" in cam.boundaries else ()
         other = pair.follower
-        facing = elastic_body(other.coarse_mesh(), other.material, other.held)
+        mesh = other.coarse_mesh()
+        facing = elastic_body(mesh, other.material, other.held, other.springs(mesh, None, 0.0))
         return cls(
             LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", keyed),
             LoadedBody(facing, other.surface, other.free),
         )
 
 
-def elastic_body(mesh: BodyMesh, material: Elastic, held: str) -> ElasticBody:
-    return ElasticBody(mesh, material.modulus, material.poisson, held)
+def elastic_body(
+    mesh: BodyMesh, material: Elastic, held: str, springs: Springs | None = None
+) -> ElasticBody:
+    """A body on its mesh; held nowhere but by its springs where `held` is empty."""
+    return ElasticBody(mesh, material.modulus, material.poisson, held or {}, springs)
 
 
 def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) -> ContactHistory:

@@ -78,10 +78,11 @@ def solve_pair(
     half_width, _ = hertz.line_contact(load, pair.relative_radius(theta), pair.contact_modulus)
     other = pair.follower
     cam, facing = contact_meshes(pair, theta, float(half_width), edges)
+    springs = other.springs(facing, pair.contour, theta)
     frame = ContactFrame(pair.contour.points(theta), pair.contour.normal(theta))
     sides = (
         ContactSide(elastic_body(cam, pair.cam, "bore"), "contour"),
-        ContactSide(elastic_body(facing, other.material, other.held), other.surface),
+        ContactSide(elastic_body(facing, other.material, other.held, springs), other.surface),
     )
 
     def gap(xi: Array) -> Array:

@@ -21,12 +21,16 @@ _UNITS = {
     "bore": "mm",
     "outer_diameter": "mm",
     "width": "mm",
-    "pitch_diameter": "mm",
-    "ring_thickness": "mm",
     "fatigue_load_limit": "N",
     "radial_limit": "N",
+    "pitch_diameter": "mm",
+    "ring_thickness": "mm",
+    "ring_fatigue_bending": "MPa",
+    "ring_tensile_strength": "MPa",
 }
-_OPTIONAL = {"fatigue_load_limit", "radial_limit"}
+_RING = {"balls", "pitch_diameter", "ring_thickness"}
+_STRENGTHS = {"ring_fatigue_bending", "ring_tensile_strength"}
+_OPTIONAL = {"fatigue_load_limit", "radial_limit", *_RING, *_STRENGTHS}
 
 
 @dataclass(frozen=True)
@@ -38,12 +42,14 @@ class BearingCard:
     C, C0 : float             dynamic and static rating, N, > 0
     speed_limit : float       rad/s, > 0
     bore, outer_diameter, width : float    m, > 0
-    balls : int               >= 3
+    source : str              where the numbers come from; "verify" marks recalled ones
+    fatigue_load_limit : float   P_u, N; None when not given
+    radial_limit : float      N that the outer ring bears without a housing; None when not given
+    balls : int               >= 3; None with the next two where the outer ring is not known
     pitch_diameter : float    of the balls' middles, m
     ring_thickness : float    of the outer ring under the groove, m
-    source : str              where the numbers come from; "verify" marks recalled ones
-    fatigue_load_limit : float   P_u, N; 0 when not given
-    radial_limit : float      N that the outer ring bears without a housing; None when not given
+    ring_fatigue_bending, ring_tensile_strength : float   of the ring's steel, Pa; None when not
+                                                          given
     """
 
     name: str
@@ -53,27 +59,31 @@ class BearingCard:
     bore: float
     outer_diameter: float
     width: float
-    balls: int
-    pitch_diameter: float
-    ring_thickness: float
     source: str
-    fatigue_load_limit: float = 0.0
+    fatigue_load_limit: float | None = None
     radial_limit: float | None = None
+    balls: int | None = None
+    pitch_diameter: float | None = None
+    ring_thickness: float | None = None
+    ring_fatigue_bending: float | None = None
+    ring_tensile_strength: float | None = None
 
     def __post_init__(self) -> None:
-        for name in _UNITS.keys() - _OPTIONAL:
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise InputError(f"bearing.{name}", getattr(self, name), "> 0")
-        if self.balls < 3:
+        for name in _UNITS:
+            value = getattr(self, name)
+            if value is not None and not 0.0 < value < np.inf:
+                raise InputError(f"bearing.{name}", value, "> 0")
+        if self.balls is not None and self.balls < 3:
             raise InputError("bearing.balls", self.balls, ">= 3")
-        if not self.bore < self.pitch_diameter < self.outer_diameter:
-            raise InputError(
-                "bearing.pitch_diameter", self.pitch_diameter, "between bore and outside"
-            )
-        if not self.ring_thickness < 0.5 * (self.outer_diameter - self.pitch_diameter):
-            raise InputError(
-                "bearing.ring_thickness", self.ring_thickness, "outside the pitch circle"
-            )
+        pitch, thickness = self.pitch_diameter, self.ring_thickness
+        if pitch is not None and not self.bore < pitch < self.outer_diameter:
+            raise InputError("bearing.pitch_diameter", pitch, "between bore and outside")
+        if (
+            pitch is not None
+            and thickness is not None
+            and not thickness < 0.5 * (self.outer_diameter - pitch)
+        ):
+            raise InputError("bearing.ring_thickness", thickness, "outside the pitch circle")
 
     @property
     def to_verify(self) -> bool:
@@ -93,10 +103,17 @@ def read_cards(path: str | Path = CARDS) -> dict[str, BearingCard]:
         given = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError("cards", " ".join(str(error).split()), "a readable TOML file") from None
-    return {name: _card(name, entry) for name, entry in given.items()}
+    return {name: read_card(name, entry) for name, entry in given.items()}
 
 
-def _card(name: str, entry: Any) -> BearingCard:
+def read_card(name: str, entry: Any) -> BearingCard:
+    """A card from its table; all of the ring is told, or nothing of it.
+
+    Raises
+    ------
+    InputError
+        For a card without C0 or another value, an unknown key, or a value out of its bounds.
+    """
     if not isinstance(entry, dict):
         raise InputError(f"cards.{name}", entry, "a table")
     known = {*_UNITS, "name", "balls", "source"}
@@ -104,15 +121,36 @@ def _card(name: str, entry: Any) -> BearingCard:
         raise InputError(
             f"cards.{name}.{key}", "unknown key", f"one of: {', '.join(sorted(known))}"
         )
-    for key in sorted(known - _OPTIONAL - set(entry)):
+    ring = _RING if set(entry) & (_RING | _STRENGTHS) else set()
+    for key in sorted((known - _OPTIONAL | ring) - set(entry)):
         raise InputError(f"cards.{name}.{key}", "missing", "given")
     values = {
         key: units.parse(entry[key], unit, f"cards.{name}.{key}")
         for key, unit in _UNITS.items()
         if key in entry
     }
-    if isinstance(entry["balls"], bool) or not isinstance(entry["balls"], int):
-        raise InputError(f"cards.{name}.balls", entry["balls"], "a whole number")
-    return BearingCard(
-        name=str(entry["name"]), balls=entry["balls"], source=str(entry["source"]), **values
-    )
+    balls = entry.get("balls")
+    if balls is not None and (isinstance(balls, bool) or not isinstance(balls, int)):
+        raise InputError(f"cards.{name}.balls", balls, "a whole number")
+    return BearingCard(name=str(entry["name"]), balls=balls, source=str(entry["source"]), **values)
+
+
+def as_case_table(card: BearingCard) -> dict[str, Any]:
+    """What a card puts into ``[roller.bearing]``, as a case file has it."""
+    ratings = {"C": "N", "C0": "N", "speed_limit": "rpm", "radial_limit": "N"}
+    table: dict[str, Any] = {"name": card.name, **_written(card, ratings), "source": card.source}
+    if card.balls is not None:
+        lengths = {"outer_diameter": "mm", "pitch_diameter": "mm", "ring_thickness": "mm"}
+        strengths = dict.fromkeys(sorted(_STRENGTHS), "MPa")
+        written = _written(card, lengths | strengths)
+        ring = {key.removeprefix("ring_"): text for key, text in written.items()}
+        table["ring"] = {"balls": card.balls, **ring, "source": card.source}
+    return table
+
+
+def _written(card: BearingCard, names: dict[str, str]) -> dict[str, str]:
+    return {
+        name: units.format(getattr(card, name), unit)
+        for name, unit in names.items()
+        if getattr(card, name) is not None
+    }

@@ -1,24 +1,13 @@
-"""Bending of a bearing's outer ring that rolls on a cam, carried by its balls alone.
-
-The ring is a closed chain of beam elements in its plane, the balls are springs that only push,
-the cam pushes at one place. No gaps: everything grows with the load, so one unit load tells all.
-"""
+"""A bearing's outer ring that rolls on a cam, carried by its balls alone; and the roller's pin."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
 
 from geometry.arrays import FULL_TURN, Array, freeze
-from geometry.errors import ContactError, InputError
-
-_ELEMENTS_PER_GAP = 24  # between two balls
-_HOLD = 1e-6  # of the balls' stiffness, against turning on the balls, which costs nothing
-_HOLD_SIDEWAYS = 1e-10  # of the balls' stiffness, while a single ball is thought to carry
+from geometry.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -51,180 +40,79 @@ class Ring:
             raise InputError("ring.balls", self.balls, ">= 3")
 
     @property
-    def section_modulus(self) -> float:
-        """w t^2/6, m3."""
-        return self.width * self.thickness**2 / 6.0
-
-    @property
     def bending_stiffness(self) -> float:
         """E I, N m2."""
         return self.modulus * self.width * self.thickness**3 / 12.0
+
+    def stress_inside(self, moment: Array, hoop: Array) -> Array:
+        """Stress along the ring at its inside, Pa, of a section's moment, N m, and pull, N.
+
+        The moment stretches the inside; of a curved bar it stretches it more than the outside.
+
+        References
+        ----------
+        Winkler and Bach's curved bar; Timoshenko, Strength of Materials II.
+        """
+        inside, outside = self.radius - 0.5 * self.thickness, self.radius + 0.5 * self.thickness
+        area, neutral = self.width * self.thickness, self.thickness / np.log(outside / inside)
+        lever = area * (self.radius - neutral) * inside
+        return np.asarray(hoop / area + moment * (neutral - inside) / lever)
 
 
 @dataclass(frozen=True, eq=False)
 class RingBending:
     """Per newton of the cam's push, at ball positions `phase` (n,), rad, from the push.
 
-    `ball_load` (n, balls) as shares of the push, >= 0; `moment_max`, `moment_min` (n,) in the
-    ring, m, positive where the inside is stretched; `compliance` (n,) under the push, m/N.
+    `ball_load` (n, balls) as shares of the push, >= 0, the first ball at the phase, the others
+    on from it; `moment_max`, `moment_min` (n,) in the ring, m, positive where the inside is
+    stretched; `stress_max`, `stress_min` (n,) along the ring at its inside, Pa/N;
+    `compliance` (n,) under the push, m/N.
     """
 
     phase: Array
     ball_load: Array
     moment_max: Array
     moment_min: Array
+    stress_max: Array
+    stress_min: Array
     compliance: Array
 
     def __post_init__(self) -> None:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
 
-    def stress_range(self, ring: Ring, force: float) -> float:
-        """From the greatest to the least bending stress a point of the groove meets, Pa.
+    @property
+    def stress_amplitude(self) -> float:
+        """Half of what a point of the groove swings through, Pa/N.
 
-        Each point of the ring passes under the push and midway between; the range is taken over
+        Each point of the ring passes under the push and over the balls; the swing is taken over
         all places and ball positions.
         """
-        swing = float(self.moment_max.max() - self.moment_min.min())
-        return swing * force / ring.section_modulus
+        return 0.5 * float(self.stress_max.max() - self.stress_min.min())
 
-    def greatest_ball_load(self, force: float) -> float:
-        """N."""
-        return float(self.ball_load.max()) * force
+    @property
+    def stress_mean(self) -> float:
+        """Middle of what a point of the groove swings through, Pa/N, tension positive."""
+        return 0.5 * float(self.stress_max.max() + self.stress_min.min())
 
-
-@lru_cache(maxsize=16)
-def ring_bending(ring: Ring, phases: int = 5) -> RingBending:
-    """Ring under a unit push at ball positions from right below it to midway between two.
-
-    Raises
-    ------
-    ContactError
-        If the balls that carry cannot be found.
-
-    References
-    ----------
-    Timoshenko, Strength of Materials II: thin rings; Harris and Kotzalas, Advanced Concepts of
-    Bearing Technology (2007): flexibly supported outer rings.
-    """
-    count = 2 * (phases - 1) * -(-_ELEMENTS_PER_GAP // (2 * (phases - 1)))  # per gap
-    nodes = ring.balls * count
-    stiffness = ring_stiffness(ring, nodes)
-    stiffness += _held(ring, nodes)
-    found = [
-        _pushed(ring, stiffness, count, k * count // (2 * (phases - 1))) for k in range(phases)
-    ]
-    loads, most, least, soft = (np.array(part) for part in zip(*found, strict=True))
-    gap = FULL_TURN / ring.balls
-    return RingBending(np.linspace(0.0, 0.5 * gap, phases), loads, most, least, soft)
+    def carrying(self, position: int) -> tuple[float, ...]:
+        """Angles from the push of the balls that carry at one of the ball positions, rad."""
+        loads = self.ball_load[position]
+        angles = self.phase[position] + FULL_TURN * np.arange(loads.size) / loads.size
+        return tuple(float(angle) for angle in angles[loads > 0.0])
 
 
-def flattening(ring: Ring, bending: RingBending, force: Array, curvature: Array) -> Array:
-    """Share by which the ring's bending changes a line contact's greatest pressure, (n,), <= 0.
+def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
+    """Amplitude about no mean stress that tires as much, Pa; infinite where the mean breaks it.
 
-    Under the push the ring loses the curvature M/(E I), taken at the ball position that bends it
-    most; p0 goes with the root of the relative curvature, the half-width with its reciprocal.
-    The dent of the contact itself is left to Hertz, whose p0 for the round ring is thus an upper
-    bound.
-
-    Parameters
-    ----------
-    force : array (n,)       N, >= 0
-    curvature : array (n,)   of the contact with the round ring, 1/R, 1/m, > 0
+    A mean that presses is not counted in favour.
 
     References
     ----------
-    Timoshenko, Strength of Materials II: thin rings; Johnson (1985), sec. 4.2(c).
+    Shigley's Mechanical Engineering Design, ch. 6: modified Goodman line.
     """
-    lost = bending.moment_max.max() * force / ring.bending_stiffness
-    return np.asarray(np.sqrt(np.maximum(1.0 - lost / curvature, 0.0)) - 1.0)
-
-
-def _pushed(
-    ring: Ring, stiffness: Array, count: int, shift: int
-) -> tuple[Array, float, float, float]:
-    """Ball loads, greatest and least moment, compliance; the push is at node 0, inwards."""
-    nodes = len(stiffness) // 3
-    at = (shift + count * np.arange(ring.balls)) % nodes
-    load = np.zeros(3 * nodes)
-    load[0] = -1.0
-    carrying = np.cos(FULL_TURN * at / nodes) > 0.0
-    seen: set[bytes] = set()
-    while carrying.tobytes() not in seen:
-        seen.add(carrying.tobytes())
-        system = stiffness.copy()
-        rows = 3 * at[carrying]
-        system[rows, rows] += ring.ball_stiffness
-        motion = cho_solve(cho_factor(system), load)
-        squeezed = motion[3 * at] < 0.0
-        if (squeezed == carrying).all():
-            share = np.where(carrying, -ring.ball_stiffness * motion[3 * at], 0.0)
-            moment = ring_moments(ring, motion)
-            return share, float(moment.max()), float(moment.min()), float(-motion[0])
-        carrying = squeezed
-    raise ContactError("ring: the balls that carry were not found")
-
-
-def _held(ring: Ring, nodes: int) -> Array:
-    """Just enough stiffness against the ring's motions as a body to solve for them, (3n, 3n)."""
-    angle = FULL_TURN / nodes * np.arange(nodes)
-    bodily = np.zeros((3, 3 * nodes))
-    bodily[0, 0::3], bodily[0, 1::3] = np.cos(angle), -np.sin(angle)
-    bodily[1, 0::3], bodily[1, 1::3] = np.sin(angle), np.cos(angle)
-    bodily[2, 1::3], bodily[2, 2::3] = 1.0, 1.0 / ring.radius
-    share = ring.ball_stiffness * np.array([_HOLD_SIDEWAYS, _HOLD_SIDEWAYS, _HOLD]) / nodes
-    return np.asarray((bodily.T * share) @ bodily)
-
-
-def ring_stiffness(ring: Ring, nodes: int) -> Array:
-    """Stiffness (3n, 3n) of the closed ring; at each node radial, tangential way and turning.
-
-    Straight Euler-Bernoulli elements between the nodes, exact for end loads.
-    """
-    local, turn = _element(ring, nodes)
-    block = turn.T @ local @ turn
-    stiffness = np.zeros((3 * nodes, 3 * nodes))
-    for k in range(nodes):
-        dofs = _dofs(k, nodes)
-        stiffness[np.ix_(dofs, dofs)] += block
-    return stiffness
-
-
-def ring_moments(ring: Ring, motion: Array) -> Array:
-    """Bending moment (n,) at the nodes, N m, positive where the inside is stretched."""
-    nodes = len(motion) // 3
-    local, turn = _element(ring, nodes)
-    ends = np.array([(local @ turn @ motion[_dofs(k, nodes)])[2] for k in range(nodes)])
-    return np.asarray(ends)
-
-
-def _dofs(k: int, nodes: int) -> NDArray[np.intp]:
-    after = (k + 1) % nodes
-    return np.array([3 * k, 3 * k + 1, 3 * k + 2, 3 * after, 3 * after + 1, 3 * after + 2])
-
-
-def _element(ring: Ring, nodes: int) -> tuple[Array, Array]:
-    """Stiffness of one straight element along its axis, and its axes from those of the ring."""
-    half = 0.5 * FULL_TURN / nodes
-    length = 2.0 * ring.radius * np.sin(half)
-    stretch = ring.modulus * ring.width * ring.thickness / length
-    bend = ring.bending_stiffness / length**3
-    local = np.zeros((6, 6))
-    local[np.ix_([0, 3], [0, 3])] = stretch * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    L = length
-    local[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] = bend * np.array(
-        [
-            [12.0, 6.0 * L, -12.0, 6.0 * L],
-            [6.0 * L, 4.0 * L**2, -6.0 * L, 2.0 * L**2],
-            [-12.0, -6.0 * L, 12.0, -6.0 * L],
-            [6.0 * L, 2.0 * L**2, -6.0 * L, 4.0 * L**2],
-        ]
-    )
-    # Axial way is along the chord, the other one to its left, which points into the ring.
-    turn = np.zeros((6, 6))
-    for end, angle in ((0, half), (3, -half)):
-        c, s = np.cos(angle), np.sin(angle)
-        turn[end : end + 3, end : end + 3] = [[-s, c, 0.0], [-c, -s, 0.0], [0.0, 0.0, 1.0]]
-    return local, turn
+    left = 1.0 - np.maximum(mean, 0.0) / tensile_strength
+    broken = np.where(amplitude > 0.0, np.inf, 0.0)
+    return np.divide(amplitude, left, out=broken, where=left > 0.0)
 
 
 def ball_stiffness(force: float, diameter: float, modulus: float, poisson: float) -> float:

@@ -1,4 +1,8 @@
-"""A bearing's outer ring on its balls by plane finite elements: no beam is assumed."""
+"""A bearing's outer ring on its balls by plane finite elements: no beam is assumed.
+
+The balls are springs that only push, the cam pushes at one place. No gaps: everything grows with
+the load, so one unit load tells all.
+"""
 
 from __future__ import annotations
 
@@ -39,6 +43,7 @@ class RingElements:
     stiffness : (d, d)       sparse, N/m
     radial, along : (n, d)   a section's mean way outwards and along the ring, of the motion (d,)
     moment : (n, d)          bending moment in a section, positive where the inside is stretched
+    hoop : (n, d)            pull along the ring in a section
     """
 
     def __init__(self, ring: Ring, sections: int, poisson: float = 0.3) -> None:
@@ -48,10 +53,11 @@ class RingElements:
         form = linear_elasticity(2.0 * first * shear / (first + 2.0 * shear), shear)
         whole = Basis(mesh, element, intorder=4)
         self.stiffness = csc_array(ring.width * form.assemble(whole))
+        local = ring.width * form.elemental(whole).tolocal()
         angle = np.arctan2(*whole.doflocs[::-1]) / FULL_TURN * sections
         height = np.hypot(*whole.doflocs) - ring.radius
         sideways = _second(whole)
-        radial, along, moment = [], [], []
+        radial, along, moment, hoop = [], [], [], []
         for k in range(sections):
             off = (angle - k + 0.5 * sections) % sections - 0.5 * sections
             here = np.flatnonzero(np.abs(off) < 0.25)
@@ -61,11 +67,13 @@ class RingElements:
             along.append(_row(pair, np.outer([-sine, cosine], _SIMPSON), whole.N))
             arm = height[pair[0]]
             turned = _row(pair, np.outer([-sine, cosine], arm), whole.N)
+            drawn = _row(pair, np.outer([-sine, cosine], np.ones_like(arm)), whole.N)
             after = k + sections * np.arange(_LAYERS)
-            sector = form.assemble(Basis(mesh, element, intorder=4, elements=after))
-            moment.append(ring.width * turned @ sector)
-        self.radial, self.along, self.moment = (
-            csr_array(vstack(rows)) for rows in (radial, along, moment)
+            sector = _assembled(local[after], whole.element_dofs[:, after].T, whole.N)
+            moment.append(turned @ sector)
+            hoop.append(-drawn @ sector)
+        self.radial, self.along, self.moment, self.hoop = (
+            csr_array(vstack(rows)) for rows in (radial, along, moment, hoop)
         )
 
 
@@ -76,32 +84,42 @@ def _second(basis: Basis) -> Array:
     return way
 
 
+def _assembled(local: Array, dofs: NDArray[np.intp], size: int) -> Any:
+    """Matrix (size, size) of the local ones (m, d, d) of some elements, dofs (m, d)."""
+    rows = np.broadcast_to(dofs[:, :, None], local.shape).ravel()
+    columns = np.broadcast_to(dofs[:, None, :], local.shape).ravel()
+    return coo_array((local.ravel(), (rows, columns)), (size, size)).tocsr()
+
+
 def _row(dofs: NDArray[np.intp], values: Array, size: int) -> Any:
     return coo_array((values.ravel(), (np.zeros(dofs.size, int), dofs.ravel())), (1, size))
 
 
 @lru_cache(maxsize=16)
-def ring_bending_by_elements(ring: Ring, phases: int = 5, poisson: float = 0.3) -> RingBending:
-    """The same as `ring_bending` without a beam's assumptions: shear, curvature and all.
+def ring_bending(ring: Ring, phases: int = 5, poisson: float = 0.3) -> RingBending:
+    """Ring under a unit push at ball positions from right below it to midway between two.
 
     Raises
     ------
     ContactError
         If the balls that carry cannot be found.
+
+    References
+    ----------
+    Harris and Kotzalas, Advanced Concepts of Bearing Technology (2007): flexibly supported
+    outer rings.
     """
     count = 2 * (phases - 1) * -(-_PER_GAP // (2 * (phases - 1)))
     body = RingElements(ring, ring.balls * count, poisson)
     found = [_pushed(body, ring, count, k * count // (2 * (phases - 1))) for k in range(phases)]
-    loads, most, least, soft = (np.array(part) for part in zip(*found, strict=True))
-    return RingBending(
-        np.linspace(0.0, 0.5 * FULL_TURN / ring.balls, phases), loads, most, least, soft
-    )
+    phase = np.linspace(0.0, 0.5 * FULL_TURN / ring.balls, phases)
+    return RingBending(phase, *(np.array(part) for part in zip(*found, strict=True)))
 
 
 def _pushed(
     body: RingElements, ring: Ring, count: int, shift: int
-) -> tuple[Array, float, float, float]:
-    """Ball loads, greatest and least moment, compliance; the push is on section 0, inwards."""
+) -> tuple[Array, float, float, float, float, float]:
+    """What `RingBending` holds of one ball position; the push is on section 0, inwards."""
     sections = body.radial.shape[0]
     at = (shift + count * np.arange(ring.balls)) % sections
     carrying = np.cos(FULL_TURN * at / sections) > 0.0
@@ -117,7 +135,9 @@ def _pushed(
         if (squeezed == carrying).all():
             share = np.where(carrying, -ring.ball_stiffness * way[at], 0.0)
             moment = body.moment @ motion
-            return share, float(moment.max()), float(moment.min()), float(-way[0])
+            stress = ring.stress_inside(moment, body.hoop @ motion)
+            most, least = float(stress.max()), float(stress.min())
+            return share, float(moment.max()), float(moment.min()), most, least, float(-way[0])
         carrying = squeezed
     raise ContactError("ring: the balls that carry were not found")
 
