@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,15 +13,8 @@ from geometry.contour import Contour
 from pipeline.case import Case
 from pipeline.contact.harmonics import Bush, Pin
 from pipeline.contact.pin_in_hole import peak_pressure
-from pipeline.follower.bearing_cards import read_cards
+from pipeline.elastic_history import ElasticHistory, elastic_history
 from pipeline.follower.cam_body import Camshaft, Reversal, key_stress, shaft_loads, torque_reversals
-from pipeline.follower.dynamics import (
-    ElasticFollower,
-    Flight,
-    Response,
-    bounce,
-    harmonic_response,
-)
 from pipeline.follower.forces import FollowerSystem, Loads
 from pipeline.follower.friction import (
     FrictionBounds,
@@ -29,19 +23,17 @@ from pipeline.follower.friction import (
     friction_bounds,
     guide_heat,
 )
-from pipeline.follower.guides import WALL_SHARE, GuideReactions
-from pipeline.follower.ring import (
-    Ring,
-    ball_stiffness,
-    flattening,
-    pin_bending_stress,
-    ring_bending,
-)
+from pipeline.follower.guides import WALL_SHARE, GuidePair
+from pipeline.follower.ring import pin_bending_stress
+from pipeline.follower.rubbing import guided_loads
 from pipeline.follower.spring import HelicalSpring, case_spring, surge_force
 from pipeline.follower.stem import Stem
+from pipeline.guide_shares import GuideShares, guide_shares
+from pipeline.outer_ring import OuterRing
 from pipeline.part_fields import Guide
 
-BOUNCE_TURNS = 1.0
+if TYPE_CHECKING:
+    from pipeline.cycle import Turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,9 +41,10 @@ class PartsHistory:
     """One turn; arrays (n,) SI, None where the case does not describe the part.
 
     bush_peak_* are the pressures of the stem in the bore where the line pressure is greatest.
-    elastic is the stem's steady response with the contact held; flights the losses of contact
-    in one turn from there, where it does not hold, and bounce_force the greatest force of it.
-    ring_correction is the share by which a flattened outer ring changes the peak pressure.
+    shares tell why the guides answer otherwise than point supports.
+    ring_amplitude and ring_mean are of the stress along a bearing's outer ring at its groove as
+    it turns under the load; ring_correction is the share by which the contact's peak pressure
+    changes from a contact over a ball, for which it stands, to one between two balls.
     """
 
     bush_peak_a: Array
@@ -62,10 +55,8 @@ class PartsHistory:
     heat_b: GuideHeat
     friction: FrictionBounds
     viscous_force: Array
-    elastic: Response
-    elastic_deflection: Array
-    flights: tuple[Flight, ...]
-    bounce_force: float
+    shares: GuideShares
+    elastic: ElasticHistory
     reversals: tuple[Reversal, ...]
     bore_pressure: Array
     key_pressure: Array | None
@@ -74,7 +65,8 @@ class PartsHistory:
     spring_stress: Array | None
     surge_force: Array | None
     pin_stress: Array | None
-    ring_stress: Array | None
+    ring_amplitude: Array | None
+    ring_mean: Array | None
     ring_correction: Array | None
 
     def __post_init__(self) -> None:
@@ -95,8 +87,8 @@ class PartsHistory:
             "normal_force_friction_min": self.friction.normal_force_min,
             "normal_force_friction_max": self.friction.normal_force_max,
             "jam_index_friction_max": self.friction.jam_index_max,
-            "elastic_contact_force": self.elastic.contact_force,
-            "elastic_deflection": self.elastic_deflection,
+            "elastic_contact_force": self.elastic.response.contact_force,
+            "elastic_deflection": self.elastic.deflection,
             "bore_pressure": self.bore_pressure,
             "key_pressure": self.key_pressure,
             "shaft_bearing_1": self.shaft_bearing_1,
@@ -104,20 +96,24 @@ class PartsHistory:
             "spring_stress": self.spring_stress,
             "spring_surge_force": self.surge_force,
             "pin_stress": self.pin_stress,
-            "ring_stress_range": self.ring_stress,
+            "ring_stress_amplitude": self.ring_amplitude,
+            "ring_stress_mean": self.ring_mean,
             "ring_correction": self.ring_correction,
         }
-        return {name: values for name, values in found.items() if values is not None}
+        known = {name: values for name, values in found.items() if values is not None}
+        return known | dict(self.shares.columns())
 
 
 def parts_history(
-    case: Case, contour: Contour, loads: Loads, guides: GuideReactions, cam_speed: float
+    case: Case, contour: Contour, given: Turn, ring: OuterRing | None = None
 ) -> PartsHistory:
-    """All parts of a turn whose loads and guide reactions are known, at equal angles."""
-    elastic, deflection, flights, force = _elastic(case, contour, loads, cam_speed)
+    """All parts of a turn at equal angles, of a case at its load case."""
+    loads, guides = given.loads, given.guides
+    cam_speed = given.crank_speed / case.mechanism.gear_ratio
+    friction, shares = _guided(case, contour, given, cam_speed)
     spring = case_spring(case)
     shaft = _shaft(case, loads)
-    ring = _ring(case, contour, loads)
+    amplitude, mean, correction = _ring(case, contour, loads, ring)
     return PartsHistory(
         bush_peak_a=_bush_peak(case, case.guides.a, guides.line_pressure_max_a),
         bush_peak_b=_bush_peak(case, case.guides.b, guides.line_pressure_max_b),
@@ -125,12 +121,10 @@ def parts_history(
         rubbing_load_b=guides.rubbing_load_b,
         heat_a=_heat(case, case.guides.a, guides.rubbing_load_a, loads.velocity),
         heat_b=_heat(case, case.guides.b, guides.rubbing_load_b, loads.velocity),
-        friction=_friction(case, contour, loads, cam_speed),
+        friction=friction,
         viscous_force=loads.viscous_force,
-        elastic=elastic,
-        elastic_deflection=deflection,
-        flights=flights,
-        bounce_force=force,
+        shares=shares,
+        elastic=elastic_history(case, contour.pitch.lift, loads.lift, given.cam_speed),
         reversals=torque_reversals(loads.theta, loads.cam_torque, _drag(case)),
         bore_pressure=loads.normal_force / (2.0 * case.cam.bore_radius * case.cam.width),
         key_pressure=_key(case, loads),
@@ -139,35 +133,10 @@ def parts_history(
         spring_stress=None if spring is None else spring.stress(loads.spring_force),
         surge_force=None if spring is None else _surge(spring, loads, cam_speed),
         pin_stress=_pin(case, loads),
-        ring_stress=None if ring is None else ring[0],
-        ring_correction=None if ring is None else ring[1],
+        ring_amplitude=amplitude,
+        ring_mean=mean,
+        ring_correction=correction,
     )
-
-
-def elastic_follower(case: Case) -> ElasticFollower:
-    """The follower on its stem: a stiffness given, or E A/l of the stem up to guide B."""
-    given, stem = case.follower, Stem.from_case(case)
-    length = given.overhang_at_max_lift + case.guides.spacing
-    stiffness = given.stiffness
-    if stiffness is None:
-        stiffness = stem.elastic_modulus * 0.25 * np.pi * stem.diameter**2 / length
-    return ElasticFollower.with_damping_ratio(
-        given.mass, stiffness, case.spring.rate, case.spring.preload, given.damping_ratio
-    )
-
-
-def _elastic(
-    case: Case, contour: Contour, loads: Loads, cam_speed: float
-) -> tuple[Response, Array, tuple[Flight, ...], float]:
-    follower = elastic_follower(case)
-    response = harmonic_response(loads.lift, cam_speed, follower)
-    deflection = loads.lift - response.position
-    force = float(response.contact_force.max())
-    if not response.lost:
-        return response, deflection, (), force
-    start = (float(response.position[0]), float(response.velocity[0]))
-    jump = bounce(contour.pitch.lift, cam_speed, follower, BOUNCE_TURNS, start)
-    return response, deflection, jump.flights, float(jump.contact_force.max())
 
 
 def bush_pair(case: Case, guide: Guide) -> tuple[Pin, Bush]:
@@ -190,19 +159,29 @@ def _heat(case: Case, guide: Guide, rubbing: Array, velocity: Array) -> GuideHea
     return guide_heat(rubbing, velocity, guide.friction, resistance, ambient)
 
 
-def _friction(case: Case, contour: Contour, loads: Loads, cam_speed: float) -> FrictionBounds:
-    a, b = case.guides.a, case.guides.b
+def _guided(
+    case: Case, contour: Contour, given: Turn, cam_speed: float
+) -> tuple[FrictionBounds, GuideShares]:
+    """The turn at the bounds of friction, and its guides beside point supports."""
+    a, b, pitch = case.guides.a, case.guides.b, contour.pitch
+    system, stem, pair = (
+        FollowerSystem.from_case(case), Stem.from_case(case), GuidePair.from_case(case)
+    )  # fmt: skip
+    knots = given.guides.knots_a.size
 
     def bound(guide: Guide, value: float | None) -> float:
         return guide.friction if value is None else value
 
-    return friction_bounds(
-        contour.pitch,
-        FollowerSystem.from_case(case),
-        (bound(a, a.friction_min), bound(b, b.friction_min)),
-        (bound(a, a.friction_max), bound(b, b.friction_max)),
-        cam_speed,
-        loads.theta,
+    def solved(rubbing: FollowerSystem) -> Loads:
+        if rubbing == system:
+            return given.loads
+        return guided_loads(pitch, rubbing, stem, pair, cam_speed, given.theta, knots).loads
+
+    least = (bound(a, a.friction_min), bound(b, b.friction_min))
+    greatest = (bound(a, a.friction_max), bound(b, b.friction_max))
+    return (
+        friction_bounds(solved, system, least, greatest),
+        guide_shares(pitch, system, stem, pair, cam_speed, given.loads, given.guides),
     )
 
 
@@ -250,27 +229,16 @@ def _pin(case: Case, loads: Loads) -> Array | None:
     return per_newton * loads.normal_force
 
 
-def _ring(case: Case, contour: Contour, loads: Loads) -> tuple[Array, Array] | None:
-    """Range of the bending stress in the outer ring of a bearing taken from a card, Pa; and the
-    share by which its flattening under the push changes the contact's greatest pressure, <= 0.
-    """
-    name, force = case.roller.bearing.card, float(loads.normal_force.max())
-    if name is None or not force > 0.0:
-        return None
-    card, steel = read_cards()[name], case.material(case.roller.material)
-    # Between the raceways: what the section leaves beside both rings, near enough for the balls.
-    ball = 0.5 * (card.outer_diameter - card.bore) - 2.0 * card.ring_thickness
-    ring = Ring(
-        radius=0.5 * (card.outer_diameter - card.ring_thickness),
-        thickness=card.ring_thickness,
-        width=card.width,
-        modulus=steel.E,
-        balls=card.balls,
-        ball_stiffness=ball_stiffness(force, ball, steel.E, steel.nu),
-    )
-    bending = ring_bending(ring)
-    curvature = 1.0 / case.roller.radius + contour.curvature(loads.theta)
+def _ring(
+    case: Case, contour: Contour, loads: Loads, ring: OuterRing | None
+) -> tuple[Array | None, Array | None, Array | None]:
+    if ring is None:
+        return None, None, None
+    force, curvature = loads.normal_force, contour.curvature(loads.theta)
+    radius = 1.0 / (1.0 / case.roller.radius + curvature)
+    bending = ring.bending
     return (
-        bending.stress_range(ring, 1.0) * loads.normal_force,
-        flattening(ring, bending, loads.normal_force, curvature),
+        bending.stress_amplitude * force,
+        bending.stress_mean * force,
+        ring.midway(np.maximum(force, 0.0) / ring.body.width, radius),
     )

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
 
 import numpy as np
+from scipy.signal import resample
 
 from geometry.arrays import Array, uniform_turn
+from geometry.errors import CamError
 from geometry.pitch_curve import PitchCurve
 from pipeline.case import Case
 from pipeline.cylinder_fields import Cylinder
@@ -30,7 +32,7 @@ from pipeline.engine.crankshaft import (
 )
 from pipeline.engine.torque import Torque
 from pipeline.engine_fields import PressureTable
-from pipeline.follower.forces import FollowerSystem, follower_loads
+from pipeline.follower.forces import FollowerSystem, Rubbing, follower_loads
 
 POSITIONS = 720
 
@@ -133,8 +135,12 @@ def speed_study(
     return SpeedStudy(before, alone, after, needed - inertia.mean)
 
 
-def study_of(case: Case, torque: Torque, speed: float, pitch: PitchCurve) -> SpeedStudy | None:
+def study_of(
+    case: Case, torque: Torque, speed: float, pitch: PitchCurve, rubbing: Rubbing | None = None
+) -> SpeedStudy | None:
     """The study of one load case; None where the case tells nothing of its crankshaft.
+
+    The guides rub per side force as `rubbing` tells; without it, as point supports.
 
     Where the engine states its reciprocating masses they are part of J(theta), and the torque
     of their inertia at constant speed is taken out.
@@ -151,11 +157,35 @@ def study_of(case: Case, torque: Torque, speed: float, pitch: PitchCurve) -> Spe
         Inertia(shaft.inertia, varying),
         speed,
         pitch,
-        FollowerSystem.from_case(case),
+        replace(FollowerSystem.from_case(case), rubbing=rubbing),
         gear_ratio=case.mechanism.gear_ratio,
         mechanism_inertia=shaft.mechanism_inertia,
         load=Load(shaft.load_exponent),
     )
+
+
+def cam_speed(
+    case: Case,
+    torque: Torque | None,
+    speed: float,
+    pitch: PitchCurve,
+    rubbing: Rubbing,
+) -> Array:
+    """Speed of the cam at the angles of `rubbing`, equal parts of a turn, rad/s.
+
+    That of the crank with the cam at work, where the case tells its inertia; constant where it
+    does not, or where engine and inertia contradict each other.
+    """
+    steady = np.full(rubbing.theta.size, speed / case.mechanism.gear_ratio)
+    if torque is None:
+        return steady
+    try:
+        study = study_of(case, torque, speed, pitch, rubbing)
+    except CamError:
+        return steady
+    if study is None:
+        return steady
+    return np.asarray(resample(study.after.speed, steady.size)) / case.mechanism.gear_ratio
 
 
 def speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:
@@ -187,6 +217,28 @@ def speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:
     }
 
 
+def speed_ripple(
+    case: Case, torques: Mapping[str, Torque], pitch: PitchCurve
+) -> dict[str, tuple[float, float]]:
+    """Std of the crank speed (rad/s) of each running load case: engine alone, with the cam.
+
+    Empty where the case tells nothing of its crankshaft; a load case that stalls is NaN.
+    """
+    found: dict[str, tuple[float, float]] = {}
+    for state in case.load_cases:
+        if case.crankshaft is None or state.name not in torques or not state.speed > 0:
+            continue
+        try:
+            study = study_of(case.at(state.name), torques[state.name], state.speed, pitch)
+        except CamError:
+            study = None
+        if study is None:
+            found[state.name] = (np.nan, np.nan)
+        else:
+            found[state.name] = (study.before.statistics.std, study.after.statistics.std)
+    return found
+
+
 def consistency(
     case: Case,
     torque: Torque,
@@ -194,13 +246,15 @@ def consistency(
     pitch: PitchCurve,
     study: SpeedStudy | None,
     asked: Array | None = None,
+    rubbing: Rubbing | None = None,
 ) -> tuple[Finding, ...]:
     """What the inputs of a case say of one another.
 
     `asked` (n,) is the crank torque the cam was drawn for, N m about its mean; without it, the
     share of the engine's own that the case asks for.
     """
-    ratio, system = case.mechanism.gear_ratio, FollowerSystem.from_case(case)
+    ratio = case.mechanism.gear_ratio
+    system = replace(FollowerSystem.from_case(case), rubbing=rubbing)
     theta = uniform_turn(torque.theta_crank.size)
     loads = follower_loads(pitch, system, speed / ratio, theta)
     balanced = torque.without_mean().total

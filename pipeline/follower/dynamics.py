@@ -1,4 +1,4 @@
-"""A follower on an elastic stem: periodic response, jump and landing, jump speed.
+"""A follower on an elastic stem: its periodic response, and the speed at which it jumps.
 
 The cam moves the foot by s; a spring K with a damper c carries the mass m, whose way is x, and
 the preloaded spring k presses it down:
@@ -11,19 +11,16 @@ Time derivatives; the loose foot has no mass. The mass sits P/K below the cam at
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
-from geometry.errors import ContactError, InputError
-from geometry.lift import Lift
+from geometry.errors import InputError
 
-_EVENTS_MAX = 2000
-_TOLERANCE = 1e-11
+STEADY = 1e-12  # a speed that varies by less, of itself, is constant
 
 
 @dataclass(frozen=True)
@@ -123,20 +120,20 @@ def harmonic_response(lift: Array, cam_speed: float, follower: ElasticFollower) 
     if np.abs(dynamic).min() <= 1e-12 * total:
         raise InputError("cam_speed", cam_speed, "off the resonance of an undamped follower")
     foot = np.fft.rfft(s)
-    drive = (f.stiffness + f.damping * w) * foot
-    drive[0] -= n * f.preload
-    x = drive / dynamic
+    # Of the stem's shortening s - x, which a stiff stem would lose in the difference.
+    drive = (f.mass * w**2 + f.guide_damping * w + f.spring_rate) * foot
+    drive[0] += n * f.preload
+    short = drive / dynamic
 
     def back(spectrum: Any) -> Array:
         return np.fft.irfft(spectrum, n)
 
-    contact = f.stiffness * (foot - x) + f.damping * w * (foot - x)
     return Response(
         theta=uniform_turn(n),
-        position=back(x),
-        velocity=back(w * x),
-        acceleration=back(w**2 * x),
-        contact_force=back(contact),
+        position=s - back(short),
+        velocity=back(w * (foot - short)),
+        acceleration=back(w**2 * (foot - short)),
+        contact_force=back((f.stiffness + f.damping * w) * short),
     )
 
 
@@ -160,20 +157,33 @@ def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollowe
     if not (speed > 0.0).all():
         raise InputError("cam_speed", float(speed.min()), "> 0 rad/s")
     f, rate = follower, speed[:, None] * _differentiation(s.size)
-    total = np.eye(s.size) * (f.stiffness + f.spring_rate)
-    system: Array = f.mass * rate @ rate + (f.damping + f.guide_damping) * rate + total
+    system: Array = f.mass * rate @ rate + (f.damping + f.guide_damping) * rate
+    system[np.diag_indices(s.size)] += f.stiffness + f.spring_rate
     foot_speed = rate @ s
-    x = np.asarray(
-        np.linalg.solve(system, f.stiffness * s + f.damping * foot_speed - f.preload), dtype=float
-    )
-    v = rate @ x
+    foot_acceleration = rate @ foot_speed
+    drive = f.mass * foot_acceleration + f.guide_damping * foot_speed + f.spring_rate * s
+    short = np.asarray(np.linalg.solve(system, drive + f.preload), dtype=float)
+    short_speed = rate @ short
     return Response(
         theta=uniform_turn(s.size),
-        position=x,
-        velocity=v,
-        acceleration=rate @ v,
-        contact_force=f.stiffness * (s - x) + f.damping * (foot_speed - v),
+        position=s - short,
+        velocity=foot_speed - short_speed,
+        acceleration=foot_acceleration - rate @ short_speed,
+        contact_force=f.stiffness * short + f.damping * short_speed,
     )
+
+
+def periodic_response(lift: Array, cam_speed: Array, follower: ElasticFollower) -> Response:
+    """Periodic response at speeds (n,), rad/s: harmonic balance where they are all the same."""
+    speed = finite("cam_speed", cam_speed)
+    if is_steady(speed):
+        return harmonic_response(lift, float(speed[0]), follower)
+    return collocation_response(lift, speed, follower)
+
+
+def is_steady(cam_speed: Array) -> bool:
+    """Whether a speed at the angles of a turn is constant but for round-off."""
+    return bool(np.ptp(cam_speed) <= STEADY * np.abs(cam_speed).max())
 
 
 def _differentiation(n: int) -> Array:
@@ -190,180 +200,6 @@ def _differentiation(n: int) -> Array:
     matrix = 0.5 * (-1.0) ** (k[:, None] - k) / slope
     np.fill_diagonal(matrix, 0.0)
     return matrix
-
-
-class Flight(NamedTuple):
-    """A loss of contact: cam angles of jump and landing, rad (may pass a turn), way and speed.
-
-    `height` is the largest gap between foot and cam, m; `landing_speed` that at which the gap
-    closes, m/s, >= 0.
-    """
-
-    jump: float
-    landing: float
-    height: float
-    landing_speed: float
-
-
-@dataclass(frozen=True, eq=False)
-class Bounce:
-    """Motion through jumps and landings from given start; arrays (steps,), SI.
-
-    `energy` is kinetic energy plus that of both springs less the work of the cam; without
-    damping it stands still. `dissipated` is what the dampers took.
-    """
-
-    time: Array
-    position: Array
-    velocity: Array
-    contact_force: Array
-    energy: Array
-    dissipated: Array
-    flights: tuple[Flight, ...]
-
-    def __post_init__(self) -> None:
-        names = set(self.__dataclass_fields__) - {"flights"}
-        freeze(self, **{name: getattr(self, name) for name in names})
-
-    @property
-    def energy_error(self) -> float:
-        """Largest change of energy and losses over the greatest energy in it."""
-        balance = self.energy + self.dissipated
-        return float(np.ptp(balance) / np.abs(self.energy).max())
-
-
-def bounce(
-    lift: Lift,
-    cam_speed: float,
-    follower: ElasticFollower,
-    turns: float = 1.0,
-    start: tuple[float, float] | None = None,
-) -> Bounce:
-    """Motion of the follower in time, contact lost and met again by events.
-
-    In contact and in flight the motion is integrated with dense control to 1e-11; a phase ends
-    where the contact force falls to zero, or where the foot, its spring relaxed, meets the cam.
-
-    Parameters
-    ----------
-    lift : Lift
-    cam_speed : float        rad/s, > 0
-    follower : ElasticFollower
-    turns : float            of the cam
-    start : (x, v)           m, m/s at angle 0; the quasi-static state where none is given
-
-    Raises
-    ------
-    InputError
-        If the speed is not positive.
-    ContactError
-        If the follower hammers: more than 2000 phases.
-
-    References
-    ----------
-    Norton, Cam Design and Manufacturing Handbook (2009), ch. 15; Hairer, Norsett and Wanner,
-    Solving Ordinary Differential Equations I (1993): DOP853.
-    """
-    if not 0.0 < cam_speed < np.inf:
-        raise InputError("cam_speed", cam_speed, "> 0 rad/s")
-    motion = _Motion(lift, cam_speed, follower)
-    end = turns * FULL_TURN / cam_speed
-    s, u = motion.foot(0.0)
-    if start is None:
-        start = (float(quasi_static(s, follower)), u)
-    state = np.array([*start, 0.0, 0.0])
-    touching = motion.force(0.0, state) >= 0.0
-    time, pieces, flights = 0.0, [], []
-    for _ in range(_EVENTS_MAX):
-        found = motion.phase(time, end, state, touching)
-        pieces.append((found.t, found.y, np.full(found.t.size, touching)))
-        if not touching:
-            flights.append(motion.flight(found))
-        time, state = float(found.t[-1]), found.y[:, -1].copy()
-        if found.status == 0:
-            return motion.record(pieces, tuple(flights))
-        if touching:  # the foot, without mass, relaxes at once; its damper takes what was left
-            state[3] += 0.5 * follower.stiffness * (motion.foot(time)[0] - state[0]) ** 2
-        touching = not touching
-    raise ContactError(f"follower: more than {_EVENTS_MAX} losses of contact")
-
-
-@dataclass(frozen=True, eq=False)
-class _Motion:
-    """State (x, v, work of the cam, losses) and what moves it."""
-
-    lift: Lift
-    speed: float
-    follower: ElasticFollower
-
-    def foot(self, time: float) -> tuple[float, float]:
-        s, slope = self.lift.derivatives(self.speed * time, 1)
-        return float(s), float(slope) * self.speed
-
-    def force(self, time: float, state: Array) -> float:
-        s, u = self.foot(time)
-        f = self.follower
-        return float(f.stiffness * (s - state[0]) + f.damping * (u - state[1]))
-
-    def phase(self, time: float, end: float, state: Array, touching: bool) -> Any:
-        """One phase, to its end or the end of time."""
-        f = self.follower
-
-        def rates(t: float, y: Array) -> list[float]:
-            s, u = self.foot(t)
-            approach = u - y[1]
-            push = f.stiffness * (s - y[0]) + f.damping * approach if touching else 0.0
-            lost = f.guide_damping * y[1] ** 2 + (f.damping * approach**2 if touching else 0.0)
-            acceleration = (
-                push - f.spring_rate * y[0] - f.preload - f.guide_damping * y[1]
-            ) / f.mass
-            return [y[1], acceleration, push * u, lost]
-
-        def over(t: float, y: Array) -> float:
-            return self.force(t, y) if touching else self.foot(t)[0] - y[0]
-
-        over.terminal = True  # type: ignore[attr-defined]
-        over.direction = -1.0 if touching else 1.0  # type: ignore[attr-defined]
-        stem = np.sqrt(f.stiffness / f.mass)
-        return solve_ivp(
-            rates,
-            (time, end),
-            state,
-            method="DOP853",
-            events=over,
-            rtol=_TOLERANCE,
-            atol=[1e-14, 1e-14 * stem, 1e-12, 1e-12],
-            max_step=min(0.02 * FULL_TURN / self.speed, end),
-        )
-
-    def flight(self, found: Any) -> Flight:
-        gaps = [x - self.foot(t)[0] for t, x in zip(found.t, found.y[0], strict=True)]
-        closing = self.foot(found.t[-1])[1] - found.y[1, -1]
-        return Flight(
-            self.speed * float(found.t[0]),
-            self.speed * float(found.t[-1]),
-            float(max(gaps)),
-            float(max(closing, 0.0)),
-        )
-
-    def record(self, pieces: list[Any], flights: tuple[Flight, ...]) -> Bounce:
-        f = self.follower
-        time = np.concatenate([t for t, _, _ in pieces])
-        x, v, work, lost = np.concatenate([y for _, y, _ in pieces], axis=1)
-        touching = np.concatenate([on for _, _, on in pieces])
-        s, slope = self.lift.derivatives(self.speed * time, 1)
-        squeeze = np.where(touching, s - x, 0.0)
-        push = f.stiffness * squeeze + np.where(touching, f.damping * (self.speed * slope - v), 0.0)
-        stored = 0.5 * f.spring_rate * x**2 + f.preload * x + 0.5 * f.stiffness * squeeze**2
-        return Bounce(
-            time=time,
-            position=x,
-            velocity=v,
-            contact_force=push,
-            energy=0.5 * f.mass * v**2 + stored - work,
-            dissipated=lost,
-            flights=flights,
-        )
 
 
 def elastic_jump_speed(

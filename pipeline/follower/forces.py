@@ -1,4 +1,4 @@
-"""Forces on a translating roller follower whose guides rub."""
+"""Forces on a translating follower whose guides rub."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ JAM_FLOOR = 0.01  # least share of the cam's push that friction is let to leave 
 
 @dataclass(frozen=True, eq=False)
 class Rubbing:
-    """Load that rubs in guides A and B over the side force, at cam angles of a turn; each (n,).
+    """Load that rubs in guides A and B over the lean of the push, at cam angles; each (n,).
 
     The load sums the pushes of both sides of a bore, so that friction is its mu-fold.
     """
@@ -35,6 +35,36 @@ class Rubbing:
         return np.asarray(a), np.asarray(b)
 
 
+@dataclass(frozen=True, eq=False)
+class Push:
+    """How the cam pushes on the stem, per unit of the push's axial part; arrays (n,).
+
+    side : force across the stem, signed like the pressure angle
+    arm : way of the push's line from the stem's axis, m; it turns the stem the other way
+    spacing : between the guides, m
+    """
+
+    side: Array
+    arm: Array
+    spacing: float
+
+    @classmethod
+    def of(cls, pitch: PitchCurve, system: FollowerSystem, theta: Array) -> Push:
+        """Through a roller's centre, or on a face beside the axis and dragged by its friction."""
+        side = np.tan(pitch.pressure_angle(theta)) + system.face_friction
+        return cls(side, pitch.push_arm(theta), system.guide_spacing)
+
+    @property
+    def lean(self) -> Array:
+        """What presses the stem aside: side force and couple over the guides' spacing, >= 0."""
+        return np.asarray(np.abs(self.side) + np.abs(self.arm) / self.spacing)
+
+    def on_points(self, factor_a: Array, factor_b: Array) -> tuple[Array, Array]:
+        """Reactions of point supports that answer a side force with these factors of it."""
+        tilt = self.arm / self.spacing
+        return self.side * factor_a - tilt, self.side * factor_b - tilt
+
+
 @dataclass(frozen=True)
 class FollowerSystem:
     """Spring, mass and rubbing guides of a follower.
@@ -49,6 +79,7 @@ class FollowerSystem:
     friction_a, friction_b : float  Coulomb coefficients, >= 0
     gravity_along_axis : float      the part of g that presses the follower on the cam, m/s2
     viscous_damping : float         c3 of the guides, N s/m, >= 0
+    face_friction : float           of a flat face sliding on the cam, >= 0; 0: a roller
     rubbing : Rubbing               of guides of finite length, see `guided_loads`; None: of guides
                                     that support the stem at a point
 
@@ -67,6 +98,7 @@ class FollowerSystem:
     friction_b: float
     gravity_along_axis: float = 0.0
     viscous_damping: float = 0.0
+    face_friction: float = 0.0
     rubbing: Rubbing | None = None
 
     def __post_init__(self) -> None:
@@ -80,6 +112,7 @@ class FollowerSystem:
             ("friction_a", ""),
             ("friction_b", ""),
             ("viscous_damping", "N s/m"),
+            ("face_friction", ""),
         ):
             if not 0.0 <= getattr(self, name) < np.inf:
                 raise InputError(f"follower.{name}", getattr(self, name), f">= 0 {unit}".rstrip())
@@ -97,6 +130,7 @@ class FollowerSystem:
             friction_a=case.guides.a.friction,
             friction_b=case.guides.b.friction,
             viscous_damping=case.follower.viscous_damping,
+            face_friction=case.follower.face_friction,
         )
 
     def guide_factors(self, overhang: ArrayLike) -> tuple[Array, Array]:
@@ -108,22 +142,29 @@ class FollowerSystem:
         factor_a, factor_b = self.guide_factors(overhang)
         return self.friction_a * factor_a + self.friction_b * factor_b
 
-    def rubbing_factors(self, theta: Array, overhang: Array) -> tuple[Array, Array]:
-        """What guides A and B rub with per unit of side force: as given, or as point supports."""
-        return self.guide_factors(overhang) if self.rubbing is None else self.rubbing.at(theta)
+    def rubbing_on_points(self, push: Push, overhang: Array) -> tuple[Array, Array]:
+        """What guides A and B that support the stem at points rub with, over the push's lean."""
+        factors = self.guide_factors(overhang)
+        on_a, on_b = (
+            np.divide(np.abs(load), push.lean, out=factor.copy(), where=push.lean > 0.0)
+            for load, factor in zip(push.on_points(*factors), factors, strict=True)
+        )
+        return on_a, on_b
 
 
 @dataclass(frozen=True, eq=False)
 class Loads:
     """Everything that acts on the follower at each cam angle; arrays (n,), SI.
 
-    `tangential_force` is the side force on the stem, signed like the pressure angle; the
-    reactions are those of point supports and carry its sign although A pushes against it and B
-    with it. The friction forces are magnitudes and oppose `velocity`; `viscous_force` is signed
-    like it and opposes it too. `rubbing_*` is the load that rubs over the side force, `jam_index`
-    the friction per side force c times |tan alpha|; where the follower moves outward it must stay
-    below 1, elsewhere it tells of a cam that is turned backwards. `jam_index_statics` has the c
-    of point supports.
+    `tangential_force` is the side force on the stem, signed like the pressure angle;
+    `end_moment` turns the stem from its axis towards it, N m: the push of a face beside the axis.
+    The reactions are those of point supports and carry the sign of the side force although A
+    pushes against it and B with it. The friction forces are magnitudes and oppose `velocity`;
+    `viscous_force` is signed like it and opposes it too. `rubbing_*` is the load that rubs over
+    the lean of the push, for a roller |tan alpha|, and `jam_index` the guides' friction over the
+    axial push; where the follower moves outward it must stay below 1, elsewhere it tells of a cam
+    that is turned backwards. `jam_index_statics` is that of point supports. `sliding_torque` is
+    what of the cam's torque drags the cam along a face.
     """
 
     theta: Array
@@ -149,18 +190,20 @@ class Loads:
     rubbing_a: Array
     rubbing_b: Array
     jam_index_statics: Array
+    end_moment: Array
+    sliding_torque: Array
 
     def __post_init__(self) -> None:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
 
     @property
     def rubbing(self) -> Rubbing:
-        """What the guides rub with per unit of side force over the turn."""
+        """What the guides rub with over the lean of the push, over the turn."""
         return Rubbing(self.theta, self.rubbing_a, self.rubbing_b)
 
     @property
     def separated(self) -> NDArray[np.bool_]:
-        """Where nothing presses the roller on the cam (bool): its forces there are zero."""
+        """Where nothing presses the follower on the cam (bool): its forces there are zero."""
         return np.asarray(self.normal_force <= 0.0)
 
     @property
@@ -175,8 +218,8 @@ class Loads:
 
     @property
     def friction_loss(self) -> float:
-        """Heat of both guides over one cam turn, J."""
-        rubbing = self.friction_force * np.abs(self.lift_slope)
+        """Heat of both guides, and of a face, over one cam turn, J."""
+        rubbing = self.friction_force * np.abs(self.lift_slope) + self.sliding_torque
         return turn_integral(self.theta, rubbing + self.viscous_force * self.lift_slope)
 
     @property
@@ -266,8 +309,11 @@ def follower_loads(
 
         F_a = F + sign(v) c |F_t|    hence    F_a = F / (1 - sign(v) c |tan(alpha)|)
 
-    with F = P + k s + m (a + g) + c3 v. With an offset the side force and the motion have
-    independent signs; in a dwell friction is taken as zero. F <= 0 means that the roller has
+    with F = P + k s + m (a + g) + c3 v. A flat face is pushed along the stem, at s' - e off its
+    axis, and dragged along itself by mu F_a, always the way the cam's surface goes: on the guides
+    the side force mu F_a and the couple (s' - e) F_a act, and mu F_a (r + s) is a torque the cam
+    has to pay. With an offset the side force and the motion have
+    independent signs; in a dwell friction is taken as zero. F <= 0 means that the follower has
     left the cam: every cam and guide force is then zero, and the spring and inertia forces tell
     of the motion the cam asks for. Close to jamming the denominator is held at `JAM_FLOOR`, so
     that the forces stay finite and `jam_index` alone tells of the jam. Small terms left out: the
@@ -311,14 +357,20 @@ def follower_loads(
 
     pressure_angle = pitch.pressure_angle(theta)
     overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
-    tangent = np.tan(pressure_angle)
-    factor_a, factor_b = system.guide_factors(overhang)
-    rubbing_a, rubbing_b = system.rubbing_factors(theta, overhang)
-    jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * np.abs(tangent)
+    push = Push.of(pitch, system, theta)
+    on_points = push.on_points(*system.guide_factors(overhang))
+    rubbing_a, rubbing_b = (
+        system.rubbing_on_points(push, overhang)
+        if system.rubbing is None
+        else system.rubbing.at(theta)
+    )
+    jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.lean
     axial_force = np.maximum(demand, 0.0) / share_left(slope, jam_index)
-    side_force = axial_force * tangent
-    friction_a = system.friction_a * rubbing_a * np.abs(side_force)
-    friction_b = system.friction_b * rubbing_b * np.abs(side_force)
+    leaning = axial_force * push.lean
+    friction_a = system.friction_a * rubbing_a * leaning
+    friction_b = system.friction_b * rubbing_b * leaning
+    sliding = system.face_friction * axial_force * pitch.height(theta)
+    friction_power = (friction_a + friction_b) * np.abs(slope) + viscous_force * slope + sliding
     return Loads(
         theta=theta,
         lift=lift,
@@ -331,16 +383,19 @@ def follower_loads(
         inertia_force=inertia_force,
         axial_force=axial_force,
         normal_force=axial_force / np.cos(pressure_angle),
-        tangential_force=side_force,
+        tangential_force=axial_force * push.side,
         friction_force_a=friction_a,
         friction_force_b=friction_b,
-        reaction_a=side_force * factor_a,
-        reaction_b=side_force * factor_b,
-        cam_torque=axial_force * slope,
+        reaction_a=axial_force * on_points[0],
+        reaction_b=axial_force * on_points[1],
+        cam_torque=axial_force * slope + sliding,
         jam_index=jam_index,
-        friction_power=((friction_a + friction_b) * np.abs(slope) + viscous_force * slope) * speed,
+        friction_power=friction_power * speed,
         viscous_force=viscous_force,
         rubbing_a=rubbing_a,
         rubbing_b=rubbing_b,
-        jam_index_statics=system.friction_factor(overhang) * np.abs(tangent),
+        jam_index_statics=system.friction_a * np.abs(on_points[0])
+        + system.friction_b * np.abs(on_points[1]),
+        end_moment=axial_force * push.arm,
+        sliding_torque=sliding,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -10,8 +11,7 @@ from numpy.typing import ArrayLike
 
 from geometry.arrays import Array, finite, freeze
 from geometry.errors import InputError
-from geometry.pitch_curve import PitchCurve
-from pipeline.follower.forces import FollowerSystem, Loads, follower_loads
+from pipeline.follower.forces import FollowerSystem, Loads
 from pipeline.follower.guides import WALL_SHARE
 
 Lubrication = Literal["dry", "greased_once", "regularly_greased", "flooded"]
@@ -62,14 +62,16 @@ class FrictionBounds:
 
 
 def friction_bounds(
-    pitch: PitchCurve,
+    solved: Callable[[FollowerSystem], Loads],
     system: FollowerSystem,
     least: tuple[float, float],
     greatest: tuple[float, float],
-    cam_speed: float,
-    theta: ArrayLike,
 ) -> FrictionBounds:
     """Loads with the friction of guides A and B at its bounds and as in `system`.
+
+    Parameters
+    ----------
+    solved : function    the loads of a system, such as `follower_loads` or `guided_loads` give
 
     Raises
     ------
@@ -86,8 +88,7 @@ def friction_bounds(
             )
 
     def loads(friction: tuple[float, float]) -> Loads:
-        rubbing = replace(system, friction_a=friction[0], friction_b=friction[1])
-        return follower_loads(pitch, rubbing, cam_speed, theta)
+        return solved(replace(system, friction_a=friction[0], friction_b=friction[1]))
 
     return FrictionBounds(loads(least), loads(nominal), loads(greatest))
 

@@ -16,6 +16,7 @@ from pipeline.follower.forces import (
     JAM_FLOOR,
     FollowerSystem,
     Loads,
+    Push,
     Rubbing,
     follower_loads,
     share_left,
@@ -65,11 +66,13 @@ def guided_loads(
 ) -> Guided:
     r"""Forces on a follower whose guides have length and play, friction implicit at every angle.
 
-    The side force F_a tan(alpha) leans the stem on the mouths of its guides, which rub with
-    mu_A R_A + mu_B R_B, R the pushes of both sides of a bore by `guide_reactions`; and the push
-    F_a has to overcome that friction:
+    The side force F_a tan(alpha), or the couple of a push beside the axis, leans the stem on the
+    mouths of its guides, which rub with mu_A R_A + mu_B R_B, R the pushes of both sides of a bore
+    by `guide_reactions`; and the push F_a has to overcome that friction:
 
-        F_a = F / (1 - sign(v) c(F_a) |tan(alpha)|),    c = (mu_A R_A + mu_B R_B) / |F_t|.
+        F_a = F / (1 - sign(v) c(F_a) l),    c = (mu_A R_A + mu_B R_B) / (F_a l),
+
+    with the lean l of `Push`, for a roller |tan(alpha)|.
 
     With play c depends on the load, so that the equation is solved for F_a, at all angles at
     once. On the way out F_a lies between F and F/`JAM_FLOOR`, on the way back between 0 and F,
@@ -100,22 +103,28 @@ def guided_loads(
         pitch, replace(system, friction_a=0.0, friction_b=0.0, rubbing=None), cam_speed, theta
     )
     require_fit(stem, guides, points.overhang, knots)
-    bores = _Bores(stem, guides, knots, points)
-    tangent, slope = np.tan(points.pressure_angle), points.lift_slope
+    way, slope = Push.of(pitch, system, theta), points.lift_slope
+    bores = _Bores(stem, guides, knots, points, way)
 
     def answer(push: Array, at: NDArray[np.intp]) -> Array:
-        a, b = bores.factors(push * tangent[at], at)
-        jam = (system.friction_a * a + system.friction_b * b) * np.abs(tangent[at])
+        a, b = bores.factors(push, at)
+        jam = (system.friction_a * a + system.friction_b * b) * way.lean[at]
         return np.asarray(free.axial_force[at] / share_left(slope[at], jam))
 
     force, outward = free.axial_force, slope > 0.0
     high = np.where(outward, force / JAM_FLOOR, force)
     push, rounds = balanced(answer, np.where(outward, force, 0.0), high, points.axial_force)
     everywhere = np.arange(theta.size)
-    a, b = bores.factors(push * tangent, everywhere)
+    a, b = bores.factors(push, everywhere)
     loads = follower_loads(pitch, replace(system, rubbing=Rubbing(theta, a, b)), cam_speed, theta)
     reactions = guide_reactions(
-        loads.tangential_force, loads.overhang, stem, guides, knots=knots, start=bores.state
+        loads.tangential_force,
+        loads.overhang,
+        stem,
+        guides,
+        loads.end_moment,
+        knots=knots,
+        start=bores.state,
     )
     residual = _residual(system, free, loads, reactions)
     if not residual.max(initial=0.0) <= RESIDUAL:
@@ -174,24 +183,28 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
 class _Bores:
     """Guides that are solved again and again at the same positions, each time from the last."""
 
-    def __init__(self, stem: Stem, guides: GuidePair, knots: int, points: Loads) -> None:
+    def __init__(self, stem: Stem, guides: GuidePair, knots: int, points: Loads, way: Push) -> None:
         self.line, _, half_a = bearing_line(stem, guides, knots)
-        self.arm, self.knots = points.overhang - half_a, knots
-        self.points = points
+        self.reach, self.knots = points.overhang - half_a, knots
+        self.points, self.way = points, way
         self.state: tuple[Array, Array] | None = None
 
-    def factors(self, side: Array, at: NDArray[np.intp]) -> tuple[Array, Array]:
-        """Rubbing load over side force (k,) at some positions; of points where there is none."""
+    def factors(self, push: Array, at: NDArray[np.intp]) -> tuple[Array, Array]:
+        """Rubbing load over the lean (k,) of axial pushes; that of points where there is none."""
         start = None
         if self.state is not None:
             start = self.state[0][:, at], self.state[1][:, at]
-        push, rigid = settle(self.line, side, -side * self.arm[at], start)
+        side, moment = push * self.way.side[at], push * self.way.arm[at]
+        found, rigid = settle(self.line, side, moment - side * self.reach[at], start)
         if self.state is None:
-            count = self.arm.size
-            self.state = np.zeros((len(push), count)), np.zeros((2, count))
-        self.state[0][:, at], self.state[1][:, at] = push, rigid
-        rubbed = np.abs(push[: self.knots]).sum(axis=0), np.abs(push[self.knots :]).sum(axis=0)
-        size, given = np.abs(side), (self.points.rubbing_a[at], self.points.rubbing_b[at])
+            count = self.reach.size
+            self.state = np.zeros((len(found), count)), np.zeros((2, count))
+        self.state[0][:, at], self.state[1][:, at] = found, rigid
+        rubbed = np.abs(found[: self.knots]).sum(axis=0), np.abs(found[self.knots :]).sum(axis=0)
+        size, given = (
+            push * self.way.lean[at],
+            (self.points.rubbing_a[at], self.points.rubbing_b[at]),
+        )
         a, b = (
             np.divide(load, size, out=share.copy(), where=size > 0.0)
             for load, share in zip(rubbed, given, strict=True)

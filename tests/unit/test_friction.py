@@ -23,8 +23,12 @@ SYSTEM = FollowerSystem(0.175, 24.2e3, 242.0, 0.08, 0.03, 0.04, 0.2)
 SPEED = 75.0
 
 
+def loads_of(system):
+    return follower_loads(PITCH, system, SPEED, THETA)
+
+
 def test_force_lies_between_the_bounds():
-    found = friction_bounds(PITCH, SYSTEM, (0.02, 0.1), (0.1, 0.3), SPEED, THETA)
+    found = friction_bounds(loads_of, SYSTEM, (0.02, 0.1), (0.1, 0.3))
     middle = found.nominal.normal_force
     assert (found.normal_force_min <= middle * (1 + 1e-12)).all()
     assert (found.normal_force_max >= middle * (1 - 1e-12)).all()
@@ -40,18 +44,18 @@ def test_force_lies_between_the_bounds():
 
 def test_jam_margin_is_the_factor_to_locking():
     """At that many times the worst friction the index is 1."""
-    found = friction_bounds(PITCH, SYSTEM, (0.0, 0.0), (0.1, 0.3), SPEED, THETA)
+    found = friction_bounds(loads_of, SYSTEM, (0.0, 0.0), (0.1, 0.3))
     locked = replace(SYSTEM, friction_a=0.1 * found.jam_margin, friction_b=0.3 * found.jam_margin)
     loads = follower_loads(PITCH, locked, SPEED, THETA)
     assert loads.jam_index[loads.lift_slope > 0].max() == pytest.approx(1.0, rel=1e-12)
     free = replace(SYSTEM, friction_a=0.0, friction_b=0.0)
-    none = friction_bounds(PITCH, free, (0.0, 0.0), (0.0, 0.0), SPEED, THETA)
+    none = friction_bounds(loads_of, free, (0.0, 0.0), (0.0, 0.0))
     assert none.jam_margin == np.inf
 
 
 def test_bounds_must_enclose_the_nominal():
     with pytest.raises(InputError, match=r"guides\.b\.friction"):
-        friction_bounds(PITCH, SYSTEM, (0.02, 0.21), (0.1, 0.3), SPEED, THETA)
+        friction_bounds(loads_of, SYSTEM, (0.02, 0.21), (0.1, 0.3))
 
 
 def test_viscous_drag_follows_the_speed():

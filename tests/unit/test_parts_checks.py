@@ -18,6 +18,8 @@ from pipeline.checks.everything import PARTS, all_checks
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import closed_form_history
 from pipeline.cycle import closed_form_cycle, contact_pair, finished, turn
+from pipeline.follower.guides import GuidePair, guide_reactions
+from pipeline.follower.stem import Stem
 
 SPRING = """
 [spring.design]
@@ -178,12 +180,17 @@ def test_worst_friction_is_a_must_where_it_is_bounded(bare):
     guides = bare.case.guides
     rough = {side: getattr(guides, side).model_copy(update={"friction_max": 0.25}) for side in "ab"}
     case = bare.case.model_copy(update={"guides": guides.model_copy(update=rough)})
-    check = part_checks.jam_at_worst_friction(evidence(case))
-    overhang = bare.cycles[0].loads.overhang
-    tan = np.abs(np.tan(bare.cycles[0].loads.pressure_angle))
-    factor = 0.25 * (1 + 2 * overhang / guides.spacing)
-    rise = bare.cycles[0].loads.lift_slope > 0
-    assert check.demand == pytest.approx((factor * tan)[rise].max(), rel=1e-9)
+    given = evidence(case)
+    check, worst = part_checks.jam_at_worst_friction(given), given.cycles[0].parts.friction.greatest
+    bearing = guide_reactions(
+        worst.tangential_force, worst.overhang, Stem.from_case(case), GuidePair.from_case(case)
+    )
+    rubs = 0.25 * (bearing.rubbing_load_a + bearing.rubbing_load_b)
+    rise = worst.lift_slope > 0
+    assert check.demand == pytest.approx((rubs / worst.axial_force)[rise].max(), rel=1e-9)
+    factor = 0.25 * (1 + 2 * worst.overhang / guides.spacing)
+    on_points = factor * np.abs(np.tan(worst.pressure_angle))
+    np.testing.assert_allclose(worst.jam_index_statics, on_points, rtol=1e-9, atol=1e-12)
     assert check.must_have
 
 
@@ -236,31 +243,44 @@ def test_overspeed_jumps_and_lands(bare):
     """Fast enough to leave the cam: the check fails and names the losses of contact."""
     state = bare.case.load_cases[0].model_copy(update={"speed": 2000.0})
     given = evidence(bare.case.model_copy(update={"load_cases": (state,)}))
-    parts = given.cycles[0].parts
-    assert parts.elastic.lost
-    assert parts.flights
-    assert parts.bounce_force > given.cycles[0].loads.spring_force.max()
+    elastic = given.cycles[0].parts.elastic
+    assert elastic.response.lost
+    assert elastic.flights
+    assert elastic.force_max > given.cycles[0].loads.spring_force.max()
     check = part_checks.elastic_contact(given)
     assert check.status == "fail"
-    assert f"{len(parts.flights)} losses of contact" in check.note
+    assert f"{len(elastic.flights)} losses of contact" in check.note
 
 
-def test_ring_of_a_card(full):
-    """The range grows with the load; without a card the ring is flagged as not evaluated."""
-    open_ring = part_checks.roller_ring(full)
+def test_ring_of_a_card():
+    """The stress grows with the load; of Goodman's line, fatigue and tensile strength are asked."""
+    bearing = "[roller.bearing]                     # ratings"
+    named = template("ring").replace(bearing, '[roller.bearing]\ncard = "maker_1_625_2RS"\n#')
+    open_ring = part_checks.roller_ring(evidence(parse_case(named)))
     assert open_ring.status == "not_evaluated"
-    assert "housing" in open_ring.note
-    roller = full.case.roller
-    bearing = roller.bearing.model_copy(update={"card": "maker_1_625_2RS"})
-    case = full.case.model_copy(update={"roller": roller.model_copy(update={"bearing": bearing})})
-    given = evidence(case)
+    assert "not the bearing's outer ring itself" in open_ring.note
+    small = named.replace('radius = "16 mm"', 'radius = "8 mm"', 1).replace(
+        'hub_radius = "8 mm"', 'hub_radius = "4.2 mm"', 1
+    )
+    given = evidence(parse_case(small))
     cycle = given.cycles[0]
-    ratio = cycle.parts.ring_stress / cycle.loads.normal_force
+    ratio = cycle.parts.ring_amplitude / cycle.loads.normal_force
     np.testing.assert_allclose(ratio, ratio[0], rtol=1e-12)
-    check = part_checks.roller_ring(given)
+    assert (cycle.parts.ring_correction < 0.0).all()
     force = max(c.loads.normal_force.max() for c in given.cycles)
-    assert check.demand == pytest.approx(1e-6 * ratio[0] * force, rel=0.05)
-    assert "verify" in check.note
+    mean = cycle.parts.ring_mean[0] / cycle.loads.normal_force[0]
+    check = part_checks.roller_ring(given)
+    assert check.limit == pytest.approx(700.0)
+    left = 1.0 - mean * force / 2000e6
+    assert check.demand == pytest.approx(1e-6 * ratio[0] * force / left, rel=1e-9)
+    assert "verify" in check.source
+    ring = given.case.roller.bearing.ring.model_copy(update={"fatigue_bending": None})
+    bearing = given.case.roller.bearing.model_copy(update={"ring": ring})
+    roller = given.case.roller.model_copy(update={"bearing": bearing})
+    unknown = replace(given, case=given.case.model_copy(update={"roller_given": roller}))
+    check = part_checks.roller_ring(unknown)
+    assert check.status == "not_evaluated"
+    assert check.note == "no fatigue strength of the ring is given"
 
 
 def test_guides_that_overlap_are_refused():
