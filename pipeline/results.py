@@ -94,13 +94,17 @@ CYCLE = _columns(
     "tau_max_rolling?~ [MPa]; von_mises_rolling?~ [MPa];"
     "shear_range?~ [MPa]; bore_stress?~ [MPa]; bore_stress_at_edge?~;"
     "bore_stress_off_edges?~ [MPa];"
+    "jam_index_statics?; cam_speed? [rad/s]; residual_friction?; normal_force_statics? [N];"
+    "reaction_A_by_length? [N]; reaction_A_by_clearance? [N]; reaction_B_by_length? [N];"
+    "reaction_B_by_clearance? [N]; normal_force_by_length? [N]; normal_force_by_clearance? [N];"
     "bush_peak_A? [MPa]; bush_peak_B? [MPa]; rubbing_load_A? [N]; rubbing_load_B? [N];"
     "friction_heat_A? [W]; friction_heat_B? [W]; viscous_force? [N];"
     "normal_force_friction_min? [N]; normal_force_friction_max? [N]; jam_index_friction_max?;"
     "elastic_contact_force? [N]; elastic_deflection? [um]; bore_pressure? [MPa];"
     "key_pressure? [MPa]; shaft_bearing_1? [N]; shaft_bearing_2? [N]; spring_stress? [MPa];"
     "spring_surge_force? [N]; pin_stress? [MPa];"
-    "ring_stress_range? [MPa]; ring_correction?~ [percent]; tau_any_plane?~ [MPa]"
+    "ring_stress_range? [MPa]; ring_stress_amplitude? [MPa]; ring_stress_mean? [MPa];"
+    "ring_correction?~ [percent]; tau_any_plane?~ [MPa]"
 )
 
 
