@@ -125,6 +125,7 @@ class Limits(Section):
     fatigue_safety: Safety = 1.0
     case_safety: Safety = 1.0
     torque_reduction: Annotated[float, In(above=0, below=1)] = 0.4
+    speed_reduction: Annotated[float, In(above=0, below=1)] | None = None
     energy_closure: Residual = 1e-9
     friction_balance: Residual = 1e-6
     equilibrium: Residual = 1e-9
@@ -162,12 +163,14 @@ class Waiver(Section):
 class Tolerances(Section):
     """How far the case may be from what is built: shares of the nominal, phase in crank degrees.
 
-    Those of the spring and the line profile stand in their own sections; friction goes from
+    mass is that of the follower, inertia that of the crankshaft. Those of the spring and the line
+    profile stand in their own sections; friction goes from
     guides.*.friction_min to friction_max where they are given.
     """
 
     friction: Annotated[float, In(at_least=0, below=1)] = 0.0
     mass: Annotated[float, In(at_least=0, below=1)] = 0.0
+    inertia: Annotated[float, In(at_least=0, below=1)] = 0.0
     phase: Annotated[float, In("deg", at_least=0, at_most=90)] = 0.0
     samples: Annotated[int, Field(ge=0, le=1000)] = 16
     seed: Annotated[int, Field(ge=0, le=2**31)] = 1

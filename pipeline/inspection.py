@@ -136,7 +136,7 @@ def inspect_part(
     if not road.is_body(real):
         cycles = tuple(finished(case, real, given, road.unknown_contact(given)) for given in turns)
         empty = Trial(1, None, why, real.pitch.lift, real, cycles, None, ())
-        return RealPart(fit, real, road.checked(case, empty))
+        return RealPart(fit, real, road.checked(case, empty, torques))
     pair = contact_pair(case, real)
     mesh = road.meshed(pair, turns)
     tell("contact")
@@ -148,7 +148,8 @@ def inspect_part(
         tell(f"certificate at {len(chosen)} angles")
         points = certified(pair, trial, chosen, jobs, lambda *_: None)
         trial = replace(trial, certificate=points)
-    return RealPart(fit, real, road.checked(case, trial, benchmarks(case.roller.radius)))
+    solved = benchmarks(case.roller.radius)
+    return RealPart(fit, real, road.checked(case, trial, torques, solved))
 
 
 def _cycle(case: Case, contour: Contour, bodies: CycleBodies, given: Turn) -> Cycle:

@@ -7,20 +7,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from pipeline import trial as road
+from pipeline.ahead import foreseen_cycle
 from pipeline.case import Case
+from pipeline.checks import rolling
 from pipeline.checks.check import Check
 from pipeline.checks.everything import DESIGN, PARTS, SIGNED, checked_by
 from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import in_order
-from pipeline.contact.pair import closed_form_history
-from pipeline.cycle import Cycle, Turn, contact_pair, finished
+from pipeline.cycle import Cycle, Turn, finished
 from pipeline.smoothing.constrained import synthesise
 from pipeline.smoothing.loop import redrawn
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
+from pipeline.speed import speed_ripple
 
 MARK = "closed forms only: "
 
@@ -44,8 +44,9 @@ def closed_form_checks(case: Case) -> tuple[Check, ...]:
     sound = road.is_body(contour)
     turns = road.turns_of(case, contour, torques, case.solver.positions)
     cycles = tuple(_cycle(case, contour, given, sound) for given in turns)
-    evidence = TrialEvidence(case=case, contour=contour, cycles=cycles)
-    found = checked_by(evidence, (*DESIGN, *SIGNED, *PARTS))
+    speed = speed_ripple(case, torques, contour.pitch)
+    evidence = TrialEvidence(case=case, contour=contour, cycles=cycles, speed_ripple=speed)
+    found = checked_by(evidence, (*DESIGN, *rolling.CHECKS, *SIGNED, *PARTS))
     marked = (replace(check, method=MARK + check.method) for check in found)
     return in_order((_unsigned(), *marked))
 
@@ -53,9 +54,7 @@ def closed_form_checks(case: Case) -> tuple[Check, ...]:
 def _cycle(case: Case, contour: road.Contour, given: Turn, sound: bool) -> Cycle:
     if not sound:
         return finished(case, contour, given, road.unknown_contact(given))
-    force = np.asarray(given.loads.normal_force)
-    history = closed_form_history(contact_pair(case, contour), given.theta, force)
-    return finished(case, contour, given, history)
+    return foreseen_cycle(case, contour, given)
 
 
 def _unsigned() -> Check:

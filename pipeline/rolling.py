@@ -32,14 +32,14 @@ class RollingHistory:
     """One turn, arrays (n,) SI; None where the case does not say what it takes.
 
     traction_demand, tangential over normal force that rolling without slip asks for, NaN where
-    the contact is open; shear_range of the shear along the surface, in the cam; envelope, the map
-    of greatest stresses; contact, with creep and skid; tau_max and von_mises in the cam with the
-    traction of rolling added, Pa; film.
+    the contact is open; shear_range of the shear along the surface, in the cam; bore, None in a
+    look ahead; envelope, the map of greatest stresses; contact, with creep and skid; tau_max and
+    von_mises in the cam with the traction of rolling added, Pa; film.
     """
 
     traction_demand: Array
     shear_range: Array
-    bore: BoreStress
+    bore: BoreStress | None
     envelope: Envelope
     contact: RollingContact | None = None
     tau_max: Array | None = None
@@ -54,10 +54,13 @@ class RollingHistory:
         found = {
             "traction_demand": self.traction_demand,
             "shear_range": self.shear_range,
-            "bore_stress": self.bore.von_mises,
-            "bore_stress_at_edge": self.bore.at_edge,
-            "bore_stress_off_edges": self.bore.away_from_edges,
         }
+        if self.bore is not None:
+            found |= {
+                "bore_stress": self.bore.von_mises,
+                "bore_stress_at_edge": self.bore.at_edge,
+                "bore_stress_off_edges": self.bore.away_from_edges,
+            }
         if self.contact is not None:
             skid = self.contact.utilisation
             found |= {
@@ -75,13 +78,16 @@ class RollingHistory:
 def rolling_history(
     case: Case,
     pair: ContactPair,
-    bodies: CycleBodies,
+    bodies: CycleBodies | None,
     theta: Array,
     normal_force: Array,
     contact: ContactHistory,
     cam_speed: float,
 ) -> RollingHistory:
-    """The turn at cam angles theta (n,) rad, normal forces (n,) N, cam speed rad/s."""
+    """The turn at cam angles theta (n,) rad, normal forces (n,) N, cam speed rad/s.
+
+    Without the meshed bodies it is a look ahead, on half-planes and with nothing of the bore.
+    """
     contour = pair.contour
     motion = roller_motion(contour.pitch, contour.roller_radius, cam_speed, theta)
     # Without friction given the roller holds: a limit that nothing reaches.
@@ -100,7 +106,9 @@ def rolling_history(
     return RollingHistory(
         traction_demand=demand,
         shear_range=reach * contact.p0,
-        bore=bore_stress(
+        bore=None
+        if bodies is None
+        else bore_stress(
             bodies.cam, contour.points(theta), contour.normal(theta), contact.line_load
         ),
         envelope=_envelope(case, pair, bodies, theta, contact, cam_speed),
@@ -145,7 +153,7 @@ def _driven(
 def _envelope(
     case: Case,
     pair: ContactPair,
-    bodies: CycleBodies,
+    bodies: CycleBodies | None,
     theta: Array,
     contact: ContactHistory,
     cam_speed: float,
@@ -158,7 +166,7 @@ def _envelope(
     if card.fatigue_torsion is not None and card.fatigue_bending is not None:
         limits = FatigueLimits(card.fatigue_torsion, card.fatigue_bending)
     load = np.maximum(loads.normal_force, 0.0) / pair.width
-    added = added_stress(pair, bodies, theta, contact.line_load)
+    added = None if bodies is None else added_stress(pair, bodies, theta, contact.line_load)
     return swept(pair, theta, contact, stations, load, limits=limits, body_stress=added)
 
 
@@ -208,17 +216,8 @@ def _worst(turn: RollingHistory) -> dict[str, Any]:
                 "cam_angle_deg": float(np.degrees(theta)),
                 "depth_mm": _MM * depth,
             }
-    bore, k = turn.bore, int(turn.bore.von_mises.argmax())
-    at_edge = bool(bore.at_edge[k])
-    record["bore"] = {
-        "von_mises_MPa": _MPA * float(bore.von_mises[k]),
-        "x_mm": _MM * float(bore.x[k]),
-        "y_mm": _MM * float(bore.y[k]),
-        "away_from_edges_MPa": _MPA * float(bore.away_from_edges.max()),
-        "note": "at an edge of the keyway, where the value grows with refinement"
-        if at_edge
-        else "",
-    }
+    if turn.bore is not None:
+        record["bore"] = _worst_of_bore(turn.bore)
     if turn.contact is not None:
         loss = turn.contact.loss
         record["sliding_loss_J_per_cam_turn"] = loss if np.isfinite(loss) else None
@@ -226,3 +225,16 @@ def _worst(turn: RollingHistory) -> dict[str, Any]:
     if turn.film is not None and turn.film.mixed is not None:
         record["mixed_film"] = turn.film.record()
     return record
+
+
+def _worst_of_bore(bore: BoreStress) -> dict[str, Any]:
+    k = int(bore.von_mises.argmax())
+    return {
+        "von_mises_MPa": _MPA * float(bore.von_mises[k]),
+        "x_mm": _MM * float(bore.x[k]),
+        "y_mm": _MM * float(bore.y[k]),
+        "away_from_edges_MPa": _MPA * float(bore.away_from_edges.max()),
+        "note": "at an edge of the keyway, where the value grows with refinement"
+        if bore.at_edge[k]
+        else "",
+    }

@@ -232,7 +232,7 @@ def _trial(
     progress.stage(f"trial {number}: checks")
     with watch.stage("checks"):
         made = Trial(number, smoother, why, lift, contour, cycles, mesh, ())
-        return road.checked(case, made, searching=True)
+        return road.checked(case, made, journey.torques, searching=True)
 
 
 def _cycle(
@@ -264,14 +264,14 @@ def _certified(journey: Journey, final: Trial, jobs: int | None) -> Trial:
     case, progress = journey.case, journey.progress
     chosen = positions_to_certify(final, case.solver.certificate_positions)
     if not chosen:
-        return road.checked(case, final)
+        return road.checked(case, final, journey.torques)
     progress.stage(f"certificate at {len(chosen)} angles")
     with journey.watch.stage("certificate"):
         points = certified(contact_pair(case, final.contour), final, chosen, jobs, progress.advance)
     progress.stage("benchmarks")
     with journey.watch.stage("benchmarks"):
         solved = benchmarks(case.roller.radius)
-    return road.checked(case, replace(final, certificate=points), solved)
+    return road.checked(case, replace(final, certificate=points), journey.torques, solved)
 
 
 def _at_corners(journey: Journey, final: Trial) -> Trial:

@@ -38,6 +38,7 @@ from pipeline.engine.torque import Torque
 from pipeline.given_lift import given_lift
 from pipeline.measured import engine_torque
 from pipeline.smoothing.smoothers import Smoother, smoothed
+from pipeline.speed import speed_ripple
 
 # Positions solved together: what an interruption may cost, and the grain of the progress bar.
 CHUNK = 90
@@ -215,6 +216,7 @@ def _as_arrays(history: ContactHistory) -> dict[str, Array]:
 def checked(
     case: Case,
     trial: Trial,
+    torques: Mapping[str, Torque],
     benchmarks: Mapping[str, float] | None = None,
     searching: bool = False,
 ) -> Trial:
@@ -229,6 +231,7 @@ def checked(
         mesh_quality=None if trial.mesh is None else trial.mesh.quality,
         certificate=trial.certificate,
         benchmarks=benchmarks,
+        speed_ripple=speed_ripple(case, torques, trial.contour.pitch),
         searching=searching,
     )
     return replace(trial, checks=all_checks(evidence))

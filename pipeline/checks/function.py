@@ -49,6 +49,35 @@ def torque_reduction(evidence: TrialEvidence) -> Check | None:
     )
 
 
+def speed_reduction(evidence: TrialEvidence) -> Check | None:
+    """Share of the crank speed's ripple the cam takes away; None without a crankshaft."""
+    states = getattr(evidence.case, "load_cases", ())
+    idle = {state.name for state in states if not state.ripple_weight > 0}
+    shares = {
+        name: 1.0 - after / before if before > 0 else np.nan
+        for name, (before, after) in evidence.speed_ripple.items()
+        if name not in idle
+    }
+    if not shares:
+        return None
+    worst = min(shares, key=lambda name: -np.inf if np.isnan(shares[name]) else shares[name])
+    asked = evidence.limit("speed_reduction")
+    return Check(
+        id="speed_reduction",
+        title="Speed ripple of the crank taken away",
+        demand=float(shares[worst]),
+        limit=asked,
+        unit="-",
+        sense="at_least",
+        load_case=worst,
+        source=evidence.source("speed_reduction", "least value asked for by the case"),
+        method="1 - std of the crank speed with the cam over that of the engine alone,"
+        " inertia of crank and follower included",
+        must_have=asked is not None,
+        note="" if asked is not None else "no reduction of the speed ripple is asked for",
+    )
+
+
 def _reduction(cycle: Cycle) -> float:
     before, after = cycle.torque_before, cycle.residual_torque
     if before is None or after is None or not np.std(before) > 0:
@@ -120,4 +149,4 @@ def _relative(part: float, whole: float) -> float:
     return 0.0 if part == 0.0 else float(np.divide(abs(part), whole)) if whole > 0 else np.inf
 
 
-CHECKS = (torque_reduction, energy_closure, friction_balance)
+CHECKS = (torque_reduction, speed_reduction, energy_closure, friction_balance)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -30,6 +30,8 @@ class TrialEvidence:
     mesh_quality : Quality                    None when the trial made no mesh
     certificate : tuple of CertificatePoint   empty when none was asked for
     benchmarks : mapping                      as `pipeline.benchmarks` gives it; None: not solved
+    speed_ripple : mapping                    load case -> std of the crank speed, rad/s, without
+                                              and with the cam; empty when no crankshaft is known
     searching : bool                          one trial of a search; the answer alone is certified
     """
 
@@ -39,6 +41,7 @@ class TrialEvidence:
     mesh_quality: Quality | None = None
     certificate: tuple[CertificatePoint, ...] = ()
     benchmarks: Mapping[str, float] | None = None
+    speed_ripple: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     searching: bool = False
 
     def cam_speed(self, cycle: Cycle) -> float:

@@ -34,6 +34,7 @@ def asked(**changes):
         "tool_radius": 0.01,
         "roller_life": 3600.0,
         "target_life": 3.6e6,
+        "speed_reduction": 0.4,
     }
     return SimpleNamespace(**(plain | changes))
 
@@ -172,7 +173,8 @@ BENCHMARKS = {
 
 def evidence(**changes) -> TrialEvidence:
     """A trial that passes; `changes` replace its parts."""
-    plain = TrialEvidence(case(), contour(), (cycle(),), MESH, CERTIFICATE, BENCHMARKS)
+    speed = {"idle": (2.0, 1.0)}
+    plain = TrialEvidence(case(), contour(), (cycle(),), MESH, CERTIFICATE, BENCHMARKS, speed)
     return replace(plain, **changes)
 
 

@@ -341,6 +341,20 @@ def test_torque_reduction_by_hand():
     assert function.torque_reduction(trial).demand == pytest.approx(0.7)
 
 
+def test_speed_reduction_by_hand():
+    """The load case with the least, of those whose ripple counts; a NaN is the least of all."""
+    ripple = {"idle": (4.0, 1.0), "rated": (2.0, 1.5), "fast": (1.0, 2.0)}
+    fast = SimpleNamespace(name="fast", ripple_weight=0.0, preload=None)
+    given = fake.evidence(case=fake.case(load_cases=(fast,)), speed_ripple=ripple)
+    check = function.speed_reduction(given)
+    assert (check.demand, check.load_case) == (pytest.approx(0.25), "rated")
+    stalled = fake.evidence(speed_ripple=ripple | {"idle": (np.nan, np.nan)})
+    assert function.speed_reduction(stalled).status == "not_evaluated"
+    assert function.speed_reduction(fake.evidence(speed_ripple={})) is None
+    unasked = fake.evidence(case=fake.limits(speed_reduction=None))
+    assert not function.speed_reduction(unasked).must_have
+
+
 def test_a_cam_that_adds_ripple_has_a_negative_reduction():
     check = function.torque_reduction(fake.evidence(cycles=(fake.cycle(scale=3.0),)))
     assert check.demand == pytest.approx(-0.5)

@@ -107,6 +107,7 @@ CASES: dict[str, tuple[Callable[[float | None], dict[str, Any]], dict[str, Any]]
     "bush_pv_A": (by_guide("a", "pv_limit"), {}),
     "bush_pv_B": (by_guide("b", "pv_limit"), {}),
     "torque_reduction": (by_limit("torque_reduction"), {}),
+    "speed_reduction": (by_limit("speed_reduction"), {}),
     "energy_closure": (by_limit("energy_closure"), {}),
     "friction_balance": (by_limit("friction_balance"), {"cycles": (lossy_cycle(),)}),
     "guide_equilibrium_force": (by_limit("equilibrium"), {}),

@@ -1,0 +1,23 @@
+"""A cycle foreseen by closed forms, with all that a trial's has but the elements of the contact."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from geometry.contour import Contour
+from pipeline.case import Case
+from pipeline.contact.pair import closed_form_history
+from pipeline.cycle import Cycle, Turn, contact_pair, finished
+from pipeline.rolling import rolling_history
+
+
+def foreseen_cycle(case: Case, contour: Contour, given: Turn) -> Cycle:
+    """The turn with Hertz's contact, the guides, the parts and what rolling does."""
+    state, pair = case.at(given.load_case), contact_pair(case, contour)
+    speed = given.crank_speed / case.mechanism.gear_ratio
+    force = given.loads.normal_force
+    contact = closed_form_history(pair, given.theta, force)
+    return replace(
+        finished(case, contour, given, contact),
+        rolling=rolling_history(state, pair, None, given.theta, force, contact, speed),
+    )
