@@ -96,6 +96,7 @@ class Limits(Section):
     undercut_factor: Annotated[float, In(above=0, below=1)] = 0.3
     second_contact_depth: Annotated[float, In("mm", above=0, at_most=1)] = 1e-6
     tool_radius: Length | None = None
+    curvature_rate: Annotated[float, In("1/m/rad", above=0, at_most=1e9)] | None = None
     minimum_wall: Annotated[float, In(at_least=1, at_most=100)] = 1.75
     contact_safety: Safety = 1.0
     yield_safety: Safety = 1.0

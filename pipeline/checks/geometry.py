@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from geometry.arrays import FULL_TURN
+from geometry.extrema import greatest
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence
 from pipeline.shop import largest_tool
@@ -138,6 +139,26 @@ def concave_radius(evidence: TrialEvidence) -> Check | None:
     )
 
 
+def curvature_rate(evidence: TrialEvidence) -> Check | None:
+    """How fast the contour's curvature changes; a case that gives no bound asks for none."""
+    limit, contour = evidence.limit("curvature_rate"), evidence.contour
+    if limit is None:
+        return None
+    count = contour.pitch.lift.search_count
+    worst = greatest(lambda theta: np.abs(contour.curvature_slope(theta)), count)
+    return Check(
+        id="curvature_rate",
+        title="Change of the contour's curvature",
+        demand=float(worst.value),
+        limit=limit,
+        unit="1/m/rad",
+        cam_angle_deg=_degrees(worst.theta),
+        source=evidence.source("curvature_rate", "bound of the case, for grinding and for wear"),
+        method="greatest change of curvature per radian of cam angle, refined between samples",
+        lift_can_help=True,
+    )
+
+
 def minimum_wall(evidence: TrialEvidence) -> Check:
     """The ring of steel about the bore and its keyway."""
     cam = evidence.case.cam
@@ -185,6 +206,7 @@ CHECKS = (
     self_intersection,
     second_contact,
     concave_radius,
+    curvature_rate,
     minimum_wall,
     spring_travel,
 )
