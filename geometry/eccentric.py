@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, uniform_turn
+from geometry.arrays import Array, positive, uniform_turn
 from geometry.errors import InputError
 from geometry.lift import Lift
 
@@ -92,3 +92,16 @@ class Eccentric:
         theta = uniform_turn(count)
         values = self.height(theta - _QUARTER_TURN) - self.height_base
         return Lift(theta, values)
+
+
+def face_lift(eccentricity: float, count: int = 720) -> Lift:
+    """Lift e (1 - cos theta) of a flat face on a disc that turns about a place off its centre.
+
+    Raises
+    ------
+    InputError
+        If the eccentricity (m) is not positive; NaN included.
+    """
+    positive("lift.eccentricity", eccentricity, "m")
+    theta = uniform_turn(count)
+    return Lift(theta, eccentricity * (1.0 - np.cos(theta)))

@@ -19,5 +19,5 @@ def foreseen_cycle(case: Case, contour: Contour, given: Turn) -> Cycle:
     contact = closed_form_history(pair, given.theta, force)
     return replace(
         finished(case, contour, given, contact),
-        rolling=rolling_history(state, pair, None, given.theta, force, contact, speed),
+        rolling=rolling_history(state, pair, None, given.loads, contact, speed),
     )

@@ -33,9 +33,19 @@ from pipeline.engine_fields import (
     VoltageTable,
     engine_files,
 )
-from pipeline.given_lift import motion_of
+from pipeline.given_lift import contour_of, given_lift, motion_of
 from pipeline.lift_fields import LIFT_KINDS, GivenLift, LiftSegments, LiftTable
-from pipeline.part_fields import Cam, Camshaft, Follower, Guides, Material, Oil, Roller, Spring
+from pipeline.part_fields import (
+    Cam,
+    Camshaft,
+    Face,
+    Follower,
+    Guides,
+    Material,
+    Oil,
+    Roller,
+    Spring,
+)
 from pipeline.results import hash_inputs
 from pipeline.shop_fields import Shop
 
@@ -59,7 +69,7 @@ class Case(Section):
     spring: Spring
     cam: Cam
     camshaft: Camshaft | None = None
-    roller: Roller
+    roller_given: Annotated[Roller | None, Field(alias="roller")] = None
     follower: Follower
     guides: Guides
     lubricant: Oil | None = None
@@ -124,6 +134,35 @@ class Case(Section):
             raise InputError("case", name, "read from a file to include others")
         return self._folder / name
 
+    @property
+    def roller(self) -> Roller:
+        """The roller of a case whose follower has one.
+
+        Raises
+        ------
+        InputError
+            If it has none.
+        """
+        if self.roller_given is None:
+            raise InputError("roller", "missing", 'given with follower.kind = "roller"')
+        return self.roller_given
+
+    @property
+    def facing(self) -> Roller | Face:
+        """The part of the follower that touches the cam."""
+        return self.roller if self.follower.face is None else self.follower.face
+
+    @property
+    def facing_field(self) -> str:
+        """Dotted name of that part's table."""
+        return "roller" if self.follower.face is None else "follower.face"
+
+    @property
+    def base_circle(self) -> float:
+        """Radius of the cam's surface where the lift is zero, m."""
+        inset = 0.0 if self.roller_given is None else self.roller_given.radius
+        return self.cam.pitch_base_radius - inset
+
     def material(self, name: str) -> Material:
         """The card of a material that the case names."""
         return self.materials[name]
@@ -153,6 +192,8 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
         raise _first_error(error) from None
     case._folder = folder
     case._included = MappingProxyType(_read_includes(case, folder))
+    if case.lift is not None and case.follower.face is not None:
+        contour_of(case, given_lift(case))  # refuses a face that the contact runs off
     return case
 
 
@@ -231,9 +272,13 @@ def _check_road(case: Case) -> None:
         raise InputError("engine, lift", found, "exactly one of the two")
     if isinstance(case.lift, LiftSegments):
         motion_of(case.lift)
-    if case.follower.kind == "flat":
-        limit = '"roller": the finite elements of the contact know no flat face yet'
-        raise InputError("follower.kind", "flat", limit)
+    if case.follower.kind == "roller":
+        _ = case.roller  # refuses a case without
+    elif case.roller_given is not None:
+        raise InputError("roller", "a table", 'left out with follower.kind = "flat"')
+    elif case.smoothing.kind == "constrained":
+        limit = 'another than "constrained", which knows rollers only, with a flat face'
+        raise InputError("smoothing.kind", "constrained", limit)
     ratio = case.mechanism.gear_ratio
     if case.engine is not None and ratio != 2.0:
         raise InputError("mechanism.gear_ratio", ratio, "2 with an engine: a cam turn is 720 deg")
@@ -265,10 +310,10 @@ def _check_road(case: Case) -> None:
 def _check_film(case: Case) -> None:
     if case.lubricant is None or case.lubricant.film == "smooth":
         return
-    names = (case.cam.material, case.roller.material)
+    names = (case.cam.material, case.facing.material)
     needed = {
         "cam.roughness": case.cam.roughness,
-        "roller.roughness": case.roller.roughness,
+        f"{case.facing_field}.roughness": case.facing.roughness,
         **{f"materials.{name}.hardness": case.material(name).hardness for name in names},
     }
     for field, value in needed.items():
@@ -277,9 +322,9 @@ def _check_film(case: Case) -> None:
 
 
 def _check_geometry(case: Case) -> None:
-    cam, roller = case.cam, case.roller
-    surface = cam.pitch_base_radius - roller.radius
-    _require("roller.radius", roller.radius, surface > 0, "< cam.pitch_base_radius")
+    if case.roller_given is not None:
+        _check_roller(case.cam, case.roller_given)
+    cam, surface = case.cam, case.base_circle
     _require(
         "cam.offset",
         cam.offset,
@@ -309,19 +354,6 @@ def _check_geometry(case: Case) -> None:
             cam.keyway.width < 1.8 * cam.bore_radius,
             "< 1.8 bore radii",
         )
-    _require(
-        "roller.hub_radius", roller.hub_radius, roller.hub_radius < roller.radius, "< roller.radius"
-    )
-    _require(
-        "roller.chamfer",
-        roller.chamfer,
-        2 * roller.chamfer < roller.width,
-        "< half of roller.width",
-    )
-    pin = case.roller.pin
-    if pin is not None and pin.mounting == "straddled":
-        width = case.roller.width
-        _require("roller.pin.span", pin.span, pin.span >= width, f">= {width:.6g} m, roller.width")
     guides = case.guides
     reach = 0.5 * (guides.a.length + guides.b.length)
     apart = guides.spacing > reach
@@ -335,6 +367,17 @@ def _check_geometry(case: Case) -> None:
         )
 
 
+def _check_roller(cam: Cam, roller: Roller) -> None:
+    radius, width = roller.radius, roller.width
+    _require("roller.radius", radius, radius < cam.pitch_base_radius, "< cam.pitch_base_radius")
+    _require("roller.hub_radius", roller.hub_radius, roller.hub_radius < radius, "< roller.radius")
+    half = "< half of roller.width"
+    _require("roller.chamfer", roller.chamfer, 2 * roller.chamfer < width, half)
+    pin = roller.pin
+    if pin is not None and pin.mounting == "straddled":
+        _require("roller.pin.span", pin.span, pin.span >= width, f">= {width:.6g} m, roller.width")
+
+
 def _require(field: str, value: float, holds: bool, limit: str) -> None:
     if not holds:
         raise InputError(field, f"{value:.6g} m", limit)
@@ -342,13 +385,14 @@ def _require(field: str, value: float, holds: bool, limit: str) -> None:
 
 def _check_names(case: Case) -> None:
     known = ", ".join(sorted(case.materials))
+    pin = None if case.roller_given is None else case.roller_given.pin
     for field, name in (
         ("cam.material", case.cam.material),
-        ("roller.material", case.roller.material),
+        (f"{case.facing_field}.material", case.facing.material),
         ("follower.stem_material", case.follower.stem_material),
         ("guides.a.material", case.guides.a.material),
         ("guides.b.material", case.guides.b.material),
-        *((("roller.pin.material", case.roller.pin.material),) if case.roller.pin else ()),
+        *(() if pin is None else (("roller.pin.material", pin.material),)),
     ):
         if name not in case.materials:
             raise InputError(field, name, f"one of the materials: {known}")

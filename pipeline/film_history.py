@@ -1,4 +1,4 @@
-"""The oil film between cam and roller along the turn, as the case asks for it."""
+"""The oil film between cam and follower along the turn, as the case asks for it."""
 
 from __future__ import annotations
 
@@ -81,19 +81,19 @@ def film_history(
         Lubricant(oil.viscosity, oil.pressure_viscosity),
     )
     thickness = minimum_film(groups)
-    cam, roller = case.cam.roughness, case.roller.roughness
-    if cam is None or roller is None:
+    cam, other = case.cam.roughness, case.facing.roughness
+    if cam is None or other is None:
         return FilmHistory(thickness)
-    ratio = lambda_ratio(thickness, cam, roller)
+    ratio = lambda_ratio(thickness, cam, other)
     if oil.film == "smooth":
         return FilmHistory(thickness, ratio)
     mixed, refusal = mixed_film_where_it_holds(
-        groups, float(np.hypot(cam, roller)), BRINELL * _softer(case), contact_modulus
+        groups, float(np.hypot(cam, other)), BRINELL * _softer(case), contact_modulus
     )
     return FilmHistory(thickness, ratio, mixed, refusal)
 
 
 def _softer(case: Case) -> float:
     """Brinell hardness of the softer surface; the case has seen to it that both are known."""
-    cards = (case.material(case.cam.material), case.material(case.roller.material))
+    cards = (case.material(case.cam.material), case.material(case.facing.material))
     return min(card.hardness for card in cards if card.hardness is not None)

@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from geometry.arrays import FULL_TURN
-from geometry.eccentric import Eccentric
+from geometry.contour import Contour
+from geometry.eccentric import Eccentric, face_lift
 from geometry.errors import InputError
+from geometry.flat_face import FacePath, FlatFaceContour
 from geometry.lift import Lift
 from geometry.lift_fit import FittedLift, fitted_lift, lift_through
 from geometry.motion import Motion, Segment
+from geometry.pitch_curve import PitchCurve
 from pipeline.engine.trace import read_trace
 from pipeline.lift_fields import LiftEccentric, LiftPoints, LiftSegments, LiftTable
 
@@ -51,6 +54,8 @@ def given_lift(case: Case) -> Lift:
             [point.angle for point in given.points], [point.lift for point in given.points]
         )
     if isinstance(given, LiftEccentric):
+        if case.follower.kind == "flat":
+            return face_lift(given.eccentricity)
         return eccentric_of(case, given).lift()
     if given is None:
         raise InputError("lift", "missing", "given where the road starts at it")
@@ -59,6 +64,22 @@ def given_lift(case: Case) -> Lift:
         return fit.lift
     trace = read_trace(case.path(given.file), "lift", period=FULL_TURN)
     return Lift.from_samples(trace.angle, trace.values)
+
+
+def contour_of(case: Case, lift: Lift) -> Contour:
+    """The cam that moves the follower of a case so, whatever its kind.
+
+    Raises
+    ------
+    InputError
+        For a roller or an offset beyond the base radius, or a face that the contact runs off.
+    """
+    base, offset = case.cam.pitch_base_radius, case.cam.offset
+    if case.follower.face is None:
+        return Contour(PitchCurve(lift, base, offset), case.roller.radius)
+    contour = FlatFaceContour(FacePath(lift, base, offset))
+    contour.require_face(case.follower.face.width)
+    return contour
 
 
 def lift_origin(case: Case) -> str:

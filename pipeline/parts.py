@@ -221,7 +221,7 @@ def _surge(spring: HelicalSpring, loads: Loads, cam_speed: float) -> Array:
 
 
 def _pin(case: Case, loads: Loads) -> Array | None:
-    pin = case.roller.pin
+    pin = None if case.roller_given is None else case.roller.pin
     if pin is None:
         return None
     overhung = pin.mounting == "overhung"

@@ -1,9 +1,9 @@
-"""What rolling does beside pressing: traction, creep, film, fatigue, stress at the bore."""
+"""What rolling or sliding does beside pressing: traction, creep, film, fatigue, bore."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,8 @@ from pipeline.contact.pair import ContactPair, CycleBodies
 from pipeline.contact.patch_tangential import rolling_increase
 from pipeline.contact.tangential import Drag, RollingContact, ring_inertia, rolling_contact
 from pipeline.film_history import FilmHistory, film_history
-from pipeline.follower.forces import FollowerSystem, follower_loads
+from pipeline.follower.flat_face import FaceSliding, face_motion
+from pipeline.follower.forces import FollowerSystem, Loads, follower_loads
 from pipeline.follower.roller import RollerMotion, roller_motion
 
 # Of the contact angles, every so many tell what the real body adds.
@@ -32,29 +33,34 @@ class RollingHistory:
     """One turn, arrays (n,) SI; None where the case does not say what it takes.
 
     traction_demand, tangential over normal force that rolling without slip asks for, NaN where
-    the contact is open; shear_range of the shear along the surface, in the cam; bore, None in a
-    look ahead; envelope, the map of greatest stresses; contact, with creep and skid; tau_max and
-    von_mises in the cam with the traction of rolling added, Pa; film.
+    the contact is open, None under a face; sliding, that of a face; shear_range of the shear
+    along the surface, in the cam; bore, None in a look ahead; envelope, the map of greatest
+    stresses; contact, with creep and skid; tau_max and von_mises in the cam with the traction of
+    rolling or sliding added, Pa; film.
     """
 
-    traction_demand: Array
     shear_range: Array
     bore: BoreStress | None
     envelope: Envelope
+    traction_demand: Array | None = None
+    sliding: FaceSliding | None = None
     contact: RollingContact | None = None
     tau_max: Array | None = None
     von_mises: Array | None = None
     film: FilmHistory | None = None
 
     def __post_init__(self) -> None:
-        freeze(self, traction_demand=self.traction_demand, shear_range=self.shear_range)
+        freeze(self, shear_range=self.shear_range)
+        if self.traction_demand is not None:
+            freeze(self, traction_demand=self.traction_demand)
 
     def columns(self) -> Mapping[str, Array]:
         """SI values by the names of the columns of ``5_cycle.csv``."""
-        found = {
-            "traction_demand": self.traction_demand,
-            "shear_range": self.shear_range,
-        }
+        found = {"shear_range": self.shear_range}
+        if self.traction_demand is not None:
+            found["traction_demand"] = self.traction_demand
+        if self.sliding is not None:
+            found |= self.sliding.columns()
         if self.bore is not None:
             found |= {
                 "bore_stress": self.bore.von_mises,
@@ -79,43 +85,89 @@ def rolling_history(
     case: Case,
     pair: ContactPair,
     bodies: CycleBodies | None,
-    theta: Array,
-    normal_force: Array,
+    loads: Loads,
     contact: ContactHistory,
     cam_speed: float,
 ) -> RollingHistory:
-    """The turn at cam angles theta (n,) rad, normal forces (n,) N, cam speed rad/s.
+    """The turn at the angles of its loads, cam speed rad/s.
 
     Without the meshed bodies it is a look ahead, on half-planes and with nothing of the bore.
     """
-    contour = pair.contour
-    motion = roller_motion(contour.pitch, contour.roller_radius, cam_speed, theta)
-    # Without friction given the roller holds: a limit that nothing reaches.
-    given = case.roller.friction
-    driven = _driven(case, motion, normal_force, contact, cam_speed, given or np.inf)
-    loaded = normal_force > 0
-    demand = np.abs(driven.demand) / np.where(loaded, normal_force, np.nan)
+    contour, theta, normal_force = pair.contour, loads.theta, np.asarray(loads.normal_force)
+    ride = _slid if case.follower.face is not None else _rolled
+    found = ride(case, pair, theta, normal_force, contact, cam_speed)
     shear = mises = None
-    if given is not None:
-        carried = driven.force / np.where(loaded, given * normal_force, 1.0)
-        more = rolling_increase(pair.cam.poisson, given, np.clip(np.abs(carried), 0.0, 1.0))
+    if found.carried is not None and case.facing.friction is not None:
+        more = rolling_increase(pair.cam.poisson, case.facing.friction, found.carried)
         shear, mises = contact.tau_max * more[0], contact.von_mises * more[1]
-    slip = driven.slip if given is not None else 0.0
-    entrained = entrainment_speed(motion.rolling_speed, slip)
     reach = rolling_pass(pair.cam.poisson).shear_range.max()
     return RollingHistory(
-        traction_demand=demand,
         shear_range=reach * contact.p0,
         bore=None
         if bodies is None
         else bore_stress(
             bodies.cam, contour.points(theta), contour.normal(theta), contact.line_load
         ),
-        envelope=_envelope(case, pair, bodies, theta, contact, cam_speed),
-        contact=driven if given is not None else None,
+        envelope=_envelope(case, pair, bodies, loads, contact, cam_speed),
+        traction_demand=found.demand,
+        sliding=found.sliding,
+        contact=found.contact,
         tau_max=shear,
         von_mises=mises,
-        film=film_history(case, contact, pair.contact_modulus, entrained),
+        film=film_history(case, contact, pair.contact_modulus, found.entrainment),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Ride:
+    """How the surfaces pass, (n,): entrainment m/s; carried, traction over friction times load."""
+
+    entrainment: Array
+    carried: Array | None = None
+    demand: Array | None = None
+    contact: RollingContact | None = None
+    sliding: FaceSliding | None = None
+
+
+def _rolled(
+    case: Case,
+    pair: ContactPair,
+    theta: Array,
+    normal_force: Array,
+    contact: ContactHistory,
+    cam_speed: float,
+) -> _Ride:
+    contour, given = pair.contour, case.roller.friction
+    motion = roller_motion(contour.pitch, contour.roller_radius, cam_speed, theta)
+    # Without friction given the roller holds: a limit that nothing reaches.
+    driven = _driven(case, motion, normal_force, contact, cam_speed, given or np.inf)
+    loaded = normal_force > 0
+    demand = np.abs(driven.demand) / np.where(loaded, normal_force, np.nan)
+    if given is None:
+        return _Ride(entrainment_speed(motion.rolling_speed), demand=demand)
+    carried = driven.force / np.where(loaded, given * normal_force, 1.0)
+    return _Ride(
+        entrainment_speed(motion.rolling_speed, driven.slip),
+        carried=np.clip(np.abs(carried), 0.0, 1.0),
+        demand=demand,
+        contact=driven,
+    )
+
+
+def _slid(
+    case: Case,
+    pair: ContactPair,
+    theta: Array,
+    normal_force: Array,
+    contact: ContactHistory,
+    cam_speed: float,
+) -> _Ride:
+    motion = face_motion(pair.contour.pitch, cam_speed, theta)
+    friction = case.follower.face_friction
+    return _Ride(
+        motion.entrainment,
+        carried=(normal_force > 0).astype(float),
+        sliding=FaceSliding.of(motion, contact.p0, normal_force, friction, cam_speed),
     )
 
 
@@ -154,18 +206,19 @@ def _envelope(
     case: Case,
     pair: ContactPair,
     bodies: CycleBodies | None,
-    theta: Array,
+    loads: Loads,
     contact: ContactHistory,
     cam_speed: float,
 ) -> Envelope:
     """The map at stations of its own, under the loads there."""
-    stations = uniform_turn(STATIONS)
-    loads = follower_loads(pair.contour.pitch, FollowerSystem.from_case(case), cam_speed, stations)
+    stations, theta = uniform_turn(STATIONS), loads.theta
+    system = replace(FollowerSystem.from_case(case), rubbing=loads.rubbing)
+    there = follower_loads(pair.contour.pitch, system, cam_speed, stations)
     card = case.material(case.cam.material)
     limits = None
     if card.fatigue_torsion is not None and card.fatigue_bending is not None:
         limits = FatigueLimits(card.fatigue_torsion, card.fatigue_bending)
-    load = np.maximum(loads.normal_force, 0.0) / pair.width
+    load = np.maximum(there.normal_force, 0.0) / pair.width
     added = None if bodies is None else added_stress(pair, bodies, theta, contact.line_load)
     return swept(pair, theta, contact, stations, load, limits=limits, body_stress=added)
 
@@ -222,6 +275,8 @@ def _worst(turn: RollingHistory) -> dict[str, Any]:
         loss = turn.contact.loss
         record["sliding_loss_J_per_cam_turn"] = loss if np.isfinite(loss) else None
         record["skidding_share"] = float(turn.contact.skidding.mean())
+    if turn.sliding is not None:
+        record["sliding_loss_J_per_cam_turn"] = turn.sliding.loss
     if turn.film is not None and turn.film.mixed is not None:
         record["mixed_film"] = turn.film.record()
     return record

@@ -252,10 +252,9 @@ def _cycle(
     done = finished(journey.case, pair.contour, given, contact)
     state = journey.case.at(given.load_case)
     speed = given.crank_speed / state.mechanism.gear_ratio
-    force = given.loads.normal_force
     return replace(
         done,
-        rolling=rolling_history(state, pair, bodies, given.theta, force, contact, speed),
+        rolling=rolling_history(state, pair, bodies, given.loads, contact, speed),
     )
 
 
@@ -300,9 +299,10 @@ def _crank_speed(
     running = [state for state in case.load_cases if state.name in torques and state.speed > 0]
     for number, state in enumerate(running):
         torque = torques[state.name]
+        rubbing = next(c.loads.rubbing for c in final.cycles if c.load_case == state.name)
         study = None
         try:
-            study = study_of(case.at(state.name), torque, state.speed, pitch)
+            study = study_of(case.at(state.name), torque, state.speed, pitch, rubbing)
         except CamError as error:  # a crank that stalls contradicts the case, not the cam
             ripple[state.name] = {"refused": str(error)}
         if study is not None:
@@ -313,7 +313,7 @@ def _crank_speed(
         asked = None
         if final.smoother is not None:
             asked = road.asked_torque(case, torque, final.smoother)
-        found = consistency(case.at(state.name), torque, state.speed, pitch, study, asked)
+        found = consistency(case.at(state.name), torque, state.speed, pitch, study, asked, rubbing)
         findings += [{"load_case": state.name, **one.as_record()} for one in found]
     measured = measurement_record(case)
     return {"speed": ripple or None, "consistency": findings, "measurement": measured}

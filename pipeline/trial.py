@@ -15,7 +15,6 @@ from geometry.contour import Contour
 from geometry.energy import lift_from_torque
 from geometry.errors import GeometryError, ResultError
 from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
 from meshes.body import BodyMesh
 from meshes.files import write_msh
 from meshes.quality import Quality, gate, quality
@@ -35,7 +34,7 @@ from pipeline.contact.pair import (
 from pipeline.contact.pair_certificate import EDGES, contact_meshes
 from pipeline.cycle import Cycle, Turn
 from pipeline.engine.torque import Torque
-from pipeline.given_lift import given_lift
+from pipeline.given_lift import contour_of, given_lift
 from pipeline.measured import engine_torque
 from pipeline.smoothing.smoothers import Smoother, smoothed
 from pipeline.speed import speed_ripple
@@ -118,9 +117,8 @@ def asked_torque(case: Case, torque: Torque, smoother: Smoother) -> Array:
 
 
 def cam_contour(case: Case, lift: Lift) -> Contour:
-    """The cam that moves the roller so."""
-    pitch = PitchCurve(lift, case.cam.pitch_base_radius, case.cam.offset)
-    return Contour(pitch, case.roller.radius)
+    """The cam that moves the follower so."""
+    return contour_of(case, lift)
 
 
 def is_body(contour: Contour) -> bool:
@@ -248,16 +246,20 @@ def foreseen(case: Case, torques: Mapping[str, Torque], smoother: Smoother) -> t
     contour = cam_contour(case, designed_lift(case, torques, smoother))
     if not is_body(contour):
         raise GeometryError("the contour is undercut")
-    turns = turns_of(case, contour, torques, _OUTLOOK_POSITIONS)
+    turns = turns_of(case, contour, torques, _OUTLOOK_POSITIONS, ahead=True)
     found = tuple(cycles.closed_form_cycle(case, contour, given) for given in turns)
     return design_checks(TrialEvidence(case=case, contour=contour, cycles=found))
 
 
 def turns_of(
-    case: Case, contour: Contour, torques: Mapping[str, Torque], positions: int
+    case: Case,
+    contour: Contour,
+    torques: Mapping[str, Torque],
+    positions: int,
+    ahead: bool = False,
 ) -> tuple[Turn, ...]:
-    """Loads of every load case."""
+    """Loads of every load case; a look ahead takes them less finely."""
     return tuple(
-        cycles.turn(case, contour, torques.get(state.name), state.name, positions)
+        cycles.turn(case, contour, torques.get(state.name), state.name, positions, ahead)
         for state in case.load_cases
     )

@@ -1,4 +1,4 @@
-"""Limits on the material under the roller."""
+"""Limits on the material under the follower."""
 
 from __future__ import annotations
 
@@ -83,9 +83,10 @@ def shakedown(evidence: TrialEvidence) -> Check:
 
 
 def softer(evidence: TrialEvidence) -> tuple[str, Material]:
-    """Name and card of the body, cam or roller, that yields first."""
+    """Name and card of the body, cam or follower, that yields first."""
     case = evidence.case
-    cards = [(name, case.materials[name]) for name in (case.cam.material, case.roller.material)]
+    names = (case.cam.material, evidence.facing.material)
+    cards = [(name, case.materials[name]) for name in names]
     return min(cards, key=lambda card: card[1].yield_strength)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from pipeline.checks import (
     contact,
     evidence,
+    face,
     forces,
     function,
     geometry,
@@ -44,7 +45,7 @@ DESIGN: tuple[CheckFunction, ...] = (
 SLOW = (geometry.self_intersection, geometry.second_contact)
 """Searches over all pairs of places: too slow to foresee a cam not yet chosen."""
 
-ALL: tuple[CheckFunction, ...] = (*DESIGN, *rolling.CHECKS, *evidence.CHECKS)
+ALL: tuple[CheckFunction, ...] = (*DESIGN, *rolling.CHECKS, *face.CHECKS, *evidence.CHECKS)
 
 
 SIGNED: tuple[CheckFunction, ...] = (*signed.CHECKS, *manufacture.CHECKS)

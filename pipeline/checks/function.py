@@ -102,11 +102,11 @@ def energy_closure(evidence: TrialEvidence) -> Check:
 
 
 def friction_balance(evidence: TrialEvidence) -> Check:
-    """The torque spent on friction heats the guides, no more and no less."""
+    """The torque spent on friction heats guides and face, no more and no less."""
     worst = worst_case(evidence, lambda cycle: _heat_mismatch(evidence, cycle))
     return Check(
         id="friction_balance",
-        title="Friction loss against heat in the guides",
+        title="Friction loss against heat in guides and face",
         demand=worst.value,
         limit=evidence.limit("friction_balance", 1e-6),
         unit="-",
@@ -140,7 +140,8 @@ def _heat_mismatch(evidence: TrialEvidence, cycle: Cycle) -> float:
     friction = friction + np.abs(loads.viscous_force)
     spent = loads.cam_torque - (loads.spring_force + loads.inertia_force) * slope
     step = FULL_TURN / len(slope)
-    loss, heat = step * float(np.sum(spent)), step * float(np.sum(friction * np.abs(slope)))
+    loss = step * float(np.sum(spent))
+    heat = step * float(np.sum(friction * np.abs(slope) + loads.sliding_torque))
     return _relative(loss - heat, max(heat, 1e-9 * _stored(evidence, cycle)))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from geometry.arrays import FULL_TURN
 from geometry.extrema import greatest
 from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence
+from pipeline.checks.trial import TrialEvidence, rollers_only
 from pipeline.shop import largest_tool
 
 TOOL_ALLOWANCE = 1.1  # a hollow is ground by a wheel at least a tenth smaller
@@ -28,6 +28,7 @@ def closure(evidence: TrialEvidence) -> Check:
     )
 
 
+@rollers_only
 def pressure_angle(evidence: TrialEvidence) -> Check:
     """Greatest angle between the contact normal and the follower's axis."""
     value, theta = evidence.contour.pitch.pressure_angle_max()
@@ -47,6 +48,7 @@ def pressure_angle(evidence: TrialEvidence) -> Check:
     )
 
 
+@rollers_only
 def curvature_ratio(evidence: TrialEvidence) -> Check:
     """Least convex radius of the pitch curve beside that of the roller."""
     value, theta = evidence.contour.pitch.least_convex_radius()
@@ -65,20 +67,24 @@ def curvature_ratio(evidence: TrialEvidence) -> Check:
 
 
 def undercut(evidence: TrialEvidence) -> Check:
-    """What the offset by the roller leaves of the pitch curve's arc."""
+    """What the offset by the roller leaves of the pitch curve's arc, or a face of its height."""
     found = evidence.contour.undercut()
+    if evidence.rolls:
+        factor, default = "1 - r kappa", "1 - r kappa > 0, a cusp at zero, Rothbart (2004) ch. 6"
+        method = "least 1 - roller radius x pitch curvature, refined between samples"
+    else:
+        factor, default = "(r + s + s'')/(r + s)", "r + s + s'' > 0, Norton (2009) ch. 7"
+        method = "least radius of curvature over the face's height, refined between samples"
     return Check(
         id="undercut",
-        title="Undercut factor 1 - r kappa",
+        title=f"Undercut factor {factor}",
         demand=float(found.factor),
         limit=evidence.limit("undercut_factor", 0.3),
         unit="-",
         sense="at_least",
         cam_angle_deg=_degrees(found.theta),
-        source=evidence.source(
-            "undercut_factor", "1 - r kappa > 0, a cusp at zero, Rothbart (2004) ch. 6"
-        ),
-        method="least 1 - roller radius x pitch curvature, refined between samples",
+        source=evidence.source("undercut_factor", default),
+        method=method,
         lift_can_help=True,
     )
 
@@ -100,22 +106,23 @@ def self_intersection(evidence: TrialEvidence) -> Check:
 
 
 def second_contact(evidence: TrialEvidence) -> Check:
-    """The roller touches the cam in one place only."""
+    """The follower touches the cam in one place only."""
     value, theta = evidence.contour.clearance()
     depth = evidence.limit("second_contact_depth", SECOND_CONTACT_DEPTH)
     return Check(
         id="second_contact",
-        title="Roller cuts into another part of the cam",
+        title=f"{evidence.facing_name.capitalize()} cuts into another part of the cam",
         demand=1e3 * float(np.maximum(0.0, -value)),  # NaN stays, nothing in sight is no depth
         limit=None if depth is None else 1e3 * depth,
         unit="mm",
         cam_angle_deg=_degrees(theta),
         source=evidence.source("second_contact", "one contact at a time, Rothbart (2004) ch. 6"),
-        method="depth of the roller's circle in contour parts away from its contact",
+        method=f"depth of the {evidence.facing_name} in contour parts away from its contact",
         lift_can_help=True,
     )
 
 
+@rollers_only
 def concave_radius(evidence: TrialEvidence) -> Check | None:
     """Room for the tool in the hollow flanks; a cam without a hollow asks for none."""
     value, theta = evidence.contour.pitch.curvature_min()

@@ -112,10 +112,7 @@ def _reduction(cycle: Any, phase: float, ratio: float) -> float:
 
 def _path(evidence: TrialEvidence, theta: Array) -> Array:
     """Way of the contact along the contour per radian (n,), m."""
-    contour = evidence.contour
-    return np.abs(
-        contour.pitch.speed(theta) * (1.0 - contour.roller_radius * contour.pitch.curvature(theta))
-    )
+    return np.abs(evidence.contour.speed(theta))
 
 
 CHECKS = (profile_waviness, chord_error, phase_tolerance)

@@ -14,9 +14,10 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.errors import GeometryError
 from pipeline.checks.check import Check, not_described
-from pipeline.checks.trial import TrialEvidence, greatest, least, worst_case
-from pipeline.follower.bearing_cards import read_cards
+from pipeline.checks.trial import TrialEvidence, greatest, least, rollers_only, worst_case
 from pipeline.follower.cam_body import counter_hole, unbalance
+from pipeline.follower.ring import goodman
+from pipeline.outer_ring import why_solid
 
 if TYPE_CHECKING:
     from pipeline.cycle import Cycle
@@ -65,9 +66,11 @@ def elastic_contact(evidence: TrialEvidence) -> Check | None:
         return None
     worst = least(
         evidence,
-        lambda cycle: _parts(cycle).elastic.contact_force / evidence.preload(cycle),
+        lambda cycle: _parts(cycle).elastic.response.contact_force / evidence.preload(cycle),
     )
-    flights = sum(len(_parts(cycle).flights) for cycle in evidence.cycles)
+    histories = [_parts(cycle).elastic for cycle in evidence.cycles]
+    flights = sum(len(history.flights) for history in histories)
+    methods = "; ".join(dict.fromkeys(history.method for history in histories))
     return Check(
         id="elastic_contact",
         title="Least contact force over preload, elastic stem",
@@ -78,7 +81,7 @@ def elastic_contact(evidence: TrialEvidence) -> Check | None:
         source=evidence.source(
             "contact_force_margin", "0.2 to 0.3 of the preload at the highest speed, Norton (2009)"
         ),
-        method="harmonic balance of one mass on the stem's stiffness, friction-free",
+        method=f"one mass on the stem's stiffness, free of friction: {methods}",
         must_have=False,
         lift_can_help=True,
         note=f"{flights} losses of contact in a turn" if flights else "",
@@ -156,6 +159,7 @@ def _temperature(evidence: TrialEvidence, side: str, guide: Guide) -> Check | No
     )
 
 
+@rollers_only
 def roller_pin(evidence: TrialEvidence) -> Check | None:
     """Bending of the roller's pin."""
     if not _known(evidence):
@@ -185,30 +189,45 @@ def roller_pin(evidence: TrialEvidence) -> Check | None:
     )
 
 
+@rollers_only
 def roller_ring(evidence: TrialEvidence) -> Check | None:
-    """Bending of the bearing's outer ring, which rolls on the cam without a housing."""
+    """Fatigue of the bearing's outer ring, which bends on its balls as it rolls on the cam."""
     if not _known(evidence):
         return None
-    roller, title = evidence.case.roller, "Bending stress range of the roller's outer ring"
-    if roller.bearing.card is None:
-        note = "a plain bearing is rated in a housing; no card tells of balls and ring"
+    case, title = evidence.case, "Bending of the roller's outer ring on its balls"
+    ring = case.roller.bearing.ring
+    solid = why_solid(case)
+    if ring is None or solid:
+        note = f"{solid}: the contact takes the roller as solid on its hub"
         return not_described("roller_ring", title, "MPa", note, must_have=False)
-    material = evidence.case.material(roller.material)
-    worst = greatest(evidence, lambda cycle: _given(_parts(cycle).ring_stress))
-    strength = material.fatigue_bending
+    strength, tensile = ring.fatigue_bending, ring.tensile_strength
+    worst = greatest(evidence, lambda cycle: _ring_amplitude(_parts(cycle), tensile))
+    missing = [
+        f"no {name} of the ring is given"
+        for name, value in (("fatigue strength", strength), ("tensile strength", tensile))
+        if value is None
+    ]
     return Check(
         id="roller_ring",
         title=title,
-        demand=1e-6 * worst.value,
-        limit=None if strength is None else 2e-6 * strength,
+        demand=None if tensile is None else 1e-6 * worst.value,
+        limit=None if strength is None else 1e-6 * strength,
         unit="MPa",
-        source=f"twice the fatigue strength in bending; {material.source}",
-        method="ring of beam elements on its balls, which only push; all ball positions",
+        source=f"fatigue strength in bending; {ring.source}".rstrip("; "),
+        method="stress at the groove as the ring turns, finite elements on balls that only push,"
+        " all ball positions; its amplitude about no mean stress by Goodman's line",
         must_have=False,
         lift_can_help=True,
-        note=f"rated in a housing; {read_cards()[roller.bearing.card].source}",
+        note="; ".join(missing),
         **worst.place,
     )
+
+
+def _ring_amplitude(parts: PartsHistory, tensile_strength: float | None) -> Array:
+    amplitude, mean = _given(parts.ring_amplitude), _given(parts.ring_mean)
+    if tensile_strength is None:
+        return np.full_like(amplitude, np.nan)
+    return goodman(amplitude, mean, tensile_strength)
 
 
 def key_pressure(evidence: TrialEvidence) -> Check | None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence, greatest, worst_case
+from pipeline.checks.trial import TrialEvidence, greatest, rollers_only, worst_case
 from pipeline.follower.roller import rating_life, roller_motion
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ def _life(evidence: TrialEvidence, cycle: Cycle) -> float:
     return rating_life(force, spin, rating).hours if spin.any() else np.inf
 
 
+@rollers_only
 def roller_static(evidence: TrialEvidence) -> Check:
     """Static safety s0 of the bearing."""
     bearing = evidence.case.roller.bearing
@@ -56,6 +57,7 @@ def roller_static(evidence: TrialEvidence) -> Check:
     )
 
 
+@rollers_only
 def roller_life(evidence: TrialEvidence) -> Check:
     """Rating life of the bearing over the turn."""
     bearing = evidence.case.roller.bearing
@@ -84,6 +86,7 @@ def roller_life(evidence: TrialEvidence) -> Check:
     )
 
 
+@rollers_only
 def roller_speed(evidence: TrialEvidence) -> Check:
     """Roller speed against the share of the bearing's limiting speed."""
     bearing = evidence.case.roller.bearing

@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence, greatest, least, worst_case
+from pipeline.checks.trial import TrialEvidence, greatest, least, rollers_only, worst_case
 
 if TYPE_CHECKING:
     from pipeline.contact.envelope import Envelope
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from pipeline.part_fields import Material
 
 
+@rollers_only
 def roller_grip(evidence: TrialEvidence) -> Check:
     """Tangential force that rolling asks for against friction."""
     friction = evidence.case.roller.friction
@@ -49,7 +50,7 @@ def film_ratio(evidence: TrialEvidence) -> Check:
         for value, text in (
             (case.lubricant, "no lubricant"),
             (case.cam.roughness, "no roughness of the cam"),
-            (case.roller.roughness, "no roughness of the roller"),
+            (evidence.facing.roughness, f"no roughness of the {evidence.facing_name}"),
         )
         if value is None
     ]
@@ -69,7 +70,7 @@ def film_ratio(evidence: TrialEvidence) -> Check:
 
 
 def surface_fatigue(evidence: TrialEvidence) -> Check:
-    """Crossland's stress as the roller passes against the limit in torsion."""
+    """Crossland's stress as the follower passes against the limit in torsion."""
     name, card = _cam_material(evidence)
     torsion, safety = card.fatigue_torsion, evidence.limit("fatigue_safety", 1.0)
     known = torsion is not None and card.fatigue_bending is not None and safety is not None
@@ -117,7 +118,7 @@ def hardened_case(evidence: TrialEvidence) -> Check:
 def _demand(cycle: Cycle) -> Array:
     """Demand on grip (n,) where loaded; NaN where it is not known."""
     rolling = cycle.rolling
-    if rolling is None:
+    if rolling is None or rolling.traction_demand is None:
         return np.full(cycle.theta.size, np.nan)
     return np.where(np.isnan(rolling.traction_demand), 0.0, rolling.traction_demand)
 

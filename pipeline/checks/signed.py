@@ -11,7 +11,7 @@ import numpy as np
 from geometry.arrays import FULL_TURN, Array
 from pipeline.checks.check import Check
 from pipeline.checks.contact import softer
-from pipeline.checks.trial import TrialEvidence, greatest, least
+from pipeline.checks.trial import TrialEvidence, greatest, least, rollers_only
 from pipeline.contact import hertz
 
 RPM = 30.0 / math.pi
@@ -122,22 +122,22 @@ def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: flo
 
 
 def edge_pressure(evidence: TrialEvidence) -> Check:
-    """Pressure at the roller's ends, which a plane model cannot see."""
+    """Pressure at the ends of the line contact, which a plane model cannot see."""
     name, material = softer(evidence)
-    crowned = bool(getattr(evidence.case.roller, "crowned", False))
+    crowned = bool(getattr(evidence.facing, "crowned", False))
     factor = 1.0 if crowned else evidence.limit("edge_factor", 1.3)
     safety, endurance = evidence.limit("contact_safety", 1.0), material.endurance_pressure
     worst = greatest(evidence, lambda cycle: cycle.contact.p0)
     known = endurance is not None and safety is not None
     return Check(
         id="edge_pressure",
-        title="Pressure at the roller's ends against surface endurance",
+        title=f"Pressure at the {evidence.facing_name}'s ends against surface endurance",
         demand=None if factor is None else 1e-6 * factor * worst.value,
         limit=1e-6 * endurance / safety if known and endurance and safety else None,
         unit="MPa",
         source=evidence.source(
             "edge_factor",
-            f"derate 1.3 to 2 or crown the roller, shop practice: verify; {name}: "
+            f"derate 1.3 to 2 or crown the {evidence.facing_name}, shop practice: verify; {name}: "
             f"{material.source}",
         ),
         method=f"greatest contact pressure times {factor}; two dimensions cannot see the ends",
@@ -148,9 +148,9 @@ def edge_pressure(evidence: TrialEvidence) -> Check:
 
 
 def shakedown_traction(evidence: TrialEvidence) -> Check:
-    """Contact pressure against elastic shakedown with the roller sliding."""
+    """Contact pressure against elastic shakedown with the follower sliding."""
     name, material = softer(evidence)
-    friction = getattr(evidence.case.roller, "friction", None)
+    friction = getattr(evidence.facing, "friction", None)
     safety = evidence.limit("shakedown_safety", 1.0)
     worst = greatest(evidence, lambda cycle: cycle.contact.p0)
     limit = None
@@ -169,7 +169,9 @@ def shakedown_traction(evidence: TrialEvidence) -> Check:
         ),
         method="greatest contact pressure by finite elements; traction of full sliding",
         lift_can_help=True,
-        note="" if friction is not None else "no friction of the roller on the cam is given",
+        note=""
+        if friction is not None
+        else f"no friction of the {evidence.facing_name} on the cam is given",
         **worst.place,
     )
 
@@ -191,25 +193,25 @@ def shakedown_factor(friction: float) -> float:
 
 
 def guide_clearance(evidence: TrialEvidence) -> Check:
-    """Gap between guide A and whatever of cam and roller comes nearest."""
+    """Gap between guide A and whatever of cam and follower comes nearest."""
     case, contour = evidence.case, evidence.contour
     pitch, guide = contour.pitch, case.guides.a
     overhang = case.follower.overhang_at_max_lift
-    highest = math.sqrt(pitch.base_radius**2 - pitch.offset**2) + pitch.lift.highest.value
-    face = highest + overhang - 0.5 * guide.length
-    gap = min(
-        face - contour.radius_max().value, overhang - 0.5 * guide.length - contour.roller_radius
-    )
+    mouth = overhang - 0.5 * guide.length
+    highest = pitch.height_base + pitch.lift.highest.value + mouth
+    behind = contour.roller_radius if evidence.face is None else evidence.face.thickness
+    gap = min(highest - contour.radius_max().value, mouth - behind)
     asked = evidence.limit("clearance", 1e-3)
     return Check(
         id="guide_clearance",
-        title="Gap between guide A and cam or roller",
+        title=f"Gap between guide A and cam or {evidence.facing_name}",
         demand=1e3 * gap,
         limit=None if asked is None else 1e3 * asked,
         unit="mm",
         sense="at_least",
         source=evidence.source("clearance", "1 to 2 mm, shop practice: verify"),
-        method="guide's face less the greatest contour radius, and less the roller, at full lift",
+        method="guide's face less the greatest contour radius, and less the "
+        f"{evidence.facing_name}, at full lift",
         lift_can_help=True,
         note="the spring's and the frame's places are not in the case",
     )
@@ -233,6 +235,7 @@ def cam_envelope(evidence: TrialEvidence) -> Check:
     )
 
 
+@rollers_only
 def roller_radial(evidence: TrialEvidence) -> Check:
     """Greatest force on the roller against what its outer ring bears unsupported."""
     bearing = evidence.case.roller.bearing
@@ -298,8 +301,8 @@ def _overspeed(evidence: TrialEvidence) -> tuple[float, str]:
 
 def _contact_modulus(evidence: TrialEvidence) -> float:
     case = evidence.case
-    cam, roller = case.materials[case.cam.material], case.materials[case.roller.material]
-    return hertz.contact_modulus(cam.E, cam.nu, roller.E, roller.nu)
+    cam, other = case.materials[case.cam.material], case.materials[evidence.facing.material]
+    return hertz.contact_modulus(cam.E, cam.nu, other.E, other.nu)
 
 
 CHECKS = (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import wraps
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -14,8 +15,10 @@ from geometry.contour import Contour
 if TYPE_CHECKING:
     from meshes.quality import Quality
     from pipeline.case import Case
+    from pipeline.checks.check import Check
     from pipeline.contact.history import CertificatePoint
     from pipeline.cycle import Cycle
+    from pipeline.part_fields import Face, Roller
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +47,26 @@ class TrialEvidence:
     speed_ripple: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     searching: bool = False
 
+    @property
+    def rolls(self) -> bool:
+        """Whether the follower has a roller; else a flat face slides on the cam."""
+        return bool(np.isfinite(self.contour.roller_radius))
+
+    @property
+    def face(self) -> Face | None:
+        """The flat face of the follower; None where it has a roller."""
+        return None if self.rolls else self.case.follower.face
+
+    @property
+    def facing(self) -> Roller | Face:
+        """The part of the follower that touches the cam."""
+        return self.face or self.case.roller
+
+    @property
+    def facing_name(self) -> str:
+        """What that part is called."""
+        return "roller" if self.rolls else "face"
+
     def cam_speed(self, cycle: Cycle) -> float:
         """Cam speed of a load case, rad/s."""
         return float(cycle.crank_speed / self.case.mechanism.gear_ratio)
@@ -62,6 +85,18 @@ class TrialEvidence:
     def source(self, name: str, default: str) -> str:
         """The clause behind a limit: the case's own words where it has some."""
         return str(self.case.limits.sources.get(name) or default)
+
+
+def rollers_only(
+    check: Callable[[TrialEvidence], Check | None],
+) -> Callable[[TrialEvidence], Check | None]:
+    """The check where the follower has a roller; none under a flat face."""
+
+    @wraps(check)
+    def asked(evidence: TrialEvidence) -> Check | None:
+        return check(evidence) if evidence.rolls else None
+
+    return asked
 
 
 class Worst(NamedTuple):

@@ -1,109 +1,87 @@
-"""Forces and line contact of a translating flat-faced follower, in closed form."""
+"""Motion of a flat face on its cam, and what its sliding costs."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, finite, freeze, positive
-from geometry.errors import ContactError, InputError
-from geometry.flat_face import FlatFaceContour
-from pipeline.contact import hertz
-from pipeline.follower.forces import JAM_FLOOR, FollowerSystem
+from geometry.arrays import FULL_TURN, Array, finite, freeze
+from geometry.pitch_curve import PitchCurve
+
+_MEAN_SHARE = pi / 4.0  # mean over greatest pressure of Hertz's ellipse
 
 
 @dataclass(frozen=True, eq=False)
-class FlatFaceLoads:
-    """What acts on a flat-faced follower and on its contact; arrays (n,), SI.
+class FaceMotion:
+    """Speeds (n,) m/s of the surfaces under a face.
 
-    normal_force runs along the stem, `arm` off its axis; their moment presses the guides with
-    `reaction`, at A and B alike and opposite. jam_index must stay below 1 on the rise. half_width
-    and peak_pressure are those of Hertz; the relative radius is the contour's own.
+    sliding, of the cam's surface along the face; entrainment, the mean of both surfaces'
+    speeds through the contact, which itself runs along the face at w s''.
     """
 
-    theta: Array
-    lift: Array
-    arm: Array
-    normal_force: Array
-    reaction: Array
-    jam_index: Array
-    cam_torque: Array
-    line_load: Array
-    relative_radius: Array
-    half_width: Array
-    peak_pressure: Array
+    sliding: Array
+    entrainment: Array
 
     def __post_init__(self) -> None:
-        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
-
-    @property
-    def face_needed(self) -> float:
-        """Width of a centred face that carries the contact to its edges, m."""
-        return float(2.0 * np.max(np.abs(self.arm) + self.half_width))
+        freeze(self, sliding=self.sliding, entrainment=self.entrainment)
 
 
-def flat_face_loads(
-    contour: FlatFaceContour,
-    system: FollowerSystem,
-    cam_speed: float,
-    theta: ArrayLike,
-    contact_width: float,
-    contact_modulus: float,
-) -> FlatFaceLoads:
-    """Forces and Hertz contact under a flat face, guide friction included.
-
-    The push F at s' off the axis tilts the stem: the guides, b apart, answer with F s'/b each,
-    and rub with (mu_A + mu_B) |F s'|/b against the motion. Friction on the face is left out; a
-    follower that turns about its stem does away with most of it.
+def face_motion(path: PitchCurve, cam_speed: float, theta: ArrayLike) -> FaceMotion:
+    """Sliding w (r + s) and entrainment w |(r + s)/2 + s''| of a face.
 
     Parameters
     ----------
-    contour : FlatFaceContour
-    system : FollowerSystem
-    cam_speed : float           rad/s, >= 0
-    theta : array (n,)          rad
-    contact_width : float       along the line of contact, m, > 0
-    contact_modulus : float     E*, Pa, > 0
+    path : PitchCurve    a `FacePath`, whose height is r + s
+    cam_speed : float    w, rad/s
+    theta : array (n,)   rad
 
     Raises
     ------
-    ContactError
-        If the contour is undercut: no surface carries the face there.
+    InputError
+        If a value is not finite.
 
     References
     ----------
-    Norton, Cam Design and Manufacturing Handbook (2009), ch. 7; Johnson (1985), sec. 4.2(c).
+    Dowson, Harrison and Taylor, Inst. Mech. Engrs C 255 (1986): cam and flat-faced follower.
     """
-    angle = finite("theta", theta)
-    if not 0.0 <= cam_speed < np.inf:
-        raise InputError("cam_speed", cam_speed, ">= 0 rad/s")
-    positive("cam.width", contact_width, "m")
-    worst = contour.radius_of_curvature_min()
-    if not worst.value > 0.0:
-        where = float(np.degrees(worst.theta))
-        raise ContactError(f"the cam of the flat face is undercut at {where:.3f} deg")
-    lift, slope, bend = contour.pitch.lift.derivatives(angle, 2)
-    demand = system.preload + system.spring_rate * lift + system.mass * bend * cam_speed**2
-    demand = demand + system.mass * system.gravity_along_axis
-    friction = (system.friction_a + system.friction_b) / system.guide_spacing
-    jam_index = friction * np.abs(slope)
-    share = np.maximum(1.0 - np.sign(slope) * jam_index, JAM_FLOOR)
-    force = np.maximum(demand, 0.0) / share
-    radius = contour.radius_of_curvature(angle)
-    load = force / contact_width
-    half_width, pressure = hertz.line_contact(load, radius, contact_modulus)
-    return FlatFaceLoads(
-        theta=angle,
-        lift=lift,
-        arm=slope,
-        normal_force=force,
-        reaction=force * slope / system.guide_spacing,
-        jam_index=jam_index,
-        cam_torque=force * slope,
-        line_load=load,
-        relative_radius=radius,
-        half_width=half_width,
-        peak_pressure=pressure,
-    )
+    angle, speed = finite("theta", theta), float(finite("cam_speed", cam_speed))
+    height, bend = path.height(angle), path.lift(angle, 2)
+    return FaceMotion(speed * height, np.abs(speed * (0.5 * height + bend)))
+
+
+@dataclass(frozen=True, eq=False)
+class FaceSliding:
+    """A face that slides over one turn, arrays (n,) at equal angles.
+
+    speed m/s; pv, mean contact pressure times speed, Pa m/s; power W and loss J per turn of its
+    friction, zero where none is given.
+    """
+
+    speed: Array
+    pv: Array
+    power: Array
+    loss: float
+
+    def __post_init__(self) -> None:
+        freeze(self, speed=self.speed, pv=self.pv, power=self.power)
+
+    @classmethod
+    def of(
+        cls, motion: FaceMotion, peak: Array, force: Array, friction: float, cam_speed: float
+    ) -> FaceSliding:
+        """From peak pressures (n,) Pa and normal forces (n,) N."""
+        power = friction * np.maximum(force, 0.0) * motion.sliding
+        loss = float(power.mean()) * FULL_TURN / cam_speed
+        return cls(motion.sliding, _MEAN_SHARE * peak * motion.sliding, power, loss)
+
+    def columns(self) -> Mapping[str, Array]:
+        """SI values by the names of the columns of ``5_cycle.csv``."""
+        return {
+            "sliding_speed": self.speed,
+            "face_pv": self.pv,
+            "face_friction_power": self.power,
+        }

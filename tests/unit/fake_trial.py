@@ -124,6 +124,7 @@ def cycle(shape: Contour | None = None, load_case: str = "idle", scale: float = 
             friction_force_a=rub,
             friction_force_b=rub,
             viscous_force=np.zeros(POSITIONS),
+            sliding_torque=np.zeros(POSITIONS),
             cam_torque=(spring + inertia) * slope + 2.0 * rub * np.abs(slope),
             jam_index=0.2 + 0.1 * wave,
         ),

@@ -114,7 +114,7 @@ def test_a_recalled_number_makes_the_check_say_so():
     hard = case.model_copy(
         update={
             "cam": case.cam.model_copy(update={"material": "extra"}),
-            "roller": case.roller.model_copy(update={"material": "extra"}),
+            "roller_given": case.roller.model_copy(update={"material": "extra"}),
         }
     )
     import fake_trial as fake

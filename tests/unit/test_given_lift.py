@@ -123,8 +123,51 @@ def test_understated_noise_is_refused(tmp_path):
         given_lift(found)
 
 
-def test_flat_face_is_refused_on_this_road():
-    text = with_lift(segments()).replace("[follower]", '[follower]\nkind = "flat"')
-    with pytest.raises(InputError, match=r"follower\.kind = flat, must be .roller.:"):
-        parse_case(text)
-    assert case(segments()).follower.kind == "roller"
+ECCENTRIC = '[lift]\nkind = "eccentric"\neccentricity = "8 mm"\n'
+
+
+def flat(text, width="18 mm"):
+    """A case of `text` with a flat face in place of its roller."""
+    start, end = text.index("[roller]"), text.index("[follower]")
+    face = f"""
+[follower.face]
+width = "{width}"
+depth = "10 mm"
+thickness = "5 mm"
+friction = 0.08
+material = "hardened_steel"
+"""
+    rest = text[end:].replace("[follower]", '[follower]\nkind = "flat"')
+    cut = rest.index("\n[", 1)
+    return text[:start] + rest[:cut] + "\n" + face + rest[cut:]
+
+
+def test_flat_face_takes_the_place_of_the_roller():
+    found = parse_case(flat(with_lift(ECCENTRIC)))
+    assert found.facing is found.follower.face
+    assert found.follower.face_friction == 0.08
+    assert parse_case(found.to_toml()) == found
+    lift = given_lift(found)
+    theta = np.linspace(0, 2 * np.pi, 50)
+    np.testing.assert_allclose(lift(theta), 0.008 * (1 - np.cos(theta)), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda t: flat(t, "15.9 mm"), r"follower\.face\.width = 0\.0159 m, must be > 0\.016 m"),
+        (lambda t: flat(t, "-1 mm"), r"follower\.face\.width = -1 mm, must be > 0"),
+        (
+            lambda t: flat(t).replace('kind = "flat"', 'kind = "roller"'),
+            r"follower\.face = a table",
+        ),
+        (lambda t: flat(t).replace("thickness", "thikness"), r"follower\.face\.thikness = unknown"),
+        (lambda t: flat(t).replace("= 0.08", "= 2.0"), r"follower\.face\.friction = 2\.0, must be"),
+        (lambda t: flat(t) + t[t.index("[roller]") : t.index("[follower]")], "roller = a table"),
+        (lambda t: t.replace("[follower]", '[follower]\nkind = "flat"'), "follower.face = missing"),
+        (lambda t: t[: t.index("[roller]")] + t[t.index("[follower]") :], "roller = missing"),
+    ],
+)
+def test_bad_face_is_refused(change, message):
+    with pytest.raises(InputError, match=message):
+        parse_case(change(with_lift(ECCENTRIC)))
