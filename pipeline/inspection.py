@@ -158,10 +158,7 @@ def _cycle(case: Case, contour: Contour, bodies: CycleBodies, given: Turn) -> Cy
     done = finished(case, contour, given, contact)
     state = case.at(given.load_case)
     speed = given.crank_speed / state.mechanism.gear_ratio
-    force = given.loads.normal_force
-    return replace(
-        done, rolling=rolling_history(state, pair, bodies, given.theta, force, contact, speed)
-    )
+    return replace(done, rolling=rolling_history(state, pair, bodies, given.loads, contact, speed))
 
 
 def write_inspection(run: Path, case: Case, part: RealPart, tolerance: float) -> dict[str, Any]:
