@@ -184,7 +184,11 @@ def _outcome(
     try:
         at, shape = applied(case, corner), _shape(contour, corner)
         turns = tuple(
-            _turned(turn(at, shape, torques.get(state.name), state.name, POSITIONS), at, corner)
+            _turned(
+                turn(at, shape, torques.get(state.name), state.name, POSITIONS, ahead=True),
+                at,
+                corner,
+            )
             for state in at.load_cases
         )
         cycles = tuple(foreseen_cycle(at, shape, given) for given in turns)
