@@ -13,6 +13,7 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from geometry.errors import InputError
 from pipeline.cards.fill import filled
 from pipeline.case_fields import Name, Section, Text
+from pipeline.case_folder import inside
 from pipeline.case_text import to_toml
 from pipeline.cylinder_fields import Cylinder
 from pipeline.design_fields import (
@@ -242,27 +243,12 @@ def _read_includes(case: Case, folder: Path | None) -> dict[str, bytes]:
     for field, name in includes(case):
         if folder is None:
             raise InputError(field, name, "left out where a case has no folder")
-        content = _read(_inside(folder, name, field), field, INCLUDE_BYTES)
+        content = _read(inside(folder, name, field), field, INCLUDE_BYTES)
         kept = kept_as(name)
         if origin.setdefault(kept, name) != name:
             raise InputError(field, name, f"another file name than that of {origin[kept]}")
         read[kept] = content
     return read
-
-
-def _inside(folder: Path, name: str, field: str) -> Path:
-    """The file `name` under `folder`; refuses every way out of it, links too."""
-    limit = "a relative path that stays in the case file's folder"
-    path = Path(name)
-    if path.is_absolute() or ".." in path.parts or "\\" in name or ":" in name:
-        raise InputError(field, name, limit)
-    try:
-        resolved = (folder / path).resolve()
-    except (OSError, ValueError, RuntimeError):
-        raise InputError(field, name, "a readable file") from None
-    if not resolved.is_relative_to(folder.resolve()):
-        raise InputError(field, name, limit)
-    return resolved
 
 
 def _check_road(case: Case) -> None:

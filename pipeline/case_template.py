@@ -53,6 +53,7 @@ gear_ratio = 2.0                     # crank turns per cam turn
 rate = "24.2 kN/m"
 preload = "400 N"                    # at the smallest cam radius
 # travel_max = "40 mm"
+# catalogue = "shipped"              # or a file: puts in the lightest spring for travel_max
 
 [cam]
 pitch_base_radius = "60 mm"          # smallest radius of the roller's CENTRE

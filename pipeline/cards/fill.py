@@ -1,7 +1,8 @@
 """Cards put into a case as it is read: ``card = "NAME"`` fills what its table leaves out.
 
 Cards come from the files shipped here and from ``cards.toml`` beside the case, which goes first.
-A filled case names no cards any more: its resolved text holds every number and its source.
+A filled case names no cards any more: its resolved text holds every number and its source. So it
+is with ``spring.catalogue``.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import Any
 
 from geometry.errors import InputError
 from pipeline import units
+from pipeline.cards.springs import put_spring
 from pipeline.follower import bearing_cards
 
 KINDS = ("materials", "bushes", "oils", "wires", "bearings")
@@ -39,6 +41,7 @@ def filled(data: Mapping[str, Any], folder: Path | None) -> dict[str, Any]:
         For a card that is not there, or a file of cards that cannot be read.
     """
     case = {key: _copied(value) for key, value in data.items()}
+    put_spring(case, folder)
     asked = [place for place in _places(case) if isinstance(place[2], dict) and "card" in place[2]]
     if not asked:
         return case

@@ -1,0 +1,154 @@
+"""``spring.catalogue`` in a case: what it finds, what it refuses."""
+
+import pytest
+
+from geometry.errors import InputError
+from pipeline.case import load_case_file, parse_case
+from pipeline.case_template import template
+from pipeline.follower.spring import case_spring
+from pipeline.follower.spring_catalogue import CATALOGUE, SpringDemand, read_catalogue
+
+WIRE = """
+[wires.steel]
+shear_modulus = "80 GPa"
+density = "7850 kg/m^3"
+strength_at_1mm = "2000 MPa"
+exponent = 0.1
+peened = true
+source = "a test"
+"""
+SPRING = """
+[[spring]]
+name = "{name}"
+wire = "steel"
+wire_diameter = "{wire} mm"
+mean_diameter = "{mean} mm"
+coils = {coils}
+free_length = "120 mm"
+"""
+
+
+def case_text(*lines, preload="400 N"):
+    asked = "\n".join(["[spring]", *lines])
+    return (
+        template("spring")
+        .replace("[spring]", asked, 1)
+        .replace('# travel_max = "40 mm"', "", 1)
+        .replace('preload = "400 N"', f'preload = "{preload}"', 1)
+    )
+
+
+def shipped(travel="25 mm", **changes):
+    return parse_case(case_text('catalogue = "shipped"', f'travel_max = "{travel}"', **changes))
+
+
+def test_the_lightest_of_the_shipped_springs_becomes_the_design():
+    """By brute force over the catalogue; the resolved case holds it and asks for no file."""
+    case = shipped()
+    spring = case_spring(case)
+    demand = SpringDemand(case.spring.rate, case.spring.preload, 0.025)
+    will_do = [each for each in read_catalogue() if not demand.shortfalls(each)]
+    assert spring.mass == pytest.approx(min(each.mass for each in will_do), rel=1e-12)
+    assert len(will_do) > 1
+    assert "lightest of" in case.spring.design.source
+    assert "verify" in case.spring.design.source
+    assert parse_case(case.to_toml()) == case
+
+
+def test_tolerances_and_preloads_of_states_ask_for_more():
+    """The hardest spring that may come, at the greatest preload, decides; both rule springs out."""
+    base = case_spring(shipped()).mass
+    spread = parse_case(
+        case_text(
+            'catalogue = "shipped"', 'travel_max = "25 mm"', "preload_tolerance = 0.5",
+        )
+    )  # fmt: skip
+    stiffer = parse_case(
+        case_text('catalogue = "shipped"', 'travel_max = "25 mm"')
+        + '\n[[load_case]]\nname = "hard"\nspeed = "1500 rpm"\npreload = "600 N"\n'
+    )
+    assert case_spring(spread) == case_spring(stiffer)
+    assert case_spring(spread).mass > base
+
+
+def test_a_catalogue_beside_the_case(tmp_path):
+    rows = [SPRING.format(name=n, wire=w, mean=m, coils=c) for n, w, m, c in (
+        ("heavy", 6, 40, 8.4), ("light", 5, 32, 7.9), ("soft", 4, 40, 10)
+    )]  # fmt: skip
+    (tmp_path / "own.toml").write_text(WIRE + "".join(rows))
+    path = tmp_path / "case.toml"
+    path.write_text(case_text('catalogue = "own.toml"', 'travel_max = "25 mm"'))
+    case = load_case_file(path)
+    assert case.spring.design.wire_diameter == pytest.approx(5e-3)
+    assert "light" in case.spring.design.source
+    path.write_text(case_text('catalogue = "own.toml"', 'travel_max = "60 mm"'))
+    with pytest.raises(InputError, match=r"spring\.catalogue = own\.toml.*light: goes solid"):
+        load_case_file(path)
+
+
+@pytest.mark.parametrize(
+    ("lines", "match"),
+    [
+        (('catalogue = "shipped"',), r"spring\.travel_max = missing"),
+        (('catalogue = "shipped"', 'travel_max = "0 mm"'), r"travel_max = 0 mm, must be > 0"),
+        (('catalogue = "shipped"', "travel_max = 25"), "a number with a unit"),
+        (("catalogue = 3", 'travel_max = "25 mm"'), r'a file name, or "shipped"'),
+        (('catalogue = ""', 'travel_max = "25 mm"'), r"spring\.catalogue"),
+        (('catalogue = "../own.toml"', 'travel_max = "25 mm"'), "where a case has no folder"),
+        (('catalogue = "shipped"', 'travel_max = "300 mm"'), "nearest are"),
+        (
+            ('catalogue = "shipped"', 'travel_max = "25 mm"', "design = {coils = 5}"),
+            r"spring\.design = a table, must be left out",
+        ),
+        (('catalogue = "shipped"', 'travel_max = "9 mm"', "rate_tolerance = true"), "rate_tol"),
+    ],
+)  # fmt: skip
+def test_refuses(lines, match):
+    with pytest.raises(InputError, match=match):
+        parse_case(case_text(*lines))
+
+
+@pytest.mark.parametrize("name", ["../own.toml", "/etc/hostname", "a\\b.toml", "absent.toml"])
+def test_stays_in_the_folder_of_the_case(tmp_path, name):
+    path = tmp_path / "case.toml"
+    path.write_text(case_text(f"catalogue = '{name}'", 'travel_max = "25 mm"'))
+    with pytest.raises(InputError, match="catalogue"):
+        load_case_file(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "match"),
+    [
+        ("wires = 3\nspring = []", r"catalogue\.wires = 3, must be tables"),
+        ("spring = 3\n[wires]", r"catalogue\.spring = 3, must be tables"),
+        ("spring = [1]\n[wires]", r"catalogue\.spring\[0\] = 1, must be a table"),
+        ("wires = {a = 1}\nspring = []", r"catalogue\.wires\.a = 1, must be a table"),
+        ("colour = 1", r"catalogue\.colour = unknown key"),
+        (WIRE + 2 * SPRING.format(name="a", wire=5, mean=32, coils=8), "unlike every other"),
+        (WIRE + SPRING.format(name="a", wire=5, mean=32, coils='"8"'), "a number without a unit"),
+        (WIRE + SPRING.format(name="a", wire=5, mean=32, coils="nan"), "a number without a unit"),
+        (WIRE.replace("true", "1") + "\n[[spring]]", "true or false"),
+        (WIRE + SPRING.format(name="", wire=5, mean=32, coils=8), "printable text"),
+        (WIRE + "spring = " + 5000 * "[" + 5000 * "]", "catalogue"),
+    ],
+)
+def test_refuses_a_hostile_catalogue(tmp_path, text, match):
+    path = tmp_path / "own.toml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=match):
+        read_catalogue(path)
+
+
+def test_an_empty_catalogue_has_no_spring(tmp_path):
+    (tmp_path / "own.toml").write_text("[wires]")
+    path = tmp_path / "case.toml"
+    path.write_text(case_text('catalogue = "own.toml"', 'travel_max = "25 mm"'))
+    with pytest.raises(InputError, match="must be not empty"):
+        load_case_file(path)
+
+
+def test_refuses_a_huge_catalogue(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text(CATALOGUE.read_text() + 300 * 1024 * "#")
+    with pytest.raises(InputError, match="at most 256 KiB"):
+        read_catalogue(path)
