@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -44,12 +45,12 @@ class BearingLine:
         names = ("positions", "weights", "foundation", "play", "compliance")
         freeze(self, **{name: getattr(self, name) for name in names})
 
-    @property
+    @cached_property
     def stiffness(self) -> Array:
         """Of the bore at each knot, N/m."""
         return self.foundation * self.weights
 
-    @property
+    @cached_property
     def rigid_modes(self) -> Array:
         """Deflection at each knot under unit shift and unit tilt of the loaded end, (k, 2)."""
         return np.stack([np.ones_like(self.positions), self.positions], axis=1)
