@@ -1,15 +1,18 @@
-"""The convex program within each step of the synthesis, solved by Clarabel."""
+"""Convex programs with linear limits and second-order cones, solved by Clarabel."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import clarabel
 import numpy as np
-from scipy.sparse import csc_array, csr_array, eye_array, hstack, vstack
+from numpy.typing import ArrayLike
+from scipy.sparse import csc_array, csr_array, eye_array, vstack
 
 from geometry.arrays import Array
+from pipeline.checks.function import TORQUE_REDUCTION
 
 _ACCEPTED = ("Solved", "AlmostSolved")
 
@@ -45,6 +48,83 @@ class Answer:
     objective: float
 
 
+class Cones:
+    """A convex program of `size` unknowns x: a linear and quadratic cost, limits added in turn.
+
+    References
+    ----------
+    Goulart and Chen, Clarabel: an interior-point solver for conic programs (2024).
+    """
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self.cost = np.zeros(size)
+        self._quadratic = np.zeros((size, size))
+        self._linear: list[tuple[csr_array, Array]] = []
+        self._cones: list[tuple[csr_array, Array, int]] = []
+
+    def columns(self, matrix: Any, start: int) -> csr_array:
+        """A matrix (m, w) of the unknowns from `start` on, as one of them all, (m, size)."""
+        found = csr_array(matrix)
+        return csr_array(
+            (found.data, found.indices + start, found.indptr), shape=(found.shape[0], self.size)
+        )
+
+    def charge(self, slopes: ArrayLike, start: int = 0) -> None:
+        """Add slopes (w,) @ x to the cost."""
+        part = np.atleast_1d(np.asarray(slopes, dtype=float))
+        self.cost[start : start + part.size] += part
+
+    def charge_square(self, curvature: Array) -> None:
+        """Add x' H x / 2 to the cost; H (w, w), of the first unknowns, positive semidefinite."""
+        width = len(curvature)
+        self._quadratic[:width, :width] += curvature
+
+    def at_most(self, matrix: csr_array, bound: ArrayLike) -> None:
+        """matrix (m, size) @ x <= bound (m,)."""
+        self._linear.append((matrix, np.broadcast_to(bound, matrix.shape[:1])))
+
+    def norm_at_most(
+        self, slopes: Array, level: Array, variable: int, ceiling: float = 0.0
+    ) -> None:
+        """|level + slopes @ x| <= ceiling + x[variable]; slopes (m, w) of the first unknowns."""
+        block = np.zeros((level.size + 1, self.size))
+        block[0, variable] = -1.0
+        block[1:, : slopes.shape[1]] = -slopes
+        side = np.concatenate([[ceiling], level])
+        self._cones.append((csr_array(block), side, side.size))
+
+    def square_at_most(self, matrix: csr_array, room: csr_array, level: float) -> None:
+        """(matrix @ x)^2 <= level + room @ x, row by row, each (m, size)."""
+        rows = matrix.shape[0]
+        stacked = vstack([-room, -room, -2.0 * matrix], format="csr")
+        side = np.concatenate([np.full(rows, level + 1.0), np.full(rows, level - 1.0),
+                               np.zeros(rows)])  # fmt: skip
+        order = np.arange(3 * rows).reshape(3, rows).T.ravel()
+        self._cones.append((stacked[order], side[order], 3))
+
+    def solved(self) -> tuple[Array, Array, float] | None:
+        """x, the multipliers of the linear limits in turn, and the cost; None without an answer."""
+        blocks = [block for block, _ in self._linear] + [block for block, _, _ in self._cones]
+        sides = [side for _, side in self._linear] + [side for _, side, _ in self._cones]
+        linear = sum(side.size for _, side in self._linear)
+        cones = [clarabel.NonnegativeConeT(linear)]
+        for _, side, height in self._cones:
+            cones += [clarabel.SecondOrderConeT(height)] * (side.size // height)
+        settings = clarabel.DefaultSettings()
+        settings.verbose = False
+        settings.max_threads = 1
+        matrix = csc_array(vstack(blocks, format="csc"))
+        matrix.sum_duplicates()
+        found = clarabel.DefaultSolver(
+            csc_array(np.triu(self._quadratic)), self.cost, matrix, np.concatenate(sides),
+            cones, settings,
+        ).solve()  # fmt: skip
+        if str(found.status) not in _ACCEPTED:
+            return None
+        return np.asarray(found.x), np.asarray(found.z)[:linear], float(found.obj_val)
+
+
 def solved(
     norms: Sequence[Norm],
     rows: Sequence[Rows],
@@ -70,93 +150,47 @@ def solved(
 
     References
     ----------
-    Goulart and Chen, Clarabel: an interior-point solver for conic programs (2024);
     Fletcher, Practical Methods of Optimization (1987), sec. 14.3: the exact penalty.
     """
     size = slope.size
     names = list(dict.fromkeys(row.name for row in rows if row.elastic))
-    bounded = any(norm.ceiling is not None for norm in norms)
-    total = size + 1 + len(names) + bounded  # x, ripple, slacks, slack of the ceilings
-    blocks, sides, cones = _linear_part(rows, names, total, size, box)
-    for norm in norms:
-        block, side = _cone(norm.slopes * norm.weight, norm.level * norm.weight, total, size, None)
-        blocks.append(block)
-        sides.append(side)
-        cones.append(clarabel.SecondOrderConeT(side.size))
-        if norm.ceiling is not None:
-            block, side = _cone(norm.slopes, norm.level, total, total - 1, norm.ceiling)
-            blocks.append(block)
-            sides.append(side)
-            cones.append(clarabel.SecondOrderConeT(side.size))
-    cost = np.concatenate([slope, [ripple_weight], np.full(total - size - 1, penalty)])
-    quadratic = np.zeros((total, total))
-    quadratic[:size, :size] = np.triu(curvature)
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_threads = 1
-    found = clarabel.DefaultSolver(
-        csc_array(quadratic), cost, vstack(blocks, format="csc"), np.concatenate(sides),
-        cones, settings,
-    ).solve()  # fmt: skip
-    if str(found.status) not in _ACCEPTED:
-        return None
-    values, duals = np.asarray(found.x), np.asarray(found.z)
-    return _answer(values, duals, rows, names, size, float(found.obj_val), bounded)
-
-
-def _linear_part(
-    rows: Sequence[Rows], names: list[str], total: int, size: int, box: Array
-) -> tuple[list[csr_array], list[Array], list[object]]:
-    blocks, sides = [], []
+    if any(norm.ceiling is not None for norm in norms):
+        names.append(TORQUE_REDUCTION)
+    program = Cones(size + 1 + len(names))  # x, ripple, slacks
+    program.charge_square(curvature)
+    program.charge(np.concatenate([slope, [ripple_weight], np.full(len(names), penalty)]))
     for row in rows:
-        height = row.level.size
-        right = csr_array((height, total - size))
+        matrix = program.columns(row.slopes, 0)
         if row.elastic:
-            place = 1 + names.index(row.name)
-            right = csr_array(
-                (-np.ones(height), (np.arange(height), np.full(height, place))),
-                shape=(height, total - size),
-            )
-        blocks.append(hstack([row.slopes, right], format="csr"))
-        sides.append(-row.level)
-    identity = eye_array(total, format="csr")
-    blocks += [identity[:size], -identity[:size], -identity[size + 1 :]]
-    sides += [box[1], -box[0], np.zeros(total - size - 1)]
-    return blocks, sides, [clarabel.NonnegativeConeT(sum(side.size for side in sides))]
-
-
-def _cone(
-    slopes: Array, level: Array, total: int, bound: int, ceiling: float | None
-) -> tuple[csr_array, Array]:
-    """|level + slopes x| <= the variable `bound`, with the ceiling on top where there is one."""
-    block = np.zeros((level.size + 1, total))
-    block[0, bound] = -1.0
-    block[1:, : slopes.shape[1]] = -slopes
-    return csr_array(block), np.concatenate([[ceiling or 0.0], level])
-
-
-def _answer(
-    values: Array,
-    duals: Array,
-    rows: Sequence[Rows],
-    names: list[str],
-    size: int,
-    objective: float,
-    bounded: bool,
-) -> Answer:
-    multipliers: dict[str, Array] = {}
-    start = 0
-    for row in rows:
-        part = duals[start : start + row.level.size]
-        multipliers[row.name] = np.concatenate([multipliers.get(row.name, np.zeros(0)), part])
-        start += row.level.size
-    slack = {name: float(values[size + 1 + k]) for k, name in enumerate(names)}
-    if bounded:
-        slack["torque_reduction"] = float(values[-1])
+            relief = csr_array(np.ones((row.level.size, 1)))
+            matrix = matrix - program.columns(relief, size + 1 + names.index(row.name))
+        program.at_most(matrix, -row.level)
+    identity = eye_array(program.size, format="csr")
+    program.at_most(identity[:size], box[1])
+    program.at_most(-identity[:size], -box[0])
+    program.at_most(-identity[size + 1 :], 0.0)
+    for norm in norms:
+        program.norm_at_most(norm.slopes * norm.weight, norm.level * norm.weight, size)
+        if norm.ceiling is not None:
+            program.norm_at_most(norm.slopes, norm.level, program.size - 1, norm.ceiling)
+    found = program.solved()
+    if found is None:
+        return None
+    values, duals, objective = found
     return Answer(
         step=values[:size],
         ripple=float(values[size]),
-        slack=slack,
-        multipliers=multipliers,
+        slack={name: float(values[size + 1 + k]) for k, name in enumerate(names)},
+        multipliers=_multipliers(rows, duals),
         objective=objective,
     )
+
+
+def _multipliers(rows: Sequence[Rows], duals: Array) -> dict[str, Array]:
+    found: dict[str, Array] = {}
+    start = 0
+    for row in rows:
+        part = duals[start : start + row.level.size]
+        found[row.name] = np.concatenate([found.get(row.name, np.zeros(0)), part])
+        start += row.level.size
+    return found

@@ -25,13 +25,18 @@ def corrections_of(cycles: Sequence[Cycle]) -> dict[str, Correction]:
 
 
 def _correction(cycle: Cycle) -> Correction:
-    guides, contact = cycle.guides, cycle.contact
+    guides, contact, parts = cycle.guides, cycle.contact, cycle.parts
+    jam = np.ones(1)
+    if parts is not None:
+        worst = parts.friction.greatest
+        jam = _ratio(worst.jam_index, worst.jam_index_statics)
     return Correction(
         contact=_ratio(contact.p0, contact.p0_hertz),
         guide_a=_ratio(guides.reaction_a, guides.statics_a),
         guide_b=_ratio(guides.reaction_b, guides.statics_b),
         rubbing_a=_ratio(guides.rubbing_load_a, guides.statics_a),
         rubbing_b=_ratio(guides.rubbing_load_b, guides.statics_b),
+        jam=jam,
     )
 
 

@@ -10,17 +10,13 @@ import numpy as np
 
 from geometry.errors import InputError
 from pipeline.case import Case
-from pipeline.checks.contact import SHAKEDOWN
-from pipeline.checks.geometry import TOOL_ALLOWANCE
-from pipeline.checks.guides import pv_limit
-from pipeline.contact.hertz import contact_modulus
-from pipeline.cycle import contact_width
+from pipeline.cycle import CREEP
 from pipeline.design_fields import LoadCase
 from pipeline.engine.torque import Torque
 from pipeline.part_fields import Guide
-from pipeline.shop import largest_tool
 from pipeline.smoothing.constrained import Problem
-from pipeline.smoothing.constraints import LIFE_UNIT, Correction, Machine, Ratings, Scenario
+from pipeline.smoothing.constraints import Correction, Machine, Scenario
+from pipeline.smoothing.ratings import ratings_of
 
 POINTS = 720
 
@@ -73,51 +69,6 @@ def problem_of(
     )
 
 
-def ratings_of(case: Case) -> Ratings:
-    """Limits of a case as the checks apply them."""
-    limits, roller, guides = case.limits, case.roller, case.guides
-    cards = [case.material(case.cam.material), case.material(roller.material)]
-    softer = min(cards, key=lambda card: card.yield_strength)
-    allowed = SHAKEDOWN * softer.yield_strength / np.sqrt(3.0) / limits.shakedown_safety
-    if softer.endurance_pressure is not None:
-        allowed = min(allowed, softer.endurance_pressure / limits.contact_safety)
-    modulus = contact_modulus(cards[0].E, cards[0].nu, cards[1].E, cards[1].nu)
-    bearing, tool = roller.bearing, largest_tool(case)
-    wear = None
-    if bearing.C is not None and limits.roller_life is not None:
-        wear = bearing.C**3 * LIFE_UNIT / (limits.roller_life / 3600.0)
-    return Ratings(
-        roller_radius=roller.radius,
-        offset=case.cam.offset,
-        travel=case.spring.travel_max,
-        pressure_angle=limits.pressure_angle,
-        jam_index=limits.jam_index,
-        curvature_ratio=limits.curvature_ratio,
-        undercut_factor=limits.undercut_factor,
-        hollow_radius=None if tool is None else TOOL_ALLOWANCE * tool,
-        cam_radius=limits.cam_radius,
-        pressure=float(allowed),
-        stiffness_of_contact=float(np.pi * contact_width(case) * roller.radius / modulus),
-        contact_force_margin=limits.contact_force_margin,
-        jump=min(limits.jump, _jump_share(case)),
-        normal_force=None if bearing.C0 is None else bearing.C0 / limits.roller_static_safety,
-        life_force_cubed=wear,
-        roller_spin=None
-        if bearing.speed_limit is None
-        else limits.roller_speed_share * bearing.speed_limit,
-        bush_pressure=(guides.a.pressure_limit, guides.b.pressure_limit),
-        bush_pv=(pv_limit(guides.a), pv_limit(guides.b)),
-        bush_area=(_area(guides.a), _area(guides.b)),
-    )
-
-
-def _jump_share(case: Case) -> float:
-    """Unloading inertia over spring force at the fastest load case that leaves the jump speed."""
-    fastest = max(state.speed for state in case.load_cases)
-    asked = (case.limits.jump_speed or 1.0) * max(case.limits.overspeed or fastest, fastest)
-    return float((fastest / asked) ** 2) if asked > 0 else 1.0
-
-
 def _scenarios(
     case: Case, state: LoadCase, torque: Torque | None, correction: Correction | None
 ) -> list[Scenario]:
@@ -129,7 +80,7 @@ def _scenarios(
     worst = (guides.a.friction_max, guides.b.friction_max)
     nominal = Scenario(
         name=state.name,
-        cam_speed=state.speed / case.mechanism.gear_ratio,
+        cam_speed=max(state.speed, CREEP) / case.mechanism.gear_ratio,
         torque=values - values.mean(),
         mass=follower.mass,
         guide_spacing=guides.spacing,
@@ -137,6 +88,7 @@ def _scenarios(
         friction_a=guides.a.friction,
         friction_b=guides.b.friction,
         viscous_damping=follower.viscous_damping,
+        preload_factor=1.0 if state.preload is None else state.preload / case.spring.preload,
         weight=0.0 if torque is None else state.ripple_weight,
         friction_worst=None if worst[0] is None or worst[1] is None else (worst[0], worst[1]),
         correction=correction or Correction.none(POINTS),
@@ -156,7 +108,7 @@ def _corners(case: Case, nominal: Scenario) -> list[Scenario]:
             nominal,
             name=f"{nominal.name}, k x {rate:g}, P x {preload:g}, mu {mu[0]:g} and {mu[1]:g}",
             rate_factor=rate,
-            preload_factor=preload,
+            preload_factor=preload * nominal.preload_factor,
             friction_a=mu[0],
             friction_b=mu[1],
             weight=0.0,
@@ -176,7 +128,3 @@ def _friction(a: Guide, b: Guide) -> list[tuple[float, float]]:
         (pair[0], pair[1]) for pair in (low, high) if pair[0] is not None and pair[1] is not None
     ]
     return found or [(a.friction, b.friction)]
-
-
-def _area(guide: Guide) -> float:
-    return guide.diameter * guide.length

@@ -8,29 +8,15 @@ import pytest
 from scipy.optimize import brentq, minimize
 
 from geometry.arrays import uniform_turn
-from geometry.contour import Contour
 from geometry.energy import lift_from_torque, spring_deflection, stored_energy
-from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
-from pipeline import cycle as cycles
 from pipeline import trial as road
 from pipeline.case import load_case_file
-from pipeline.checks.everything import design_checks
-from pipeline.checks.trial import TrialEvidence
 from pipeline.follower.forces import FollowerSystem, follower_loads
-from pipeline.smoothing.constrained import RESERVE, Problem, Search, synthesise
-from pipeline.smoothing.constraints import (
-    Jet,
-    Machine,
-    Mean,
-    Ratings,
-    Scenario,
-    load_utilisations,
-    shape_utilisations,
-)
+from pipeline.smoothing.constrained import RESERVE, Problem, synthesise
+from pipeline.smoothing.constraints import Machine, Ratings, Scenario
 from pipeline.smoothing.infeasible import infeasibility
 from pipeline.smoothing.prices import prices
-from pipeline.smoothing.problem import problem_of, ratings_of
 from pipeline.smoothing.smoothers import Smoother, smoothed
 from pipeline.smoothing.spline_energy import basis_matrix
 
@@ -72,82 +58,6 @@ def loads_of(design, case):
     pitch = PitchCurve(design.lift(), case.cam.pitch_base_radius)
     speed = case.load_cases[0].speed / 2
     return pitch, follower_loads(pitch, FollowerSystem.from_case(case), speed, uniform_turn(7200))
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_a_check_and_its_constraint_see_the_same_demand(seed):
-    case = load_case_file(CASES / "gx120-signed.toml")
-    random, theta = np.random.default_rng(seed), uniform_turn(720)
-    waves = sum(
-        random.normal() / k**3 * np.cos(k * theta + random.uniform(0, 6)) for k in range(1, 7)
-    )
-    lift = Lift(theta, 0.002 + 0.02 * (waves - waves.min()) / np.ptp(waves))
-    contour = Contour(PitchCurve(lift, case.cam.pitch_base_radius), case.roller.radius)
-    torques = road.engine_torques(case)
-    turns = road.turns_of(case, contour, torques, 720)
-    found = tuple(cycles.closed_form_cycle(case, contour, given) for given in turns)
-    checks = {c.id: c for c in design_checks(TrialEvidence(case, contour, found))}
-    ratings, machine = ratings_of(case), Machine(case.spring.rate, case.spring.preload, 0.056)
-    jet = Jet(*lift.derivatives(theta, 2))
-    seen = {}
-    for item in problem_of(case, torques).scenarios:
-        top = lift.highest.value
-        for name, value in load_utilisations(jet, top, machine, ratings, item).items():
-            use = float(np.max(value.value if isinstance(value, Mean) else value))
-            seen[name] = max(seen.get(name, -np.inf), use)
-    preload, limits = case.spring.preload, case.limits
-    # N / P >= margin is written as 1 + margin - N / P <= 1; the jump limit is the stricter one
-    assert checks["contact_force_margin"].demand == pytest.approx(
-        1 + limits.contact_force_margin - seen["contact_force_margin"], rel=1e-9
-    )
-    assert checks["jump"].demand == pytest.approx(seen["jump"] * ratings.jump, rel=1e-9)
-    assert preload == machine.preload
-    for name in ("jam_index", "roller_static", "roller_speed"):
-        assert checks[name].utilisation == pytest.approx(seen[name], rel=1e-9), name
-    # hours fall with the cube of the load
-    assert checks["roller_life"].utilisation == pytest.approx(seen["roller_life"] ** 3, rel=1e-9)
-
-
-def test_shape_limits_see_what_the_pitch_curve_says():
-    theta = uniform_turn(360)
-    lift = Lift(theta, 0.01 * (1 - np.cos(2 * theta)))
-    pitch = PitchCurve(lift, 0.05)
-    machine = Machine(24.2e3, 242.0, 0.05)
-    found = shape_utilisations(Jet(*lift.derivatives(theta, 2)), machine, RATINGS)
-    angle = np.tan(np.abs(pitch.pressure_angle(theta))) / np.tan(RATINGS.pressure_angle)
-    np.testing.assert_allclose(found["pressure_angle"], angle, rtol=1e-9, atol=1e-12)
-    bend = 0.008 * pitch.curvature(theta)
-    np.testing.assert_allclose(found["curvature_ratio"], 1.5 * bend, rtol=1e-9)
-    np.testing.assert_allclose(found["undercut"], bend / 0.7, rtol=1e-9)
-
-
-@pytest.mark.parametrize("free", [(), ("rate", "preload", "base_radius")])
-def test_gradients_match_differences(idle, free):
-    ranges = {"rate": (1e4, 4e4), "preload": (100.0, 400.0), "base_radius": (0.04, 0.07)}
-    given = replace(
-        problem(idle, normal_force=900.0, pressure=1e9, stiffness_of_contact=1e-12,
-                life_force_cubed=1e9, roller_spin=600.0, bush_pressure=(5e6, 5e6),
-                bush_pv=(1e6, 1e6), bush_area=(2e-4, 2e-4)),
-        freed={name: ranges[name] for name in free}, coefficients=24,
-    )  # fmt: skip
-    search = Search(given)
-    state = search.state(search.start + 2.0, given.machine)
-    size = 24 + len(free)
-    step, h = np.random.default_rng(5).normal(size=size), 1e-6
-    ends = [search.moved(state, side * h * step) for side in (1, -1)]
-    up, down = (search.utilisations(*end, search.turn) for end in ends)
-    for rows in search.limits(state, np.stack([-np.full(size, 50.0), np.full(size, 50.0)])):
-        if rows.name not in up or rows.level.size != np.size(up[rows.name]):
-            continue  # rows far from their limit are left out
-        differences = (up[rows.name] - down[rows.name]) / (2 * h)
-        exact = rows.slopes @ step
-        assert np.abs(exact).max() > 0, rows.name
-        smooth = np.abs(differences - exact) < 1e-6 * np.abs(exact).max()
-        assert smooth.mean() > 0.98, rows.name  # |s'| and |alpha| turn at a few points
-    norm = search.norms(state)[0]
-    ends = [np.linalg.norm(search.residuals(*end)[0]) for end in ends]
-    slope = norm.level @ norm.slopes @ step / np.linalg.norm(norm.level)
-    assert slope == pytest.approx((ends[0] - ends[1]) / (2 * h), rel=1e-6)
 
 
 def test_bound_on_the_pressure_angle_is_attained(limited, published):

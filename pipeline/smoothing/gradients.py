@@ -1,0 +1,91 @@
+"""Values of functions of the lift and the machine with all their derivatives, by complex steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from geometry.arrays import Array
+from pipeline.smoothing.constraints import Jet, Machine, Mean, Values, lift_jet
+
+Function = Callable[[Jet, Values, Machine], Mapping[str, "Values | Mean"]]
+FREED = ("rate", "preload", "base_radius")
+_STEP = 1e-30
+
+
+class Gradient(NamedTuple):
+    """A value and its partial derivatives by E, E', E'', E''' of each point and by the rest.
+
+    value (n,), local (4, n), shared (4, n): by the greatest lift, k, P, r0. For a `Mean` value
+    is (1,), shared (4, 1), and local has the share of each point.
+    """
+
+    value: Array
+    local: Array
+    shared: Array
+    mean: bool = False
+
+
+def differentiated(
+    function: Function,
+    energy: tuple[Array, ...],
+    highest: float,
+    machine: Machine,
+    freed: bool,
+) -> dict[str, Gradient]:
+    """Values of a function of the jets with all its derivatives.
+
+    Parameters
+    ----------
+    function : callable   jet, greatest lift, machine -> values by name
+    energy : four arrays (n,)   E, E', E'', E'''
+    highest : float       greatest lift of the turn, m
+    machine : Machine
+    freed : bool          derivatives by k, P, r0 are asked for; else they are zero
+
+    References
+    ----------
+    Squire and Trapp, SIAM Review 40 (1998) 110: the complex step has no cancellation.
+    """
+
+    def sides(parts: tuple[Any, ...], top: Values, given: Machine) -> dict[str, Array]:
+        found = function(lift_jet(parts, given), top, given)
+        return {name: np.imag(_terms(value)) / _STEP for name, value in found.items()}
+
+    step = 1j * _STEP
+    directions = [
+        sides(tuple(part + step * (j == k) for j, part in enumerate(energy)), highest, machine)
+        for k in range(len(energy))
+    ]
+    directions.append(sides(energy, highest + step, machine))
+    for name in FREED if freed else ():
+        other = replace(machine, **{name: getattr(machine, name) + step})
+        directions.append(sides(energy, highest, other))
+    values = function(lift_jet(energy, machine), highest, machine)
+    return {
+        name: _gradient(value, [direction[name] for direction in directions], len(energy))
+        for name, value in values.items()
+    }
+
+
+def _terms(value: Values | Mean) -> Values:
+    return value.terms if isinstance(value, Mean) else value
+
+
+def _gradient(value: Values | Mean, sides: list[Array], orders: int) -> Gradient:
+    none = np.zeros_like(sides[0])
+    local = np.stack(sides[:orders])
+    shared = np.stack([*sides[orders:], *[none] * (orders + 1 + len(FREED) - len(sides))])
+    if not isinstance(value, Mean):
+        return Gradient(np.asarray(value, dtype=float), local, shared)
+    mean = float(np.mean(value.terms))
+    front = value.power * mean ** (value.power - 1.0) if mean > 0 else 0.0
+    return Gradient(
+        value.value,
+        front / none.size * local,
+        front * shared.mean(axis=1, keepdims=True),
+        mean=True,
+    )
