@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pipeline.checks import demands
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest, least
 
@@ -31,7 +32,9 @@ def jump(evidence: TrialEvidence) -> Check:
     """Share of the spring force that the follower's inertia takes away from the contact."""
     worst = greatest(
         evidence,
-        lambda cycle: np.maximum(-cycle.loads.inertia_force, 0.0) / cycle.loads.spring_force,
+        lambda cycle: np.maximum(
+            demands.unloading(cycle.loads.inertia_force, cycle.loads.spring_force), 0.0
+        ),
     )
     return Check(
         id="jump",
@@ -50,10 +53,9 @@ def jump(evidence: TrialEvidence) -> Check:
 
 def jam_index(evidence: TrialEvidence) -> Check:
     """How near the guides are to locking on the rise."""
-    # Where the follower comes back, friction holds the cam and cannot lock it.
     worst = greatest(
         evidence,
-        lambda cycle: np.where(cycle.loads.lift_slope > 0, cycle.loads.jam_index, 0.0),
+        lambda cycle: demands.jam_outward(cycle.loads.lift_slope, cycle.loads.jam_index),
     )
     return Check(
         id="jam_index",

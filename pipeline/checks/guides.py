@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geometry.arrays import Array
+from pipeline.checks import demands
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest, worst_case
 from pipeline.follower.friction import NYLON_PV
@@ -37,7 +38,9 @@ def bush_pv_b(evidence: TrialEvidence) -> Check:
 
 
 def _pressure(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
-    worst = greatest(evidence, lambda cycle: np.abs(_reaction(cycle, side)) / _area(guide))
+    worst = greatest(
+        evidence, lambda cycle: demands.bush_pressure(_reaction(cycle, side), _area(guide))
+    )
     limit = guide.pressure_limit
     return Check(
         id=f"bush_pressure_{side}",
@@ -57,7 +60,7 @@ def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
     def mean(cycle: Cycle) -> float:
         guides = cycle.guides
         load = guides.rubbing_load_a if side == "A" else guides.rubbing_load_b
-        return float(np.mean(np.abs(load * cycle.loads.velocity)) / _area(guide))
+        return float(np.mean(demands.bush_pv(load, cycle.loads.velocity, _area(guide))))
 
     worst = worst_case(evidence, mean)
     limit = pv_limit(guide)

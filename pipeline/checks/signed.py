@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import FULL_TURN, Array
+from pipeline.checks import demands
 from pipeline.checks.check import Check
 from pipeline.checks.contact import softer
 from pipeline.checks.trial import TrialEvidence, greatest, least, rollers_only
@@ -48,8 +49,12 @@ def contact_at_overspeed(evidence: TrialEvidence) -> Check:
 
     def force(cycle: Any) -> Array:
         scale = (over / cycle.crank_speed) ** 2
-        left = cycle.loads.spring_force + scale * cycle.loads.inertia_force
-        return np.asarray(left / evidence.preload(cycle))
+        loads = cycle.loads
+        return np.asarray(
+            demands.force_left(
+                loads.spring_force, scale * loads.inertia_force, evidence.preload(cycle)
+            )
+        )
 
     worst = least(evidence, force)
     return Check(
