@@ -6,6 +6,7 @@ can draw the same values, since every curve still carries its numbers, label and
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,10 @@ import numpy as np
 from geometry.arrays import Array
 
 SERIES = ("blue", "vermillion", "green", "purple", "orange", "sky")
+FAR_LIMIT = 1.6
+"""A limit farther from the curves than this many times their swing does not stretch the axis."""
+WORDS_HEIGHT = 0.09
+"""Of a panel: what the words of a limit take up."""
 STROKES = ("intake", "compression", "expansion", "exhaust")
 
 
@@ -38,6 +43,10 @@ class LimitLine:
     value: float
     label: str
 
+    def words(self, unit: str) -> str:
+        """The limit as written beside its line."""
+        return f"{self.label} {self.value:.4g} {unit}".strip().replace("-", "\N{MINUS SIGN}")
+
 
 @dataclass(frozen=True, eq=False)
 class Panel:
@@ -53,6 +62,67 @@ class Panel:
     height: float = 1.0
     span: tuple[float, float] | None = None
 
+    @property
+    def legend_entries(self) -> int:
+        """Curves with a name."""
+        return sum(bool(curve.label) for curve in self.curves)
+
+
+def vertical_span(panel: Panel, strokes: bool) -> tuple[float, float]:
+    """Vertical limits that hold the curves, near limits, and air for the names of the strokes."""
+    if panel.span is not None:
+        return panel.span
+    values = np.concatenate([c.values for c in panel.curves] or [np.zeros(1)])
+    values = values[np.isfinite(values)]
+    low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
+    if low > 0 and low < 0.5 * high:
+        low = 0.0
+    size = max(high - low, 1e-12 + 1e-3 * max(abs(low), abs(high)))
+    for line in panel.limits:
+        if low - FAR_LIMIT * size < line.value < high + FAR_LIMIT * size:
+            low, high = min(low, line.value), max(high, line.value)
+    size = max(high - low, size)
+    return low - (0.06 * size if low != 0.0 else 0.0), high + (0.16 if strokes else 0.07) * size
+
+
+@dataclass(frozen=True)
+class PlacedLimits:
+    """Limits within the axes, each with whether its words stand above it; those `beyond` them.
+
+    `beyond` is in words, empty when there is none; `above` tells at which edge they stand.
+    """
+
+    inside: tuple[tuple[LimitLine, bool], ...]
+    beyond: str
+    above: bool
+
+
+def placed_limits(panel: Panel, low: float, high: float) -> PlacedLimits:
+    """Where the limits of a panel and their words go on axes from `low` to `high`."""
+    beyond = [line for line in panel.limits if not low <= line.value <= high]
+    inside = sorted((p for p in panel.limits if p not in beyond), key=lambda line: -line.value)
+    placed: list[tuple[LimitLine, bool]] = []
+    taken: list[float] = []
+    for line in inside:
+        height = (line.value - low) / (high - low)
+        above = height < 0.12 or (line.value >= 0 and height < 0.78)
+        slots = {True: height, False: height - WORDS_HEIGHT}
+        if not _free(slots[above], taken) and _free(slots[not above], taken):
+            above = not above
+        taken.append(slots[above])
+        placed.append((line, above))
+    upwards = bool(beyond) and beyond[0].value > high
+    words = "; ".join(line.words(panel.unit) for line in beyond)
+    if words:
+        words = f"{words} ({'above' if upwards else 'below'} this axis)"
+    return PlacedLimits(tuple(placed), words, upwards)
+
+
+def _free(bottom: float, taken: Sequence[float]) -> bool:
+    """Whether words at this height stay on the axes and clear of others."""
+    within = -1e-9 <= bottom <= 1.0 - 2 * WORDS_HEIGHT
+    return within and all(abs(bottom - other) >= WORDS_HEIGHT - 1e-9 for other in taken)
+
 
 @dataclass(frozen=True, eq=False)
 class AngleFigure:
@@ -66,6 +136,12 @@ class AngleFigure:
     gear_ratio: float = 2.0
     strokes: bool = True
     worst: float | None = None
+
+    @property
+    def one_legend(self) -> bool:
+        """Whether the names of the first panel's curves serve all panels."""
+        first = [curve.label for curve in self.panels[0].curves]
+        return all([c.label for c in p.curves] == first or len(p.curves) < 2 for p in self.panels)
 
     @property
     def alt(self) -> str:

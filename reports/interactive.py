@@ -9,8 +9,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
-import importlib.resources
-import importlib.util
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -21,10 +19,20 @@ import numpy as np
 from markupsafe import Markup
 
 from geometry.arrays import Array
-from reports.figures import AngleFigure, Curve, Figure, OutlineFigure, Panel
+from reports.figures import (
+    STROKES,
+    AngleFigure,
+    Curve,
+    Figure,
+    OutlineFigure,
+    Panel,
+    placed_limits,
+    vertical_span,
+)
 
-_PANEL_PIXELS, _FRAME_PIXELS = 165, 120
-_GAP = 0.05
+_HERE = Path(__file__).parent
+_SCRIPTS = (_HERE / "vendor" / "plotly-basic.min.js", _HERE / "templates" / "report.js")
+_PANEL_PIXELS, _TOP_PIXELS, _LEGEND_PIXELS, _BOTTOM_PIXELS, _GAP_PIXELS = 165, 54, 24, 46, 14
 _DIGITS = 6
 
 
@@ -37,15 +45,13 @@ class Bundle:
     data: Markup
 
 
-def bundle(figures: Iterable[Figure]) -> Bundle | None:
-    """Scripts and data of some figures; None where the library is not installed."""
-    library = _library()
-    if library is None:
-        return None
-    own = Path(__file__).parent / "templates" / "report.js"
-    sources = [library.read_text(encoding="utf-8"), own.read_text(encoding="utf-8")]
+def bundle(figures: Iterable[Figure]) -> Bundle:
+    """Scripts and data of some figures."""
     safe = [
-        source.replace("</script", "<\\/script").replace("<!--", "<\\!--") for source in sources
+        source.read_text(encoding="utf-8")
+        .replace("</script", "<\\/script")
+        .replace("<!--", "<\\!--")
+        for source in _SCRIPTS
     ]
     specs = {figure.id: specification(figure) for figure in figures}
     return Bundle(
@@ -66,13 +72,6 @@ def script_safe_json(value: object) -> str:
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def _library() -> Path | None:
-    if importlib.util.find_spec("plotly") is None:
-        return None
-    file = Path(str(importlib.resources.files("plotly"))) / "package_data" / "plotly.min.js"
-    return file if file.is_file() else None
-
-
 def _hash(source: str) -> str:
     digest = hashlib.sha256(source.encode()).digest()
     return f"'sha256-{base64.b64encode(digest).decode()}'"
@@ -82,52 +81,105 @@ def _angles(figure: AngleFigure) -> dict[str, Any]:
     turn = 360.0 * figure.gear_ratio
     crank = np.append(figure.crank, turn + figure.crank[0])
     cam = _numbers(crank / figure.gear_ratio)
+    lines = _Lines.of(figure)
     traces: list[dict[str, Any]] = []
     layout: dict[str, Any] = {
-        "height": _FRAME_PIXELS + _PANEL_PIXELS * len(figure.panels),
+        "height": lines.height,
+        "margin": {"l": 64, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS},
         "xaxis": {"range": [0, turn], "dtick": 90, "title": {"text": "crank angle, deg"},
                   "fixedrange": True, "anchor": _axis("y", len(figure.panels) - 1)},
         "xaxis2": {"range": [0, 360], "dtick": 45, "title": {"text": "cam angle, deg"},
                    "fixedrange": True, "overlaying": "x", "side": "top", "anchor": "y"},
-        "shapes": _shades(figure, turn), "annotations": [],
+        "shapes": _shades(figure, turn), "annotations": _stroke_names(figure),
     }  # fmt: skip
-    top, share = 1.0, (1.0 - _GAP * (len(figure.panels) - 1)) / sum(p.height for p in figure.panels)
     for number, panel in enumerate(figure.panels):
-        bottom = max(top - share * panel.height, 0.0)
+        bottom, top = lines.domains[number]
+        low, high = vertical_span(panel, figure.strokes)
+        axis, legend = _axis("y", number), "legend" if number == 0 else f"legend{number + 1}"
         layout["yaxis" if number == 0 else f"yaxis{number + 1}"] = {
             "domain": [bottom, top], "fixedrange": True, "title": {"text": _title(panel)},
-            **({} if panel.span is None else {"range": list(panel.span)}),
+            "range": [low, high],
         }  # fmt: skip
-        top = bottom - _GAP
-        axis = _axis("y", number)
+        named = panel.legend_entries > 1 and (number == 0 or not figure.one_legend)
+        if named and number:
+            layout[legend] = {"orientation": "h", "x": 0, "y": top, "yanchor": "bottom"}
         for curve in panel.curves:
             traces += _band(curve, crank, axis)
-            traces.append(_curve(curve, panel, crank, cam, axis, number))
-        layout["shapes"] += [
-            {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "yref": axis, "y0": line.value,
-             "y1": line.value, "line": {"color": "fail", "width": 1.2, "dash": "dash"}}
-            for line in panel.limits if _near(line.value, panel)
-        ]  # fmt: skip
-        layout["annotations"] += [
-            {"xref": "paper", "x": 1, "xanchor": "right", "yref": axis, "y": line.value,
-             "yanchor": "bottom", "showarrow": False, "font": {"color": "fail", "size": 10},
-             "text": html.escape(f"{line.label} {line.value:.4g} {panel.unit}")}
-            for line in panel.limits if _near(line.value, panel)
-        ]  # fmt: skip
+            trace = _curve(curve, panel, crank, cam, axis)
+            traces.append(trace | {"showlegend": named, **({"legend": legend} if named else {})})
+        shapes, notes = _limits(panel, axis, low, high)
+        layout["shapes"] += shapes
+        layout["annotations"] += notes
     traces.append({"x": [0], "y": [None], "xaxis": "x2", "yaxis": "y", "type": "scatter",
                    "showlegend": False, "hoverinfo": "skip"})  # fmt: skip
     return {"data": traces, "layout": layout, "words": figure.title}
 
 
+@dataclass(frozen=True)
+class _Lines:
+    """Pixels of a figure: its height, the margin at its top, and each panel's share of the rest."""
+
+    height: int
+    top: int
+    domains: tuple[tuple[float, float], ...]
+
+    @classmethod
+    def of(cls, figure: AngleFigure) -> _Lines:
+        panels = figure.panels
+        own = [p.legend_entries > 1 and not figure.one_legend for p in panels]
+        gaps = [_GAP_PIXELS + _LEGEND_PIXELS * with_legend for with_legend in own[1:]]
+        heights = [_PANEL_PIXELS * panel.height for panel in panels]
+        whole = sum(heights) + sum(gaps)
+        edge, domains = whole, []
+        for height, gap in zip(heights, [*gaps, 0], strict=True):
+            domains.append((max(edge - height, 0.0) / whole, edge / whole))
+            edge -= height + gap
+        top = _TOP_PIXELS + (_LEGEND_PIXELS if panels[0].legend_entries > 1 else 0)
+        return cls(round(whole) + top + _BOTTOM_PIXELS, top, tuple(domains))
+
+
+def _limits(
+    panel: Panel, axis: str, low: float, high: float
+) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """Lines of a panel's limits, and the words beside them, as in the static drawing."""
+    placed = placed_limits(panel, low, high)
+    shapes = [
+        {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "yref": axis, "y0": line.value,
+         "y1": line.value, "line": {"color": "fail", "width": 1.2, "dash": "dash"}}
+        for line, _ in placed.inside
+    ]  # fmt: skip
+    told = [(line.words(panel.unit), line.value, above) for line, above in placed.inside]
+    if placed.beyond:
+        told.append((placed.beyond, high if placed.above else low, not placed.above))
+    common = {"xref": "paper", "x": 1, "xanchor": "right", "yref": axis, "showarrow": False,
+              "font": {"color": "fail", "size": 10}, "bgcolor": "card", "borderpad": 1}  # fmt: skip
+    notes = [
+        common | {"y": value, "yanchor": "bottom" if above else "top", "text": html.escape(words)}
+        for words, value, above in told
+    ]
+    return shapes, notes
+
+
+def _stroke_names(figure: AngleFigure) -> list[dict[str, Any]]:
+    """Names of the engine's strokes along the top of the first panel."""
+    if not figure.strokes:
+        return []
+    return [
+        {"xref": "x", "x": 90 + 180 * number, "yref": "paper", "y": 1, "yanchor": "top",
+         "showarrow": False, "text": name, "font": {"color": "muted", "size": 10}}
+        for number, name in enumerate(STROKES)
+    ]  # fmt: skip
+
+
 def _curve(
-    curve: Curve, panel: Panel, crank: Array, cam: list[float | None], axis: str, number: int
+    curve: Curve, panel: Panel, crank: Array, cam: list[float | None], axis: str
 ) -> dict[str, Any]:
     name = html.escape(curve.label or panel.quantity)
     unit = html.escape(panel.unit)
     return {
         "type": "scatter", "mode": "lines", "name": name, "xaxis": "x", "yaxis": axis,
         "x": _numbers(crank), "y": _numbers(np.append(curve.values, curve.values[0])),
-        "customdata": cam, "legendgroup": name, "showlegend": bool(curve.label) and number == 0,
+        "customdata": cam,
         "line": {"color": curve.colour, "width": 1.8, "dash": "dash" if curve.dashed else "solid"},
         "hovertemplate": f"%{{y:.5g}} {unit} (cam %{{customdata:.1f}}°)",
         "meta": unit,
@@ -194,18 +246,6 @@ def _outline(figure: OutlineFigure) -> dict[str, Any]:
         "yaxis": {"title": {"text": "y, mm"}, "scaleanchor": "x", "fixedrange": True},
     }  # fmt: skip
     return {"data": traces, "layout": layout, "words": figure.title}
-
-
-def _near(value: float, panel: Panel) -> bool:
-    """Whether a limit lies within sight of the curves, as in the static drawing."""
-    if panel.span is not None:
-        return panel.span[0] <= value <= panel.span[1]
-    values = np.concatenate([curve.values for curve in panel.curves] or [np.zeros(1)])
-    values = values[np.isfinite(values)]
-    if not values.size:
-        return False
-    size = max(float(np.ptp(values)), 1e-9)
-    return bool(values.min() - 1.6 * size < value < values.max() + 1.6 * size)
 
 
 def _title(panel: Panel) -> str:

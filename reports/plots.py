@@ -20,7 +20,15 @@ from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import MaxNLocator
 
 from geometry.arrays import Array
-from reports.figures import STROKES, AngleFigure, Figure, LimitLine, OutlineFigure, Panel
+from reports.figures import (
+    STROKES,
+    AngleFigure,
+    Figure,
+    OutlineFigure,
+    Panel,
+    placed_limits,
+    vertical_span,
+)
 
 COLOURS = {
     "blue": "#0072b2",
@@ -68,7 +76,6 @@ BACKING = {"facecolor": COLOURS["card"], "alpha": 0.75, "linewidth": 0, "pad": 0
 FIGURE_WIDTH = 5.6
 LEFT, RIGHT, TOP, BOTTOM, GAP = 0.68, 0.16, 0.66, 0.42, 0.14
 LEGEND_ROW = 5
-FAR_LIMIT = 1.6
 
 
 @contextmanager
@@ -115,11 +122,11 @@ def themed(svg: str, figure_id: str) -> str:
 
 def _angles(figure: AngleFigure) -> Canvas:
     """Panels sharing the crank axis, with the cam axis on top."""
-    rows = -(-max(_legend_entries(panel) for panel in figure.panels) // LEGEND_ROW)
-    one_legend = len(figure.panels) == 1 or _same_labels(figure.panels)
+    rows = -(-max(panel.legend_entries for panel in figure.panels) // LEGEND_ROW)
+    one_legend = figure.one_legend
     heights = [panel.height * 1.62 for panel in figure.panels]
-    gaps = [GAP if one_legend or _legend_entries(p) < 2 else GAP + 0.2 for p in figure.panels]
-    top = TOP - 0.2 + 0.2 * (rows if _legend_entries(figure.panels[0]) > 1 else 0)
+    gaps = [GAP if one_legend or p.legend_entries < 2 else GAP + 0.2 for p in figure.panels]
+    top = TOP - 0.2 + 0.2 * (rows if figure.panels[0].legend_entries > 1 else 0)
     total = top + sum(heights) + sum(gaps[1:]) + BOTTOM
     canvas = Canvas(figsize=(FIGURE_WIDTH, total))
     edge = total - top
@@ -132,7 +139,7 @@ def _angles(figure: AngleFigure) -> Canvas:
         axes.append(ax)
         _panel(ax, figure, panel)
         ax.tick_params(labelbottom=number == len(heights) - 1)
-        if _legend_entries(panel) > 1 and (number == 0 or not one_legend):
+        if panel.legend_entries > 1 and (number == 0 or not one_legend):
             above = (0.42 if number == 0 else 0.02) / height
             _legend(ax, panel, 1 + above)
     if figure.strokes:
@@ -140,15 +147,6 @@ def _angles(figure: AngleFigure) -> Canvas:
     axes[-1].set_xlabel("crank angle, deg", labelpad=2)
     _cam_axis(axes[0], figure.gear_ratio)
     return canvas
-
-
-def _legend_entries(panel: Panel) -> int:
-    return sum(bool(curve.label) for curve in panel.curves)
-
-
-def _same_labels(panels: tuple[Panel, ...]) -> bool:
-    first = [curve.label for curve in panels[0].curves]
-    return all([c.label for c in p.curves] == first or len(p.curves) < 2 for p in panels)
 
 
 def _legend(ax: Axes, panel: Panel, height: float) -> None:
@@ -176,7 +174,7 @@ def _panel(ax: Axes, figure: AngleFigure, panel: Panel) -> None:
             linestyle=(0, (4, 3.4)) if curve.dashed else "solid",
             zorder=3.2 if curve.dashed else 3, linewidth=1.1 if curve.dashed else 1.5,
         )  # fmt: skip
-    low, high = panel.span or _span(panel, figure.strokes)
+    low, high = vertical_span(panel, figure.strokes)
     ax.set_ylim(low, high)
     if low < 0 < high:
         ax.axhline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=1)
@@ -200,52 +198,28 @@ def _panel(ax: Axes, figure: AngleFigure, panel: Panel) -> None:
         ax.spines[side].set_visible(False)
 
 
-def _span(panel: Panel, strokes: bool) -> tuple[float, float]:
-    """Vertical limits that hold the curves, near limits, and air for the names of the strokes."""
-    values = np.concatenate([c.values for c in panel.curves] or [np.zeros(1)])
-    values = values[np.isfinite(values)]
-    low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
-    if low > 0 and low < 0.5 * high:
-        low = 0.0
-    size = max(high - low, 1e-12 + 1e-3 * max(abs(low), abs(high)))
-    for line in panel.limits:
-        if low - FAR_LIMIT * size < line.value < high + FAR_LIMIT * size:
-            low, high = min(low, line.value), max(high, line.value)
-    size = max(high - low, size)
-    return low - (0.06 * size if low != 0.0 else 0.0), high + (0.16 if strokes else 0.07) * size
-
-
 def _limits(ax: Axes, panel: Panel, low: float, high: float) -> None:
     """Limit lines; one that lies off the axes is told in words at the edge it lies beyond."""
-    beyond = [line for line in panel.limits if not low <= line.value <= high]
-    inside = sorted((p for p in panel.limits if p not in beyond), key=lambda line: line.value)
-    for line, following in zip(inside, [*inside[1:], None], strict=False):
+    placed = placed_limits(panel, low, high)
+    for line, above in placed.inside:
         ax.axhline(
             line.value, color=COLOURS["fail"], linewidth=0.9, linestyle=(0, (6, 2)), zorder=2.5
         )
-        crowded = following is not None and following.value - line.value < 0.09 * (high - low)
-        height = (line.value - low) / (high - low)
-        above = height < 0.12 or (line.value >= 0 and not crowded and height < 0.78)
         ax.annotate(
-            _limit_text(line, panel.unit), (1.0, line.value), xycoords=("axes fraction", "data"),
+            line.words(panel.unit), (1.0, line.value), xycoords=("axes fraction", "data"),
             xytext=(-2, 2 if above else -2), textcoords="offset points", ha="right",
             va="bottom" if above else "top", color=COLOURS["fail"], fontsize=7.2,
             bbox=BACKING, zorder=4,
         )  # fmt: skip
-    if beyond:
-        words = "; ".join(_limit_text(line, panel.unit) for line in beyond)
-        above = beyond[0].value > high
+    if placed.beyond:
+        above = placed.above
         ax.annotate(
-            f"{words} ({'above' if above else 'below'} this axis)", (1.0, 1.0 if above else 0.0),
+            placed.beyond, (1.0, 1.0 if above else 0.0),
             xycoords="axes fraction", xytext=(-2, -13 if above else 3), zorder=4,
             textcoords="offset points", ha="right", va="top" if above else "bottom",
             color=COLOURS["fail"], fontsize=7.2,
             bbox=BACKING,
         )  # fmt: skip
-
-
-def _limit_text(line: LimitLine, unit: str) -> str:
-    return f"{line.label} {line.value:.4g} {unit}".strip().replace("-", "\N{MINUS SIGN}")
 
 
 def _stroke_names(ax: Axes) -> None:

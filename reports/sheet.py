@@ -16,6 +16,8 @@ from reports.tables import in_unit, words
 
 Columns = Mapping[str, Array]
 LARGEST_RADIUS_MM = 150.0
+HARD_STOP_DEG = 45.0
+"""Beyond it no translating follower is designed; Rothbart (2004), ch. 6."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,12 +235,12 @@ def _outline(turn: Turn) -> Figure | None:
 
 
 def _pressure_angle(turn: Turn) -> Figure | None:
-    limits = turn.limit("limit", "deg", "pressure_angle")
-    both = limits + tuple(LimitLine(-line.value, "limit") for line in limits)
+    limits = (*turn.limit("limit", "deg", "pressure_angle"), LimitLine(HARD_STOP_DEG, "hard stop"))
+    both = limits + tuple(LimitLine(-line.value, line.label) for line in limits)
     return _angles(
         turn, "pressure-angle", "Pressure angle",
         "Between the contact normal and the follower's line of travel; positive on the rise.",
-        Panel("pressure angle", "deg", _curves(turn, ("pressure_angle_deg", "")), both),
+        Panel("pressure angle", "deg", _curves(turn, ("pressure_angle_deg", "")), both, height=1.3),
     )  # fmt: skip
 
 

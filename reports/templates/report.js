@@ -6,20 +6,20 @@
   const config = { displayModeBar: false, responsive: true };
   const colour = (name) =>
     getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim() || name;
-  const faded = (name) => {
+  const faded = (name, share) => {
     const code = colour(name);
-    return /^#[0-9a-f]{6}$/i.test(code) ? code + "2e" : code;
+    return /^#[0-9a-f]{6}$/i.test(code) ? code + share : code;
   };
 
   function themed(spec) {
     const data = spec.data.map((trace) => {
       const line = trace.line && { ...trace.line, color: colour(trace.line.color) };
-      const fill = trace.fillcolor && faded(trace.fillcolor);
+      const fill = trace.fillcolor && faded(trace.fillcolor, "2e");
       return { ...trace, ...(line && { line }), ...(fill && { fillcolor: fill }) };
     });
     const ink = colour("ink"), muted = colour("muted"), grid = colour("grid");
     const layout = {
-      hovermode: "x unified", hoversubplots: "axis", margin: { l: 64, r: 14, t: 78, b: 46 },
+      hovermode: "x unified", hoversubplots: "axis", margin: { l: 64, r: 14, t: 40, b: 46 },
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", dragmode: false,
       font: { color: ink, size: 11, family: "system-ui, sans-serif" },
       legend: { orientation: "h", x: 0, y: 1, yref: "container", yanchor: "top" },
@@ -31,7 +31,7 @@
       ...(shape.fillcolor && { fillcolor: colour(shape.fillcolor) }),
       line: { ...shape.line, ...(shape.line.color && { color: colour(shape.line.color) }) } }));
     layout.annotations = layout.annotations.map((note) => ({ ...note,
-      font: { ...note.font, color: colour(note.font.color) } }));
+      ...(note.bgcolor && { bgcolor: faded("card", "bf") }), font: { ...note.font, color: colour(note.font.color) } }));
     return { data, layout };
   }
 
@@ -62,6 +62,14 @@
     place.addEventListener("blur", () => Plotly.Fx.unhover(place));
   }
 
+  /* A legend that breaks into lines on a narrow screen gets the room it takes. */
+  function roomy(place, layout) {
+    const legend = place.querySelector(".infolayer > .legend");
+    const more = legend ? Math.ceil(legend.getBoundingClientRect().height) - 30 : 0;
+    if (more > 0) Plotly.relayout(place, { "margin.t": layout.margin.t + more,
+      height: layout.height + more });
+  }
+
   const places = [...document.querySelectorAll(".live")].filter((p) => specs[p.dataset.figure]);
   function drawn(place) {
     if (place.dataset.drawn) return;
@@ -70,6 +78,7 @@
     place.hidden = false;
     Plotly.newPlot(place, made.data, made.layout, config).then(() => {
       place.parentNode.classList.add("interactive");
+      roomy(place, made.layout);
       place.dataset.drawn = "done";
       reachable(place, spec);
     }).catch((error) => { place.hidden = true; console.error(error); });

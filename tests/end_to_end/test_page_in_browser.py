@@ -13,7 +13,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
 from geometry.errors import ResultError
-from reports import browser, interactive, parts
+from reports import browser, interactive, page, parts
+from reports.material import read_material
 
 ALL_DRAWN = "[...document.querySelectorAll('.live')].every(e => e.dataset.drawn === 'done')"
 PLACE = """(() => { const r = document.querySelector('#pressure .live .nsewdrag')
@@ -53,6 +54,8 @@ def test_every_plot_is_drawn_and_answers(report: Path, tab: browser.Tab, width: 
     tab.wait(ALL_DRAWN)
     assert tab.evaluate("document.querySelectorAll('.live').length") >= 10
     assert tab.evaluate("document.documentElement.scrollWidth") <= width
+    names = "[...document.querySelectorAll('#pressure .live .annotation')].map(e => e.textContent)"
+    assert {"intake", "compression", "expansion", "exhaust"} <= set(tab.evaluate(names))
     tab.evaluate("document.getElementById('pressure').scrollIntoView({behavior: 'instant'})")
     x, y, wide, high = tab.evaluate(PLACE)
     for share in (0.3, 0.4):
@@ -86,12 +89,9 @@ def test_json_in_the_page_cannot_end_its_script() -> None:
     assert not set("<>&") & set(text)
 
 
-def test_page_without_the_library_is_still_whole(
-    report: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(interactive, "_library", lambda: None)
-    text = report_fixture.page_of(report.parent).read_text(encoding="utf-8")
-    assert "<script" not in text and "plotly is not installed" in text
+def test_page_for_print_is_whole_without_scripts(report: Path) -> None:
+    text = page.text(read_material(report.parent), live=False).decode()
+    assert "<script" not in text and "Point at a curve" not in text
     assert text.count("<svg") >= 10
 
 

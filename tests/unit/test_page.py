@@ -23,7 +23,7 @@ HOSTILE = "<script>alert(1)</script>\"'&lt;../../x " + "אבג \u202e \U0001f527
 def still():
     """The page without its library, whose text holds all these words; a browser tries the rest."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(interactive, "_library", lambda: None)
+        patch.setattr(interactive, "bundle", lambda _figures: None)
         yield
 
 
