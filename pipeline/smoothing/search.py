@@ -283,7 +283,7 @@ class Search:
         height = gradient.value.size
         if gradient.mean:
             count = self.problem.coefficients
-            own = np.bincount(columns.ravel(), own.ravel(), count)[None]
+            own = np.asarray(np.bincount(columns.ravel(), own.ravel(), count)[None], dtype=float)
             columns = np.arange(count, dtype=np.intp)[None]
         entries, places = [own * self.scale], [columns]
         by_top = gradient.shared[0]

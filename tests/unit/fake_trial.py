@@ -32,6 +32,7 @@ def asked(**changes):
         "sources": {},
         "cam_radius": 0.06,
         "tool_radius": 0.01,
+        "curvature_rate": 1e3,
         "roller_life": 3600.0,
         "target_life": 3.6e6,
         "speed_reduction": 0.4,

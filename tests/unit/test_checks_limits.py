@@ -87,6 +87,7 @@ CASES: dict[str, tuple[Callable[[float | None], dict[str, Any]], dict[str, Any]]
     "curvature_ratio": (by_limit("curvature_ratio"), {}),
     "undercut": (by_limit("undercut_factor"), {}),
     "concave_radius": (by_limit("tool_radius", 1e-3 / 1.1), {"contour": hollow()}),
+    "curvature_rate": (by_limit("curvature_rate"), {}),
     "minimum_wall": (by_limit("minimum_wall"), {}),
     "spring_travel": (by_travel, {}),
     "contact_force_margin": (by_limit("contact_force_margin"), {}),
