@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from pipeline.cards.fill import filled
 from pipeline.case import Case
 from pipeline.case_template import template
 
@@ -93,7 +94,7 @@ def test_toml_snippets_fit_into_a_case(block: str) -> None:
     case = tomllib.loads(template("demo")) | given
     if "lift" in given:
         del case["engine"]
-    assert Case.model_validate(case)
+    assert Case.model_validate(filled(case, None))
 
 
 def test_error_lines_are_the_real_ones(tmp_path: Path) -> None:
