@@ -164,6 +164,11 @@ class Case(Section):
         inset = 0.0 if self.roller_given is None else self.roller_given.radius
         return self.cam.pitch_base_radius - inset
 
+    @property
+    def contact_radius(self) -> float:
+        """Radius that stands for the contact, m: the roller's, under a face the base circle's."""
+        return self.base_circle if self.roller_given is None else self.roller_given.radius
+
     def material(self, name: str) -> Material:
         """The card of a material that the case names."""
         return self.materials[name]

@@ -148,7 +148,7 @@ def inspect_part(
         tell(f"certificate at {len(chosen)} angles")
         points = certified(pair, trial, chosen, jobs, lambda *_: None)
         trial = replace(trial, certificate=points)
-    solved = benchmarks(case.roller.radius)
+    solved = benchmarks(case.contact_radius)
     return RealPart(fit, real, road.checked(case, trial, torques, solved))
 
 

@@ -126,7 +126,7 @@ def run_case(
             "statement": stop.reason,
             "headline": headline(case, torques, final),
             "prices": None if final.synthesis is None else final.synthesis["prices"],
-            "benchmarks": benchmarks(case.roller.radius) if final.certificate else None,
+            "benchmarks": benchmarks(case.contact_radius) if final.certificate else None,
             "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
             **_crank_speed(folder, case, torques, final),
         }
@@ -269,7 +269,7 @@ def _certified(journey: Journey, final: Trial, jobs: int | None) -> Trial:
         points = certified(contact_pair(case, final.contour), final, chosen, jobs, progress.advance)
     progress.stage("benchmarks")
     with journey.watch.stage("benchmarks"):
-        solved = benchmarks(case.roller.radius)
+        solved = benchmarks(case.contact_radius)
     return road.checked(case, replace(final, certificate=points), journey.torques, solved)
 
 

@@ -75,10 +75,10 @@ def benchmark_nafems(evidence: TrialEvidence) -> Check:
 
 
 def benchmark_hertz(evidence: TrialEvidence) -> Check:
-    """Hertz's contact of the case's roller, solved in this environment."""
-    return _benchmark(
-        evidence, "hertz", "Hertz contact of the roller on a block", "Johnson (1985) sec. 4.2(c)"
-    )
+    """Hertz's contact of the case's roller, or its base circle, solved in this environment."""
+    body = "roller" if evidence.rolls else "base circle"
+    title = f"Hertz contact of the {body} on a block"
+    return _benchmark(evidence, "hertz", title, "Johnson (1985) sec. 4.2(c)")
 
 
 def _of_certificate(evidence: TrialEvidence, field: str, words: str) -> Check:

@@ -83,6 +83,7 @@ def test_surfaces_pass_as_on_a_turning_circle():
     np.testing.assert_allclose(motion.sliding, SPEED * (RADIUS - E * COS), rtol=1e-12)
     mean = 0.5 * (RADIUS - E * COS) + E * COS
     np.testing.assert_allclose(motion.entrainment, SPEED * mean, rtol=1e-9)
+    np.testing.assert_allclose(motion.place, E * SIN, atol=1e-12)
     sliding = FaceSliding.of(motion, np.full(720, 1e9), FREE, 0.08, SPEED)
     assert sliding.loss == pytest.approx(
         turn_integral(THETA, 0.08 * FREE * (RADIUS - E * COS)), rel=1e-12
