@@ -108,6 +108,7 @@ def _residual_max(trial: Trial) -> float | None:
             cycle.contact.residual_equilibrium,
             cycle.guides.force_residual,
             cycle.guides.moment_residual,
+            cycle.friction_residual,
         )
         return float(np.max([np.abs(part).max() for part in parts]))
 

@@ -64,10 +64,21 @@ def jam_index(evidence: TrialEvidence) -> Check:
         limit=evidence.limit("jam_index", 0.5),
         unit="-",
         source=evidence.source("jam_index", "locks at 1, Rothbart (2004) eq. 6.8; half of it held"),
-        method="greatest c |tan alpha| on the way out, c = (mu_A (a + b) + mu_B a) / b",
+        method="greatest friction of both guides over the cam's axial push on the way out, the"
+        " guides with their length and clearance",
         lift_can_help=True,
+        note=_on_points(evidence),
         **worst.place,
     )
+
+
+def _on_points(evidence: TrialEvidence) -> str:
+    """The same on point supports, c |tan alpha| with c = (mu_A (a + b) + mu_B a) / b."""
+    worst = greatest(
+        evidence,
+        lambda cycle: demands.jam_outward(cycle.loads.lift_slope, cycle.loads.jam_index_statics),
+    )
+    return f"{worst.value:.3g} on point supports"
 
 
 CHECKS = (contact_force_margin, jump, jam_index)

@@ -9,7 +9,7 @@ import numpy as np
 from geometry.arrays import Array
 from pipeline.checks import demands
 from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence, greatest, worst_case
+from pipeline.checks.trial import TrialEvidence, Worst, greatest, worst_case
 from pipeline.follower.friction import NYLON_PV
 
 if TYPE_CHECKING:
@@ -51,9 +51,28 @@ def _pressure(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
         source=evidence.source(f"bush_pressure_{side}", guide.source or f"{guide.material} bush"),
         method="greatest reaction by finite elements over diameter x length",
         lift_can_help=True,
-        note="" if limit is not None else f"no pressure limit is given for guide {side}",
+        note="; ".join(
+            ([] if limit is not None else [f"no pressure limit is given for guide {side}"])
+            + _explained(evidence, side, guide, worst)
+        ),
         **worst.place,
     )
+
+
+def _explained(evidence: TrialEvidence, side: str, guide: Guide, worst: Worst) -> list[str]:
+    """What of the pressure at its worst is of point supports, of length and of clearance."""
+    cycle = next((c for c in evidence.cycles if c.load_case == worst.load_case), None)
+    parts = getattr(cycle, "parts", None)
+    if cycle is None or parts is None:
+        return []
+    share = parts.shares.reaction_a if side == "A" else parts.shares.reaction_b
+    k = int(np.argmax(np.abs(_reaction(cycle, side))))
+    unit = 1e-6 * np.sign(_reaction(cycle, side)[k]) / _area(guide)
+    points, length, clearance = (
+        unit * each[k] for each in (share.points, share.by_length, share.by_clearance)
+    )
+    shares = f"{length:+.2g} by length, {clearance:+.2g} by clearance"
+    return [f"{points:.3g} MPa on point supports, {shares}"]
 
 
 def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:

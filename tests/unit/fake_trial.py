@@ -128,6 +128,7 @@ def cycle(shape: Contour | None = None, load_case: str = "idle", scale: float = 
             sliding_torque=np.zeros(POSITIONS),
             cam_torque=(spring + inertia) * slope + 2.0 * rub * np.abs(slope),
             jam_index=0.2 + 0.1 * wave,
+            jam_index_statics=0.25 + 0.1 * wave,
         ),
         "contact": SimpleNamespace(
             p0=(800e6 + 100e6 * wave) * scale,
@@ -136,6 +137,7 @@ def cycle(shape: Contour | None = None, load_case: str = "idle", scale: float = 
             residual_equilibrium=np.full(POSITIONS, 1e-9),
             residual_complementarity=np.full(POSITIONS, 1e-11),
         ),
+        "friction_residual": np.full(POSITIONS, 1e-14),
         "guides": SimpleNamespace(
             reaction_a=-500.0 * wave,
             reaction_b=-200.0 * wave,
