@@ -39,18 +39,27 @@ class Mechanism(Section):
     compensation: Annotated[float, In(above=0, at_most=1)] = 1.0
 
 
-FreeName = Literal["initial_energy", "spring_rate", "preload", "pitch_base_radius"]
+FreeName = Literal["initial_energy", "spring_rate", "preload", "pitch_base_radius", "phase"]
+Phase = Annotated[float, In("deg", at_least=-180, at_most=180)]
 
 
 class Smoothing(Section):
     """What is done to the torque before the lift is drawn from it; angles are crank angles.
 
     `constrained` draws the lift of least ripple within all limits; what is `free` it may change
-    as well, within its range.
+    as well, within its range: a phase is one of the cam on its shaft, in degrees of cam. It is
+    looked for from `starts` places, all but one of them random, so that its optimum is known for
+    one of many or not.
     """
 
     kind: Literal[
-        "none", "moving_average", "gaussian", "harmonic", "savitzky_golay", "constrained"
+        "none",
+        "moving_average",
+        "gaussian",
+        "harmonic",
+        "savitzky_golay",
+        "smoothing_spline",
+        "constrained",
     ] = "none"
     points: Annotated[int, Field(ge=1, le=720)] = 12
     spacing: Annotated[float, In("deg", above=0, at_most=120)] = radians(5.0)
@@ -58,11 +67,14 @@ class Smoothing(Section):
     harmonics: Annotated[float, In(at_least=1, at_most=360)] = 12.0
     taper: Annotated[float, In(at_least=0, below=1)] = 0.25
     degree: Annotated[int, Field(ge=0, le=20)] = 2
+    cutoff: Duration = radians(120.0)
     free: Annotated[tuple[FreeName, ...], Field(strict=False)] = ("initial_energy",)
     spring_rate_range: Annotated[tuple[Rate, Rate], Field(strict=False)] | None = None
     preload_range: Annotated[tuple[Preload, Preload], Field(strict=False)] | None = None
     pitch_base_radius_range: Annotated[tuple[Length, Length], Field(strict=False)] | None = None
+    phase_range: Annotated[tuple[Phase, Phase], Field(strict=False)] | None = None
     coefficients: Annotated[int, Field(ge=12, le=240)] = 96
+    starts: Annotated[int, Field(ge=1, le=40)] = 4
     torque_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 1.0
     speed_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
     jerk_weight: Annotated[float, In(at_least=0, at_most=1e3)] = 1e-5

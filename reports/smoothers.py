@@ -25,6 +25,7 @@ COLUMNS = (
     ("residual_std_Nm", "ripple left, std N m"),
     ("residual_p2p_Nm", "ripple left, p-p N m"),
     ("verdict", "verdict"),
+    ("binding", "what fails"),
 )
 
 
@@ -85,4 +86,6 @@ def _page(title: str, rows: Sequence[Mapping[str, Any]], picture: bytes) -> str:
 def _shown(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.4g}"
+    if isinstance(value, (list, tuple)):
+        return html.escape(", ".join(str(item).replace("_", " ") for item in value)) or "-"
     return "-" if value is None else html.escape(str(value))

@@ -29,6 +29,7 @@ _SMOOTHERS = (
     Smoother("savitzky_golay", points=24, spacing=float(np.radians(5.0))),
     Smoother("gaussian", width=float(np.radians(60.0))),
     Smoother("harmonic", harmonics=12.0),
+    Smoother("smoothing_spline", cutoff=float(np.radians(120.0))),
 )
 _POSITIONS = 720
 

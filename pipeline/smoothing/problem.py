@@ -47,7 +47,12 @@ def problem_of(
         for state in case.load_cases
         for scenario in _scenarios(case, state, torques.get(state.name), found.get(state.name))
     ]
-    names = {"spring_rate": "rate", "preload": "preload", "pitch_base_radius": "base_radius"}
+    names = {
+        "spring_rate": "rate",
+        "preload": "preload",
+        "pitch_base_radius": "base_radius",
+        "phase": "phase",
+    }
     freed = {
         short: getattr(smoothing, f"{name}_range")
         for name, short in names.items()

@@ -15,7 +15,7 @@ from geometry.errors import InputError
 
 CYCLE = 4.0 * np.pi  # rad of crank in one engine cycle
 
-KINDS = ("none", "moving_average", "gaussian", "harmonic", "savitzky_golay")
+KINDS = ("none", "moving_average", "gaussian", "harmonic", "savitzky_golay", "smoothing_spline")
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,7 @@ class Smoother:
     harmonics : float   harmonic: harmonics of the cycle that are kept
     taper : float       harmonic: 0 cuts hard; else the half-width of the cosine edge as a share
     degree : int        Savitzky-Golay: degree of the fitted polynomial
+    cutoff : float      smoothing spline: crank angle, rad, of the wave that it halves
     strength : float    1 as given; above 1 gentler on the cam
 
     Raises
@@ -47,6 +48,7 @@ class Smoother:
     ----------
     Cardoso et al., Energies 18 (2025) 3256: "moving average of 12 values".
     Schoenberg, Quart. Appl. Math. 4 (1946) 45: a smoothing formula never amplifies.
+    Craven and Wahba, Numer. Math. 31 (1979) 377: a periodic smoothing spline as a filter.
     """
 
     kind: str = "moving_average"
@@ -56,6 +58,7 @@ class Smoother:
     harmonics: float = 12.0
     taper: float = 0.25
     degree: int = 2
+    cutoff: float = float(np.deg2rad(120.0))
     strength: float = 1.0
 
     def __post_init__(self) -> None:
@@ -67,6 +70,7 @@ class Smoother:
             ("harmonics", 1 <= self.harmonics < np.inf, ">= 1"),
             ("taper", 0 <= self.taper < 1, "0 to 1"),
             ("degree", 0 <= self.degree <= 20, "0 to 20"),
+            ("cutoff", 0 < self.cutoff <= CYCLE, "> 0 rad, within one cycle"),
             ("strength", 0 < self.strength < np.inf, "> 0"),
         )
         for name, holds, limit in rules:
@@ -76,7 +80,7 @@ class Smoother:
     @classmethod
     def from_case(cls, smoothing: Any) -> Smoother:
         """The smoother a case asks for; what the case leaves out keeps its default."""
-        names = ("kind", "points", "spacing", "width", "harmonics", "taper", "degree")
+        names = ("kind", "points", "spacing", "width", "harmonics", "taper", "degree", "cutoff")
         given = {name: getattr(smoothing, name, None) for name in names}
         return cls(**{name: value for name, value in given.items() if value is not None})
 
@@ -93,8 +97,14 @@ class Smoother:
             "gaussian": self.width,
             "harmonic": CYCLE / self.harmonics,
             "savitzky_golay": self.points * self.spacing,
+            "smoothing_spline": self.cutoff,
         }
         return float(widths[self.kind] * self.strength)
+
+    @property
+    def curvature_weight(self) -> float:
+        """w of the smoothing spline, rad^4: it lowers the square of what it misses plus w T''^2."""
+        return (self.cutoff * self.strength / (2.0 * np.pi)) ** 4
 
     @property
     def width_in_words(self) -> str:
@@ -110,6 +120,8 @@ class Smoother:
             f"the last one kept is {degrees:.4g} deg of crank long",
             "savitzky_golay": f"Savitzky-Golay fit of degree {self.degree}: "
             f"a window of {degrees:.4g} deg of crank",
+            "smoothing_spline": f"smoothing spline of curvature weight {self.curvature_weight:.3g} "
+            f"rad^4: a wave of {degrees:.4g} deg of crank is halved",
         }
         return words[self.kind]
 
@@ -185,6 +197,10 @@ def _harmonic(smoother: Smoother, order: Array) -> Array:
     return 0.5 * (1.0 - np.sin(0.5 * np.pi * edge))
 
 
+def _smoothing_spline(smoother: Smoother, order: Array) -> Array:
+    return 1.0 / (1.0 + (order * smoother.cutoff / CYCLE) ** 4)
+
+
 def _none(_smoother: Smoother, order: Array) -> Array:
     return np.ones_like(order)
 
@@ -195,4 +211,5 @@ _TRANSFER: dict[str, Callable[[Smoother, Array], Array]] = {
     "gaussian": _gaussian,
     "harmonic": _harmonic,
     "savitzky_golay": _savitzky_golay,
+    "smoothing_spline": _smoothing_spline,
 }
