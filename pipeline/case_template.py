@@ -126,7 +126,9 @@ source = "assumed"
 
 # --- How the cam is drawn, judged and computed
 [smoothing]
-kind = "moving_average"              # none, moving_average, gaussian, harmonic, savitzky_golay
+# or none, gaussian, harmonic, savitzky_golay, smoothing_spline; "constrained" finds the least
+# ripple within all limits and frees what `free` names, such as initial_energy or spring_rate
+kind = "moving_average"
 points = 12
 spacing = "5 deg"                    # crank angle: 12 points make a window of 60 deg
 
