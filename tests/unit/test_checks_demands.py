@@ -172,7 +172,8 @@ def test_undercut_cam_is_a_verdict():
     # A lobe of 12 mm with five cusps in the turn under a large roller.
     lift = Lift(uniform_turn(360), 0.006 * (1.0 - np.cos(5.0 * uniform_turn(360))))
     shape = Contour(PitchCurve(lift, 0.03), 0.02)
-    checks = {c.id: c for c in (f(fake.evidence(contour=shape)) for f in geometry.CHECKS)}
+    found = (f(fake.evidence(contour=shape)) for f in geometry.CHECKS)
+    checks = {c.id: c for c in found if c is not None}
     assert checks["undercut"].demand < 0
     assert checks["undercut"].utilisation == np.inf
     assert checks["self_intersection"].demand > 0
@@ -181,9 +182,10 @@ def test_undercut_cam_is_a_verdict():
 
 
 def test_second_contact_counts_depth_only():
-    touching = SimpleNamespace(clearance=lambda: (-2e-6, 1.0))
-    clear = SimpleNamespace(clearance=lambda: (np.inf, np.nan))
-    unknown = SimpleNamespace(clearance=lambda: (np.nan, np.nan))
+    touching, clear, unknown = (
+        SimpleNamespace(clearance=lambda at=at: at, roller_radius=fake.ROLLER)
+        for at in ((-2e-6, 1.0), (np.inf, np.nan), (np.nan, np.nan))
+    )
     found = [geometry.second_contact(fake.evidence(contour=c)) for c in (touching, clear, unknown)]
     assert [check.status for check in found] == ["fail", "pass", "not_evaluated"]
     assert found[0].demand == pytest.approx(2e-3)

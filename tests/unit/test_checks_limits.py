@@ -78,7 +78,12 @@ def lossy_cycle():
     )
 
 
-FUNCTIONS = {function(fake.evidence(contour=hollow())).id: function for function in ALL}
+# Limits of a face have tests of their own: with a roller they are none.
+FUNCTIONS = {
+    check.id: function
+    for function in ALL
+    if (check := function(fake.evidence(contour=hollow()))) is not None
+}
 
 # id: how to set the limit, and what else the evidence needs for a demand that is not zero
 CASES: dict[str, tuple[Callable[[float | None], dict[str, Any]], dict[str, Any]]] = {
@@ -151,7 +156,9 @@ def test_on_both_sides_of_the_limit(name, utilisation, status):
     assert check.title
 
 
-@pytest.mark.parametrize("name", [name for name in CASES if name not in WITHOUT_A_LIMIT])
+@pytest.mark.parametrize(
+    "name", [name for name in CASES if name not in (*WITHOUT_A_LIMIT, "curvature_rate")]
+)
 def test_without_a_limit_nothing_is_evaluated(name):
     set_limit, needs = CASES[name]
     check = found(fake.evidence(**needs, **set_limit(None)), name)
