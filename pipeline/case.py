@@ -296,6 +296,11 @@ def _check_road(case: Case) -> None:
             raise InputError(f"load_case[{k}].preload", load_case.preload, limit)
         if case.engine is None and load_case.torque is not None:
             raise InputError(f"load_case[{k}].torque", load_case.torque, "left out with a lift")
+        modelled = isinstance(case.engine, Cylinder) and load_case.torque is None
+        if not modelled and (load_case.intake_pressure is not None or not load_case.fired):
+            name = "fired" if load_case.intake_pressure is None else "intake_pressure"
+            limit = 'left out without engine.kind = "cylinder", or with a torque of its own'
+            raise InputError(f"load_case[{k}].{name}", getattr(load_case, name), limit)
 
 
 def _check_film(case: Case) -> None:

@@ -13,6 +13,7 @@ from pipeline.case_fields import (
     Duration,
     FileName,
     Fraction,
+    GasPressure,
     In,
     Length,
     Name,
@@ -195,12 +196,16 @@ class LoadCase(Section):
 
     At speed 0 the cam stands or creeps: springs and friction act, inertia does not. The ripple
     counts with its weight; at 0 the case only loads the cam and no reduction is asked for.
-    A preload of its own loads the cam that was cut for spring.preload.
+    A preload of its own loads the cam that was cut for spring.preload. Of a cylinder model the
+    case may have an intake pressure of its own, which is its load, and be turned over unfired; so
+    an engine is started, slowly, where the speed is 0.
     """
 
     name: Name
     speed: Annotated[float, In("rpm", at_least=0, below=20_000)]
     preload: Preload | None = None
     torque: FileName | None = None
+    intake_pressure: GasPressure | None = None
+    fired: bool = True
     ripple_weight: Annotated[float, In(at_least=0, at_most=1000)] = 1.0
     source: Text = ""

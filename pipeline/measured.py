@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,6 +23,13 @@ from pipeline.engine.speed_trace import SpeedTrace, speed_from_csv
 from pipeline.engine.torque import Torque, torque_from_csv, torque_from_cylinder
 from pipeline.engine_fields import PressureTable, SpeedTable, VoltageTable
 
+if TYPE_CHECKING:
+    from pipeline.engine.cylinder import CylinderEngine
+
+CRANKING = 10.0
+"""Speed at which an engine that stands is turned over, rad/s: the slowest the model knows."""
+NO_HEAT = 1e-9
+
 
 def engine_torque(case: Case, state: LoadCase) -> Torque:
     """Torque of the engine in one load case.
@@ -38,12 +45,30 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
     if isinstance(engine, TorqueTable):
         return torque_from_csv(case.path(engine.file))
     if isinstance(engine, Cylinder):
-        return torque_from_cylinder(engine.build(), state.speed)
+        return torque_from_cylinder(_loaded(engine, state), state.speed or CRANKING)
     if isinstance(engine, PressureTable):
         return torque_from_pressure(pressure(case, engine), engine.build(), state.speed)
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
         return crank_speed(case, engine).torque(case.crankshaft.inertia)
     raise InputError("engine", "missing", "given")
+
+
+def has_torque(case: Case, state: LoadCase) -> bool:
+    """Whether an engine gives torque in a load case: not one that stands, unless it is started."""
+    started = isinstance(case.engine, Cylinder) and not state.fired
+    return state.speed > 0 or state.torque is not None or started
+
+
+def _loaded(engine: Cylinder, state: LoadCase) -> CylinderEngine:
+    """The cylinder at the throttle of a load case; unfired, its fuel gives no heat."""
+    changes: dict[str, float] = {}
+    if state.intake_pressure is not None:
+        changes["intake_pressure"] = state.intake_pressure
+    if not state.fired:
+        changes["combustion_efficiency"] = NO_HEAT
+        # Nothing drives but the hand that turns it: no friction could close the balance.
+        changes["friction_pressure"] = engine.friction_pressure or 0.0
+    return engine.model_copy(update=changes).build()
 
 
 def pressure(case: Case, engine: PressureTable) -> PressureTrace:

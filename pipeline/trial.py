@@ -35,7 +35,7 @@ from pipeline.contact.pair_certificate import EDGES, contact_meshes
 from pipeline.cycle import Cycle, Turn
 from pipeline.engine.torque import Torque
 from pipeline.given_lift import contour_of, given_lift
-from pipeline.measured import engine_torque
+from pipeline.measured import engine_torque, has_torque
 from pipeline.smoothing.smoothers import Smoother, smoothed
 from pipeline.speed import speed_ripple
 
@@ -83,14 +83,14 @@ class Trial:
 def engine_torques(case: Case) -> dict[str, Torque]:
     """Engine torque of each load case by name; empty for a case that starts at the lift.
 
-    An engine that stands has only the torque its load case names.
+    An engine that stands has only the torque its load case names, or that of being started.
     """
     if case.engine is None:
         return {}
     return {
         state.name: engine_torque(case, state)
         for state in case.load_cases
-        if state.speed > 0 or state.torque is not None
+        if has_torque(case, state)
     }
 
 

@@ -9,13 +9,16 @@ import pytest
 from geometry.errors import InputError
 from pipeline import trial as road
 from pipeline.case import parse_case
+from pipeline.checks import forces, guides, roller, signed
 from pipeline.checks.forces import contact_force_margin
 from pipeline.checks.trial import TrialEvidence
 from pipeline.corners import Corner, applied
-from pipeline.cycle import closed_form_cycle, turn
+from pipeline.cycle import closed_form_cycle, finished, turn
+from pipeline.preview import closed_form_checks
 from pipeline.smoothing.smoothers import Smoother
 
-GX120 = (Path(__file__).resolve().parents[2] / "cases" / "gx120.toml").read_text(encoding="utf-8")
+GX120_CASE = Path(__file__).resolve().parents[2] / "cases" / "gx120.toml"
+GX120 = GX120_CASE.read_text(encoding="utf-8")
 SOFT = '\n[[load_case]]\nname = "soft"\nspeed = "1500 rpm"\npreload = "121 N"\n'
 TWELVE = Smoother("moving_average", points=12, spacing=float(np.radians(5.0)))
 
@@ -78,3 +81,89 @@ def test_the_constrained_synthesis_refuses_what_it_does_not_know():
         parse_case(drawn + SOFT)
     with pytest.raises(InputError, match=r"mechanism\.compensation"):
         parse_case(drawn.replace("gear_ratio = 2.0", "compensation = 0.5\ngear_ratio = 2.0"))
+
+
+LOADS = (GX120_CASE.parent / "gx120-loads.toml").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def loads():
+    """Four states of one machine, at few positions."""
+    given = parse_case(LOADS).with_positions(72)
+    return given, road.engine_torques(given)
+
+
+def test_each_load_case_has_the_torque_of_its_own_throttle(loads):
+    case, found = loads
+    assert [state.name for state in case.load_cases] == ["idle", "rated", "overspeed", "start"]
+    assert set(found) == {"idle", "rated", "overspeed", "start"}
+    # Fired work goes with the charge: three times the pressure, as many times the gas torque.
+    assert 3.0 < found["rated"].std / found["idle"].std < 6.0
+    assert found["idle"].std < found["overspeed"].std < found["rated"].std
+    # Turned over, the engine takes work and gives none.
+    assert found["start"].mean < 0.0
+
+
+def test_the_cam_is_cut_for_the_idle_alone(loads):
+    case, found = loads
+    alone = parse_case(GX120).with_positions(72)
+    lifts = [road.designed_lift(given, found, TWELVE).values for given in (case, alone)]
+    np.testing.assert_array_equal(*lifts)
+
+
+def test_checks_from_rest_to_overspeed_name_what_governs_and_pass_on_no_missing_number():
+    """At rest nothing rolls: no film, no PV, and a bearing that lives beyond any target."""
+    oil = '[lubricant]\nviscosity = "30 mPa s"\npressure_viscosity = "20 1/GPa"\n\n[cam]\n'
+    rough = 'roughness = "0.4 um"\n'
+    text = LOADS.replace("[cam]\n", oil + rough)
+    text = text.replace("[roller]\n", f"[roller]\nfriction = 0.1\n{rough}")
+    oiled = parse_case(text).with_positions(72)
+    found = {check.id: check for check in closed_form_checks(oiled)}
+    assert (found["film_ratio"].load_case, found["film_ratio"].status) == ("start", "fail")
+    assert 0.0 < found["film_ratio"].demand < 1e-2
+    for name in ("contact_pressure", "roller_static", "bush_pv_A", "jump", "roller_speed"):
+        assert found[name].load_case == "overspeed", name
+    assert found["torque_reduction"].load_case == "idle"
+    for check in found.values():
+        assert check.status != "pass" or np.isfinite(check.demand), check.id
+
+
+def test_at_rest_alone_no_speed_dependent_check_is_missing(loads):
+    case, _ = loads
+    start = next(state for state in case.load_cases if state.name == "start")
+    lift = parse_case(GX120).with_positions(72)
+    contour = cam(lift, road.engine_torques(lift))
+    still = case.model_copy(update={"load_cases": (start,)})
+    given = turn(still, contour, None, "start", 72)
+    cycles = (finished(still, contour, given, road.unknown_contact(given)),)
+    trial = TrialEvidence(case=still, contour=contour, cycles=cycles)
+    assert forces.jump(trial).demand == pytest.approx(0.0, abs=1e-10)
+    assert guides.bush_pv_a(trial).demand == pytest.approx(0.0, abs=1e-3)
+    assert roller.roller_speed(trial).demand == pytest.approx(0.0, abs=1e-1)
+    assert roller.roller_life(trial).demand > 1e3
+    assert signed.jump_speed(trial).demand == pytest.approx(3318.0, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "field"),
+    [
+        ('intake_pressure = "92 kPa"', 'intake_pressure = "0 kPa"', "intake_pressure"),
+        ('intake_pressure = "92 kPa"', "intake_pressure = 92", "intake_pressure"),
+        ("fired = false", 'fired = "no"', "fired"),
+        ("fired = false", 'fired = false\ntorque = "t.csv"', "intake_pressure"),
+    ],
+)
+def test_a_throttle_that_cannot_be_is_refused(tmp_path, old, new, field):
+    assert old in LOADS
+    with pytest.raises(InputError, match=rf"load_case\[\d\]\.{field}"):
+        parse_case(LOADS.replace(old, new), tmp_path)
+
+
+def test_a_throttle_without_a_cylinder_model_is_refused():
+    lift = re.sub(
+        r"(?ms)^\[engine\].*?^(?=\[mechanism\])",
+        '[lift]\nkind = "eccentric"\neccentricity = "5 mm"\n\n',
+        LOADS,
+    )
+    with pytest.raises(InputError, match=r"load_case\[1\]\.intake_pressure"):
+        parse_case(lift)
