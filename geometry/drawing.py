@@ -17,7 +17,7 @@ from geometry.pitch_curve import PitchCurve
 if TYPE_CHECKING:
     from ezdxf.layouts import Modelspace
 
-LAYERS = ("surface", "pitch", "bore", "keyway", "note")
+LAYERS = ("surface", "pitch", "bore", "keyway", "note", "counter_hole")
 """Layers of the DXF file."""
 
 AREA_ERROR = 1e-6
@@ -63,13 +63,23 @@ class Chords:
         freeze(self, theta=self.theta, points=self.points)
 
 
+class HoleLike(Protocol):
+    """A round hole: its middle (2,) and radius, m."""
+
+    @property
+    def centre(self) -> Array: ...
+    @property
+    def radius(self) -> float: ...
+
+
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """What the shop cuts: contour, bore radius (m) and keyway."""
+    """What the shop cuts: contour, bore radius (m), keyway, and a hole against unbalance."""
 
     contour: Contour
     bore_radius: float
     keyway: KeywayLike | None = None
+    counter_hole: HoleLike | None = None
 
 
 def chords(contour: Contour, error: float | None = None) -> Chords:
@@ -143,7 +153,7 @@ def clamped_spline(
 
 
 def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float:
-    """Write contour, pitch curve, bore and keyway as a DXF file in millimetres.
+    """Write contour, pitch curve, bore, keyway and hole as a DXF file in millimetres.
 
     The contour is drawn twice on the layer ``surface``: as a closed LWPOLYLINE of chords and as
     a SPLINE; the layer ``note`` states the chord error.
@@ -172,6 +182,10 @@ def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float
     if np.isfinite(outline.contour.roller_radius):  # a face has no centre
         _add_spline(space, outline.contour.pitch, "pitch")
     _add_hole(space, outline)
+    if outline.counter_hole is not None:
+        x, y = (outline.counter_hole.centre / _MILLIMETRE).tolist()
+        radius = outline.counter_hole.radius / _MILLIMETRE
+        space.add_circle((x, y), radius, dxfattribs={"layer": "counter_hole"})
     said = f"chord error {drawn.error / _MILLIMETRE:.6g} mm, {len(corners)} chords, units mm"
     low = float(drawn.points[1].min()) / _MILLIMETRE - 6.0
     space.add_text(said, height=2.0, dxfattribs={"layer": "note", "insert": (0.0, low)})

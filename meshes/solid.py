@@ -1,4 +1,4 @@
-"""The cam as a solid, extruded with its bore and keyway, for CAD programs."""
+"""The cam as a solid, extruded with its bore, keyway and hole, for CAD programs."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def write_step(path: Path, outline: Outline, width: float) -> None:
             occ = gmsh.model.occ
             outer = occ.addCurveLoop(_contour_curves(occ, outline))
             hole = occ.addCurveLoop(_hole_curves(occ, outline))
-            face = occ.addPlaneSurface([outer, hole])
+            face = occ.addPlaneSurface([outer, hole, *_counter_hole(occ, outline)])
             occ.extrude([(2, face)], 0.0, 0.0, width / MILLIMETRE)
             occ.synchronize()
             with _unheard():
@@ -94,6 +94,14 @@ def _hole_curves(occ: ModuleType, outline: Outline) -> list[int]:
         occ.addCircleArc(far, centre, points[0]),
     ]
     return [*sides, *arcs]
+
+
+def _counter_hole(occ: ModuleType, outline: Outline) -> list[int]:
+    """The loop of the hole against unbalance, where there is one."""
+    if outline.counter_hole is None:
+        return []
+    x, y = (outline.counter_hole.centre / MILLIMETRE).tolist()
+    return [occ.addCurveLoop([occ.addCircle(x, y, 0.0, outline.counter_hole.radius / MILLIMETRE)])]
 
 
 @contextmanager

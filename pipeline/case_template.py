@@ -63,6 +63,8 @@ material = "hardened_steel"
 # [cam.keyway]
 # width = "6 mm"
 # depth = "2.8 mm"
+# [cam.counter_hole]                 # drill the hole that takes the unbalance away
+# wall = "3 mm"
 
 [roller]
 radius = "16 mm"

@@ -61,6 +61,15 @@ class Keyway(Section):
     angle: Angle = 0.0
 
 
+class CounterHole(Section):
+    """Asks for the hole through the cam that takes its unbalance away.
+
+    wall is the least steel between the hole and contour, bore or keyway.
+    """
+
+    wall: Length = 0.003
+
+
 class Cam(Section):
     """The cam disc; the pitch base radius is the smallest radius of the roller's centre."""
 
@@ -73,6 +82,7 @@ class Cam(Section):
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] | None = None
     waviness_length: Length = 0.005
+    counter_hole: CounterHole | None = None
     source: Text = ""
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from geometry.arrays import Array, uniform_turn
 from geometry.contour import Contour
 from geometry.lift import Lift
+from pipeline.balance import balance
 from pipeline.case import Case
 from pipeline.contact.convergence import Convergence
 from pipeline.contact.history import CertificatePoint
@@ -132,6 +133,7 @@ def trial_record(case: Case, trial: Trial) -> dict[str, Any]:
         "closure_mm": _MM * trial.lift.closure,
         "contact_method": trial.cycles[0].contact.method,
         "line_contact_width_mm": _MM * contact_width(case),
+        "balance": balance(case, trial.contour).record(),
         "mesh": None
         if mesh is None
         else {

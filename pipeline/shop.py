@@ -14,6 +14,7 @@ from geometry.cutter import cutter_path
 from geometry.drawing import Outline, write_dxf
 from geometry.errors import CamError, InputError
 from meshes.solid import write_step
+from pipeline.balance import drilled_hole
 from pipeline.case import Case
 from pipeline.results import Column, table
 from pipeline.run_folder import write_atomic
@@ -45,7 +46,8 @@ FORM_TOLERANCE = 20e-6
 class ShopOrder:
     """Step of the tables, rad; tool, tolerance band of the form, chord error, m.
 
-    A tool of the roller's radius is taken where none is given: it fits wherever the roller does.
+    A tool of the roller's radius, or the base circle's, is taken where none is given: it fits
+    wherever the follower does.
     """
 
     step: float = float(np.radians(0.5))
@@ -81,8 +83,9 @@ def order_of(case: Case) -> ShopOrder:
 
 
 def outline_of(case: Case, contour: Contour) -> Outline:
-    """Contour, bore and keyway of a case."""
-    return Outline(contour, case.cam.bore_radius, case.cam.keyway)
+    """Contour, bore, keyway and counter-hole of a case."""
+    hole = drilled_hole(case, contour)
+    return Outline(contour, case.cam.bore_radius, case.cam.keyway, hole)
 
 
 def write_shop(
@@ -98,7 +101,7 @@ def write_shop(
     """
     folder.mkdir(parents=True, exist_ok=True)
     outline, order = outline_of(case, contour), order_of(case)
-    tool = order.tool_radius or contour.roller_radius
+    tool = order.tool_radius or contour.fitting_tool
     jobs: dict[str, Callable[[Path], object]] = {
         "contour.csv": lambda path: write_atomic(path, contour_table(contour, order.theta)),
         "contour.dxf": lambda path: write_dxf(path, outline, order.chord_error),

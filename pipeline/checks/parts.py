@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.errors import GeometryError
+from pipeline.balance import Balance, balance
 from pipeline.checks.check import Check, not_described
 from pipeline.checks.trial import TrialEvidence, greatest, least, rollers_only, worst_case
-from pipeline.follower.cam_body import counter_hole, unbalance
 from pipeline.follower.ring import goodman
 from pipeline.outer_ring import why_solid
 
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     from pipeline.cycle import Cycle
     from pipeline.part_fields import Guide
     from pipeline.parts import PartsHistory
-
-WALL_OF_A_HOLE = 3e-3  # steel left around a counter-hole, m
 
 
 def _known(evidence: TrialEvidence) -> bool:
@@ -277,38 +274,37 @@ def torque_reversals(evidence: TrialEvidence) -> Check | None:
 
 
 def cam_unbalance(evidence: TrialEvidence) -> Check | None:
-    """Unbalance of the cam, and the hole that would take it away."""
+    """Unbalance of the cam as made, and the hole that would take it away."""
     if not _known(evidence):
         return None
-    case = evidence.case
-    key = case.cam.keyway
-    found = unbalance(
-        evidence.contour,
-        case.cam.bore_radius,
-        key,
-        case.cam.width,
-        case.material(case.cam.material).density,
-    )
+    found = balance(evidence.case, evidence.contour)
+    made = found.as_made
     speed = max(evidence.cam_speed(cycle) for cycle in evidence.cycles)
-    note = f"{found.force(speed):.1f} N at {np.degrees(found.angle) % 360:.1f} deg of the cam"
-    try:
-        depth = 0.0 if key is None else key.depth
-        hole = counter_hole(evidence.contour, found, case.cam.bore_radius, WALL_OF_A_HOLE, depth)
-        x, y = 1e3 * hole.centre
-        note += f"; a hole of {2e3 * hole.radius:.2f} mm at ({x:.2f}, {y:.2f}) mm removes it"
-    except GeometryError as error:
-        note += f"; {error}"
     limit = evidence.limit("unbalance")
     return Check(
         id="cam_unbalance",
         title="Unbalance of the cam",
-        demand=1e3 * found.eccentricity * speed,
+        demand=1e3 * made.eccentricity * speed,
         limit=None if limit is None else 1e3 * limit,
         unit="mm/s",
         source=evidence.source("unbalance", "e w of the balance grade, ISO 21940-11: verify"),
-        method="exact first moment of the contour's area, bore and keyway taken off",
+        method="exact first moment of the contour's area; bore, keyway and drilled hole taken off",
         must_have=False,
-        note=note,
+        note=f"{made.force(speed):.1f} N at {np.degrees(made.angle) % 360:.1f} deg of the cam"
+        f"{_hole_in_words(found)}",
+    )
+
+
+def _hole_in_words(found: Balance) -> str:
+    hole, missed = found.hole, f"; {found.missed}" if found.missed else ""
+    if hole is None:
+        return missed
+    x, y = 1e3 * hole.centre
+    share = 1.0 - found.left.product / found.unbalance.product
+    does = "takes" if found.drilled else "would take"
+    return (
+        f"{missed}; a hole of {2e3 * hole.radius:.2f} mm at ({x:.2f}, {y:.2f}) mm"
+        f" {does} {share:.0%} of it"
     )
 
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from geometry.arrays import FULL_TURN, Array, finite, freeze
 from geometry.contour import Contour
@@ -94,7 +94,7 @@ def torque_reversals(theta: Array, torque: ArrayLike, drag: float = 0.0) -> tupl
 
 
 _BALANCED = 1e-9
-"""Of area times bore radius: a first moment that is round-off, as that of a tripled cam."""
+"""Of the area's power 3/2: a first moment that is round-off."""
 
 
 @dataclass(frozen=True)
@@ -215,6 +215,11 @@ class Unbalance:
         """Of the centre of mass, m."""
         return float(np.hypot(*self.moment)) / self.area
 
+    @property
+    def balanced(self) -> bool:
+        """Whether the first moment is round-off, as that of a tripled cam."""
+        return bool(np.hypot(*self.moment) <= _BALANCED * self.area**1.5)
+
     def force(self, cam_speed: float) -> float:
         """m e w^2, N."""
         return self.product * cam_speed**2
@@ -289,20 +294,16 @@ def counter_hole(
     if not 0.0 < wall < np.inf:
         raise InputError("cam.wall", wall, "> 0 m")
     need = float(np.hypot(*found.moment))
-    direction = np.array([np.cos(found.angle), np.sin(found.angle)])
-    ring = contour.polygon(1440)
+    if found.balanced:
+        raise GeometryError("the cam is balanced as it is")
+    direction, ring = _heavy_side(found), contour.polygon(1440)
 
     def spare(place: float) -> float:
         """Wall left to the contour, less the wall asked for, hole's middle at `place`."""
         away = np.hypot(*(ring - (place * direction)[:, None])).min()
         return float(away - np.sqrt(need / (np.pi * place)) - wall)
 
-    if need <= _BALANCED * found.area * bore_radius:
-        raise GeometryError("the cam is balanced as it is")
-    # beyond the contour the distance to it grows again, and no hole fits there
-    bearing = np.arctan2(ring[1], ring[0])
-    reach = float(np.interp(found.angle, bearing, np.hypot(*ring), period=2.0 * np.pi))
-    places = np.linspace(bore_radius, reach, 400)
+    places = np.linspace(bore_radius, _reach(found, ring), 400)
     fits = [place for place in places if spare(place) >= 0.0]
     if not fits:
         raise GeometryError("no counter-hole fits between bore and contour")
@@ -312,3 +313,45 @@ def counter_hole(
     if outermost - radius - wall < bore_radius + keyway_depth:
         raise GeometryError("no counter-hole fits between bore and contour")
     return CounterHole(outermost * direction, radius)
+
+
+def greatest_hole(
+    contour: Contour, found: Unbalance, bore_radius: float, wall: float, keyway_depth: float = 0.0
+) -> CounterHole:
+    """The hole on the heavy side that takes most of an unbalance away, where none takes all.
+
+    Parameters
+    ----------
+    wall, keyway_depth : float   as for `counter_hole`
+
+    Raises
+    ------
+    GeometryError
+        If the walls leave no room for any hole.
+    """
+    direction, ring = _heavy_side(found), contour.polygon(1440)
+
+    def radius(place: float) -> float:
+        away = np.hypot(*(ring - (place * direction)[:, None])).min()
+        return float(min(away, place - bore_radius - keyway_depth)) - wall
+
+    def taken(place: float) -> float:
+        return max(radius(place), 0.0) ** 2 * place
+
+    places = np.linspace(bore_radius, _reach(found, ring), 400)
+    best = int(np.argmax([taken(place) for place in places]))
+    around = (places[max(best - 1, 0)], places[min(best + 1, places.size - 1)])
+    place = float(minimize_scalar(lambda x: -taken(x), bounds=around, method="bounded").x)
+    if not radius(place) > 0.0:
+        raise GeometryError("no hole fits between bore and contour")
+    return CounterHole(place * direction, radius(place))
+
+
+def _heavy_side(found: Unbalance) -> Array:
+    return np.array([np.cos(found.angle), np.sin(found.angle)])
+
+
+def _reach(found: Unbalance, ring: Array) -> float:
+    """Where the contour stands on the heavy side, m: beyond it the distance to it grows again."""
+    bearing = np.arctan2(ring[1], ring[0])
+    return float(np.interp(found.angle, bearing, np.hypot(*ring), period=2.0 * np.pi))

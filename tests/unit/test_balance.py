@@ -1,0 +1,161 @@
+"""A cam's balance: the hole that is left out or drilled, in the check, the record and the shop."""
+
+import json
+from types import SimpleNamespace
+
+import ezdxf
+import numpy as np
+import pytest
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.errors import GeometryError
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from pipeline.balance import WALL, balance, drilled_hole
+from pipeline.case import parse_case
+from pipeline.case_template import template
+from pipeline.checks.parts import cam_unbalance
+from pipeline.checks.trial import TrialEvidence
+from pipeline.follower.cam_body import greatest_hole, unbalance
+from pipeline.shop import outline_of, write_shop
+
+KEY = '\n[cam.keyway]\nwidth = "6 mm"\ndepth = "2.8 mm"\nangle = "50 deg"\n'
+ASKED = "\n[cam.counter_hole]\n"
+
+
+def a_cam(height):
+    """A lopsided cam on the template's roller of 16 mm and pitch radius of 60 mm."""
+    theta = uniform_turn(720)
+    bump = 0.5 * height * (1 - np.cos(theta)) + 1e-3 * (1 - np.cos(2 * theta + 0.3))
+    return Contour(PitchCurve(Lift(theta, bump - bump.min()), 0.06), 0.016)
+
+
+SLIGHT, HEAVY = a_cam(2e-3), a_cam(16e-3)
+
+
+def case_of(extra=""):
+    return parse_case(template("balance") + KEY + extra)
+
+
+def moments_by_sectors(contour, cam, hole):
+    """Area and first moment of what is left, summed in polar sectors: no formula of the code's.
+
+    The trapezoidal rule of a smooth periodic integrand; bore, keyway and hole by Gauss.
+    """
+    theta = uniform_turn(20_000)
+    x, y = contour.points(theta)
+    dx, dy = contour.velocity(theta)
+    r2, turn = x**2 + y**2, (x * dy - y * dx) / (x**2 + y**2)
+    step = 2 * np.pi / theta.size
+    area = np.sum(0.5 * r2 * turn) * step
+    moment = np.array([np.sum(r2 * part * turn) / 3 * step for part in (x, y)])
+    u, weight = np.polynomial.legendre.leggauss(60)
+    across, half = 0.5 * cam.keyway.width * u, 0.5 * cam.keyway.width
+    inner, floor = np.sqrt(cam.bore_radius**2 - across**2), cam.bore_radius + cam.keyway.depth
+    cut, arm = half * weight @ (floor - inner), half * weight @ (floor**2 - inner**2) / 2
+    direction = np.array([np.cos(cam.keyway.angle), np.sin(cam.keyway.angle)])
+    around = uniform_turn(64)
+    depth = 0.5 * hole.radius * (u + 1)
+    px = hole.centre[0] + np.outer(depth, np.cos(around))
+    py = hole.centre[1] + np.outer(depth, np.sin(around))
+    patch = np.outer(0.5 * hole.radius * weight * depth, np.full(64, 2 * np.pi / 64))
+    area -= np.pi * cam.bore_radius**2 + cut + patch.sum()
+    return area, moment - arm * direction - [np.sum(patch * px), np.sum(patch * py)]
+
+
+def test_nothing_is_left_of_the_unbalance_by_numerical_area_moments():
+    """To 1e-9 of the moment there was, and of the area."""
+    case = case_of(ASKED)
+    found = balance(case, SLIGHT)
+    assert found.missed == ""
+    area, moment = moments_by_sectors(SLIGHT, case.cam, found.hole)
+    assert area == pytest.approx(found.left.area, rel=1e-9)
+    before = np.hypot(*found.unbalance.moment)
+    assert before > 1e-3 * found.unbalance.area * 1e-3
+    assert np.hypot(*moment) < 1e-9 * found.unbalance.area * 0.06
+    assert found.left.product < 1e-9 * found.unbalance.product
+    assert found.left.mass < found.unbalance.mass
+
+
+def test_a_heavy_cam_gets_the_hole_that_helps_most():
+    """None takes it all; the greatest keeps its walls, and no other hole of a grid beats it."""
+    case = case_of(ASKED)
+    found = balance(case, HEAVY)
+    assert "no counter-hole fits" in found.missed
+    hole, ring = found.hole, HEAVY.polygon(7200)
+    assert 0.0 < found.left.product < found.unbalance.product
+    away = np.hypot(*(ring - hole.centre[:, None])).min() - hole.radius
+    inwards = np.hypot(*hole.centre) - hole.radius - case.cam.bore_radius - case.cam.keyway.depth
+    assert min(away, inwards) == pytest.approx(WALL, abs=1e-5)
+    direction = hole.centre / np.hypot(*hole.centre)
+    reach = case.cam.bore_radius + case.cam.keyway.depth + WALL
+    for place in np.linspace(0.012, 0.07, 200):
+        room = np.hypot(*(ring - (place * direction)[:, None])).min() - WALL
+        radius = max(min(room, place - reach), 0.0)
+        assert radius**2 * place <= hole.radius**2 * np.hypot(*hole.centre) * (1 + 1e-4)
+
+
+def test_no_room_for_any_hole():
+    thick = case_of('\n[cam.counter_hole]\nwall = "30 mm"\n')
+    found = balance(thick, HEAVY)
+    assert found.hole is None
+    assert "no hole fits" in found.missed
+    assert drilled_hole(thick, HEAVY) is None
+    assert found.record()["hole_drilled"] is False
+    given = unbalance(HEAVY, 0.01, None, 0.01, 7850.0)
+    with pytest.raises(GeometryError, match="no hole fits"):
+        greatest_hole(HEAVY, given, 0.01, 0.03)
+
+
+def evidence(case, contour):
+    cycle = SimpleNamespace(load_case="idle", crank_speed=157.0, parts=True)
+    return TrialEvidence(case=case, contour=contour, cycles=(cycle,))
+
+
+def test_the_check_judges_the_cam_as_it_is_made():
+    plain = template("balance").replace("[limits]", '[limits]\nunbalance = "16 mm/s"', 1) + KEY
+    left_out, drilled = (
+        cam_unbalance(evidence(parse_case(plain + extra), SLIGHT)) for extra in ("", ASKED)
+    )
+    found = balance(parse_case(plain), SLIGHT)
+    assert left_out.demand == pytest.approx(1e3 * found.unbalance.eccentricity * 78.5)
+    assert "would take 100% of it" in left_out.note
+    assert drilled.demand < 1e-6 * left_out.demand
+    assert (left_out.status, drilled.status) == ("fail", "pass")
+    heavy = cam_unbalance(evidence(parse_case(plain + ASKED), HEAVY))
+    assert heavy.status == "fail"
+    assert "no counter-hole fits" in heavy.note
+
+
+def test_the_record_is_plain_numbers():
+    record = balance(case_of(), SLIGHT).record()
+    assert json.loads(json.dumps(record)) == record
+    assert record["hole_drilled"] is False
+    assert record["unbalance_left_g_mm"] < 1e-6 < record["unbalance_g_mm"]
+
+
+def test_the_shop_drills_it(tmp_path):
+    """In the drawing as a circle of its own layer, in the solid as steel left out."""
+    case = case_of(ASKED)
+    write_shop(tmp_path, case, SLIGHT)
+    hole = drilled_hole(case, SLIGHT)
+    circles = ezdxf.readfile(tmp_path / "contour.dxf").query('CIRCLE[layer=="counter_hole"]')
+    assert len(circles) == 1
+    assert circles[0].dxf.radius == pytest.approx(1e3 * hole.radius, rel=1e-12)
+    np.testing.assert_allclose(tuple(circles[0].dxf.center)[:2], 1e3 * hole.centre, rtol=1e-12)
+    assert outline_of(case_of(), SLIGHT).counter_hole is None
+    import gmsh
+
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.merge(str(tmp_path / "cam.step"))
+        volume = gmsh.model.occ.getMass(3, gmsh.model.getEntities(3)[0][1])
+        centre = gmsh.model.occ.getCenterOfMass(3, gmsh.model.getEntities(3)[0][1])
+    finally:
+        gmsh.finalize()
+    found = balance(case, SLIGHT)
+    assert volume == pytest.approx(1e9 * found.left.area * case.cam.width, rel=1e-6)
+    assert np.hypot(*centre[:2]) < 1e-4  # mm; before the hole it was a hundred times that
+    assert found.unbalance.eccentricity > 1e-5
