@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import Any
+from dataclasses import fields, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from geometry.arrays import Array
 from pipeline.case import Case
 from pipeline.cycle import Cycle
-from pipeline.smoothing.constrained import RESERVE, Design, Problem, Search
 from pipeline.smoothing.constraints import Correction
+from pipeline.smoothing.design import RESERVE, Design, Problem
 from pipeline.smoothing.prices import prices
+from pipeline.smoothing.search import Search
+from pipeline.smoothing.starts import Starts
 
 SETTLED = 0.01  # utilisation that finite elements may still move, of the limit
 _LOADED = 0.05  # of the greatest: below it a ratio of two small numbers says nothing
+_USED = 0.5  # of a limit: one that is used less may move as it likes
 
 
 def corrections_of(cycles: Sequence[Cycle]) -> dict[str, Correction]:
@@ -58,18 +61,59 @@ def with_corrections(problem: Problem, corrections: Mapping[str, Correction]) ->
     return replace(problem, scenarios=scenarios)
 
 
-def moved(design: Design, problem: Problem, corrections: Mapping[str, Correction]) -> float:
+class Moved(NamedTuple):
+    """The limit that finite elements moved most, of those above one half: from and to."""
+
+    limit: str
+    before: float
+    after: float
+
+    @property
+    def share(self) -> float:
+        """How far, of the limit."""
+        return abs(self.after - self.before)
+
+    @property
+    def sentence(self) -> str:
+        if not self.limit:
+            return "finite elements move no limit that is used by half"
+        name = self.limit.replace("_", " ")
+        return (
+            f"finite elements move {name} from {self.before:.4g} to {self.after:.4g} of its limit"
+        )
+
+
+def moved(design: Design, problem: Problem, corrections: Mapping[str, Correction]) -> Moved:
     """How far new corrections move the utilisation of any limit that is above one half."""
-    after = replace(with_corrections(problem, corrections), seed=design.coefficients)
-    state = Search(after).state(design.coefficients, design.machine)
-    return max(
-        (
-            abs(value - design.utilisation[name])
-            for name, value in state.utilisation.items()
-            if max(value, design.utilisation[name]) > 0.5
-        ),
-        default=0.0,
+    states = [
+        Search(replace(each, seed=design.coefficients)).state(design.coefficients, design.machine)
+        for each in (problem, with_corrections(problem, corrections))
+    ]
+    before, after = (state.utilisation for state in states)
+    found = [Moved(name, before[name], after[name]) for name in before]
+    used = [each for each in found if max(each.before, each.after) > _USED]
+    return max(used, key=lambda each: each.share, default=Moved("", 0.0, 0.0))
+
+
+def refined_problem(
+    problem: Problem, design: Design, corrections: Mapping[str, Correction]
+) -> Problem:
+    """What to solve next: the limits as finite elements see them, from the design at hand."""
+    return replace(
+        with_corrections(problem, corrections), seed=design.coefficients, machine=design.machine
     )
+
+
+def corrections_record(problem: Problem) -> dict[str, dict[str, list[float]]]:
+    """Least and greatest of what finite elements answered over closed forms, by load case."""
+    return {
+        item.name: {
+            each.name: [float(getattr(item.correction, each.name).min()),
+                        float(getattr(item.correction, each.name).max())]
+            for each in fields(item.correction)
+        }
+        for item in problem.scenarios
+    }  # fmt: skip
 
 
 def redrawn(case: Case, design: Design) -> Case:
@@ -85,8 +129,14 @@ def redrawn(case: Case, design: Design) -> Case:
     )
 
 
-def design_record(design: Design, problem: Problem) -> dict[str, Any]:
-    """What ``trial.json`` keeps of a synthesis."""
+def design_record(design: Design, problem: Problem, starts: Starts | None = None) -> dict[str, Any]:
+    """What ``trial.json`` keeps of a synthesis.
+
+    Parameters
+    ----------
+    problem : Problem   the design answers, with the corrections it was given
+    starts : Starts     how far several starts agree; None where one goes on from a trial before
+    """
     least = float(design.lift().lowest.value)
     machine = design.machine
     energy = machine.preload * least + 0.5 * machine.rate * least**2
@@ -99,7 +149,10 @@ def design_record(design: Design, problem: Problem) -> dict[str, Any]:
         "spring_rate_N_per_mm": 1e-3 * machine.rate,
         "preload_N": machine.preload,
         "pitch_base_radius_mm": 1e3 * machine.base_radius,
+        "phase_deg": float(np.degrees(machine.phase)),
         "reserve": RESERVE,
+        "starts": None if starts is None else starts.as_record(),
+        "corrections": corrections_record(problem),
         "utilisation": dict(sorted(design.utilisation.items(), key=lambda item: -item[1])),
         "prices": prices(design, problem) if design.feasible else [],
     }

@@ -41,6 +41,8 @@ def problem_of(
     if not any(state.ripple_weight > 0 for state in case.load_cases):
         raise InputError("load_case.ripple_weight", 0.0, "> 0 in one load case")
     smoothing = case.smoothing
+    if "preload" in smoothing.free and any(s.preload is not None for s in case.load_cases):
+        raise InputError("smoothing.free", "preload", "no load case with a preload of its own")
     found = corrections or {}
     scenarios = [
         scenario
