@@ -40,6 +40,7 @@ from pipeline.smoothing.infeasible import infeasibility
 from pipeline.smoothing.outlook import Attempt
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
+from pipeline.smoothing.starts import Starts, explored
 from pipeline.speed import consistency, speed_record, study_of
 from pipeline.trial import Trial
 
@@ -165,13 +166,18 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
     given, problem = journey.case, problem_of(journey.case, journey.torques)
     why = "the cam of least ripple within all limits"
     trials: list[Trial] = []
+    starts: Starts | None = None
     while True:
         journey.progress.stage(f"trial {len(trials) + 1}: synthesis")
         with journey.watch.stage("synthesis"):
-            design = synthesise(problem)
+            if trials:  # from the trial before, whose optimum it follows
+                design = synthesise(problem)
+            else:
+                design, starts = explored(problem, given.smoothing.starts)
         journey = replace(journey, case=loop.redrawn(given, design))
         done = _trial(journey, len(trials) + 1, None, why, design.lift())
-        trials.append(replace(done, synthesis=loop.design_record(design, problem)))
+        drawn_from = None if trials else starts
+        trials.append(replace(done, synthesis=loop.design_record(design, problem, drawn_from)))
         found = binding(done.checks)
         if not design.feasible:
             journey.progress.stage("which limits conflict")
@@ -181,18 +187,15 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
             return journey, trials, Stop(report.sentence, found, len(trials))
         corrections = loop.corrections_of(done.cycles)
         moved = loop.moved(design, problem, corrections)
-        settled = moved < loop.SETTLED and (not found or moved < RESERVE)
+        settled = moved.share < loop.SETTLED and (not found or moved.share < RESERVE)
         if settled or done.mesh is None or len(trials) == given.solver.max_trials:
             last = f"trial {len(trials)} {'fails' if found else 'passes every must-have check'}"
-            reason = f"{last}; finite elements move no limit in use by more than {moved:.2g}"
+            agree = "" if starts is None else f"; {starts.sentence}"
+            reason = f"{last}; {moved.sentence}{agree}"
             return journey, trials, Stop(reason, found, len(trials))
-        why = f"finite elements moved a limit in use by {moved:.2g} of itself"
+        why = moved.sentence
         journey.progress.note(f"trial {len(trials)}: {why}")
-        problem = replace(
-            loop.with_corrections(problem, corrections),
-            seed=design.coefficients,
-            machine=design.machine,
-        )
+        problem = loop.refined_problem(problem, design, corrections)
 
 
 def _trial(
