@@ -36,24 +36,23 @@ class Share:
 
 @dataclass(frozen=True, eq=False)
 class GuideShares:
-    """Reactions under the side force of the turn (N), and the contact force it comes with (N)."""
+    """Reaction of guide A under the side force of the turn (N), and the contact force (N).
+
+    Of guide B length and play change as much: the difference of the two is the side force.
+    """
 
     reaction_a: Share
-    reaction_b: Share
     normal_force: Share
 
     def columns(self) -> Mapping[str, Array]:
         """SI values by the names of the columns of ``5_cycle.csv``."""
-        rows = (
-            ("reaction_A", self.reaction_a),
-            ("reaction_B", self.reaction_b),
-            ("normal_force", self.normal_force),
-        )
-        found = {"normal_force_statics": self.normal_force.points}
-        for name, share in rows:
-            found |= {f"{name}_by_length": share.by_length}
-            found |= {f"{name}_by_clearance": share.by_clearance}
-        return found
+        return {
+            "reaction_by_length": self.reaction_a.by_length,
+            "reaction_by_clearance": self.reaction_a.by_clearance,
+            "normal_force_statics": self.normal_force.points,
+            "normal_force_by_length": self.normal_force.by_length,
+            "normal_force_by_clearance": self.normal_force.by_clearance,
+        }
 
 
 def guide_shares(
@@ -96,6 +95,5 @@ def guide_shares(
     on_tight = follower_loads(pitch, replace(points, rubbing=rubbing), cam_speed, loads.theta)
     return GuideShares(
         Share.between(reactions.statics_a, tight.reaction_a, reactions.reaction_a),
-        Share.between(reactions.statics_b, tight.reaction_b, reactions.reaction_b),
         Share.between(on_points.normal_force, on_tight.normal_force, loads.normal_force),
     )

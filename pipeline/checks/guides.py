@@ -65,11 +65,12 @@ def _explained(evidence: TrialEvidence, side: str, guide: Guide, worst: Worst) -
     parts = getattr(cycle, "parts", None)
     if cycle is None or parts is None:
         return []
-    share = parts.shares.reaction_a if side == "A" else parts.shares.reaction_b
+    share, guides = parts.shares.reaction_a, cycle.guides
+    on_points = guides.statics_a if side == "A" else guides.statics_b
     k = int(np.argmax(np.abs(_reaction(cycle, side))))
     unit = 1e-6 * np.sign(_reaction(cycle, side)[k]) / _area(guide)
     points, length, clearance = (
-        unit * each[k] for each in (share.points, share.by_length, share.by_clearance)
+        unit * each[k] for each in (on_points, share.by_length, share.by_clearance)
     )
     shares = f"{length:+.2g} by length, {clearance:+.2g} by clearance"
     return [f"{points:.3g} MPa on point supports, {shares}"]
