@@ -25,8 +25,9 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 class DeckBody:
     """A body of a deck in plane strain.
 
-    mesh ; modulus (Pa) and Poisson ratio ; held: the boundary whose nodes are held ;
-    forces (2, nodes), N, over the whole width.
+    mesh ; modulus (Pa) and Poisson ratio ; held: the boundary whose nodes are held, "" where
+    none is ; forces (2, nodes), N, over the whole width ; placed: node, component and
+    displacement, m, of single nodes, which keep a body in balance from drifting.
     """
 
     mesh: BodyMesh
@@ -34,6 +35,7 @@ class DeckBody:
     poisson: float
     held: str
     forces: Array
+    placed: tuple[tuple[int, int, float], ...] = ()
 
     def __post_init__(self) -> None:
         freeze(self, forces=self.forces)
@@ -66,7 +68,11 @@ def write_deck(
     first, element = 1, 1
     for name, body in bodies.items():
         lines += _body_lines(name, body, width, first, element)
-        supports.append(f"{name}_{body.held}, 1, 2")
+        if body.held:
+            supports.append(f"{name}_{body.held}, 1, 2")
+        for node, component, way in body.placed:
+            place = f"{first + node}, {component + 1}, {component + 1}"
+            supports.append(f"{place}, {way / MILLIMETRE:{_FORMAT}}")
         for component, node in zip(*np.nonzero(body.forces), strict=True):
             force = float(body.forces[component, node])
             forces.append(f"{first + node}, {component + 1}, {force:{_FORMAT}}")

@@ -10,6 +10,7 @@ from geometry.arrays import FULL_TURN, Array
 from geometry.errors import InputError
 from meshes.deck import DeckBody, write_deck
 from pipeline import results
+from pipeline.contact.elastic_body import ElasticBody
 from pipeline.contact.pair import ContactPair
 from pipeline.contact.pair_certificate import SolvedPair, solve_pair
 from pipeline.cycle import contact_pair
@@ -45,20 +46,26 @@ def nodal_forces(pair: ContactPair, solved: SolvedPair) -> tuple[Array, Array]:
 
 
 def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> None:
-    """Write the bodies at one angle with the pressures of the contact on their nodes."""
+    """Write the bodies at one angle with the pressures of the contact on their nodes.
+
+    What springs hold, as balls hold a ring, stands under their forces instead.
+    """
     other, forces = pair.follower, nodal_forces(pair, solved)
+    load = float(np.abs(forces[1].sum(axis=1) @ solved.frame.normal))
     bodies = {
-        name: DeckBody(side.body.mesh, material.modulus, material.poisson, held, force)
-        for name, side, material, held, force in zip(
+        name: _deck_body(side.body, held, force, moved, pair.width)
+        for name, side, held, force, moved in zip(
             ("cam", other.name),
             solved.sides,
-            (pair.cam, other.material),
             ("bore", other.held),
             forces,
+            solved.solution.displacements,
             strict=True,
         )
     }
-    load = float(np.abs(forces[1].sum(axis=1) @ solved.frame.normal))
+    supports = f"the bore and the {other.name}'s {other.held} are held"
+    if not other.held:
+        supports = f"the bore is held; the {other.name}'s balls push as they do under the load"
     write_deck(
         path,
         bodies,
@@ -66,9 +73,23 @@ def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> Non
         (
             f"contact at cam angle {np.degrees(solved.theta):.6f} deg, normal force {load:.6f} N",
             "the contact pressure acts as consistent nodal forces along the contact normal",
-            f"the bore and the {other.name}'s {other.held} are held",
+            supports,
         ),
     )
+
+
+def _deck_body(body: ElasticBody, held: str, forces: Array, moved: Array, width: float) -> DeckBody:
+    if body.springs is None:
+        return DeckBody(body.mesh, body.modulus, body.poisson, held, forces)
+    whole = forces + width * body.springs.forces(moved[:, :, None])[:, :, 0]
+    # Three ways of two nodes far apart across x: no force there, as all others balance.
+    x = body.mesh.points[0]
+    left, right = int(np.argmin(x)), int(np.argmax(x))
+    placed = tuple(
+        (node, component, float(moved[component, node]))
+        for node, component in ((left, 0), (left, 1), (right, 1))
+    )
+    return DeckBody(body.mesh, body.modulus, body.poisson, "", whole, placed)
 
 
 def deck(run: Path, theta: float, path: Path, load_case: str | None = None) -> SolvedPair:

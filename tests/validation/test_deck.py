@@ -25,20 +25,29 @@ from pipeline.contact.elastic_body import Elastic, StressRecovery
 from pipeline.contact.follower_body import RollerBody
 from pipeline.contact.pair import ContactPair
 from pipeline.contact.pair_certificate import SolvedPair, solve_pair
+from pipeline.contact.ring_body import BallRing, RingBody
 from pipeline.deck import force_at, nodal_forces, write_contact_deck
 
 FORCE, THETA = 900.0, 1.1
 WITHIN = 0.01  # of the greatest: the two codes carry stresses to the nodes by different rules
 
 
-@pytest.fixture(scope="module")
-def solved() -> tuple[ContactPair, SolvedPair]:
+FOLLOWERS = {
+    "solid roller": RollerBody(0.008, 0.0025, Elastic(208e9, 0.3)),
+    "ring on balls": RingBody(
+        0.008, BallRing(0.00136, (-0.5, 0.5), 1.5e7, 1.4e-4), 0.0044, Elastic(208e9, 0.3)
+    ),
+}
+
+
+@pytest.fixture(scope="module", params=FOLLOWERS)
+def solved(request: pytest.FixtureRequest) -> tuple[ContactPair, SolvedPair]:
     theta = uniform_turn(360)
     lift = Lift(theta, 0.008 * (1 - np.cos(theta)))
     contour = Contour(PitchCurve(lift, 0.045), 0.008)
     pair = ContactPair(
         contour, 0.0044, 0.010, Keyway(0.004, 0.002, 3.0),
-        Elastic(206e9, 0.3), RollerBody(0.008, 0.0025, Elastic(208e9, 0.3)),
+        Elastic(206e9, 0.3), FOLLOWERS[request.param],
     )  # fmt: skip
     return pair, solve_pair(pair, THETA, FORCE, 4.0)
 
@@ -125,8 +134,11 @@ def test_deck_says_units_sets_and_supports(solved, tmp_path: Path) -> None:
     write_contact_deck(path, *solved)
     text = path.read_text(encoding="ascii")
     for part in ("mm, N, MPa", "TYPE=CPE6, ELSET=cam", "NSET=cam_bore", "cam_bore, 1, 2",
-                 "roller_hub, 1, 2", "NSET=cam_keyway", "206000.0, 0.3", "*CLOAD"):  # fmt: skip
+                 "NSET=cam_keyway", "206000.0, 0.3", "*CLOAD"):  # fmt: skip
         assert part in text
+    held = solved[0].follower.held
+    assert ("roller_hub, 1, 2" in text) == bool(held)
+    assert ("balls push" in text) == (not held)
     count = sum(side.body.mesh.triangles.shape[1] for side in solved[1].sides)
     assert len(re.findall(r"(?m)^\d+(, \d+){6}$", text)) == count
 
