@@ -24,8 +24,8 @@ LIMITATIONS = (
     "Linear elastic bodies: above first yield the stresses are those before shakedown, and no"
     " plastic strain is known.",
     "Frictionless contact under the certificate; traction enters by the closed form of sliding.",
-    "The roller is a ring on a stiff hub; the bending of an unsupported bearing ring over its"
-    " balls is not in the contact's pressure.",
+    "The roller is solid on a stiff hub unless balls and outer ring of its bearing are given; such"
+    " a ring is of one thickness, its balls have no clearance, and the contact is over a ball.",
 )
 SINGULARITIES = (
     "Corners of the keyway and the edges of the bore: stress there grows without bound as the"
