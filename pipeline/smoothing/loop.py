@@ -19,6 +19,7 @@ from pipeline.smoothing.starts import Starts
 
 SETTLED = 0.01  # utilisation that finite elements may still move, of the limit
 _LOADED = 0.05  # of the greatest: below it a ratio of two small numbers says nothing
+_RUBBING = 1e-6  # the same of friction, which also acts where the guides carry little
 _USED = 0.5  # of a limit: one that is used less may move as it likes
 
 
@@ -29,7 +30,7 @@ def corrections_of(cycles: Sequence[Cycle]) -> dict[str, Correction]:
 
 def _correction(cycle: Cycle) -> Correction:
     guides, contact, parts = cycle.guides, cycle.contact, cycle.parts
-    jam = np.ones(1)
+    jam = np.ones(cycle.theta.size)
     if parts is not None:
         worst = parts.friction.greatest
         jam = _ratio(worst.jam_index, worst.jam_index_statics)
@@ -37,15 +38,15 @@ def _correction(cycle: Cycle) -> Correction:
         contact=_ratio(contact.p0, contact.p0_hertz),
         guide_a=_ratio(guides.reaction_a, guides.statics_a),
         guide_b=_ratio(guides.reaction_b, guides.statics_b),
-        rubbing_a=_ratio(guides.rubbing_load_a, guides.statics_a),
-        rubbing_b=_ratio(guides.rubbing_load_b, guides.statics_b),
+        rubbing_a=_ratio(guides.rubbing_load_a, guides.statics_a, _RUBBING),
+        rubbing_b=_ratio(guides.rubbing_load_b, guides.statics_b, _RUBBING),
         jam=jam,
     )
 
 
-def _ratio(found: Array, closed: Array) -> Array:
+def _ratio(found: Array, closed: Array, least: float = _LOADED) -> Array:
     found, closed = np.abs(found), np.abs(closed)
-    loaded = np.isfinite(found) & (closed > _LOADED * closed.max())
+    loaded = np.isfinite(found) & (closed > least * closed.max())
     return np.where(loaded, found, 1.0) / np.where(loaded, closed, 1.0)
 
 
