@@ -9,7 +9,7 @@ import numpy as np
 from geometry.arrays import Array
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest, rollers_only, worst_case
-from pipeline.follower.roller import rating_life, roller_motion
+from pipeline.follower.roller import rating_life, roller_motion, static_safety
 
 if TYPE_CHECKING:
     from pipeline.cycle import Cycle
@@ -39,11 +39,12 @@ def roller_static(evidence: TrialEvidence) -> Check:
     bearing = evidence.case.roller.bearing
     rating = bearing.C0
     worst = greatest(evidence, lambda cycle: cycle.loads.normal_force)
-    loaded = rating is not None and (worst.value > 0 or np.isnan(worst.value))
     return Check(
         id="roller_static",
         title="Static safety of the roller bearing",
-        demand=float(rating / worst.value) if loaded and rating is not None else None,
+        demand=static_safety(worst.value, rating)
+        if rating is not None and worst.value > 0
+        else None,
         limit=evidence.limit("roller_static_safety", 1.0),
         unit="-",
         sense="at_least",

@@ -205,19 +205,6 @@ def static_safety(normal_force: ArrayLike, static_rating: float) -> float:
     return static_rating / largest if largest > 0.0 else np.inf
 
 
-def speed_ratio(spin: ArrayLike, speed_limit: float) -> float:
-    """Largest |spin| over the limiting speed of the bearing, both rad/s.
-
-    Raises
-    ------
-    InputError
-        If the limit is not positive or a spin is not finite.
-    """
-    if not 0.0 < speed_limit < np.inf:
-        raise InputError("roller.bearing.speed_limit", speed_limit, "> 0 rad/s")
-    return float(np.max(np.abs(finite("roller spin", spin)))) / speed_limit
-
-
 def traction_demand(
     normal_force: ArrayLike,
     spin_acceleration: ArrayLike,

@@ -12,7 +12,6 @@ from pipeline.follower.roller import (
     equivalent_load,
     rating_life,
     roller_motion,
-    speed_ratio,
     static_safety,
     traction_demand,
 )
@@ -148,14 +147,12 @@ def test_ten_percent_more_load_costs_a_quarter_of_the_life():
     assert more / one == pytest.approx(1.1**-3, rel=1e-12)
 
 
-def test_static_safety_speed_and_their_refusals():
+def test_static_safety_and_its_refusals():
     assert static_safety([100.0, 760.0], 380.0) == 0.5
     assert static_safety([0.0], 380.0) == np.inf
-    assert speed_ratio([100.0, -250.0], 1000.0) == 0.25
     for call, field in (
         (lambda: static_safety([1.0], 0.0), "C0"),
         (lambda: rating_life([1.0], [1.0], np.nan), r"bearing\.C"),
-        (lambda: speed_ratio([1.0], -1.0), "speed_limit"),
         (lambda: traction_demand([1.0], [1.0], -1.0, 0.01), "inertia"),
         (lambda: traction_demand([1.0], [1.0], 1.0, 0.0), "radius"),
     ):
