@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,21 +13,29 @@ from pipeline.results import Run, load_run
 from reports.sheet import Turn
 from reports.verdict import governing_load_case
 
+Tell = Callable[[int, int], None]
+
+
+def silent(_done: int, _whole: int) -> None:
+    """Tells nobody."""
+
 
 @dataclass(frozen=True, eq=False)
 class Material:
     """A run folder, what was read from it, and the turn that its sheet draws.
 
-    Each is itself alone, so that what parts have in common can be kept by it.
+    Each is itself alone, so that what parts have in common can be kept by it. What takes long
+    calls `tell` with how much is done and how much there is.
     """
 
     folder: Path
     run: Run
     case: Mapping[str, Any]
     turn: Turn
+    tell: Tell = silent
 
 
-def read_material(folder: Path) -> Material:
+def read_material(folder: Path, tell: Tell = silent) -> Material:
     """The material of a run folder.
 
     Raises
@@ -37,7 +45,7 @@ def read_material(folder: Path) -> Material:
     """
     run = load_run(folder)
     case = _case(run)
-    return Material(Path(folder), run, case, the_turn(run, case))
+    return Material(Path(folder), run, case, the_turn(run, case), tell)
 
 
 def the_turn(run: Run, case: Mapping[str, Any]) -> Turn:

@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 
 from geometry.errors import InputError, ResultError
-from reports import drawings, page, pictures, printing
-from reports.material import Material, read_material
+from reports import drawings, film, page, pictures, printing
+from reports.material import Material, Tell, read_material, silent
 from reports.output import FIGURES
 
 
@@ -35,6 +35,7 @@ PARTS = (
          partial(pictures.write_pictures, pictures.envelope_pictures)),
     Part("page", page.PAGE, page.write),
     Part("pdf", printing.PDF, printing.write, asked=True),
+    Part("film", "the turn as MP4 and GIF", film.write, asked=True),
 )  # fmt: skip
 
 
@@ -53,8 +54,12 @@ def chosen(names: Iterable[str] = ()) -> tuple[Part, ...]:
     return tuple(part for part in PARTS if part.name in wanted or not (wanted or part.asked))
 
 
-def build(folder: Path, parts: Iterable[Part] | None = None) -> dict[str, Sequence[Path]]:
+def build(
+    folder: Path, parts: Iterable[Part] | None = None, tell: Tell = silent
+) -> dict[str, Sequence[Path]]:
     """Draw parts of a report again from the run folder alone; nothing is solved.
+
+    `tell` hears how far a part is that takes long.
 
     Returns
     -------
@@ -65,7 +70,7 @@ def build(folder: Path, parts: Iterable[Part] | None = None) -> dict[str, Sequen
     ResultError
         If the folder does not hold a finished run, or a file cannot be written.
     """
-    material = read_material(Path(folder))
+    material = read_material(Path(folder), tell)
     try:
         (material.folder / FIGURES).mkdir(exist_ok=True)
         return {part.name: part.write(material) for part in (chosen() if parts is None else parts)}

@@ -73,6 +73,9 @@ def _finished(out: Path, sha256: str) -> bool:
 def report(
     folder: DirArgument,
     pdf: Annotated[bool, typer.Option("--pdf", help="Print it as 8_report.pdf as well.")] = False,
+    film: Annotated[
+        bool, typer.Option("--film", help="Draw the turn as figures/turn.mp4 and turn.gif as well.")
+    ] = False,
     only: Annotated[
         list[str] | None,
         typer.Option("--only", metavar="PART", help="This part alone; may be given several times."),
@@ -84,7 +87,10 @@ def report(
     from reports.page import PAGE
 
     names = [part.name for part in parts.chosen(only or ())]
-    made = parts.build(folder, parts.chosen([*names, "pdf"] if pdf else names))
+    names += [name for name, asked in (("pdf", pdf), ("film", film)) if asked]
+    with progress_shown() as shown:
+        shown.stage("report")
+        made = parts.build(folder, parts.chosen(names), shown.advance)
     for name, files in made.items():
         stdout.print(f"{name}: {_told(files)}", markup=False)
     if show:
