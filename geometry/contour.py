@@ -223,6 +223,11 @@ class Contour:
         """Height (m,) of the follower let down on another closed contour (2, n), m."""
         return roller_height(polygon, self.roller_radius, self.pitch.offset, theta)
 
+    @property
+    def fitting_tool(self) -> float:
+        """Radius of a tool that fits wherever the follower does, m."""
+        return self.roller_radius
+
     def concave_radius_min(self) -> Extremum:
         """Least radius of the hollow parts of the contour, m > 0, and its cam angle.
 

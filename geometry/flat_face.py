@@ -155,6 +155,11 @@ class FlatFaceContour(Contour):
     def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
         return face_height(polygon, theta)
 
+    @property
+    def fitting_tool(self) -> float:
+        """The base circle's radius, m: on a convex contour any would do."""
+        return self.pitch.base_radius
+
     def concave_radius_min(self) -> Extremum:
         """Infinite: a face rests on convex places alone."""
         return Extremum(np.inf, self.pitch.curvature_min().theta)

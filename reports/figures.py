@@ -163,14 +163,19 @@ class AngleFigure:
 
 @dataclass(frozen=True, eq=False)
 class OutlineFigure:
-    """The cam seen along its shaft; lengths in millimetres, points (2, n)."""
+    """The cam seen along its shaft; lengths in millimetres, points (2, n).
+
+    pitch is the path of the roller's centre, if there is one; follower, the outline of roller or
+    face where the worst angle has it.
+    """
 
     id: str
     title: str
     caption: str
     contour: Array
-    pitch: Array
-    roller_radius: float | None
+    pitch: Array | None
+    follower: Array | None
+    follower_name: str
     bore_radius: float | None
     keyway: tuple[float, float, float] | None
     worst: int
@@ -188,7 +193,8 @@ class OutlineFigure:
         radius = np.hypot(*self.contour)
         return (
             f"{self.title}: cam contour between {radius.min():.4g} and {radius.max():.4g} mm from"
-            f" the shaft, with pitch curve, bore and the roller {self.worst_label}."
+            f" the shaft, with {'' if self.pitch is None else 'pitch curve, '}bore and the"
+            f" {self.follower_name} {self.worst_label}."
         )
 
 

@@ -224,6 +224,8 @@ def _outline(figure: OutlineFigure) -> dict[str, Any]:
     traces = []
     for name, points, colour in (("cam contour", figure.contour, "blue"),
                                  ("pitch curve", figure.pitch, "muted")):  # fmt: skip
+        if points is None:
+            continue
         closed = np.append(points, points[:, :1], axis=1)
         traces.append({
             "type": "scatter", "mode": "lines", "name": name, "x": _numbers(closed[0]),
@@ -231,13 +233,11 @@ def _outline(figure: OutlineFigure) -> dict[str, Any]:
             "line": {"color": colour, "width": 1.8, "dash": "solid"},
             "hovertemplate": "%{x:.4f}, %{y:.4f} mm (cam %{customdata:.1f}°)",
         })  # fmt: skip
-    if figure.roller_radius is not None:
-        turn = np.linspace(0.0, 2 * np.pi, 121)
-        centre = figure.pitch[:, figure.worst]
-        ring = centre[:, None] + figure.roller_radius * np.array([np.cos(turn), np.sin(turn)])
+    if figure.follower is not None:
+        name = html.escape(f"{figure.follower_name} {figure.worst_label}")
         traces.append({
-            "type": "scatter", "mode": "lines", "name": html.escape(f"roller {figure.worst_label}"),
-            "x": _numbers(ring[0]), "y": _numbers(ring[1]), "hoverinfo": "skip", "meta": "mm",
+            "type": "scatter", "mode": "lines", "name": name, "hoverinfo": "skip", "meta": "mm",
+            "x": _numbers(figure.follower[0]), "y": _numbers(figure.follower[1]),
             "line": {"color": "vermillion", "width": 1.4, "dash": "solid"},
         })  # fmt: skip
     layout = {

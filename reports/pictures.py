@@ -39,7 +39,7 @@ class Picture:
 
 @lru_cache(maxsize=1)
 def stress_pictures(material: Material) -> Sequence[Picture]:
-    """The stress field under the roller and in the whole cam."""
+    """The stress field under the follower and in the whole cam."""
     turn, vtu = material.turn, material.folder / FIELD
     try:
         field = scene.read_field(vtu)
@@ -54,18 +54,19 @@ def stress_pictures(material: Material) -> Sequence[Picture]:
     peak = tables.quantity(views[0].clim[1], "MPa")
     return (
         Picture(
-            "Von Mises stress under the roller",
+            f"Von Mises stress under the {turn.follower_name}",
             f"At {angle} deg of the cam, where the contact pressure is greatest. Lengths count "
             f"half-widths; lines at 20, 40, 60, 80 and 95 % of the greatest, {peak}. "
             "Shapes are deformed at true scale.",
             f"Von Mises stress within four half-widths of the contact; greatest value {peak}.",
-            "field-contact", scene.frame_contact(rasters[0], half_width), rasters[0].note,
+            "field-contact", scene.frame_contact(rasters[0], half_width, turn.follower_name),
+            rasters[0].note,
         ),
         Picture(
             "Von Mises stress in the whole cam",
             f"The same angle; colours are logarithmic over {scene.DECADES:g} decades, and what "
             "lies below is shown in the darkest one.",
-            "Von Mises stress in the whole cam and roller on a logarithmic scale.",
+            f"Von Mises stress in the whole cam and {turn.follower_name} on a logarithmic scale.",
             "field-body", scene.frame_body(rasters[1]), rasters[1].note,
         ),
     )  # fmt: skip

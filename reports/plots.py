@@ -242,17 +242,22 @@ def _cam_axis(ax: Axes, gear_ratio: float) -> None:
 
 
 def _outline(figure: OutlineFigure) -> Canvas:
-    """Contour, pitch curve, bore, keyway and the roller at the worst angle, equal axes."""
-    reach = 1.06 * float(np.abs(figure.pitch).max() + (figure.roller_radius or 0.0))
+    """Contour, pitch curve, bore, keyway and the follower at the worst angle, equal axes."""
+    drawn = [c for c in (figure.contour, figure.pitch, figure.follower) if c is not None]
+    reach = 1.06 * max(float(np.abs(c).max()) for c in drawn)
     canvas = Canvas(figsize=(FIGURE_WIDTH, FIGURE_WIDTH - 0.1))
     ax = canvas.add_axes((LEFT / FIGURE_WIDTH, 0.42 / 5.5, 4.84 / FIGURE_WIDTH, 4.84 / 5.5))
-    closed = [np.append(c, c[:, :1], axis=1) for c in (figure.contour, figure.pitch)]
-    ax.fill(*closed[0], color=COLOURS["steel"], linewidth=0, zorder=1)
-    ax.plot(*closed[0], color=COLOURS["blue"], label="cam contour", zorder=3)
-    ax.plot(*closed[1], color=COLOURS["muted"], linewidth=0.9, linestyle=(0, (6, 2, 1, 2)),
-            label="pitch curve (roller centre)", zorder=2)  # fmt: skip
+    closed = np.append(figure.contour, figure.contour[:, :1], axis=1)
+    ax.fill(*closed, color=COLOURS["steel"], linewidth=0, zorder=1)
+    ax.plot(*closed, color=COLOURS["blue"], label="cam contour", zorder=3)
+    if figure.pitch is not None:
+        ax.plot(*np.append(figure.pitch, figure.pitch[:, :1], axis=1), color=COLOURS["muted"],
+                linewidth=0.9, linestyle=(0, (6, 2, 1, 2)), label="pitch curve (roller centre)",
+                zorder=2)  # fmt: skip
+        ax.plot(*figure.pitch[:, figure.worst], marker="+", markersize=6,
+                color=COLOURS["vermillion"], zorder=6)  # fmt: skip
     _bore(ax, figure)
-    _roller(ax, figure)
+    _follower(ax, figure)
     radius = np.hypot(*figure.contour)
     for index, word in zip(figure.radii, ("min", "max"), strict=True):
         _radius(
@@ -300,14 +305,12 @@ def _bore(ax: Axes, figure: OutlineFigure) -> None:
     ax.plot(*circle, color=COLOURS["blue"], linewidth=1.0, zorder=3)
 
 
-def _roller(ax: Axes, figure: OutlineFigure) -> None:
-    centre, touch = figure.pitch[:, figure.worst], figure.contour[:, figure.worst]
-    if figure.roller_radius is not None:
-        ring = _circle(centre, figure.roller_radius)
-        ax.plot(*ring, color=COLOURS["vermillion"], linewidth=1.2, zorder=4,
-                label=f"roller {figure.worst_label}")  # fmt: skip
+def _follower(ax: Axes, figure: OutlineFigure) -> None:
+    touch = figure.contour[:, figure.worst]
+    if figure.follower is not None:
+        ax.plot(*figure.follower, color=COLOURS["vermillion"], linewidth=1.2, zorder=4,
+                label=f"{figure.follower_name} {figure.worst_label}")  # fmt: skip
     ax.plot(*touch, marker="o", markersize=3.4, color=COLOURS["vermillion"], zorder=6)
-    ax.plot(*centre, marker="+", markersize=6, color=COLOURS["vermillion"], zorder=6)
 
 
 def _radius(ax: Axes, end: Array, inner: float, words: str) -> None:

@@ -128,7 +128,7 @@ def read_field(vtu: Path) -> Field:
 
 
 def find_contact(field: Field) -> tuple[Array, Array]:
-    """Where the bodies touch and the unit normal towards the roller, each (2,).
+    """Where the bodies touch and the unit normal towards the follower, each (2,).
 
     The file says so itself; else its shapes do: the roller is the smaller body, a circle round
     the middle of its own extent, and touches the other body's point nearest to that middle.
@@ -157,7 +157,7 @@ def find_contact(field: Field) -> tuple[Array, Array]:
 
 
 def contact_view(field: Field, half_width: float, point: Array, normal: Array) -> View:
-    """Four half-widths to either side of the contact, roller above, cam below."""
+    """Four half-widths to either side of the contact, follower above, cam below."""
     away = np.hypot(*(field.points - point[:, None]))
     peak = float(field.von_mises[away < CONTACT_REACH * half_width].max(initial=1e-9))
     reach = CONTACT_REACH * half_width
@@ -169,7 +169,7 @@ def contact_view(field: Field, half_width: float, point: Array, normal: Array) -
 
 
 def body_view(field: Field) -> View:
-    """The whole cam with its roller, as it lies in the file, stress over a few decades."""
+    """The whole cam with its follower, as it lies in the file, stress over a few decades."""
     low, high = field.points.min(axis=1), field.points.max(axis=1)
     centre, half = (low + high) / 2, 0.53 * (high - low)
     peak = float(field.von_mises.max(initial=1e-9))
@@ -181,24 +181,24 @@ def body_view(field: Field) -> View:
 
 
 def contact_picture(vtu: Path, half_width_mm: float, contact_point: Array, normal: Array) -> bytes:
-    """PNG of the von Mises field under the roller, lengths over the half-width."""
+    """PNG of the von Mises field under the follower, lengths over the half-width."""
     view = contact_view(read_field(vtu), half_width_mm, contact_point, normal)
     return frame_contact(render(vtu, [view])[0], half_width_mm)
 
 
 def body_picture(vtu: Path) -> bytes:
-    """PNG of the von Mises field in the whole cam and roller."""
+    """PNG of the von Mises field in the whole cam and follower."""
     return frame_body(render(vtu, [body_view(read_field(vtu))])[0])
 
 
-def frame_contact(raster: Raster, half_width_mm: float) -> bytes:
-    """The contact raster in axes that count half-widths."""
+def frame_contact(raster: Raster, half_width_mm: float, name: str = "roller") -> bytes:
+    """The contact raster in axes that count half-widths; `name` is that of the upper body."""
     extent = tuple(edge / half_width_mm for edge in raster.view.window)
     return rasters.framed(
         raster.pixels, (extent[0], extent[1], extent[2], extent[3]),
         ("along the contact, x / a", "along the normal, z / a"), "von Mises stress, MPa",
         COLOUR_MAP, raster.view.clim, raster.view.log, (1.0, f"a = {half_width_mm:.3g} mm"),
-        (("roller", 0.97), ("cam", 0.40)),
+        ((name, 0.97), ("cam", 0.40)),
     )  # fmt: skip
 
 

@@ -63,6 +63,16 @@ class Turn:
         return int(np.nanargmax(pressure))
 
     @property
+    def rolls(self) -> bool:
+        """Whether the follower has a roller; else a face slides on the cam."""
+        return "place_on_face_mm" not in self.columns
+
+    @property
+    def follower_name(self) -> str:
+        """What of the follower touches the cam."""
+        return "roller" if self.rolls else "face"
+
+    @property
     def half_width(self) -> float:
         """Half-width of the contact at the worst angle, mm; Hertz's where there is no other."""
         for name in ("half_width_fe_mm", "half_width_hertz_mm"):
@@ -99,8 +109,8 @@ class Turn:
 def figures(turn: Turn) -> tuple[Figure, ...]:
     """Every figure the run has columns for, in reading order."""
     makers: tuple[Callable[[Turn], Figure | None], ...] = (
-        _torque, _components, _crank_speed, _lift, _outline, _pressure_angle, _radii, _forces,
-        _normal_force, _pressure, _half_width, _stress, _guides, _jamming, _speed,
+        _torque, _components, _crank_speed, _lift, _outline, _pressure_angle, _face, _radii,
+        _forces, _normal_force, _pressure, _half_width, _stress, _guides, _jamming, _speed,
         _bushes, _elastic, _parts,
     )  # fmt: skip
     made = (maker(turn) for maker in makers)
@@ -210,7 +220,7 @@ def _lift(turn: Turn) -> Figure | None:
     ]
     return _angles(
         turn, "lift", "Lift and its derivatives",
-        "Lift s of the roller centre above the pitch base circle, with derivatives by cam angle.",
+        "Lift s of the follower above its lowest place, with derivatives by cam angle.",
         *panels, mark=False, crank=columns["crank_angle_deg"],
     )  # fmt: skip
 
@@ -223,18 +233,61 @@ def _outline(turn: Turn) -> Figure | None:
     distance = np.abs((c["cam_angle_deg"] - theta + 180.0) % 360.0 - 180.0)
     width, depth = (turn.length("cam", "keyway", key) for key in ("width", "depth"))
     angle = turn.length("cam", "keyway", "angle", unit="rad") or 0.0
+    worst, name = int(np.argmin(distance)), turn.follower_name
+    pitch = np.array([c["pitch_x_mm"], c["pitch_y_mm"]]) if turn.rolls else None
     return OutlineFigure(
-        "outline", "Contour and pitch curve",
-        "The cam seen along its shaft, with the roller where the contact pressure is greatest.",
-        np.array([c["contour_x_mm"], c["contour_y_mm"]]),
-        np.array([c["pitch_x_mm"], c["pitch_y_mm"]]),
-        turn.length("roller", "radius"), turn.length("cam", "bore_radius"),
+        "outline", "Contour and pitch curve" if turn.rolls else "Contour",
+        f"The cam seen along its shaft, with the {name} where the contact pressure is greatest.",
+        np.array([c["contour_x_mm"], c["contour_y_mm"]]), pitch,
+        _roller_outline(turn, worst) if turn.rolls else _face_outline(turn, worst), name,
+        turn.length("cam", "bore_radius"),
         (width, depth, angle) if width is not None and depth is not None else None,
-        int(np.argmin(distance)), f"at {theta:.4g} deg",
+        worst, f"at {theta:.4g} deg",
+    )  # fmt: skip
+
+
+def _roller_outline(turn: Turn, at: int) -> Array | None:
+    """The roller's circle (2, n), mm, at a row of the contour; None where its radius is unknown."""
+    radius, c = turn.length("roller", "radius"), turn.contour
+    if radius is None:
+        return None
+    angle = np.linspace(0.0, 2 * np.pi, 121)
+    centre = np.array([c["pitch_x_mm"][at], c["pitch_y_mm"][at]])
+    return np.asarray(centre[:, None] + radius * np.array([np.cos(angle), np.sin(angle)]))
+
+
+def _face_outline(turn: Turn, at: int) -> Array | None:
+    """The block of the face (2, 5), mm, at a row of the contour; None where its size is unknown."""
+    c, place = turn.contour, turn.columns["place_on_face_mm"][turn.worst]
+    width, thick = (turn.length("follower", "face", key) for key in ("width", "thickness"))
+    if width is None or thick is None:
+        return None
+    touch = np.array([c["contour_x_mm"][at], c["contour_y_mm"][at]])
+    normal = np.array([c["normal_x"][at], c["normal_y"][at]])
+    along = np.array([-normal[1], normal[0]])
+    middle = touch - place * along
+    corners = [(-0.5, 0.0), (0.5, 0.0), (0.5, 1.0), (-0.5, 1.0), (-0.5, 0.0)]
+    return np.array([middle + x * width * along + y * thick * normal for x, y in corners]).T
+
+
+def _face(turn: Turn) -> Figure | None:
+    """Where a face is touched, how fast the cam slides along it, and what that costs."""
+    half = turn.length("follower", "face", "width")
+    edges = () if half is None else (LimitLine(0.5 * half, "edge"), LimitLine(-0.5 * half, "edge"))
+    pv = turn.limit("limit", "MPa m/s", "face_sliding")
+    return _angles(
+        turn, "face", "Contact on the face",
+        "Place of the contact from the stem's axis; speed of the cam's surface along the face; "
+        "mean contact pressure times that speed.",
+        Panel("place", "mm", _curves(turn, ("place_on_face_mm", "")), edges, height=0.9),
+        Panel("sliding", "m/s", _curves(turn, ("sliding_speed_m_per_s", "")), height=0.7),
+        Panel("p v", "MPa m/s", _curves(turn, ("face_pv_MPam_per_s", "")), pv, height=0.7),
     )  # fmt: skip
 
 
 def _pressure_angle(turn: Turn) -> Figure | None:
+    if not turn.rolls:  # zero at every angle
+        return None
     limits = (*turn.limit("limit", "deg", "pressure_angle"), LimitLine(HARD_STOP_DEG, "hard stop"))
     both = limits + tuple(LimitLine(-line.value, line.label) for line in limits)
     return _angles(
@@ -253,9 +306,9 @@ def _radii(turn: Turn) -> Figure | None:
     if roller and ratio:
         limits += (LimitLine(ratio * roller, "least pitch radius"),)
     curves = []
-    wanted = (("pitch_radius_mm", "pitch curve"), ("contour_radius_of_curvature_mm", "contour"))
+    wanted = [("pitch_radius_mm", "pitch curve"), ("contour_radius_of_curvature_mm", "contour")]
     for (column, label), colour in zip(wanted, SERIES, strict=False):
-        if column in turn.columns:
+        if column in turn.columns and (turn.rolls or column != "pitch_radius_mm"):
             curves.append(Curve(label, broken(turn.columns[column], LARGEST_RADIUS_MM), colour))
     return _angles(
         turn, "radii", "Radii of curvature",

@@ -124,16 +124,25 @@ def test_hostile_labels_stay_text():
     assert "&lt;script&gt;$x_2$" in svg
 
 
-def test_the_outline_has_equal_axes_and_holds_the_roller():
+def test_the_outline_has_equal_axes_and_holds_the_follower():
     angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
     ring = np.array([np.cos(angle), np.sin(angle)])
+    roller = np.array([[0.0], [50.0]]) + 8 * ring
     made = OutlineFigure(
-        "outline", "Cam", "", 42 * ring, 50 * ring, 8.0, 10.0, (4.0, 2.0, 0.3), 15, "at 90 deg"
-    )
+        "outline", "Cam", "", 42 * ring, 50 * ring, roller, "roller", 10.0, (4.0, 2.0, 0.3), 15,
+        "at 90 deg",
+    )  # fmt: skip
     ax = drawn(made).axes[0]
     assert ax.get_aspect() == 1.0
     assert ax.get_xlim()[1] > 58.0
     assert "between 42 and 42 mm" in made.alt
+    assert "pitch curve, bore and the roller at 90 deg" in made.alt
+    face = OutlineFigure(
+        "o", "", "", 42 * ring, None, np.array([[-9.0, 9.0], [42.0, 42.0]]), "face", None, None, 15,
+        "at 90 deg",
+    )  # fmt: skip
+    labels = [text.get_text() for text in drawn(face).axes[0].get_legend().get_texts()]
+    assert labels == ["cam contour", "face at 90 deg"]
     assert plots.svg_and_png(
-        OutlineFigure("o", "", "", 42 * ring, 50 * ring, None, None, None, 0, "")
+        OutlineFigure("o", "", "", 42 * ring, 50 * ring, None, "roller", None, None, 0, "")
     )[0]

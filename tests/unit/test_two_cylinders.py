@@ -10,8 +10,8 @@ from geometry.errors import ContactError, InputError
 from pipeline import cache
 from pipeline.cli import app
 from pipeline.contact import two_cylinders
-from pipeline.contact.halfplane import point_force_displacement
 from pipeline.contact.elastic_body import Elastic
+from pipeline.contact.halfplane import point_force_displacement
 from pipeline.contact.patch import contact_patch
 from pipeline.contact.two_cylinders import TwoCylinders
 from pipeline.contact_command import Asked, solved
