@@ -109,6 +109,8 @@ def spring_surge(evidence: TrialEvidence) -> Check | None:
 
     worst = worst_case(evidence, lambda c: ratio(evidence.cam_speed(c))[1], at_least=True)
     highest, _, margin = ratio(max(evidence.cam_speed(cycle) for cycle in evidence.cycles))
+    surges = [cycle.parts.surge_force for cycle in evidence.cycles if cycle.parts is not None]
+    adds = max((float(np.abs(surge).max()) for surge in surges if surge is not None), default=0.0)
     return Check(
         id="spring_surge",
         title="Surge frequency over that of the cam",
@@ -117,10 +119,10 @@ def spring_surge(evidence: TrialEvidence) -> Check | None:
         unit="-",
         sense="at_least",
         source="13 to 20 times the cam's frequency, Norton (2009), Shigley ch. 10",
-        method="sqrt(k/m)/2 of the active coils",
+        method="sqrt(k/m)/2 of the active coils; modes driven by the harmonics of the lift",
         must_have=False,
         note=f"highest harmonic of at least 1 % of the acceleration: {highest};"
-        f" surge stands {margin:.2f} times above it",
+        f" surge stands {margin:.2f} times above it and adds up to {adds:.3g} N",
         **worst.place,
     )
 

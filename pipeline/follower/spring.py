@@ -252,7 +252,9 @@ def surge_force(
     """Force that the spring's own vibration adds at its fixed end, (n,), N.
 
     One end follows the lift, the other stands still; between them the coils move as
-    s (1 - x) + sum q_j sin(j pi x), each mode driven by -2/(j pi) of the acceleration.
+    s (1 - x) + sum q_j sin(j pi x), each mode driven by -2/(j pi) of the acceleration. Modes
+    beyond the last are too quick to swing: they follow the acceleration, and their sum is known.
+    Without damping a harmonic w meets k (phi / sin(phi) - 1), phi = pi w / w_1, so.
 
     Parameters
     ----------
@@ -269,7 +271,9 @@ def surge_force(
     """
     spectrum = np.fft.rfft(finite("lift", lift_values))
     drive = np.arange(spectrum.size) * cam_speed
-    force = np.zeros_like(spectrum)
+    order = np.arange(1, modes + 1)
+    beyond = 1.0 / 6.0 + np.sum(2.0 * (-1.0) ** order / (order * np.pi) ** 2)
+    force = rate * beyond * (drive / (2.0 * frequency)) ** 2 * spectrum
     for j in range(1, modes + 1):
         own = 2.0 * np.pi * frequency * j
         response = own**2 - drive**2 + 2.0j * damping * own * drive
