@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+import numpy as np
+
 from pipeline.checks.check import Check, not_described
 from pipeline.checks.trial import TrialEvidence, worst_case
 from pipeline.follower.spring import HelicalSpring, case_spring, surge_harmonics
