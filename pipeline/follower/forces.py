@@ -12,6 +12,7 @@ from geometry.arrays import FULL_TURN, Array, finite, freeze
 from geometry.errors import InputError
 from geometry.pitch_curve import PitchCurve
 
+REST = 1e-9  # of the stroke per radian: what a spline leaves of the slope of a dwell
 JAM_FLOOR = 0.01  # least share of the cam's push that friction is let to leave over
 
 
@@ -348,6 +349,7 @@ def follower_loads(
     if (speed < 0.0).any():
         raise InputError("cam_speed", float(speed.min()), ">= 0 rad/s")
     lift, slope, bend = pitch.lift.derivatives(theta, 2)
+    slope = np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0)
     acceleration = bend * speed**2 + slope * finite("cam_acceleration", cam_acceleration)
     spring_force = system.preload + system.spring_rate * lift
     inertia_force = system.mass * acceleration

@@ -7,6 +7,7 @@ from geometry.arrays import uniform_turn
 from geometry.errors import InputError
 from geometry.flat_face import FacePath, FlatFaceContour
 from geometry.lift import Lift
+from geometry.motion import Motion, Segment
 from pipeline.follower.flat_face import FaceSliding, face_motion
 from pipeline.follower.forces import FollowerSystem, follower_loads, turn_integral
 
@@ -89,6 +90,20 @@ def test_surfaces_pass_as_on_a_turning_circle():
         turn_integral(THETA, 0.08 * FREE * (RADIUS - E * COS)), rel=1e-12
     )
     np.testing.assert_allclose(sliding.pv, 0.25 * np.pi * 1e9 * motion.sliding, rtol=1e-15)
+
+
+def test_friction_rests_in_a_dwell():
+    """A drag of the face leans the stem there too, but nothing moves: the push is the spring's."""
+    turn = 2 * np.pi
+    motion = Motion(
+        (Segment("cycloidal", 0.2 * turn, 0.006), Segment("cycloidal", 0.2 * turn, -0.006),
+         Segment("dwell", 0.6 * turn))
+    )  # fmt: skip
+    system = FollowerSystem(MASS, RATE, PRELOAD, SPACING, OVERHANG, 0.1, 0.1, face_friction=0.08)
+    found = follower_loads(FacePath(motion.lift(), 0.02), system, SPEED, THETA)
+    dwell = np.abs(THETA - 0.7 * turn) < 0.28 * turn
+    np.testing.assert_allclose(found.normal_force[dwell], PRELOAD, rtol=1e-12)
+    assert (found.jam_index[dwell] > 0.01).all()
 
 
 def test_face_is_needed_as_wide_as_the_contact_wanders():
