@@ -90,11 +90,14 @@ def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
         demand=1e-6 * worst.value,
         limit=None if limit is None else 1e-6 * limit,
         unit="MPa m/s",
-        source=evidence.source(f"bush_pv_{side}", guide.source or f"{guide.material} bush"),
+        source=evidence.source(f"bush_pv_{side}", _pv_source(guide)),
         method="mean |R v| over the turn by finite elements over diameter x length;"
         " R sums the pushes of both sides of the bore",
         lift_can_help=True,
-        note="" if limit is not None else f"no PV limit is given for guide {side}",
+        note="; ".join(
+            ([] if limit is not None else [f"no PV limit is given for guide {side}"])
+            + _lubrication_asked(guide, worst.value)
+        ),
         **worst.place,
     )
 
@@ -102,9 +105,28 @@ def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
 def pv_limit(guide: Guide) -> float | None:
     """The limit given, or else that of nylon in the state of lubrication given, Pa m/s."""
     state = getattr(guide, "lubrication", None)
-    if guide.pv_limit is not None or state is None:
+    if guide.pv_limit is not None or state is None or not _is_nylon(guide):
         return guide.pv_limit
     return NYLON_PV[state]
+
+
+def _pv_source(guide: Guide) -> str:
+    if guide.pv_limit is None and pv_limit(guide) is not None:
+        state = str(getattr(guide, "lubrication", "")).replace("_", " ")
+        return f"nylon, {state}: Mott, table 16-1, and a bush maker's graded limits: verify"
+    return guide.source or f"{guide.material} bush"
+
+
+def _lubrication_asked(guide: Guide, demand: float) -> list[str]:
+    """The least lubrication in which nylon carries a PV (Pa m/s); nothing of another material."""
+    if not _is_nylon(guide):
+        return []
+    states = [state.replace("_", " ") for state, limit in NYLON_PV.items() if demand <= limit]
+    return [f"nylon carries it {states[0]}" if states else "nylon carries it in no lubrication"]
+
+
+def _is_nylon(guide: Guide) -> bool:
+    return "nylon" in guide.material.lower()
 
 
 def _reaction(cycle: Cycle, side: str) -> Array:

@@ -136,11 +136,11 @@ def _temperature(evidence: TrialEvidence, side: str, guide: Guide) -> Check | No
         evidence,
         lambda c: (_parts(c).heat_a if side == "A" else _parts(c).heat_b).temperature,
     )
-    missing = []
+    notes = _hottest(evidence, side, worst.value)
     if guide.thermal_resistance is None and material.conductivity is None:
-        missing.append("no way of the heat is given")
+        notes.append("no way of the heat is given")
     if material.temperature_limit is None:
-        missing.append(f"no temperature limit of {guide.material} is given")
+        notes.append(f"no temperature limit of {guide.material} is given")
     return Check(
         id=f"bush_temperature_{side}",
         title=f"Temperature of guide {side}",
@@ -151,9 +151,24 @@ def _temperature(evidence: TrialEvidence, side: str, guide: Guide) -> Check | No
         method="heat of friction through the bush's wall (or the resistance given), an estimate",
         must_have=False,
         lift_can_help=True,
-        note="; ".join(missing),
+        note="; ".join(notes),
         **worst.place,
     )
+
+
+def _hottest(evidence: TrialEvidence, side: str, nominal: float) -> list[str]:
+    """What the temperature (K) becomes at the greatest friction, where it is known and higher."""
+    ambient, found = evidence.case.guides.ambient_temperature, []
+    for cycle in evidence.cycles:
+        parts = _parts(cycle)
+        heat = parts.heat_a if side == "A" else parts.heat_b
+        worst = parts.friction.greatest
+        friction = worst.friction_force_a if side == "A" else worst.friction_force_b
+        power = float(np.mean(friction * np.abs(worst.velocity)))
+        if heat.mean_power > 0.0:
+            found.append(ambient + (heat.temperature - ambient) * power / heat.mean_power)
+    hottest = max(found, default=np.nan)
+    return [f"{hottest - 273.15:.0f} degC at the greatest friction"] if hottest > nominal else []
 
 
 @rollers_only
