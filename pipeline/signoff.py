@@ -143,10 +143,27 @@ def environment() -> str:
 
 
 def _disagreements(signed: Mapping[str, Any], drawn: Mapping[str, Any]) -> list[str]:
-    """Words of the record that its own files do not bear out."""
-    left_out = ("presentation", "files")
-    words = [name for name in drawn if name not in left_out and signed.get(name) != drawn[name]]
+    """Words of the record that its own files do not bear out.
+
+    What the program says of itself is of the version that signed, and no file of the run.
+    """
+    left_out = ("presentation", "files", "limitations", "singularities")
+    words = [
+        name
+        for name in drawn
+        if name not in left_out and not _borne_out(signed.get(name), drawn[name])
+    ]
     return [f"{NAME}: {name} is not what the files of the run say" for name in words]
+
+
+def _borne_out(signed: Any, drawn: Any) -> bool:
+    """Whether two values agree in all that was signed; a later version may say more."""
+    if isinstance(signed, Mapping) and isinstance(drawn, Mapping):
+        return all(key in drawn and _borne_out(value, drawn[key]) for key, value in signed.items())
+    if isinstance(signed, list) and isinstance(drawn, list):
+        same = len(signed) == len(drawn)
+        return same and all(_borne_out(a, b) for a, b in zip(signed, drawn, strict=True))
+    return bool(signed == drawn)
 
 
 def _files(path: Path) -> Iterator[tuple[str, Path]]:
