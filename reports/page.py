@@ -12,7 +12,7 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from pipeline.results import TrialRecord
-from reports import interactive, tables
+from reports import interactive, proof, tables
 from reports.drawings import drawn_groups
 from reports.material import Material
 from reports.output import write_whole
@@ -30,13 +30,13 @@ ASSUMPTIONS = (
     "differ from those shown.",
     "Surfaces are smooth and dry of film: roughness, lubrication and traction on the contact are "
     "left out. The roller turns freely.",
-    "Cam speed is constant over the turn; the engine's own speed ripple does not act on the "
-    "follower.",
+    "Loads are those of a constant cam speed; the ripple of the engine's speed acts on the elastic "
+    "stem alone, where the case gives the crankshaft's inertia.",
     "The camshaft, its bearings and the drive between crank and cam are rigid and without play.",
-    "Follower and roller move as one rigid mass. Spring surge, vibration and impacts after a loss "
-    "of contact are left out.",
+    "The loads are those of a rigid follower. One mass on an elastic stem, with impacts after a "
+    "loss of contact, and the surge of the spring are solved beside them and do not feed back.",
     "Guide friction is of Coulomb's kind with constant coefficients and changes sign with the "
-    "direction of motion.",
+    "direction of motion; it is in balance with guides of finite length and clearance.",
     "Stress at the keyway's corners and at the edge of the bore depends on fillets the case does "
     "not give, and is excluded from every check.",
     "The pressure of Hertz's theory takes both bodies for half-planes; a roller of finite size "
@@ -67,7 +67,7 @@ def context(material: Material) -> dict[str, Any]:
     """Everything the template prints."""
     run, case, turn = material.run, material.case, material.turn
     summary, final = run.summary, run.final
-    headline = summary["headline"]
+    headline, mesh = summary["headline"], final.record.get("mesh") or {}
     statement = titled(str(summary.get("statement") or ""), final.checks)
     return {
         "case": case,
@@ -76,26 +76,65 @@ def context(material: Material) -> dict[str, Any]:
         "verdict": verdict(run.verdict, final.checks, final.binding, statement),
         "tiles": tables.tiles(headline),
         "headline": tables.headline_rows(headline),
-        "checks": tables.check_rows(final.checks),
+        "facts": _facts(material),
+        "checks": _grouped(tables.check_rows(final.checks)),
         "groups": drawn_groups(material),
         "load_case": turn.load_case,
         "load_cases": len(turn.others),
         "trials": [_trial(trial) for trial in run.trials],
+        "prices": proof.prices(summary.get("prices") or final.record.get("prices")),
         "pictures": [picture for draw in PICTURES for picture in draw(material)],
         "certificate_head": tables.CERTIFICATE_HEAD,
         "certificate": tables.certificate_rows(final.record.get("certificate") or ()),
         "figures_head": tables.FIGURES_HEAD,
         "certified": tables.certified_rows(final.record.get("certificate") or ()),
-        "mesh": tables.named_rows(final.record.get("mesh") or {}),
+        "benchmarks": proof.benchmarks(summary.get("benchmarks")),
+        "corners": proof.corners(final.checks),
+        "consistency": proof.consistency(summary.get("consistency")),
+        "crank_speed": proof.crank_speed(summary.get("speed")),
+        "mesh": tables.named_rows({k: v for k, v in mesh.items() if k != "sha256"}),
         "method": str(final.record.get("contact_method") or ""),
         "residuals": residuals(turn),
         "inputs": tables.input_tables(case),
         "assumptions": ASSUMPTIONS,
         "versions": [(str(k), str(v)) for k, v in summary["versions"].items()],
         "timings": [(k, tables.quantity(v, "s", 3)) for k, v in summary["timings_s"].items()],
-        "sha": str(summary["input_sha256"]),
+        "hashes": _hashes(summary, mesh),
+        "hashed": len(summary.get("files") or ()),
         "schema": summary["schema"],
     }  # fmt: skip
+
+
+def _facts(material: Material) -> list[tuple[str, str]]:
+    """What tells this run from any other, for the head of the page."""
+    summary, count = material.run.summary, len(material.run.trials)
+    versions = summary["versions"]
+    code = [str(versions.get("camwright", "")), str(versions.get("source", ""))[:8]]
+    return [
+        ("Case", str(material.case.get("name") or summary["case"])),
+        ("Load case drawn", material.turn.load_case),
+        ("Trials", str(count)),
+        ("Input", str(summary["input_sha256"])[:12]),
+        ("Camwright", " · ".join(filter(None, code))),
+    ]
+
+
+def _grouped(rows: Sequence[tables.CheckRow]) -> list[tuple[str, list[tables.CheckRow]]]:
+    """Required checks, then optional ones; of these, what could not be evaluated comes last."""
+    required = [row for row in rows if row.must_have]
+    optional = [row for row in rows if not row.must_have]
+    optional.sort(key=lambda row: row.status == "not_evaluated")
+    return [
+        (title, part) for title, part in (("Required", required), ("Optional", optional)) if part
+    ]
+
+
+def _hashes(summary: Mapping[str, Any], mesh: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """SHA-256 of what went in and of what was solved on."""
+    meshes = mesh.get("sha256") if isinstance(mesh.get("sha256"), Mapping) else {}
+    found = {"input": summary["input_sha256"], "source": summary["versions"].get("source")}
+    found |= {f"mesh of the {body}": digest for body, digest in (meshes or {}).items()}
+    return [(name, str(digest)) for name, digest in found.items() if digest]
 
 
 def residuals(turn: Turn) -> list[tuple[str, str]]:

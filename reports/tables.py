@@ -125,6 +125,8 @@ class CheckRow:
     note: str
     waiver: str
     must_have: bool
+    error: str = ""
+    corner: str = ""
 
 
 def utilisation(check: Mapping[str, Any]) -> float | None:
@@ -167,8 +169,23 @@ def check_rows(checks: Sequence[Mapping[str, Any]]) -> list[CheckRow]:
             source=str(check.get("source") or ""), method=str(check.get("method") or ""),
             note=str(check.get("note") or ""), waiver=_waiver(check.get("waiver")),
             must_have=bool(check.get("must_have", True)),
+            error=_error(check.get("error"), unit), corner=_corner(check, unit),
         ))  # fmt: skip
     return rows
+
+
+def _error(value: Any, unit: str) -> str:
+    """The error bar of a demand, in its unit; none where it is not known."""
+    known = isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value)
+    _, scale = SHOWN_AS.get(unit, (unit, 1.0))
+    return f"±\N{NO-BREAK SPACE}{number(scale * float(value), 2)}" if known else ""
+
+
+def _corner(check: Mapping[str, Any], unit: str) -> str:
+    """The corner of the tolerances that governs a check, with the demand there."""
+    if check.get("corner") in (None, "", "nominal") or check.get("corner_demand") is None:
+        return ""
+    return f"{check['corner']}: {quantity(check['corner_demand'], unit)}"
 
 
 def _bar(value: float | None) -> float | None:

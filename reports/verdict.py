@@ -17,14 +17,14 @@ class Verdict:
 
     `sentence` counts the checks, `governing` describes the one nearest to or farthest beyond
     its limit, `binding` are titles of required checks that do not hold, `stopped` says why the
-    trials ended.
+    trials ended, clause by clause.
     """
 
     passed: bool
     sentence: str
     governing: str
     binding: tuple[str, ...]
-    stopped: str
+    stopped: tuple[str, ...]
 
     @property
     def word(self) -> str:
@@ -54,7 +54,7 @@ def verdict(said: str, checks: Sequence[Check], binding: Sequence[str], stopped:
         _sentence(checks, required, failed, missing),
         governing(checks),
         tuple(titles.get(name, words(name)) for name in map(str, binding)),
-        stopped,
+        tuple(filter(None, stopped.split("; "))),
     )
 
 

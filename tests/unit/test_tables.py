@@ -107,7 +107,7 @@ def test_the_sentence_counts_what_holds_fails_and_is_missing():
         " 1 is waived. Of 1 optional check: 1 not evaluated."
     )
     assert words.binding == ("B", "C")
-    assert words.stopped == "no more room"
+    assert words.stopped == ("no more room",)
 
 
 def test_the_governing_check_is_required_and_not_waived():
