@@ -38,7 +38,7 @@ from pipeline.checks.everything import CheckFunction, checked_by
 from pipeline.checks.trial import TrialEvidence
 from pipeline.cycle import Turn, turn
 from pipeline.engine.torque import Torque
-from pipeline.speed import speed_ripple
+from pipeline.speed import rubbing_of, speed_ripple
 
 POSITIONS = 180
 UNMOVED: tuple[CheckFunction, ...] = (
@@ -192,7 +192,8 @@ def _outcome(
             for state in at.load_cases
         )
         cycles = tuple(foreseen_cycle(at, shape, given) for given in turns)
-        speed = speed_ripple(at, torques, _early(shape.pitch, case, corner.phase))
+        rubbing = rubbing_of(cycles, corner.phase / case.mechanism.gear_ratio)
+        speed = speed_ripple(at, torques, _early(shape.pitch, case, corner.phase), rubbing)
         trial = TrialEvidence(case=at, contour=shape, cycles=cycles, speed_ripple=speed)
         checks = checked_by(trial, TRIED)
     except CamError as error:

@@ -20,7 +20,7 @@ from pipeline.smoothing.constrained import synthesise
 from pipeline.smoothing.loop import redrawn
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
-from pipeline.speed import speed_ripple
+from pipeline.speed import rubbing_of, speed_ripple
 
 MARK = "closed forms only: "
 
@@ -44,7 +44,7 @@ def closed_form_checks(case: Case) -> tuple[Check, ...]:
     sound = road.is_body(contour)
     turns = road.turns_of(case, contour, torques, case.solver.positions)
     cycles = tuple(_cycle(case, contour, given, sound) for given in turns)
-    speed = speed_ripple(case, torques, contour.pitch)
+    speed = speed_ripple(case, torques, contour.pitch, rubbing_of(cycles))
     evidence = TrialEvidence(case=case, contour=contour, cycles=cycles, speed_ripple=speed)
     found = checked_by(evidence, (*DESIGN, *rolling.CHECKS, *SIGNED, *PARTS))
     marked = (replace(check, method=MARK + check.method) for check in found)

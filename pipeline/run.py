@@ -41,7 +41,7 @@ from pipeline.smoothing.outlook import Attempt
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 from pipeline.smoothing.starts import Starts, explored
-from pipeline.speed import consistency, speed_record, study_of
+from pipeline.speed import consistency, rubbing_of, speed_record, study_of
 from pipeline.trial import Trial
 
 
@@ -302,7 +302,7 @@ def _crank_speed(
     running = [state for state in case.load_cases if state.name in torques and state.speed > 0]
     for number, state in enumerate(running):
         torque = torques[state.name]
-        rubbing = next(c.loads.rubbing for c in final.cycles if c.load_case == state.name)
+        rubbing = rubbing_of(final.cycles)[state.name]
         study = None
         try:
             study = study_of(case.at(state.name), torque, state.speed, pitch, rubbing)

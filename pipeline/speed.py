@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
@@ -164,6 +164,12 @@ def study_of(
     )
 
 
+def rubbing_of(turns: Iterable[Any], early: float = 0.0) -> dict[str, Rubbing]:
+    """How the guides rub in each load case of these turns, of a cam `early` (rad of its own)."""
+    found = {turn.load_case: turn.loads.rubbing for turn in turns}
+    return {name: replace(each, theta=each.theta - early) for name, each in found.items()}
+
+
 def cam_speed(
     case: Case,
     torque: Torque | None,
@@ -218,18 +224,28 @@ def speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:
 
 
 def speed_ripple(
-    case: Case, torques: Mapping[str, Torque], pitch: PitchCurve
+    case: Case,
+    torques: Mapping[str, Torque],
+    pitch: PitchCurve,
+    rubbing: Mapping[str, Rubbing],
 ) -> dict[str, tuple[float, float]]:
     """Std of the crank speed (rad/s) of each running load case: engine alone, with the cam.
 
-    Empty where the case tells nothing of its crankshaft; a load case that stalls is NaN.
+    In each load case the guides rub as `rubbing` tells. Empty where the case tells nothing of its
+    crankshaft; a load case that stalls is NaN.
     """
     found: dict[str, tuple[float, float]] = {}
     for state in case.load_cases:
         if case.crankshaft is None or state.name not in torques or not state.speed > 0:
             continue
         try:
-            study = study_of(case.at(state.name), torques[state.name], state.speed, pitch)
+            study = study_of(
+                case.at(state.name),
+                torques[state.name],
+                state.speed,
+                pitch,
+                rubbing.get(state.name),
+            )
         except CamError:
             study = None
         if study is None:

@@ -37,7 +37,7 @@ from pipeline.engine.torque import Torque
 from pipeline.given_lift import contour_of, given_lift
 from pipeline.measured import engine_torque, has_torque
 from pipeline.smoothing.smoothers import Smoother, smoothed
-from pipeline.speed import speed_ripple
+from pipeline.speed import rubbing_of, speed_ripple
 
 # Positions solved together: what an interruption may cost, and the grain of the progress bar.
 CHUNK = 90
@@ -229,7 +229,7 @@ def checked(
         mesh_quality=None if trial.mesh is None else trial.mesh.quality,
         certificate=trial.certificate,
         benchmarks=benchmarks,
-        speed_ripple=speed_ripple(case, torques, trial.contour.pitch),
+        speed_ripple=speed_ripple(case, torques, trial.contour.pitch, rubbing_of(trial.cycles)),
         searching=searching,
     )
     return replace(trial, checks=all_checks(evidence))
