@@ -17,7 +17,7 @@ from reports.sheet import figures
 
 GROUPS = (
     ("Torque", ("torque", "torque-components", "crank-speed")),
-    ("Shape", ("outline", "pressure-angle", "lift", "radii")),
+    ("Shape", ("outline", "pressure-angle", "face", "lift", "radii")),
     ("Contact", ("pressure", "half-width", "stress")),
     ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
     ("Parts", ("bushes", "elastic", "parts")),
