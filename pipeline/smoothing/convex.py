@@ -29,12 +29,20 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class Norm:
-    """A ripple that is charged or bounded: |level + slopes @ x|, level (m,), slopes (m, n)."""
+    """A ripple that is charged, bounded or both: |level + slopes @ x|, (m,) and (m, n)."""
 
     level: Array
     slopes: Array
     weight: float = 1.0
     ceiling: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """How far a step may go: |slopes @ x| <= bound; slopes (m, w) of the first unknowns."""
+
+    slopes: Array
+    bound: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,11 +93,12 @@ class Cones:
         self._linear.append((matrix, np.broadcast_to(bound, matrix.shape[:1])))
 
     def norm_at_most(
-        self, slopes: Array, level: Array, variable: int, ceiling: float = 0.0
+        self, slopes: Array, level: Array, variable: int | None, ceiling: float = 0.0
     ) -> None:
         """|level + slopes @ x| <= ceiling + x[variable]; slopes (m, w) of the first unknowns."""
         block = np.zeros((level.size + 1, self.size))
-        block[0, variable] = -1.0
+        if variable is not None:
+            block[0, variable] = -1.0
         block[1:, : slopes.shape[1]] = -slopes
         side = np.concatenate([[ceiling], level])
         self._cones.append((csr_array(block), side, side.size))
@@ -133,6 +142,7 @@ def solved(
     box: Array,
     penalty: float,
     ripple_weight: float = 1.0,
+    reach: Reach | None = None,
 ) -> Answer | None:
     """Least ripple_weight max(weight |norm|) + x'Hx/2 + h'x + penalty (sum of slacks).
 
@@ -143,6 +153,7 @@ def solved(
     curvature, slope : arrays (n, n), (n,)   H, positive semidefinite, and h
     box : array (2, n)         least and greatest x
     penalty : float            of a unit of slack
+    reach : Reach              what else bounds the step; None: the box alone
 
     Returns
     -------
@@ -169,8 +180,12 @@ def solved(
     program.at_most(identity[:size], box[1])
     program.at_most(-identity[:size], -box[0])
     program.at_most(-identity[size + 1 :], 0.0)
+    if reach is not None:
+        rows_of = reach.slopes.shape[0]
+        program.norm_at_most(reach.slopes, np.zeros(rows_of), None, reach.bound)
     for norm in norms:
-        program.norm_at_most(norm.slopes * norm.weight, norm.level * norm.weight, size)
+        if norm.weight > 0:
+            program.norm_at_most(norm.slopes * norm.weight, norm.level * norm.weight, size)
         if norm.ceiling is not None:
             program.norm_at_most(norm.slopes, norm.level, program.size - 1, norm.ceiling)
     found = program.solved()

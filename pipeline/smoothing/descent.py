@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.arrays import Array
-from pipeline.smoothing.convex import Answer, solved
+from pipeline.smoothing.convex import Answer, Reach, solved
 from pipeline.smoothing.design import FEASIBLE, RESERVE
 from pipeline.smoothing.search import Model, Search, State
 
@@ -47,7 +47,9 @@ def descended(search: Search, ripple_weight: float) -> Descent:
     for step in range(1, _STEPS_MAX + 1):
         model = search.model(state)
         while True:
-            answer = _answered(model, search.box(state, trust), penalty, ripple_weight)
+            # The box alone would let short waves grow that no ripple of the speed sees.
+            reach = Reach(search.bend, trust)
+            answer = _answered(model, search.box(state, trust), reach, penalty, ripple_weight)
             if answer is None:
                 trust *= 0.3
                 if trust < _TRUST_LEAST:
@@ -78,7 +80,9 @@ def _within(state: State) -> bool:
     return all(value <= 1.0 - RESERVE + FEASIBLE for value in state.utilisation.values())
 
 
-def _answered(model: Model, box: Array, penalty: float, ripple_weight: float) -> Answer | None:
+def _answered(
+    model: Model, box: Array, bend: Reach, penalty: float, ripple_weight: float
+) -> Answer | None:
     """The program of all rows that matter within the box, found by taking in those it misses."""
     reach, size = np.abs(box).max(axis=0), box.shape[1]
     matter = [limit.highest(reach) >= 0.0 for limit in model.limits]
@@ -92,7 +96,7 @@ def _answered(model: Model, box: Array, penalty: float, ripple_weight: float) ->
             if taken.any()
         ]
         answer = solved(
-            model.norms, rows, model.curvature, model.slope, box, penalty, ripple_weight
+            model.norms, rows, model.curvature, model.slope, box, penalty, ripple_weight, bend
         )
         if answer is None or not _taken_in(model, answer, matter, chosen):
             return answer

@@ -13,7 +13,6 @@ from pipeline.case import Case
 from pipeline.cycle import CREEP
 from pipeline.design_fields import LoadCase
 from pipeline.engine.torque import Torque
-from pipeline.part_fields import Guide
 from pipeline.smoothing.constrained import Problem
 from pipeline.smoothing.constraints import Correction, Machine, Scenario
 from pipeline.smoothing.ratings import ratings_of
@@ -106,11 +105,14 @@ def _scenarios(
 
 
 def _corners(case: Case, nominal: Scenario) -> list[Scenario]:
-    """Every combination of spring and friction at the ends of their tolerances."""
-    spring, guides = case.spring, case.guides
-    rates, preloads = _ends(spring.rate_tolerance), _ends(spring.preload_tolerance)
-    frictions = _friction(guides.a, guides.b)
-    return [
+    """Every combination of spring and friction at the ends of their tolerances; mass and phase
+    at theirs, one at a time.
+    """
+    spring, tolerances = case.spring, case.tolerances
+    product_of = product(
+        _ends(spring.rate_tolerance), _ends(spring.preload_tolerance), _frictions(case)
+    )
+    found = [
         replace(
             nominal,
             name=f"{nominal.name}, k x {rate:g}, P x {preload:g}, mu {mu[0]:g} and {mu[1]:g}",
@@ -118,20 +120,36 @@ def _corners(case: Case, nominal: Scenario) -> list[Scenario]:
             preload_factor=preload * nominal.preload_factor,
             friction_a=mu[0],
             friction_b=mu[1],
-            weight=0.0,
         )
-        for rate, preload, mu in product(rates, preloads, frictions)
+        for rate, preload, mu in product_of
+        if (rate, preload, mu) != (1.0, 1.0, (nominal.friction_a, nominal.friction_b))
     ]
+    if tolerances.mass > 0:
+        found += [
+            replace(nominal, name=f"{nominal.name}, m x {share:g}", mass=share * nominal.mass)
+            for share in _ends(tolerances.mass)
+        ]
+    late = tolerances.phase / case.mechanism.gear_ratio
+    if late > 0:
+        found += [
+            replace(
+                nominal,
+                name=f"{nominal.name}, phase {np.degrees(shift):+.3g} deg of cam",
+                torque=nominal.torque_at(shift)[0],
+            )
+            for shift in (-late, late)
+        ]
+    return found
 
 
 def _ends(tolerance: float) -> list[float]:
     return [1.0 - tolerance, 1.0 + tolerance] if tolerance > 0 else [1.0]
 
 
-def _friction(a: Guide, b: Guide) -> list[tuple[float, float]]:
-    low = (a.friction_min, b.friction_min)
-    high = (a.friction_max, b.friction_max)
-    found = [
-        (pair[0], pair[1]) for pair in (low, high) if pair[0] is not None and pair[1] is not None
-    ]
-    return found or [(a.friction, b.friction)]
+def _frictions(case: Case) -> list[tuple[float, float]]:
+    """Friction of guides A and B at its least and greatest, both guides in the same oil."""
+    guides, share = (case.guides.a, case.guides.b), case.tolerances.friction
+    low = [g.friction * (1 - share) if g.friction_min is None else g.friction_min for g in guides]
+    high = [g.friction * (1 + share) if g.friction_max is None else g.friction_max for g in guides]
+    ends = [(low[0], low[1]), (high[0], high[1])]
+    return ends if ends[0] != ends[1] else ends[:1]

@@ -29,7 +29,7 @@ from pipeline.smoothing.convex import Norm, Rows
 from pipeline.smoothing.design import RESERVE, Problem
 from pipeline.smoothing.gradients import FREED, Function, Gradient, differentiated
 from pipeline.smoothing.grid import Grid
-from pipeline.smoothing.spline_energy import exact_start
+from pipeline.smoothing.spline_energy import basis_matrix, exact_start
 
 INITIAL_ENERGY = "initial_energy"
 LEAST_ENERGY = "least_energy"
@@ -109,6 +109,10 @@ class Search:
         self.start = self.exact if problem.seed is None else problem.seed
         self.scale = max(float(np.abs(self.exact).max()), 1e-9)
         exact = lift_jet(self.turn.energy(self.exact), problem.machine)
+        # A step whose energy bends as much as the exact one's has the length 1 by this matrix.
+        bend = basis_matrix(self.turn.theta, count, 2) * self.scale
+        size = float(np.linalg.norm(bend @ self.exact)) / self.scale or 1.0
+        self.bend = np.asarray(np.linalg.qr(bend.toarray() / size, mode="r"))
         self._jerk_scale = np.sqrt(problem.jerk_weight) / (float(np.linalg.norm(exact.jerk)) or 1.0)
 
     @property
@@ -201,20 +205,18 @@ class Search:
         if np.isfinite(self.problem.energy[1]):
             over = float(energy[0].min()) - self.problem.energy[1]
             most[INITIAL_ENERGY] = 1.0 - RESERVE + over / self.scale
-        ripples = [float(np.linalg.norm(level)) for level in self.residuals(coefficients, machine)]
-        weighted = [w * r for w, r in zip(self.weights, ripples, strict=True)]
-        if self.problem.ceiling is not None:
-            most[TORQUE_REDUCTION] = 1.0 - RESERVE + max(ripples) - self.problem.ceiling
+        ripple = 0.0
+        for item, left in self.left(coefficients, machine):
+            ripple = max(ripple, item.weight * float(np.linalg.norm(self.ripple_of(item, left))))
+            if self.problem.ceiling is not None:
+                over = float(np.linalg.norm(_torque_ripple(item, left))) - self.problem.ceiling
+                used = 1.0 - RESERVE + over
+                most[TORQUE_REDUCTION] = max(most.get(TORQUE_REDUCTION, used), used)
         jerk = self._jerk_scale * lift_jet(energy, machine).jerk
-        return State(coefficients, machine, max(weighted), 0.5 * float(jerk @ jerk), most)
+        return State(coefficients, machine, ripple, 0.5 * float(jerk @ jerk), most)
 
-    @property
-    def weights(self) -> list[float]:
-        """Of the scenarios whose ripple counts."""
-        return [item.weight for item in self.problem.scenarios if item.weight > 0]
-
-    def residuals(self, coefficients: Array, machine: Machine) -> list[Array]:
-        """What is left of the ripple in each weighted scenario, over that without the cam."""
+    def left(self, coefficients: Array, machine: Machine) -> list[tuple[Scenario, Array]]:
+        """Each scenario whose ripple counts, and the crank torque (n,) left to it, N m."""
         jet = lift_jet(self.turn.energy(coefficients), machine)
         top = self.highest(coefficients, machine)
         problem, found = self.problem, []
@@ -222,19 +224,17 @@ class Search:
             if item.weight > 0:
                 torque = delivered_torque(jet, top, machine, item, problem.ratings.offset)
                 asked = item.torque_at(float(machine.phase))[0]
-                found.append(self.ripple_of(item, asked - torque / problem.gear_ratio))
+                found.append((item, asked - torque / problem.gear_ratio))
         return found
 
     def ripple_of(self, item: Scenario, values: Array) -> Array:
         """Torque and speed ripple of columns of crank torque, each over that of the engine."""
         problem = self.problem
-        before = item.torque - item.torque.mean()
-        size = np.sqrt(before.size)
-        rest = values - values.mean(axis=0)
-        parts = [np.sqrt(problem.torque_weight) / (size * np.std(before)) * rest]
+        parts = [np.sqrt(problem.torque_weight) * _torque_ripple(item, values)]
         if problem.speed_weight > 0:
-            norm = size * float(np.std(_integral(before)))
-            parts.append(np.sqrt(problem.speed_weight) / norm * _integral(rest))
+            before = _integral(item.torque - item.torque.mean())
+            norm = np.sqrt(before.size) * float(np.std(before))
+            parts.append(np.sqrt(problem.speed_weight) / norm * _integral(values))
         return np.concatenate(parts)
 
     def model(self, state: State) -> Model:
@@ -264,9 +264,15 @@ class Search:
             slopes = -self._dense(gradient, state, summit) / problem.gear_ratio
             if "phase" in problem.freed:
                 slopes[:, problem.coefficients + list(problem.freed).index("phase")] += turning
-            columns = self.ripple_of(item, np.column_stack([slopes, left]))
-            triangle = np.asarray(np.linalg.qr(columns, mode="r"))
-            found.append(Norm(triangle[:, -1], triangle[:, :-1], item.weight, problem.ceiling))
+            columns = np.column_stack([slopes, left])
+            charged = _triangle(self.ripple_of(item, columns))
+            if problem.speed_weight == 0.0 and problem.torque_weight == 1.0:
+                found.append(Norm(*charged, item.weight, problem.ceiling))
+                continue
+            found.append(Norm(*charged, item.weight))
+            if problem.ceiling is not None:
+                bounded = _triangle(_torque_ripple(item, columns))
+                found.append(Norm(*bounded, weight=0.0, ceiling=problem.ceiling))
         return found
 
     def _dense(self, gradient: Gradient, state: State, summit: Summit) -> Array:
@@ -374,6 +380,18 @@ def _loads(
     scenario: Scenario, ratings: Ratings, jet: Jet, top: Values, machine: Machine
 ) -> Mapping[str, Values | Mean]:
     return load_utilisations(jet, top, machine, ratings, scenario)
+
+
+def _torque_ripple(item: Scenario, values: Array) -> Array:
+    """Columns of crank torque about their means; their norm is the std over the engine's."""
+    before = item.torque - item.torque.mean()
+    return (values - values.mean(axis=0)) / (np.sqrt(before.size) * np.std(before))
+
+
+def _triangle(columns: Array) -> tuple[Array, Array]:
+    """Level and slopes of as few rows, the norm of which is that of all: slopes, then level."""
+    triangle = np.asarray(np.linalg.qr(columns, mode="r"))
+    return triangle[:, -1], triangle[:, :-1]
 
 
 def _integral(values: Array) -> Array:
