@@ -8,10 +8,10 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from scipy.signal import resample
 
 from geometry.arrays import Array, uniform_turn
 from geometry.errors import CamError
+from geometry.periodic import periodic_quintic
 from geometry.pitch_curve import PitchCurve
 from pipeline.case import Case
 from pipeline.cylinder_fields import Cylinder
@@ -191,7 +191,7 @@ def cam_speed(
         return steady
     if study is None:
         return steady
-    return np.asarray(resample(study.after.speed, steady.size)) / case.mechanism.gear_ratio
+    return periodic_quintic(study.after.speed)(rubbing.theta) / case.mechanism.gear_ratio
 
 
 def speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:

@@ -208,11 +208,20 @@ def test_difference_from_point_supports_falls_with_the_square_of_the_length():
 
 
 def test_a_short_guide_with_play_is_a_point_support_too():
-    """In the point limit play tilts the stem but moves no reaction: 1e-4 with 0.1 mm guides."""
-    pair = guide_pair(length=1e-4, modulus=1e10, clearance=2e-5)
-    found = guide_reactions([500.0], 0.04, STEM, pair)
-    assert found.reaction_b[0] == pytest.approx(250.0, rel=2e-3)
-    assert found.force_residual[0] <= 1e-9
+    """Play tilts the stem but moves no reaction of a point: the miss falls with L squared.
+
+    1e-6 of the statics at 50 micrometres, at the same stiffness of the support.
+    """
+
+    def found(length):
+        pair = guide_pair(length=length, modulus=1e6 / length, clearance=2e-5)
+        return guide_reactions([500.0], 0.04, STEM, pair)
+
+    misses = np.array([1.0 - found(2e-4 * 0.5**k).reaction_b[0] / 250.0 for k in range(3)])
+    np.testing.assert_allclose(misses[:-1] / misses[1:], 4.0, rtol=0.01)
+    assert 0.0 < misses[2] < 1e-6
+    assert found(1e-4).rubbing_load_a[0] == pytest.approx(750.0, rel=1e-6)
+    assert found(1e-4).slope_a[0] != 0.0
 
 
 def test_a_light_load_leans_on_the_mouths():
