@@ -332,7 +332,7 @@ def _forces(turn: Turn) -> Figure | None:
     curves = _curves(
         turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
         ("tangential_force_N", "side force"), ("friction_A_N", "friction A"),
-        ("friction_B_N", "friction B"),
+        ("friction_B_N", "friction B"), ("viscous_force_N", "viscous drag"),
     )  # fmt: skip
     return _angles(
         turn, "forces", "Force components on the follower",
@@ -346,12 +346,21 @@ def _normal_force(turn: Turn) -> Figure | None:
     rating, safety = turn.length("roller", "bearing", "C0", unit="N"), turn.bound("roller_static")
     if rating and safety:
         limits = (LimitLine(rating / safety, "roller static rating allows"),)
-    curves = _curves(turn, ("normal_force_N", "normal force"), ("axial_force_N", "axial force"))
+    curves = _curves(
+        turn, ("normal_force_N", "normal force"), ("axial_force_N", "axial force"),
+        ("normal_force_statics_N", "normal force, guides as points"), dashed=(2,),
+    )  # fmt: skip
+    shares = (
+        ("normal_force_by_length_N", "by length of the guides"),
+        ("normal_force_by_clearance_N", "by clearance"),
+    )
     return _angles(
         turn, "normal-force", "Normal force",
-        "Between roller and cam, with its component along the stem. Contact is lost where the "
-        "normal force reaches zero.",
+        "Between roller and cam, with its component along the stem, friction of the guides "
+        "included; and what their length, then their clearance changes in it. Contact is lost "
+        "where the normal force reaches zero.",
         Panel("force", "N", curves, (LimitLine(0.0, "contact lost at"), *limits)),
+        Panel("change", "N", _curves(turn, *shares), height=0.6),
     )  # fmt: skip
 
 
@@ -398,20 +407,33 @@ def _guides(turn: Turn) -> Figure | None:
         ("reaction_A_N", "A, finite elements"), ("reaction_A_statics_N", "A, statics"),
         ("reaction_B_N", "B, finite elements"), ("reaction_B_statics_N", "B, statics"),
     )  # fmt: skip
+    shares = (
+        ("reaction_by_length_N", "by length, of A and B alike"),
+        ("reaction_by_clearance_N", "by clearance"),
+    )  # fmt: skip
+    rubbing = (("rubbing_load_A_N", "A, both sides"), ("rubbing_load_B_N", "B, both sides"))
     return _angles(
         turn, "guides", "Guide reactions",
         "The follower as a beam on elastic one-sided guides of finite length, against two point "
-        "supports.",
+        "supports; what length alone and then clearance add to these; and the pushes of both "
+        "sides of a bore, which rub.",
         Panel("reaction", "N", _curves(turn, *pairs, dashed=(1, 3)), height=1.25),
+        Panel("difference", "N", _curves(turn, *shares), height=0.7),
+        Panel("rubbing load", "N", _curves(turn, *rubbing), height=0.7),
     )  # fmt: skip
 
 
 def _jamming(turn: Turn) -> Figure | None:
     limits = turn.limit("limit", "", "jam_index")
+    indices = (
+        ("jam_index", "finite guides"), ("jam_index_statics", "point supports"),
+        ("jam_index_friction_max", "greatest friction, way out"),
+    )  # fmt: skip
     return _angles(
         turn, "jamming", "Jam index",
-        "Share of the axial force that guide friction takes; at 1 the follower locks.",
-        Panel("jam index", "", _curves(turn, ("jam_index", "")), limits, height=0.8),
+        "Share of the axial force that guide friction takes; at 1 the follower locks. On the way "
+        "back it locks nothing.",
+        Panel("jam index", "", _curves(turn, *indices, dashed=(1,)), limits, height=0.8),
     )  # fmt: skip
 
 
@@ -460,21 +482,25 @@ def _elastic(turn: Turn) -> Figure | None:
     )
     return _angles(
         turn, "elastic", "Contact force: elastic stem, bounds of friction",
-        "What an elastic stem and the least and greatest friction make of the contact force.",
+        "What an elastic stem, on the speed that the cam really has, and the least and greatest "
+        "friction make of the contact force.",
         Panel("contact force", "N", _curves(turn, *forces)),
-        Panel("stem shortened by", "um", _curves(turn, ("elastic_deflection_um", "")), height=0.7),
+        Panel("shortening", "um", _curves(turn, ("elastic_deflection_um", "")), height=0.7),
+        Panel("cam speed", "rad/s", _curves(turn, ("cam_speed_rad_per_s", "")), height=0.6),
     )  # fmt: skip
 
 
 def _parts(turn: Turn) -> Figure | None:
     stresses = (
         ("spring_stress_MPa", "spring wire, shear"), ("pin_stress_MPa", "roller pin, bending"),
-        ("ring_stress_range_MPa", "outer ring, range"), ("key_pressure_MPa", "key, pressure"),
+        ("ring_stress_amplitude_MPa", "outer ring, amplitude"),
+        ("key_pressure_MPa", "key, pressure"), ("bore_pressure_MPa", "bore, pressure"),
     )  # fmt: skip
     bearings = (("shaft_bearing_1_N", "bearing 1"), ("shaft_bearing_2_N", "bearing 2"))
     return _angles(
         turn, "parts", "Spring, pin, ring, key and shaft",
         "Stresses of the parts around the cam as far as the case describes them.",
         Panel("stress", "MPa", _curves(turn, *stresses)),
+        Panel("surge of the spring", "N", _curves(turn, ("spring_surge_force_N", "")), height=0.6),
         Panel("camshaft bearing", "N", _curves(turn, *bearings), height=0.8),
     )  # fmt: skip
