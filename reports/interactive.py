@@ -47,18 +47,22 @@ class Bundle:
 
 def bundle(figures: Iterable[Figure]) -> Bundle:
     """Scripts and data of some figures."""
+    specs = {figure.id: specification(figure) for figure in figures}
+    return Bundle(
+        *scripts(_SCRIPTS),
+        Markup(script_safe_json(specs)),  # noqa: S704 - no "<" is left in it
+    )
+
+
+def scripts(sources: Iterable[Path]) -> tuple[tuple[Markup, ...], tuple[str, ...]]:
+    """Scripts that may stand in a page, the library's and our own, and their hashes."""
     safe = [
         source.read_text(encoding="utf-8")
         .replace("</script", "<\\/script")
         .replace("<!--", "<\\!--")
-        for source in _SCRIPTS
+        for source in sources
     ]
-    specs = {figure.id: specification(figure) for figure in figures}
-    return Bundle(
-        tuple(Markup(source) for source in safe),  # noqa: S704 - the library's and our own
-        tuple(_hash(source) for source in safe),
-        Markup(script_safe_json(specs)),  # noqa: S704 - no "<" is left in it
-    )
+    return tuple(Markup(source) for source in safe), tuple(map(_hash, safe))  # noqa: S704
 
 
 def specification(figure: Figure) -> dict[str, Any]:

@@ -53,7 +53,7 @@ def text(material: Material, *, live: bool = True) -> bytes:
     """The page in UTF-8; its plots answer to the pointer when `live`."""
     figures = [drawn.figure for _, group in drawn_groups(material) for drawn in group]
     shown = context(material) | {"live": interactive.bundle(figures) if live else None}
-    page: str = _environment().get_template("report.html").render(shown)
+    page: str = environment().get_template("report.html").render(shown)
     return page.encode("utf-8", "replace")
 
 
@@ -170,15 +170,16 @@ def _trial(trial: TrialRecord) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _environment() -> Environment:
-    environment = Environment(
+def environment() -> Environment:
+    """The templates, what they print escaped."""
+    made = Environment(
         loader=FileSystemLoader(Path(__file__).parent / "templates"), autoescape=True,
         undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
-    environment.filters["plain"] = plain
-    environment.filters["cut"] = partial(shortened, length=140)
-    environment.globals["LONG"] = LONG
-    return environment
+    made.filters["plain"] = plain
+    made.filters["cut"] = partial(shortened, length=140)
+    made.globals["LONG"] = LONG
+    return made
 
 
 def plain(text: object) -> str:

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from geometry.errors import InputError, ResultError
-from reports import drawings, film, page, pictures, printing
+from reports import drawings, film, page, pictures, printing, scene_html
 from reports.material import Material, Tell, read_material, silent
 from reports.output import FIGURES
 
@@ -34,6 +34,7 @@ PARTS = (
     Part("envelope", "map of the greatest stress under the contour",
          partial(pictures.write_pictures, pictures.envelope_pictures)),
     Part("page", page.PAGE, page.write),
+    Part("scene", f"{scene_html.FILE}, the cam in space", scene_html.write),
     Part("pdf", printing.PDF, printing.write, asked=True),
     Part("film", "the turn as MP4 and GIF", film.write, asked=True),
 )  # fmt: skip

@@ -1,0 +1,174 @@
+"use strict";
+/* Draws the scene with Plotly and turns it with the slider; angles are the radians of the data. */
+(function () {
+  const data = JSON.parse(document.getElementById("scene-data").textContent);
+  const place = document.getElementById("scene"), slider = document.getElementById("turn");
+  const told = document.getElementById("told"), play = document.getElementById("play");
+  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+  const STEEL = "#c3cbd4", DARK = "#8b95a1", MARK = "#d55e00";
+  const LIGHT = { ambient: 0.75, diffuse: 0.4, specular: 0.05, roughness: 0.8, fresnel: 0.02 };
+  const EVEN = { ambient: 0.92, diffuse: 0.1, specular: 0, roughness: 1, fresnel: 0 };
+  const PLAIN = { ambient: 1, diffuse: 0, specular: 0, roughness: 1, fresnel: 0 };
+  const EYES = { aslant: [1.15, 0.5, 0.95], front: [0, 0, 1.6], side: [1.55, 0.12, 0.35] };
+  const camera = (name) => {
+    const [x, y, z] = EYES[name];
+    return { up: { x: 0, y: 1, z: 0 }, center: { x: 0, y: 0, z: 0 }, eye: { x, y, z } };
+  };
+
+  function webgl() {
+    const canvas = document.createElement("canvas");
+    return Boolean(canvas.getContext("webgl") || canvas.getContext("experimental-webgl"));
+  }
+
+  const around = (xs, ys, angle) => {
+    const c = Math.cos(angle), s = Math.sin(angle);
+    return [xs.map((x, n) => c * x - s * ys[n]), xs.map((x, n) => s * x + c * ys[n])];
+  };
+
+  /* A line with breaks (null) in it. */
+  const turned = (line, angle) => around(line.x, line.y, angle)
+    .map((part) => part.map((v, n) => (line.x[n] === null ? null : v)));
+
+  function solid(body, more) {
+    const { x, y, z, i, j, k } = body;
+    return { type: "mesh3d", x, y, z, i, j, k, flatshading: true, lighting: LIGHT, color: STEEL,
+      lightposition: { x: 400, y: 900, z: 1500 }, hoverinfo: "skip", ...more };
+  }
+
+  /* The contour's two edges and those of the bore, a closed line each. */
+  function edges(body, half) {
+    const count = body.x.length / half, lines = { x: [], y: [], z: [], of: [] };
+    for (let side = 0; side < half; side++) {
+      for (let n = 0; n <= count; n++) {
+        const at = side * count + (n % count);
+        for (const name of "xyz") lines[name].push(body[name][at]);
+        lines.of.push(body.values ? body.values[at] : 0);
+      }
+      for (const name of "xyz") lines[name].push(null);
+      lines.of.push(0);
+    }
+    return lines;
+  }
+
+  function traces() {
+    const { flank, cam, follower, guide } = data.bodies;
+    const valued = flank.values && { intensity: flank.values, colorscale: "Viridis", lighting: EVEN,
+      hovertext: flank.words, hoverinfo: "text", flatshading: false,
+      colorbar: { title: { text: "greatest von Mises<br>of the turn, MPa", font: { size: 12 } },
+        thickness: 14, len: 0.7, x: 0.99, xanchor: "right" } };
+    const made = [solid(flank, valued || {}), solid(cam, { color: STEEL, lighting: PLAIN })];
+    made.push(solid(data.roller || follower, { color: "#e3e8ed" }));
+    made.push({ type: "scatter3d", mode: "lines", x: [], y: [], z: [], hoverinfo: "skip",
+      line: { color: MARK, width: 6 } });
+    made.push({ type: "scatter3d", mode: "lines", x: [], y: [], z: [], hoverinfo: "skip",
+      line: { color: "#444c55", width: 5 } });
+    const range = flank.values && { color: rim.of, colorscale: "Viridis",
+      cmin: Math.min(...flank.values), cmax: Math.max(...flank.values) };
+    made.push({ type: "scatter3d", mode: "lines", x: rim.x, y: rim.y, z: rim.z, hoverinfo: "skip",
+      line: { width: 7, ...(range || { color: DARK }) } });
+    made.push({ type: "scatter3d", mode: "lines", x: hole.x, y: hole.y, z: hole.z,
+      hoverinfo: "skip", line: { width: 2, color: "#59616b" } });
+    if (data.roller) made.push(solid(follower, { color: DARK }));
+    if (guide) made.push(solid(guide, { color: "#6c7783", opacity: 0.35 }));
+    return made;
+  }
+
+  const rim = edges(data.bodies.flank, 2), hole = edges(data.bodies.bore, 2);
+
+  /* Coordinates of all that moves at step n, in the order of the traces. */
+  function moved(n) {
+    const { flank, cam, follower } = data.bodies, turn = data.turn[n];
+    const [ox, oy] = [data.origin[0][n], data.origin[1][n]];
+    const at = (body, angle) => {
+      const [x, y] = around(body.x, body.y, angle);
+      return [x.map((v) => v + ox), y.map((v) => v + oy)];
+    };
+    const pairs = [around(flank.x, flank.y, turn), around(cam.x, cam.y, turn)];
+    pairs.push(data.roller ? at(data.roller, data.facing[n]) : at(follower, 0));
+    const [cx, cy] = [data.contact[0][n], data.contact[1][n]];
+    pairs.push([[cx, cx], [cy, cy]]);
+    const zs = { 3: [-1.06 * data.half, 1.06 * data.half], 4: [] };
+    if (data.roller) {
+      const spoke = data.roller.spoke, facing = data.facing[n] + Math.PI / 2;
+      pairs.push([spoke.map((r) => ox + r * Math.cos(facing)), spoke.map((r) => oy + r * Math.sin(facing))]);
+      zs[4] = [1.02 * data.half, 1.02 * data.half];
+    } else pairs.push([[], []]);
+    for (const line of [rim, hole]) pairs.push(turned(line, turn));
+    if (data.roller) pairs.push(at(follower, 0));
+    return { pairs, zs };
+  }
+
+  const all = traces();
+  function placed(n) {
+    const { pairs, zs } = moved(n);
+    pairs.forEach(([x, y], t) => { all[t].x = x; all[t].y = y; if (zs[t]) all[t].z = zs[t]; });
+    return pairs.map((_, t) => t);
+  }
+
+  const { side, top } = data.reach, deep = 0.3 * (side + top), unit = (side + top) / 1.4;
+  const axis = (range) => ({ range, visible: false, autorange: false });
+  const layout = () => ({
+    margin: { l: 0, r: 0, t: 0, b: 0 }, showlegend: false, uirevision: "kept",
+    paper_bgcolor: "rgba(0,0,0,0)", font: { color: colour("ink"), family: "system-ui, sans-serif" },
+    scene: { xaxis: axis([-side, side]), yaxis: axis([-side, top]), zaxis: axis([-deep, deep]),
+      aspectmode: "manual",
+      aspectratio: { x: (2 * side) / unit, y: (side + top) / unit, z: (2 * deep) / unit }, dragmode: "orbit", uirevision: "kept",
+      camera: camera("aslant") },
+  });
+
+  function say(n) {
+    const angle = data.angle[n], deg = (v) => v.toFixed(1) + "°";
+    const values = data.told.map((t) => `${t.words} ${Number(t.values[n].toPrecision(4))} ${t.unit}`);
+    const place = `cam ${deg(angle)}, crank ${deg(angle * data.ratio)}`;
+    told.textContent = [place, ...values].join(" · ");
+    slider.setAttribute("aria-valuetext", place);
+  }
+
+  let wanted = 0, drawing = false, playing = 0;
+  function show(n) {
+    wanted = n;
+    say(n);
+    if (drawing) return;
+    drawing = true;
+    const now = wanted, moving = placed(now);
+    const update = { x: moving.map((t) => all[t].x), y: moving.map((t) => all[t].y), z: moving.map((t) => all[t].z) };
+    Plotly.restyle(place, update, moving).then(() => {
+      drawing = false;
+      place.dataset.shown = String(now);
+      if (now !== wanted) show(wanted);
+    });
+  }
+
+  function step() {
+    if (!playing) return;
+    if (!drawing) {
+      slider.value = String((Number(slider.value) + 2) % data.angle.length);
+      show(Number(slider.value));
+    }
+    playing = requestAnimationFrame(step);
+  }
+
+  if (!webgl()) {
+    document.getElementById("failed").hidden = false;
+    place.hidden = true;
+    say(0);
+    slider.addEventListener("input", () => say(Number(slider.value)));
+    return;
+  }
+  placed(0);
+  Plotly.newPlot(place, all, layout(), { displaylogo: false, responsive: true, displayModeBar: false })
+    .then(() => { place.dataset.shown = "0"; });
+  say(0);
+  slider.addEventListener("input", () => show(Number(slider.value)));
+  play.addEventListener("click", () => {
+    const on = !playing;
+    play.setAttribute("aria-pressed", String(on));
+    play.textContent = on ? "Pause" : "Play";
+    if (on) playing = requestAnimationFrame(step);
+    else { cancelAnimationFrame(playing); playing = 0; }
+  });
+  for (const button of document.querySelectorAll("[data-view]"))
+    button.addEventListener("click", () => Plotly.relayout(place, { "scene.camera": camera(button.dataset.view) }));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
+    Plotly.relayout(place, { "font.color": colour("ink") }));
+})();

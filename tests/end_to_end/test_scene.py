@@ -1,0 +1,135 @@
+"""The scene: solids that hold together, and the page in a real browser."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+import report_fixture
+import turn_fixture
+
+from reports import browser, parts, scene_html
+from reports.material import read_material
+from reports.solids import Solid, box, joined, ring, tube
+from reports.turn_view import read_turn_view
+
+POSITIONS = 36
+BYTES_MAX = 10 << 20
+HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </script><!--"
+SHOWN = "document.getElementById('scene').dataset.shown === '{}'"
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("scene") / "run"
+    report_fixture.write_run(folder, POSITIONS, title=HOSTILE, field=False)
+    turn_fixture.add_turn(folder, POSITIONS)
+    (made,) = parts.build(folder, parts.chosen(["scene"]))["scene"]
+    return made
+
+
+@pytest.fixture(scope="module")
+def tab():
+    if browser.executable() is None:
+        pytest.skip("no Chromium here: Debian has it in the package chromium")
+    with browser.tab() as opened:
+        yield opened
+
+
+def test_scene_is_one_small_file_that_reaches_for_nothing(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert page.name == "scene.html" and page.stat().st_size <= BYTES_MAX
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)
+    assert policy and "default-src 'none'" in policy[1] and "unsafe-eval" not in policy[1]
+    assert not re.search(r"<(script|link|img|iframe)[^>]+(src|href)=.?https?:", text)
+
+
+def test_a_report_has_a_scene_unless_told_otherwise() -> None:
+    assert "scene" in [part.name for part in parts.chosen()]
+
+
+def test_a_run_without_its_turn_has_no_scene(tmp_path: Path) -> None:
+    folder = report_fixture.write_run(tmp_path / "old", POSITIONS, field=False)
+    assert parts.build(folder, parts.chosen(["scene"]))["scene"] == []
+    assert not (folder / scene_html.FILE).exists()
+
+
+def test_slider_and_keys_turn_the_cam(page: Path, tab: browser.Tab) -> None:
+    tab.events.clear()
+    tab.size(390, 700)
+    tab.open(page)
+    tab.wait(SHOWN.format(0))
+    assert tab.evaluate("document.documentElement.scrollWidth") <= 390
+    view = read_turn_view(page.parent)
+    place = "(([flank]) => [flank.x[7], flank.y[7]])(document.getElementById('scene').data)"
+    corner = view.cam[:, 7, 0]
+
+    def expected(n: int) -> np.ndarray:
+        cosine, sine = np.cos(view.to_lab[n]), np.sin(view.to_lab[n])
+        return np.array([[cosine, -sine], [sine, cosine]]) @ corner
+
+    # five digits of each coordinate are kept
+    np.testing.assert_allclose(tab.evaluate(place), expected(0), atol=2e-3)
+    tab.evaluate(
+        "(() => { const e = document.getElementById('turn'); e.value = '3';"
+        " e.dispatchEvent(new Event('input')); })()"
+    )
+    tab.wait(SHOWN.format(3))
+    np.testing.assert_allclose(tab.evaluate(place), expected(3), atol=2e-3)
+    tab.evaluate("document.getElementById('turn').focus()")
+    tab.call("Input.dispatchKeyEvent", type="rawKeyDown", key="ArrowRight", code="ArrowRight",
+             windowsVirtualKeyCode=39)  # fmt: skip
+    tab.wait(SHOWN.format(4))
+    said = tab.evaluate("document.getElementById('told').textContent")
+    assert said.startswith("cam 240.0°, crank 480.0°") and "MPa" in said
+    assert tab.evaluate("document.getElementById('turn').getAttribute('aria-valuetext')")
+    assert tab.complaints() == []
+    assert tab.evaluate("window.broken") is None
+    assert "עברית" in tab.evaluate("document.querySelector('h1').textContent")
+
+
+def test_scene_says_what_the_run_found(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    data = json.loads(re.search(r'id="scene-data">(.*?)</script>', text, re.DOTALL)[1])
+    material = read_material(page.parent)
+    view = read_turn_view(page.parent)
+    rows = material.run.final.cycle
+    told = {one["words"]: one["values"] for one in data["told"]}
+    np.testing.assert_allclose(
+        told["peak pressure p0"], rows["p0_fe_MPa"][view.position], rtol=1e-4
+    )
+    touching, centre = np.array(data["contact"]), np.array(data["origin"])
+    assert np.hypot(*(touching - centre)) == pytest.approx(
+        np.full(turn_fixture.FRAMES, 1e3 * report_fixture.ROLLER), rel=1e-4
+    )
+
+
+def volume(solid: Solid) -> float:
+    """Enclosed by triangles that all look outwards, by the divergence theorem."""
+    a, b, c = (solid.points[:, numbers] for numbers in solid.triangles)
+    return float(np.einsum("cm,cm->", a, np.cross(b, c, axis=0)) / 6)
+
+
+def area(solid: Solid) -> float:
+    a, b, c = (solid.points[:, numbers] for numbers in solid.triangles)
+    return float(0.5 * np.linalg.norm(np.cross(b - a, c - a, axis=0), axis=0).sum())
+
+
+def test_solids_have_the_size_they_should() -> None:
+    angle = np.linspace(0, 2 * np.pi, 7)[:-1]
+    hexagon = np.stack([np.cos(angle), np.sin(angle)])
+    assert area(ring(3 * hexagon, 5.0)) == pytest.approx(6 * 3 * 5.0)
+    assert area(tube(3 * hexagon, 1 * hexagon, 2.0)) == pytest.approx(1.5 * np.sqrt(3) * (9 - 1))
+    block = box((-1, 0, 2), (2, 4, 3))
+    assert area(block) == pytest.approx(2 * (3 * 4 + 4 * 1 + 3 * 1))
+    assert abs(volume(block)) == pytest.approx(12.0)
+    both = joined([block, block.moved(10.0)])
+    assert abs(volume(both)) == pytest.approx(24.0)
+    standing = ring(hexagon, 4.0).upright(7.0)
+    assert (standing.points[1].min(), standing.points[1].max()) == (5.0, 9.0)
