@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, minimize
+from scipy.optimize import brentq
 
 from geometry.arrays import uniform_turn
 from geometry.energy import lift_from_torque, spring_deflection, stored_energy
@@ -18,7 +18,6 @@ from pipeline.smoothing.constraints import Machine, Ratings, Scenario
 from pipeline.smoothing.infeasible import infeasibility
 from pipeline.smoothing.prices import prices
 from pipeline.smoothing.smoothers import Smoother, smoothed
-from pipeline.smoothing.spline_energy import basis_matrix
 
 CASES = Path(__file__).parents[2] / "cases"
 RATINGS = Ratings(
@@ -110,51 +109,6 @@ def test_leaves_less_than_any_moving_average_within_angle_and_force(published, i
                 best = min(best, rest)
     assert np.isfinite(best)
     assert 1.4 * limited.ripple * np.std(idle.torque) <= best
-
-
-def test_convex_part_agrees_with_an_independent_solver():
-    """No friction, no inertia, travel alone: a convex quadratic program, by SLSQP too."""
-    theta = uniform_turn(72)
-    torque = 10.0 * np.sin(2 * theta) + 4.0 * np.cos(3 * theta)
-    still = Scenario("still", 0.0, torque, 0.1, 0.08, 0.03, 0.0, 0.0,)  # fmt: skip
-    given = Problem(
-        (still,), Ratings(roller_radius=0.008, travel=0.02, pressure_angle=np.pi / 6),
-        Machine(24.2e3, 242.0, 0.05), coefficients=16, points=72, jerk_weight=0.0,
-    )  # fmt: skip
-    ours = synthesise(given)
-    level, slope = (basis_matrix(theta, 16, order).toarray() for order in (0, 1))
-    top = 242.0 * 0.02 * (1 - RESERVE) + 12.1e3 * (0.02 * (1 - RESERVE)) ** 2
-
-    def cost(c):
-        rest = torque - slope @ c / 2
-        return rest @ rest / (torque @ torque)
-
-    def moment(c):
-        square = 242.0**2 + 2 * 24.2e3 * np.maximum(level @ c, 0.0)
-        return (0.05 - 0.01) * np.sqrt(square) + square / 24.2e3
-
-    wall = np.tan(np.pi / 6) * (1 - RESERVE)
-    rules = [
-        {"type": "ineq", "fun": lambda c: level @ c},
-        {"type": "ineq", "fun": lambda c: top - level @ c},
-        {"type": "ineq", "fun": lambda c: wall * moment(c) - slope @ c},
-        {"type": "ineq", "fun": lambda c: wall * moment(c) + slope @ c},
-    ]
-    theirs = minimize(cost, np.full(16, 3.0), constraints=rules, method="SLSQP",
-                      options={"maxiter": 500, "ftol": 1e-14})  # fmt: skip
-    assert theirs.success
-    assert ours.feasible and ours.ripple > 0.1  # the travel binds
-    # the constrained solver stops at a foreseen gain of 2e-6
-    assert ours.ripple == pytest.approx(np.sqrt(theirs.fun), abs=1e-5)
-
-
-def test_random_starts_agree(idle):
-    given = replace(problem(idle, normal_force=900.0), coefficients=36)
-    random, found = np.random.default_rng(3), []
-    for _ in range(3):
-        seed = 10.0 + 5.0 * np.cumsum(random.normal(size=36)) / 36
-        found.append(synthesise(replace(given, seed=np.maximum(seed, 0.5))).ripple)
-    assert np.ptp(found) <= 0.01 * np.mean(found)
 
 
 def test_lift_closes_and_scales_with_the_spring(idle):
