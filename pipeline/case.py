@@ -192,15 +192,20 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
     version = data.get("schema_version")
     if version is not None and version != SCHEMA_VERSION:
         raise InputError("schema_version", version, f"{SCHEMA_VERSION}, the one known here")
-    try:
-        case = Case.model_validate(filled(data, folder))
-    except ValidationError as error:
-        raise _first_error(error) from None
+    case = case_of(data, folder)
     case._folder = folder
     case._included = MappingProxyType(_read_includes(case, folder))
     if case.lift is not None and case.follower.face is not None:
         contour_of(case, given_lift(case))  # refuses a face that the contact runs off
     return case
+
+
+def case_of(data: Mapping[str, Any], folder: Path | None = None) -> Case:
+    """A case from its tables, cards of `folder` filled in; files it includes are not read."""
+    try:
+        return Case.model_validate(filled(data, folder))
+    except ValidationError as error:
+        raise _first_error(error) from None
 
 
 def includes(case: Case) -> Iterator[tuple[str, str]]:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
+from concurrent.futures import as_completed
 
 import numpy as np
 
@@ -13,10 +11,8 @@ from geometry.arrays import Array
 from pipeline.contact.history import CertificatePoint, ContactHistory
 from pipeline.contact.pair import ContactPair
 from pipeline.contact.pair_certificate import certificate_point
+from pipeline.processes import pool, workers_for
 from pipeline.trial import Trial
-
-_JOBS_MOST = 4
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def positions_to_certify(trial: Trial, count: int) -> tuple[tuple[int, int], ...]:
@@ -72,25 +68,15 @@ def certified(
         (pair, trial.cycles[case].contact, index, float(trial.cycles[case].theta[index]))
         for case, index in chosen
     ]
-    workers = min(jobs or min(os.cpu_count() or 1, _JOBS_MOST), len(tasks))
+    workers = workers_for(jobs, len(tasks))
     if workers <= 1:
         found = []
         for task in tasks:
             found.append(certificate_point(*task))
             tell(len(found), len(tasks))
         return tuple(found)
-    # Fresh processes read this before they load a BLAS: many small ones beat few wide ones.
-    before = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
-    try:
-        with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-            futures = [pool.submit(certificate_point, *task) for task in tasks]
-            for done, _ in enumerate(as_completed(futures), start=1):
-                tell(done, len(tasks))
-            return tuple(future.result() for future in futures)
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name)
-            else:
-                os.environ[name] = value
+    with pool(workers) as fresh:
+        futures = [fresh.submit(certificate_point, *task) for task in tasks]
+        for done, _ in enumerate(as_completed(futures), start=1):
+            tell(done, len(tasks))
+        return tuple(future.result() for future in futures)

@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 import typer
 
 from geometry.errors import CamError
-from pipeline.commands import check, contact, inspect, run, studies
+from pipeline.commands import check, contact, inspect, redesign, run, studies
 from pipeline.commands.terminal import ERROR, INTERRUPTED, PASSED, say, stdout
 
 # The work is parallel by processes; set before numpy is imported, it also fixes the sums' order.
@@ -33,6 +33,7 @@ for _command in (
     run.report,
     run.init,
     studies.compare,
+    redesign.redesign,
     contact.contact,
     studies.validate,
     studies.compare_mechanisms,
@@ -40,6 +41,11 @@ for _command in (
     contact.deck,
 ):
     app.command()(_command)
+
+_GOES_ON = {
+    "run": "; the same command with --resume goes on",
+    "redesign": "; the same command goes on",
+}
 
 
 def main() -> NoReturn:
@@ -58,8 +64,7 @@ def main() -> NoReturn:
         say(_describe(error))
         code = ERROR
     if code == INTERRUPTED:  # however the parser hands an interrupt on
-        running = arguments[:1] == ["run"]
-        say("interrupted" + ("; the same command with --resume goes on" if running else ""))
+        say("interrupted" + _GOES_ON.get(arguments[0] if arguments else "", ""))
     sys.exit(code if isinstance(code, int) else PASSED)
 
 

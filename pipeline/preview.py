@@ -5,7 +5,7 @@ Torque, lift, contour, loads and guides are those of a run's first trial; the co
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from pipeline import trial as road
 from pipeline.ahead import foreseen_cycle
@@ -17,12 +17,24 @@ from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import in_order
 from pipeline.cycle import Cycle, Turn, finished
 from pipeline.smoothing.constrained import synthesise
+from pipeline.smoothing.design import Design
 from pipeline.smoothing.loop import redrawn
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 from pipeline.speed import rubbing_of, speed_ripple
 
 MARK = "closed forms only: "
+
+
+@dataclass(frozen=True, eq=False)
+class LookAhead:
+    """What closed forms foresee: the case as drawn, the synthesis if one drew it, the turns."""
+
+    case: Case
+    design: Design | None
+    contour: road.Contour
+    cycles: tuple[Cycle, ...]
+    checks: tuple[Check, ...]
 
 
 def closed_form_checks(case: Case) -> tuple[Check, ...]:
@@ -33,7 +45,18 @@ def closed_form_checks(case: Case) -> tuple[Check, ...]:
     CamError
         If there is no such cam.
     """
-    torques = road.engine_torques(case)
+    return look_ahead(case).checks
+
+
+def look_ahead(case: Case) -> LookAhead:
+    """The first trial by closed forms, with all that its checks rest upon.
+
+    Raises
+    ------
+    CamError
+        If there is no such cam.
+    """
+    torques, design = road.engine_torques(case), None
     if case.smoothing.kind == "constrained":
         design = synthesise(problem_of(case, torques))
         case, lift = redrawn(case, design), design.lift()
@@ -48,7 +71,7 @@ def closed_form_checks(case: Case) -> tuple[Check, ...]:
     evidence = TrialEvidence(case=case, contour=contour, cycles=cycles, speed_ripple=speed)
     found = checked_by(evidence, (*DESIGN, *rolling.CHECKS, *SIGNED, *PARTS))
     marked = (replace(check, method=MARK + check.method) for check in found)
-    return in_order((_unsigned(), *marked))
+    return LookAhead(case, design, contour, cycles, in_order((_unsigned(), *marked)))
 
 
 def _cycle(case: Case, contour: road.Contour, given: Turn, sound: bool) -> Cycle:

@@ -1,0 +1,267 @@
+"""Redesign: bounds, dominance, what parts bring along, the order of trying, what is kept."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry.errors import InputError
+from pipeline.case import load_case_file, parse_case
+from pipeline.follower.spring import case_spring
+from pipeline.follower.spring_catalogue import SpringDemand
+from pipeline.redesign import kept
+from pipeline.redesign.bounds import RippleBound, bearable_energy
+from pipeline.redesign.catalogue import (
+    better_bush,
+    better_roller,
+    better_spring,
+    catalogue_of,
+    undominated,
+)
+from pipeline.redesign.front import front, thinned
+from pipeline.redesign.point import Rough
+from pipeline.redesign.search import RUNG, RUNGS, branch
+from pipeline.redesign.variant import AS_GIVEN, Choice, travel_of, variant
+from pipeline.results import json_text
+
+CASES = Path(__file__).parents[2] / "cases"
+CHOICE = Choice("track_roller_35x16", "60 x 42", "ptfe_lined", 0.08)
+
+
+@pytest.fixture(scope="module")
+def case():
+    return load_case_file(CASES / "gx120.toml")
+
+
+@pytest.fixture(scope="module")
+def parts():
+    return catalogue_of(None)
+
+
+# --- bounds
+
+
+def test_bound_of_a_square_wave():
+    """Of all slopes that rise by e over half a turn, the even one is nearest to a constant."""
+    torque = np.where(np.arange(720) < 360, 5.0, -5.0)
+    bound = RippleBound(torque, 2.0)
+    whole = np.pi * 2.0 * 5.0  # what the cam stores of it, J
+    assert bound(0.0) == 1.0
+    for share in (0.25, 0.5, 0.75):
+        # the splines round the corners, a tenth of the ripple that adds in squares
+        assert bound(share * whole) == pytest.approx(1.0 - share, abs=0.03)
+    assert bound(2.0 * whole) < 0.15
+
+
+def test_bound_falls_with_the_energy_and_scales_with_the_torque():
+    theta = np.arange(720) * (2 * np.pi / 720)
+    torque = 6.0 * np.sin(2 * theta) + 3.0 * np.cos(3 * theta)
+    found = [RippleBound(torque, 2.0)(energy) for energy in (1.0, 3.0, 6.0, 12.0)]
+    assert np.all(np.diff(found) < 0)
+    assert RippleBound(2.0 * torque, 2.0)(6.0) == pytest.approx(found[1], abs=1e-6)
+
+
+def test_energy_that_a_roller_bears():
+    # half of k x^2 from 300 N of preload to 500 N at 10 N/mm: (25e4 - 9e4) / 2e4
+    assert bearable_energy(500.0, 1e4, 300.0, 0.0) == pytest.approx(8.0)
+    assert bearable_energy(500.0, 1e4, 300.0, 0.2) > bearable_energy(500.0, 1e4, 300.0, 0.0)
+    assert bearable_energy(200.0, 1e4, 300.0, 0.0) == 0.0
+
+
+# --- dominance
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_undominated_leaves_what_nothing_beats(seed):
+    random = np.random.default_rng(seed)
+    given = {str(k): tuple(random.integers(0, 4, size=2)) for k in range(20)}
+
+    def better(one, other):
+        return one[0] >= other[0] and one[1] >= other[1]
+
+    left = undominated(given, better)
+    for part in given.values():
+        assert any(better(other, part) for other in left.values())
+    values = list(left.values())
+    assert len(set(values)) == len(values)
+    assert not any(better(a, b) for a in values for b in values if a != b)
+
+
+def test_no_shipped_part_is_left_out_for_a_worse_one(parts):
+    for name, card in parts.rollers.items():
+        weaker = replace(card, C0=0.9 * card.C0)
+        assert better_roller(card, weaker) and not better_roller(weaker, card), name
+    slick = undominated(parts.bushes, better_bush)
+    assert 1 < len(slick) < len(parts.bushes)
+    long, short = (parts.springs["60 x 42"], 0.044), (parts.springs["50 x 32"], 0.031)
+    assert better_spring(long, short, by_mass=False)
+    assert not better_spring(long, short, by_mass=True)
+    assert not better_spring(long, (parts.springs["80 x 50"], 0.01), by_mass=False)
+
+
+def test_front_against_every_pair():
+    random = np.random.default_rng(2)
+    figures = [tuple(pair) for pair in random.uniform(size=(60, 2))]
+    found = front(figures)
+    for k, (x, y) in enumerate(figures):
+        beaten = any(a <= x and b <= y and j != k for j, (a, b) in enumerate(figures))
+        assert (k in found) == (not beaten)
+    assert found == sorted(found, key=lambda k: figures[k])
+    few = thinned(found, figures, 3)
+    assert len(few) == 3
+    assert (few[0], few[-1]) == (found[0], found[-1])
+    assert set(few) <= set(found)
+
+
+# --- variants
+
+
+def test_roller_brings_along_what_hangs_on_it(case, parts):
+    found = variant(case, parts, CHOICE, None)
+    card = parts.rollers[CHOICE.roller]
+    assert (found.roller.radius, found.roller.width) == (0.0175, pytest.approx(0.0159))
+    assert found.cam.width == found.roller.width
+    assert found.roller.pin.diameter == card.bore
+    assert (found.roller.bearing.C0, found.roller.bearing.radial_limit) == (card.C0, 3600.0)
+    longer = found.follower.overhang_at_max_lift - case.follower.overhang_at_max_lift
+    assert longer == pytest.approx(0.0175 - 0.008)
+    # 7.83 g/cm3 of a disc of 35 x 15.9 mm for one of 16 x 5 mm, and half of the springs' 264.0
+    # against 242.4 g, the lightest of the catalogue within the case's rate
+    disc = 7830.0 * np.pi * (0.0175**2 * 0.0159 - 0.008**2 * 0.005)
+    springs = 0.5 * (parts.springs["60 x 42"].mass - parts.springs["40 x 25"].mass)
+    assert found.follower.mass == pytest.approx(case.follower.mass + disc + springs, rel=1e-9)
+    assert found.spring.rate == pytest.approx(parts.springs["60 x 42"].rate, rel=1e-12)
+    assert case_spring(found).rate == pytest.approx(found.spring.rate, rel=1e-12)
+    assert found.guides.b.pv_limit == pytest.approx(1.8e6)
+    assert found.guides.b.length == case.guides.b.length
+    assert found.limits.cam_radius == 0.08
+    assert found.smoothing.kind == "constrained"
+    assert parse_case(found.to_toml()).sha256 == found.sha256
+
+
+def test_waivers_are_of_another_design(case, parts):
+    text = case.to_toml() + (
+        '\n[[waivers]]\ncheck = "roller_static"\nname = "A"\nreason = "b"\ndate = 2025-06-30\n'
+    )
+    signed = parse_case(text)
+    assert signed.waivers
+    assert not variant(signed, parts, CHOICE, None).waivers
+
+
+def test_bushes_as_given_stay(case, parts):
+    found = variant(case, parts, replace(CHOICE, bush=AS_GIVEN), None)
+    assert found.guides == case.guides
+
+
+@pytest.mark.parametrize("name", ["60 x 42", "55 x 45", "80 x 50"])
+def test_travel_is_the_most_that_keeps_the_springs_limits(case, parts, name):
+    spring, given = parts.springs[name], case.spring
+    travel = travel_of(spring, case)
+    demand = SpringDemand(
+        spring.rate, given.preload, travel, rate_spread=given.rate_tolerance,
+        preload_spread=given.preload_tolerance,
+    )  # fmt: skip
+    assert not demand.shortfalls(spring)
+    assert replace(demand, travel=1.001 * travel).shortfalls(spring)
+
+
+def test_a_spring_that_cannot_be_is_of_no_use(case, parts):
+    hard = case.spring.model_copy(update={"preload": 5000.0})
+    assert travel_of(parts.springs["40 x 25"], case.model_copy(update={"spring": hard})) == 0.0
+
+
+# --- the user's own
+
+
+def test_parts_beside_the_case(tmp_path, parts):
+    (tmp_path / "cards.toml").write_text(
+        '[bearings.mine]\nname = "mine"\nC = "5 kN"\nC0 = "3 kN"\nspeed_limit = "9000 rpm"\n'
+        'bore = "8 mm"\nouter_diameter = "30 mm"\nwidth = "9 mm"\nsource = "my maker"\n'
+    )
+    (tmp_path / "springs.toml").write_text(
+        '[wires.w]\nshear_modulus = "79 GPa"\ndensity = "7850 kg/m^3"\n'
+        'strength_at_1mm = "1900 MPa"\nexponent = 0.15\nsource = "mine"\n'
+        '[[spring]]\nname = "mine"\nwire = "w"\nwire_diameter = "5 mm"\nmean_diameter = "35 mm"\n'
+        'coils = 7\nfree_length = "110 mm"\n'
+    )
+    found = catalogue_of(tmp_path)
+    assert set(found.rollers) == {*parts.rollers, "mine"}
+    assert found.rollers["mine"].C0 == 3000.0
+    assert found.springs["mine"].mean_diameter == 0.035
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "match"),
+    [
+        ("springs.toml", "nonsense", "catalogue"),
+        ("cards.toml", '[bearings.x]\nname = "x"\nsource = "s"', "cards.x.C"),
+        ("cards.toml", '[bushes.x]\nfriction = 0.1\nsource = "s"', "bushes.x.pressure_limit"),
+        ("cards.toml", '[bushes.x]\nfriction = "a"\nmaterial = "pom"\nsource = "s"\n'
+         'pressure_limit = "1 MPa"\npv_limit = "1 MPa m/s"', "bushes.x.friction"),
+    ],
+)  # fmt: skip
+def test_refuses_bad_parts(tmp_path, file, text, match):
+    (tmp_path / file).write_text(text)
+    with pytest.raises(InputError, match=match):
+        catalogue_of(tmp_path)
+
+
+# --- the order of trying
+
+
+def walked(least, bushes, solve):
+    """The choices of a branch, each answered by `solve`."""
+    steps, asked = branch("r", least, bushes), []
+    answer = None
+    try:
+        while True:
+            choice = next(steps) if answer is None else steps.send(answer)
+            asked.append(choice)
+            answer = solve(choice)
+    except StopIteration:
+        return asked
+
+
+def test_branch_finds_the_best_pair_of_every_room():
+    """Of two springs and two bushes: small rooms turn the order round."""
+
+    def solve(choice):
+        size = choice.cam_radius or 0.06
+        steep = 30.0 if choice.spring == "long" else 5.0
+        ripple = (0.1 if choice.spring == "long" else 0.2) + steep * (0.06 - size)
+        rough = 0.0 if choice.bush == "slick" else 0.05
+        return Rough(feasible=True, ripple=ripple + rough, cam_radius=size, mass=1.0)
+
+    asked = walked({"long": 0.0, "short": 0.15}, ["dull", "slick"], solve)
+    rooms = list(dict.fromkeys(choice.cam_radius for choice in asked))
+    assert rooms == [None, *(pytest.approx(0.06 * RUNG**k) for k in range(1, RUNGS))]
+    assert asked[:3] == [
+        Choice("r", "long", "dull"), Choice("r", "short", "dull"), Choice("r", "long", "slick"),
+    ]  # fmt: skip
+    for room in rooms[1:]:
+        tried = {(c.spring, c.bush): solve(c).ripple for c in asked if c.cam_radius == room}
+        known = [replace(c, cam_radius=room) for c in asked[:3]]
+        assert min(tried.values()) == min(solve(c).ripple for c in known)
+    assert len(asked) < 3 * RUNGS  # the bounds have saved some
+
+
+def test_branch_ends_where_nothing_fits():
+    asked = walked({"a": 0.0, "c": 0.0}, ["b", "d"], lambda choice: Rough.impossible())
+    assert [(c.spring, c.bush) for c in asked] == [("a", "b"), ("c", "b"), ("a", "d")]
+
+
+# --- what is kept
+
+
+def test_a_point_that_is_kept_is_not_solved_again(tmp_path):
+    task = kept.Task("no case at all", "nor this", tmp_path, "v", "whole")
+    known = {"feasible": True, "ripple_left_Nm": 1.0}
+    task.path.parent.mkdir()
+    task.path.write_text(json_text(known))
+    assert kept.solved(task) == known
+    other = replace(task, version="w")  # solved by another version: it counts for nothing
+    assert kept.solved(other)["why"].startswith("case = ")
+    assert other.path.is_file()
+    task.path.write_text('{"feasib')  # torn
+    assert kept.solved(task)["feasible"] is False
