@@ -101,6 +101,18 @@ class Correction:
         one = readonly(np.ones(count))
         return cls(one, one, one, one, one, one)
 
+    def towards(self, other: Correction, share: float) -> Correction:
+        """A share of the way to another one, at its angles."""
+        if share == 1.0:
+            return other
+        own = self.at(np.arange(other.contact.size) * (FULL_TURN / other.contact.size))
+        return Correction(
+            *(
+                (1.0 - share) * getattr(own, each.name) + share * getattr(other, each.name)
+                for each in fields(self)
+            )
+        )
+
     def at(self, theta: Array) -> Correction:
         """The same at other angles, straight lines between."""
         own = np.arange(self.contact.size) * (FULL_TURN / self.contact.size)
@@ -123,7 +135,7 @@ class Scenario:
     weight : float           of its ripple among those of the others; 0: limits only
     mass, viscous_damping, guide_spacing, overhang : float   of the follower, SI
     friction_a, friction_b : float
-    friction_worst : two floats   of guides A and B where jamming is judged; None: as above
+    friction_worst : two floats   greatest of guides A and B, for their jamming; None: not known
     rate_factor, preload_factor : float   the spring as mounted over the spring as drawn
     correction : Correction
     """

@@ -10,6 +10,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from pipeline.case import Case
+from pipeline.checks.check import Check
 from pipeline.cycle import Cycle
 from pipeline.smoothing.constraints import Correction
 from pipeline.smoothing.design import RESERVE, Design, Problem
@@ -74,6 +75,16 @@ class Moved(NamedTuple):
         """How far, of the limit."""
         return abs(self.after - self.before)
 
+    def swing(self, earlier: Moved | None) -> float:
+        """Share of new corrections to take over, where the trial before moved the other way.
+
+        A sequence that goes back and forth by a constant factor has its limit there (Aitken).
+        """
+        if earlier is None or earlier.limit != self.limit or earlier.share == 0.0:
+            return 1.0
+        ratio = (self.after - self.before) / (earlier.after - earlier.before)
+        return 1.0 / (1.0 - ratio) if -1.0 <= ratio < 0.0 else 1.0
+
     @property
     def sentence(self) -> str:
         if not self.limit:
@@ -96,13 +107,30 @@ def moved(design: Design, problem: Problem, corrections: Mapping[str, Correction
     return max(used, key=lambda each: each.share, default=Moved("", 0.0, 0.0))
 
 
+def settled(moved: Moved, checks: Sequence[Check]) -> bool:
+    """Whether finite elements and synthesis agree, to 1 %; where a limit fails by the lift,
+    as well as the synthesis's own reserve can tell.
+    """
+    fails = any(check.blocks and check.lift_can_help for check in checks)
+    return moved.share < (RESERVE if fails else SETTLED)
+
+
 def refined_problem(
-    problem: Problem, design: Design, corrections: Mapping[str, Correction]
+    problem: Problem, design: Design, corrections: Mapping[str, Correction], share: float = 1.0
 ) -> Problem:
-    """What to solve next: the limits as finite elements see them, from the design at hand."""
-    return replace(
-        with_corrections(problem, corrections), seed=design.coefficients, machine=design.machine
+    """What to solve next: the limits as finite elements see them, from the design at hand.
+
+    Parameters
+    ----------
+    corrections : mapping   by load case
+    share : float           of the way from the corrections so far to these
+    """
+    after = with_corrections(problem, corrections)
+    scenarios = tuple(
+        replace(new, correction=old.correction.towards(new.correction, share))
+        for old, new in zip(problem.scenarios, after.scenarios, strict=True)
     )
+    return replace(after, scenarios=scenarios, seed=design.coefficients, machine=design.machine)
 
 
 def corrections_record(problem: Problem) -> dict[str, dict[str, list[float]]]:
