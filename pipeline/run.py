@@ -34,7 +34,7 @@ from pipeline.rolling import envelope_arrays, rolling_history, rolling_record
 from pipeline.run_folder import RunFolder
 from pipeline.shop import write_shop
 from pipeline.smoothing import loop
-from pipeline.smoothing.constrained import RESERVE, synthesise
+from pipeline.smoothing.constrained import synthesise
 from pipeline.smoothing.gentler import Next, Stop, next_smoother
 from pipeline.smoothing.infeasible import infeasibility
 from pipeline.smoothing.outlook import Attempt
@@ -167,6 +167,7 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
     why = "the cam of least ripple within all limits"
     trials: list[Trial] = []
     starts: Starts | None = None
+    earlier: loop.Moved | None = None
     while True:
         journey.progress.stage(f"trial {len(trials) + 1}: synthesis")
         with journey.watch.stage("synthesis"):
@@ -187,7 +188,7 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
             return journey, trials, Stop(report.sentence, found, len(trials))
         corrections = loop.corrections_of(done.cycles)
         moved = loop.moved(design, problem, corrections)
-        settled = moved.share < loop.SETTLED and (not found or moved.share < RESERVE)
+        settled = loop.settled(moved, done.checks)
         if settled or done.mesh is None or len(trials) == given.solver.max_trials:
             last = f"trial {len(trials)} {'fails' if found else 'passes every must-have check'}"
             agree = "" if starts is None else f"; {starts.sentence}"
@@ -195,7 +196,8 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
             return journey, trials, Stop(reason, found, len(trials))
         why = moved.sentence
         journey.progress.note(f"trial {len(trials)}: {why}")
-        problem = loop.refined_problem(problem, design, corrections)
+        problem = loop.refined_problem(problem, design, corrections, moved.swing(earlier))
+        earlier = moved
 
 
 def _trial(
