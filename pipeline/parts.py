@@ -25,6 +25,7 @@ from pipeline.follower.friction import (
 )
 from pipeline.follower.guides import WALL_SHARE, GuidePair
 from pipeline.follower.ring import pin_bending_stress
+from pipeline.follower.roller import roller_motion
 from pipeline.follower.rubbing import guided_loads
 from pipeline.follower.spring import HelicalSpring, case_spring, surge_force
 from pipeline.follower.stem import Stem
@@ -65,6 +66,8 @@ class PartsHistory:
     spring_stress: Array | None
     surge_force: Array | None
     pin_stress: Array | None
+    roller_spin: Array | None
+    roller_spin_acceleration: Array | None
     ring_amplitude: Array | None
     ring_mean: Array | None
     ring_correction: Array | None
@@ -96,6 +99,8 @@ class PartsHistory:
             "spring_stress": self.spring_stress,
             "spring_surge_force": self.surge_force,
             "pin_stress": self.pin_stress,
+            "roller_speed": self.roller_spin,
+            "roller_acceleration": self.roller_spin_acceleration,
             "ring_stress_amplitude": self.ring_amplitude,
             "ring_stress_mean": self.ring_mean,
             "ring_correction": self.ring_correction,
@@ -114,6 +119,7 @@ def parts_history(
     spring = case_spring(case)
     shaft = _shaft(case, loads)
     amplitude, mean, correction = _ring(case, contour, loads, ring)
+    spin, spin_acceleration = _spin(case, contour, loads, cam_speed)
     return PartsHistory(
         bush_peak_a=_bush_peak(case, case.guides.a, guides.line_pressure_max_a),
         bush_peak_b=_bush_peak(case, case.guides.b, guides.line_pressure_max_b),
@@ -133,6 +139,8 @@ def parts_history(
         spring_stress=None if spring is None else spring.stress(loads.spring_force),
         surge_force=None if spring is None else _surge(spring, loads, cam_speed),
         pin_stress=_pin(case, loads),
+        roller_spin=spin,
+        roller_spin_acceleration=spin_acceleration,
         ring_amplitude=amplitude,
         ring_mean=mean,
         ring_correction=correction,
@@ -227,6 +235,16 @@ def _pin(case: Case, loads: Loads) -> Array | None:
     overhung = pin.mounting == "overhung"
     per_newton = pin_bending_stress(1.0, pin.diameter, case.roller.width, pin.span, overhung)
     return per_newton * loads.normal_force
+
+
+def _spin(
+    case: Case, contour: Contour, loads: Loads, cam_speed: float
+) -> tuple[Array | None, Array | None]:
+    """Speed and acceleration of a roller that does not slip, against the follower."""
+    if case.roller_given is None:
+        return None, None
+    motion = roller_motion(contour.pitch, contour.roller_radius, cam_speed, loads.theta)
+    return motion.spin, motion.spin_acceleration
 
 
 def _ring(

@@ -104,6 +104,7 @@ CYCLE = _columns(
     "key_pressure? [MPa]; shaft_bearing_1? [N]; shaft_bearing_2? [N]; spring_stress? [MPa];"
     "spring_surge_force? [N]; pin_stress? [MPa];"
     "ring_stress_range? [MPa]; ring_stress_amplitude? [MPa]; ring_stress_mean? [MPa];"
+    "roller_speed? [rpm]; roller_acceleration? [rad/s^2];"
     "ring_correction?~ [percent]; tau_any_plane?~ [MPa];"
     "place_on_face? [mm]; sliding_speed? [m/s]; face_pv?~ [MPa m/s]; face_friction_power? [W]"
 )

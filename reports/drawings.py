@@ -12,6 +12,7 @@ from markupsafe import Markup
 from reports.figures import Figure
 from reports.material import Material
 from reports.output import FIGURES, write_whole
+from reports.parts_sheet import part_figures
 from reports.plots import svg_and_png
 from reports.sheet import figures
 
@@ -20,7 +21,7 @@ GROUPS = (
     ("Shape", ("outline", "pressure-angle", "face", "lift", "radii")),
     ("Contact", ("pressure", "half-width", "stress")),
     ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
-    ("Parts", ("bushes", "elastic", "parts")),
+    ("Parts", ("bushes", "elastic", "roller", "film", "parts")),
 )
 
 
@@ -36,7 +37,8 @@ class Drawn:
 @lru_cache(maxsize=1)
 def drawn_groups(material: Material) -> Sequence[tuple[str, Sequence[Drawn]]]:
     """The figures that a run has columns for, by group, in reading order."""
-    by_id = {figure.id: figure for figure in figures(material.turn)}
+    made = (*figures(material.turn), *part_figures(material.turn))
+    by_id = {figure.id: figure for figure in made}
     groups = (
         (title, tuple(_drawn(by_id[name]) for name in names if name in by_id))
         for title, names in GROUPS

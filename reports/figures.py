@@ -180,6 +180,7 @@ class OutlineFigure:
     keyway: tuple[float, float, float] | None
     worst: int
     worst_label: str
+    counter_hole: tuple[float, float, float, bool] | None = None
 
     @property
     def radii(self) -> tuple[int, int]:

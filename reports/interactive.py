@@ -237,6 +237,15 @@ def _outline(figure: OutlineFigure) -> dict[str, Any]:
             "line": {"color": colour, "width": 1.8, "dash": "solid"},
             "hovertemplate": "%{x:.4f}, %{y:.4f} mm (cam %{customdata:.1f}°)",
         })  # fmt: skip
+    if figure.counter_hole is not None:
+        x, y, radius, drilled = figure.counter_hole
+        turned = np.radians(angle)
+        traces.append({
+            "type": "scatter", "mode": "lines", "hoverinfo": "skip", "meta": "mm",
+            "name": "counter-hole" if drilled else "counter-hole, proposed",
+            "x": _numbers(x + radius * np.cos(turned)), "y": _numbers(y + radius * np.sin(turned)),
+            "line": {"color": "blue", "width": 1.2, "dash": "solid" if drilled else "dash"},
+        })  # fmt: skip
     if figure.follower is not None:
         name = html.escape(f"{figure.follower_name} {figure.worst_label}")
         traces.append({

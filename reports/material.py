@@ -59,7 +59,7 @@ def the_turn(run: Run, case: Mapping[str, Any]) -> Turn:
     return Turn(
         by_name[drawn], tuple(by_name.values()), final.lift.columns, final.contour.columns,
         None if run.torque is None else run.torque.columns, final.checks, case, drawn,
-        None if run.speed is None else run.speed.columns,
+        None if run.speed is None else run.speed.columns, final.record.get("balance") or {},
     )  # fmt: skip
 
 

@@ -257,6 +257,7 @@ def _outline(figure: OutlineFigure) -> Canvas:
         ax.plot(*figure.pitch[:, figure.worst], marker="+", markersize=6,
                 color=COLOURS["vermillion"], zorder=6)  # fmt: skip
     _bore(ax, figure)
+    _counter_hole(ax, figure)
     _follower(ax, figure)
     radius = np.hypot(*figure.contour)
     for index, word in zip(figure.radii, ("min", "max"), strict=True):
@@ -303,6 +304,19 @@ def _bore(ax: Axes, figure: OutlineFigure) -> None:
         ax.fill(*turned, color=COLOURS["card"], linewidth=0, zorder=1.6)
         ax.plot(*turned, color=COLOURS["blue"], linewidth=1.0, zorder=3)
     ax.plot(*circle, color=COLOURS["blue"], linewidth=1.0, zorder=3)
+
+
+def _counter_hole(ax: Axes, figure: OutlineFigure) -> None:
+    """Drilled as the bore is; dashed where it is only proposed."""
+    if figure.counter_hole is None:
+        return
+    x, y, radius, drilled = figure.counter_hole
+    circle = _circle(np.array([x, y]), radius)
+    if drilled:
+        ax.fill(*circle, color=COLOURS["card"], linewidth=0, zorder=1.5)
+    ax.plot(
+        *circle, color=COLOURS["blue"], linewidth=1.0, linestyle="-" if drilled else "--", zorder=3
+    )
 
 
 def _follower(ax: Axes, figure: OutlineFigure) -> None:

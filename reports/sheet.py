@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -33,6 +33,7 @@ class Turn:
     checks : sequence     records of 6_checks.json
     case : mapping        case.toml as read
     speed : mapping or None    columns of 1_speed.csv
+    balance : mapping     of trial.json; empty in runs that had none
     """
 
     columns: Columns
@@ -44,6 +45,17 @@ class Turn:
     case: Mapping[str, Any]
     load_case: str = ""
     speed: Columns | None = None
+    balance: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def counter_hole(self) -> tuple[float, float, float, bool] | None:
+        """Middle, radius, mm, and whether it is drilled; None where there is none."""
+        names = ("hole_x_mm", "hole_y_mm", "hole_diameter_mm")
+        values = [self.balance.get(name) for name in names]
+        if not all(isinstance(value, (int, float)) for value in values):
+            return None
+        x, y, diameter = (float(value) for value in values if value is not None)
+        return x, y, 0.5 * diameter, bool(self.balance.get("hole_drilled"))
 
     @property
     def crank(self) -> Array:
@@ -111,13 +123,14 @@ def figures(turn: Turn) -> tuple[Figure, ...]:
     makers: tuple[Callable[[Turn], Figure | None], ...] = (
         _torque, _components, _crank_speed, _lift, _outline, _pressure_angle, _face, _radii,
         _forces, _normal_force, _pressure, _half_width, _stress, _guides, _jamming, _speed,
-        _bushes, _elastic, _parts,
     )  # fmt: skip
     made = (maker(turn) for maker in makers)
     return tuple(figure for figure in made if figure is not None)
 
 
-def _curves(turn: Turn, *wanted: tuple[str, str], dashed: Sequence[int] = ()) -> tuple[Curve, ...]:
+def curves_of(
+    turn: Turn, *wanted: tuple[str, str], dashed: Sequence[int] = ()
+) -> tuple[Curve, ...]:
     """Curves for (column, label) pairs; columns the run lacks are left out."""
     made = []
     for number, (column, label) in enumerate(wanted):
@@ -132,7 +145,7 @@ def _curves(turn: Turn, *wanted: tuple[str, str], dashed: Sequence[int] = ()) ->
     return tuple(made)
 
 
-def _angles(
+def angle_figure(
     turn: Turn, figure_id: str, title: str, caption: str, *panels: Panel, mark: bool = True,
     crank: Array | None = None,
 ) -> Figure | None:  # fmt: skip
@@ -148,7 +161,7 @@ def _angles(
 
 
 def _torque(turn: Turn) -> Figure | None:
-    curves = _curves(
+    curves = curves_of(
         turn, ("torque_before_Nm", "engine alone"), ("torque_after_Nm", "with the cam"),
     )  # fmt: skip
     if not curves:
@@ -156,7 +169,7 @@ def _torque(turn: Turn) -> Figure | None:
     cam = turn.columns.get("cam_torque_Nm")
     if cam is not None:
         curves += (Curve("taken by the cam", cam / turn.gear_ratio, "muted", dashed=True),)
-    return _angles(
+    return angle_figure(
         turn, "torque", "Crank torque before and after",
         "Crank torque about its mean, without and with the balancing cam as delivered (guide "
         "friction and follower inertia included).",
@@ -177,7 +190,7 @@ def _crank_speed(turn: Turn) -> Figure | None:
         Curve(label, speed[name], colour, dashed)
         for name, label, colour, dashed in wanted if name in speed
     )  # fmt: skip
-    return _angles(
+    return angle_figure(
         turn, "crank-speed", "Crank speed before and after",
         "Speed of the crank over the cycle of the first load case: engine alone, with the "
         "mechanism's turning parts but its follower held off, and with the cam at work.",
@@ -196,7 +209,7 @@ def _components(turn: Turn) -> Figure | None:
     ]
     if "total_Nm" in turn.torque:
         curves.append(Curve("total", turn.torque["total_Nm"], "ink", dashed=bool(parts)))
-    return _angles(
+    return angle_figure(
         turn, "torque-components", "What the engine torque is made of",
         "Positive drives the crank. Crank angle 0 is the top dead centre where intake begins; "
         "360 deg is the firing top dead centre.",
@@ -218,7 +231,7 @@ def _lift(turn: Turn) -> Figure | None:
         for name, label, unit in rows
         if name in columns
     ]
-    return _angles(
+    return angle_figure(
         turn, "lift", "Lift and its derivatives",
         "Lift s of the follower above its lowest place, with derivatives by cam angle.",
         *panels, mark=False, crank=columns["crank_angle_deg"],
@@ -237,13 +250,35 @@ def _outline(turn: Turn) -> Figure | None:
     pitch = np.array([c["pitch_x_mm"], c["pitch_y_mm"]]) if turn.rolls else None
     return OutlineFigure(
         "outline", "Contour and pitch curve" if turn.rolls else "Contour",
-        f"The cam seen along its shaft, with the {name} where the contact pressure is greatest.",
+        f"The cam seen along its shaft, with the {name} where the contact pressure is greatest."
+        f"{_balance_in_words(turn)}",
         np.array([c["contour_x_mm"], c["contour_y_mm"]]), pitch,
         _roller_outline(turn, worst) if turn.rolls else _face_outline(turn, worst), name,
         turn.length("cam", "bore_radius"),
         (width, depth, angle) if width is not None and depth is not None else None,
-        worst, f"at {theta:.4g} deg",
+        worst, f"at {theta:.4g} deg", turn.counter_hole,
     )  # fmt: skip
+
+
+def _balance_in_words(turn: Turn) -> str:
+    """What the cam is out of balance by, and what its counter-hole leaves; "" of older runs."""
+    found = turn.balance
+    if not isinstance(found.get("unbalance_g_mm"), (int, float)):
+        return ""
+    said = (
+        f" Its unbalance is {found['unbalance_g_mm']:.4g} g mm"
+        f" at {found['unbalance_angle_deg']:.4g} deg"
+    )
+    hole = turn.counter_hole
+    if hole is None:
+        return f"{said}; {found.get('hole_note') or 'it needs no hole'}."
+    x, y, radius, drilled = hole
+    left = max(float(found["unbalance_left_g_mm"]), 0.0)
+    left = 0.0 if left < 1e-6 * float(found["unbalance_g_mm"]) else left
+    return (
+        f"{said}; a hole of {2 * radius:.4g} mm at ({x:.4g}, {y:.4g}) mm,"
+        f" {'drilled' if drilled else 'proposed (dashed)'}, leaves {left:.3g} g mm."
+    )
 
 
 def _roller_outline(turn: Turn, at: int) -> Array | None:
@@ -275,13 +310,13 @@ def _face(turn: Turn) -> Figure | None:
     half = turn.length("follower", "face", "width")
     edges = () if half is None else (LimitLine(0.5 * half, "edge"), LimitLine(-0.5 * half, "edge"))
     pv = turn.limit("limit", "MPa m/s", "face_sliding")
-    return _angles(
+    return angle_figure(
         turn, "face", "Contact on the face",
         "Place of the contact from the stem's axis; speed of the cam's surface along the face; "
         "mean contact pressure times that speed.",
-        Panel("place", "mm", _curves(turn, ("place_on_face_mm", "")), edges, height=0.9),
-        Panel("sliding", "m/s", _curves(turn, ("sliding_speed_m_per_s", "")), height=0.7),
-        Panel("p v", "MPa m/s", _curves(turn, ("face_pv_MPam_per_s", "")), pv, height=0.7),
+        Panel("place", "mm", curves_of(turn, ("place_on_face_mm", "")), edges, height=0.9),
+        Panel("sliding", "m/s", curves_of(turn, ("sliding_speed_m_per_s", "")), height=0.7),
+        Panel("p v", "MPa m/s", curves_of(turn, ("face_pv_MPam_per_s", "")), pv, height=0.7),
     )  # fmt: skip
 
 
@@ -290,10 +325,12 @@ def _pressure_angle(turn: Turn) -> Figure | None:
         return None
     limits = (*turn.limit("limit", "deg", "pressure_angle"), LimitLine(HARD_STOP_DEG, "hard stop"))
     both = limits + tuple(LimitLine(-line.value, line.label) for line in limits)
-    return _angles(
+    return angle_figure(
         turn, "pressure-angle", "Pressure angle",
         "Between the contact normal and the follower's line of travel; positive on the rise.",
-        Panel("pressure angle", "deg", _curves(turn, ("pressure_angle_deg", "")), both, height=1.3),
+        Panel(
+            "pressure angle", "deg", curves_of(turn, ("pressure_angle_deg", "")), both, height=1.3
+        ),
     )  # fmt: skip
 
 
@@ -310,7 +347,7 @@ def _radii(turn: Turn) -> Figure | None:
     for (column, label), colour in zip(wanted, SERIES, strict=False):
         if column in turn.columns and (turn.rolls or column != "pitch_radius_mm"):
             curves.append(Curve(label, broken(turn.columns[column], LARGEST_RADIUS_MM), colour))
-    return _angles(
+    return angle_figure(
         turn, "radii", "Radii of curvature",
         f"Signed, positive where convex. The curve leaves the axes above {LARGEST_RADIUS_MM:g} mm, "
         "where the flank is nearly straight.",
@@ -329,12 +366,12 @@ def _radius_span(curves: Sequence[Curve]) -> tuple[float, float]:
 
 
 def _forces(turn: Turn) -> Figure | None:
-    curves = _curves(
+    curves = curves_of(
         turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
         ("tangential_force_N", "side force"), ("friction_A_N", "friction A"),
         ("friction_B_N", "friction B"), ("viscous_force_N", "viscous drag"),
     )  # fmt: skip
-    return _angles(
+    return angle_figure(
         turn, "forces", "Force components on the follower",
         "Along the stem, but for the side force, which the guides carry.",
         Panel("force", "N", curves, height=1.25),
@@ -346,7 +383,7 @@ def _normal_force(turn: Turn) -> Figure | None:
     rating, safety = turn.length("roller", "bearing", "C0", unit="N"), turn.bound("roller_static")
     if rating and safety:
         limits = (LimitLine(rating / safety, "roller static rating allows"),)
-    curves = _curves(
+    curves = curves_of(
         turn, ("normal_force_N", "normal force"), ("axial_force_N", "axial force"),
         ("normal_force_statics_N", "normal force, guides as points"), dashed=(2,),
     )  # fmt: skip
@@ -354,35 +391,35 @@ def _normal_force(turn: Turn) -> Figure | None:
         ("normal_force_by_length_N", "by length of the guides"),
         ("normal_force_by_clearance_N", "by clearance"),
     )
-    return _angles(
+    return angle_figure(
         turn, "normal-force", "Normal force",
         "Between roller and cam, with its component along the stem, friction of the guides "
         "included; and what their length, then their clearance changes in it. Contact is lost "
         "where the normal force reaches zero.",
         Panel("force", "N", curves, (LimitLine(0.0, "contact lost at"), *limits)),
-        Panel("change", "N", _curves(turn, *shares), height=0.6),
+        Panel("change", "N", curves_of(turn, *shares), height=0.6),
     )  # fmt: skip
 
 
 def _pressure(turn: Turn) -> Figure | None:
     limits = turn.limit("endurance", "MPa", "contact_pressure")
     limits += turn.limit("shakedown", "MPa", "shakedown")
-    curves = _curves(
+    curves = curves_of(
         turn, ("p0_fe_MPa", "finite elements"), ("p0_hertz_MPa", "Hertz"), dashed=(1,)
     )  # fmt: skip
-    return _angles(
+    return angle_figure(
         turn, "pressure", "Greatest contact pressure",
         "p0 by finite elements and by Hertz's closed form, and their difference.",
         Panel("p0", "MPa", curves, limits, height=1.2),
-        Panel("difference", "%", _curves(turn, ("p0_difference_percent", "")), height=0.55),
+        Panel("difference", "%", curves_of(turn, ("p0_difference_percent", "")), height=0.55),
     )  # fmt: skip
 
 
 def _half_width(turn: Turn) -> Figure | None:
-    curves = _curves(
+    curves = curves_of(
         turn, ("half_width_fe_mm", "finite elements"), ("half_width_hertz_mm", "Hertz"), dashed=(1,)
     )  # fmt: skip
-    return _angles(
+    return angle_figure(
         turn, "half-width", "Half-width of the contact",
         "Half the width of the strip over which roller and cam touch.",
         Panel("half-width a", "mm", curves),
@@ -390,11 +427,11 @@ def _half_width(turn: Turn) -> Figure | None:
 
 
 def _stress(turn: Turn) -> Figure | None:
-    stress = _curves(turn, ("von_mises_MPa", "von Mises"), ("tau_max_MPa", "greatest shear"))
-    depth = _curves(
+    stress = curves_of(turn, ("von_mises_MPa", "von Mises"), ("tau_max_MPa", "greatest shear"))
+    depth = curves_of(
         turn, ("von_mises_depth_mm", "depth of von Mises"), ("tau_depth_mm", "depth of shear")
     )  # fmt: skip
-    return _angles(
+    return angle_figure(
         turn, "stress", "Stress below the surface, and its depth",
         "Greatest von Mises stress and greatest in-plane shear stress under the contact.",
         Panel("stress", "MPa", stress, turn.limit("yield, von Mises", "MPa", "first_yield")),
@@ -412,14 +449,14 @@ def _guides(turn: Turn) -> Figure | None:
         ("reaction_by_clearance_N", "by clearance"),
     )  # fmt: skip
     rubbing = (("rubbing_load_A_N", "A, both sides"), ("rubbing_load_B_N", "B, both sides"))
-    return _angles(
+    return angle_figure(
         turn, "guides", "Guide reactions",
         "The follower as a beam on elastic one-sided guides of finite length, against two point "
         "supports; what length alone and then clearance add to these; and the pushes of both "
         "sides of a bore, which rub.",
-        Panel("reaction", "N", _curves(turn, *pairs, dashed=(1, 3)), height=1.25),
-        Panel("difference", "N", _curves(turn, *shares), height=0.7),
-        Panel("rubbing load", "N", _curves(turn, *rubbing), height=0.7),
+        Panel("reaction", "N", curves_of(turn, *pairs, dashed=(1, 3)), height=1.25),
+        Panel("difference", "N", curves_of(turn, *shares), height=0.7),
+        Panel("rubbing load", "N", curves_of(turn, *rubbing), height=0.7),
     )  # fmt: skip
 
 
@@ -429,11 +466,11 @@ def _jamming(turn: Turn) -> Figure | None:
         ("jam_index", "finite guides"), ("jam_index_statics", "point supports"),
         ("jam_index_friction_max", "greatest friction, way out"),
     )  # fmt: skip
-    return _angles(
+    return angle_figure(
         turn, "jamming", "Jam index",
         "Share of the axial force that guide friction takes; at 1 the follower locks. On the way "
         "back it locks nothing.",
-        Panel("jam index", "", _curves(turn, *indices, dashed=(1,)), limits, height=0.8),
+        Panel("jam index", "", curves_of(turn, *indices, dashed=(1,)), limits, height=0.8),
     )  # fmt: skip
 
 
@@ -451,56 +488,9 @@ def _speed(turn: Turn) -> Figure | None:
             pv = np.abs(load * velocity) / (length * diameter)
             curves.append(Curve(f"guide {name}", pv, colour))
             limits += turn.limit(f"mean PV limit {name}", "MPa m/s", f"bush_pv_{name}")
-    return _angles(
+    return angle_figure(
         turn, "speed", "Follower velocity and guide PV",
         "PV is the guide pressure on its projected area times the sliding speed.",
-        Panel("velocity", "m/s", _curves(turn, ("velocity_m_per_s", "")), height=0.8),
+        Panel("velocity", "m/s", curves_of(turn, ("velocity_m_per_s", "")), height=0.8),
         Panel("PV", "MPa m/s", tuple(curves), tuple(dict.fromkeys(limits)), height=0.9),
-    )  # fmt: skip
-
-
-def _bushes(turn: Turn) -> Figure | None:
-    peaks = (("bush_peak_A_MPa", "guide A"), ("bush_peak_B_MPa", "guide B"))
-    heats = (("friction_heat_A_W", "guide A"), ("friction_heat_B_W", "guide B"))
-    limits = turn.limit("limit A", "MPa", "bush_peak_A") + turn.limit(
-        "limit B", "MPa", "bush_peak_B"
-    )
-    return _angles(
-        turn, "bushes", "Edges and heat of the guides",
-        "Peak pressure of the stem in its bore, with clearance, where it leans hardest; heat of "
-        "the pushes of both sides of the bore.",
-        Panel("peak pressure", "MPa", _curves(turn, *peaks), limits, height=0.9),
-        Panel("heat", "W", _curves(turn, *heats), height=0.8),
-    )  # fmt: skip
-
-
-def _elastic(turn: Turn) -> Figure | None:
-    forces = (
-        ("elastic_contact_force_N", "elastic stem, no friction"),
-        ("normal_force_friction_min_N", "least over friction"),
-        ("normal_force_friction_max_N", "greatest over friction"),
-    )
-    return _angles(
-        turn, "elastic", "Contact force: elastic stem, bounds of friction",
-        "What an elastic stem, on the speed that the cam really has, and the least and greatest "
-        "friction make of the contact force.",
-        Panel("contact force", "N", _curves(turn, *forces)),
-        Panel("shortening", "um", _curves(turn, ("elastic_deflection_um", "")), height=0.7),
-        Panel("cam speed", "rad/s", _curves(turn, ("cam_speed_rad_per_s", "")), height=0.6),
-    )  # fmt: skip
-
-
-def _parts(turn: Turn) -> Figure | None:
-    stresses = (
-        ("spring_stress_MPa", "spring wire, shear"), ("pin_stress_MPa", "roller pin, bending"),
-        ("ring_stress_amplitude_MPa", "outer ring, amplitude"),
-        ("key_pressure_MPa", "key, pressure"), ("bore_pressure_MPa", "bore, pressure"),
-    )  # fmt: skip
-    bearings = (("shaft_bearing_1_N", "bearing 1"), ("shaft_bearing_2_N", "bearing 2"))
-    return _angles(
-        turn, "parts", "Spring, pin, ring, key and shaft",
-        "Stresses of the parts around the cam as far as the case describes them.",
-        Panel("stress", "MPa", _curves(turn, *stresses)),
-        Panel("surge of the spring", "N", _curves(turn, ("spring_surge_force_N", "")), height=0.6),
-        Panel("camshaft bearing", "N", _curves(turn, *bearings), height=0.8),
     )  # fmt: skip

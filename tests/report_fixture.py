@@ -227,6 +227,11 @@ def cycle_columns(t: dict[str, np.ndarray], g: dict[str, np.ndarray]) -> dict[st
         "residual_friction": noise / 4,
         "key_pressure_MPa": axial * t["d1"] * 6.0, "shaft_bearing_1_N": 0.7 * normal,
         "shaft_bearing_2_N": 0.5 * normal, "spring_stress_MPa": 0.8 * spring,
+        "ring_stress_amplitude_MPa": 0.7 * normal, "bore_pressure_MPa": normal / 85.0,
+        "roller_speed_rpm": 5500.0 + 900.0 * np.cos(g["alpha"]),
+        "roller_acceleration_rad_per_s2": 2e4 * np.sin(g["alpha"]),
+        "traction_demand": 1e-3 * np.abs(np.tan(g["alpha"])), "creepage": 1e-4 * normal / 500.0,
+        "film_thickness_um": 0.2 + 1e-4 * normal, "lambda_ratio": 0.5 + 1e-4 * normal,
     }  # fmt: skip
 
 
@@ -472,6 +477,11 @@ def write_run(
             "smoothing": f"moving average of {12 * number} values 5 deg apart",
             "angular_width_deg": 60.0 * number, "closure_mm": 2e-10,
             "contact_method": "finite elements joined to the half-plane",
+            "balance": {
+                "mass_g": 280.0, "unbalance_g_mm": 900.0, "unbalance_angle_deg": 40.0,
+                "unbalance_left_g_mm": 1e-9, "hole_diameter_mm": 14.0, "hole_x_mm": 26.0,
+                "hole_y_mm": 21.8, "hole_drilled": number == 2, "hole_note": "",
+            },
             "why": "the smoothing the case asks for" if number == 1 else "pressure_angle fails",
             "mesh": {"cam_angle_deg": 263.0, "half_width_mm": 0.135,
                      "sha256": {"cam": "ab" * 32, "roller": "cd" * 32},

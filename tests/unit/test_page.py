@@ -112,6 +112,11 @@ def test_the_verdict_comes_first_and_names_what_binds(html):
     assert "no smoothing that keeps the torque reduction" in top
 
 
+def test_the_outline_tells_of_the_counter_hole(html):
+    assert "Its unbalance is 900 g mm at 40 deg; a hole of 14 mm at (26, 21.8) mm, drilled," in html
+    assert "leaves 0 g mm" in html
+
+
 def test_every_figure_of_the_sheet_is_there_with_words_for_it(built, html):
     wanted = [name for _, names in drawings.GROUPS for name in names]
     for name in wanted:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -143,6 +144,12 @@ def test_the_outline_has_equal_axes_and_holds_the_follower():
     )  # fmt: skip
     labels = [text.get_text() for text in drawn(face).axes[0].get_legend().get_texts()]
     assert labels == ["cam contour", "face at 90 deg"]
+    for drilled, line in ((True, "-"), (False, "--")):  # a hole as its own circle
+        holed = drawn(replace(made, counter_hole=(20.0, 5.0, 3.0, drilled))).axes[0]
+        (circle,) = [c for c in holed.lines if len(c.get_xdata()) == 121 and c not in ax.lines
+                     and abs(np.mean(c.get_xdata()[:-1]) - 20.0) < 1e-9]  # fmt: skip
+        assert circle.get_linestyle() == line
+        assert np.ptp(circle.get_ydata()) == pytest.approx(6.0, rel=1e-3)
     assert plots.svg_and_png(
         OutlineFigure("o", "", "", 42 * ring, 50 * ring, None, "roller", None, None, 0, "")
     )[0]
