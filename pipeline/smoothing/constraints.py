@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import FULL_TURN, Array, readonly
+from geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
 from geometry.path import Values, curvature_slope, magnitude, speed_and_curvature
 from pipeline.checks import demands
 from pipeline.contact.hertz import peak_pressure_square
@@ -105,7 +105,7 @@ class Correction:
         """A share of the way to another one, at its angles."""
         if share == 1.0:
             return other
-        own = self.at(np.arange(other.contact.size) * (FULL_TURN / other.contact.size))
+        own = self.at(uniform_turn(other.contact.size))
         return Correction(
             *(
                 (1.0 - share) * getattr(own, each.name) + share * getattr(other, each.name)
