@@ -1,15 +1,24 @@
-"""The page on paper: A4 with page numbers and embedded fonts."""
+"""The page on paper: A4 with page numbers and embedded fonts, by Chromium or by WeasyPrint."""
 
 from __future__ import annotations
 
 import html
+import importlib.util
+import re
 import tempfile
 from pathlib import Path
 
+from geometry.errors import ResultError
 from reports import browser, page
 from reports.material import Material
+from reports.output import write_whole
+from reports.plots import COLOURS
 
 PDF = "8_report.pdf"
+_NUMBERED = """@page {
+  @bottom-left { content: %s; font: 6pt sans-serif; }
+  @bottom-right { content: "page " counter(page) " of " counter(pages); font: 6pt sans-serif; }
+}"""
 
 
 def write(material: Material) -> list[Path]:
@@ -21,9 +30,41 @@ def write(material: Material) -> list[Path]:
         If there is nothing to print with, or the file cannot be written.
     """
     pdf = material.folder / PDF
-    footer = html.escape(f"Camwright · {page.shortened(str(material.run.summary['case']), 60)}")
+    footer = f"Camwright · {page.shortened(str(material.run.summary['case']), 60)}"
+    text = page.text(material, live=False)
+    if browser.executable() is not None:
+        _by_chromium(text, pdf, footer)
+    elif importlib.util.find_spec("weasyprint") is not None:
+        write_whole(pdf, by_weasyprint(text.decode(), footer))
+    else:
+        raise ResultError(
+            "nothing to print with: install Chromium (Debian: chromium), name one in "
+            "CAMWRIGHT_CHROMIUM, or install WeasyPrint (pip install 'camwright[pdf]')"
+        )
+    return [pdf]
+
+
+def _by_chromium(text: bytes, pdf: Path, footer: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         still = Path(folder) / page.PAGE
-        still.write_bytes(page.text(material, live=False))
-        browser.print_pdf(still, pdf, footer)
-    return [pdf]
+        still.write_bytes(text)
+        browser.print_pdf(still, pdf, html.escape(footer))
+
+
+def by_weasyprint(text: str, footer: str) -> bytes:
+    """A page as PDF; colours become those of the light theme, which its drawings know no other.
+
+    Raises
+    ------
+    ResultError
+        If a library that WeasyPrint stands on is missing.
+    """
+    try:
+        import weasyprint
+    except OSError as error:  # Pango, of which pip knows nothing
+        raise ResultError(f"WeasyPrint does not start: {' '.join(str(error).split())}") from None
+    coloured = re.sub(r"var\(--([a-z]+)\)", lambda name: COLOURS.get(name[1], name[0]), text)
+    quoted = '"' + footer.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    numbered = weasyprint.CSS(string=_NUMBERED % quoted)
+    printed: bytes = weasyprint.HTML(string=coloured).write_pdf(stylesheets=[numbered])
+    return printed

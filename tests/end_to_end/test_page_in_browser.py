@@ -12,8 +12,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
-from geometry.errors import ResultError
-from reports import browser, interactive, page, parts
+from reports import browser, interactive, page
 from reports.material import read_material
 
 ALL_DRAWN = "[...document.querySelectorAll('.live')].every(e => e.dataset.drawn === 'done')"
@@ -93,26 +92,3 @@ def test_page_for_print_is_whole_without_scripts(report: Path) -> None:
     text = page.text(read_material(report.parent), live=False).decode()
     assert "<script" not in text and "Point at a curve" not in text
     assert text.count("<svg") >= 10
-
-
-def printed(folder: Path) -> Path:
-    return parts.build(folder, parts.chosen(["pdf"]))["pdf"][0]
-
-
-def test_pdf_has_its_pages_and_fonts(report: Path) -> None:
-    if browser.executable() is None:
-        pytest.skip("no Chromium here: Debian has it in the package chromium")
-    data = printed(report.parent).read_bytes()
-    assert data.startswith(b"%PDF") and len(data) > 50_000
-    assert len(re.findall(rb"/Type\s*/Page\b", data)) >= 3
-    box = re.search(rb"/MediaBox\s*\[0 0 ([\d.]+) ([\d.]+)\]", data)
-    assert box and abs(float(box[1]) - 595) < 2 and abs(float(box[2]) - 842) < 2  # A4, points
-    assert re.search(rb"/FontFile[23]", data)  # fonts are in the file
-
-
-def test_pdf_without_a_browser_says_what_is_missing(
-    report: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(browser, "executable", lambda: None)
-    with pytest.raises(ResultError, match="chromium"):
-        printed(report.parent)
