@@ -5,16 +5,19 @@ import json
 import tomllib
 from pathlib import Path
 
+import ezdxf
 import numpy as np
 import pytest
 
+from pipeline.cards.fill import filled
 from pipeline.case import Case
 from pipeline.progress import Silent
 from pipeline.run import run_case
 
 GX120 = Path(__file__).resolve().parents[2] / "cases" / "gx120.toml"
 OPTIONS = {
-    "cam": {"roughness": "0.3 um", "profile_tolerance": "0.02 mm"},
+    "cam": {"roughness": "0.3 um", "profile_tolerance": "0.02 mm", "counter_hole": {}},
+    "spring": {"travel_max": "25 mm", "catalogue": "shipped"},
     "camshaft": {
         "bearing_spacing": "60 mm",
         "cam_position": "30 mm",
@@ -22,7 +25,12 @@ OPTIONS = {
         "gear_radius": "30 mm",
         "drag": "0.05 N m",
     },
-    "roller": {"roughness": "0.1 um", "friction": 0.1, "inertia": "0.3 kg mm^2"},
+    "roller": {
+        "roughness": "0.1 um",
+        "friction": 0.1,
+        "inertia": "0.3 kg mm^2",
+        "pin": {"diameter": "5 mm", "span": "9 mm", "material": "bearing_steel"},
+    },
     "follower": {"stiffness": "20000 N/mm", "viscous_damping": "2 N s/m"},
     "lubricant": {
         "viscosity": "15 mPa s",
@@ -43,7 +51,22 @@ COLUMNS = (
     "asperity_share",
     "elastic_contact_force_N",
     "shaft_bearing_1_N",
+    "key_pressure_MPa",
+    "bore_pressure_MPa",
+    "spring_stress_MPa",
+    "spring_surge_force_N",
+    "pin_stress_MPa",
+    "roller_speed_rpm",
+    "roller_acceleration_rad_per_s2",
+    "ring_stress_amplitude_MPa",
+    "ring_stress_mean_MPa",
+    "ring_correction_percent",
 )
+CHECKS = (
+    "roller_static", "roller_speed", "roller_pin", "roller_ring", "roller_grip", "spring_stress",
+    "spring_fatigue", "spring_solid", "spring_buckling", "spring_rate", "spring_surge",
+    "key_pressure", "torque_reversals",
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +77,7 @@ def run(tmp_path_factory):
     for card in given["materials"].values():
         card.setdefault("hardness", 600)
     folder = tmp_path_factory.mktemp("full") / "run"
-    run_case(Case.model_validate(given), folder, progress=Silent(), jobs=1)
+    run_case(Case.model_validate(filled(given, None)), folder, progress=Silent(), jobs=1)
     return folder
 
 
@@ -68,6 +91,21 @@ def cycle(run):
 def test_every_option_has_its_column(cycle, name):
     values = np.array([float(text) if text else np.nan for text in cycle[name]])
     assert np.isfinite(values).any()
+
+
+def test_every_part_that_is_described_is_judged(run):
+    checks = {c["id"]: c for c in json.loads((run / "trial_1" / "6_checks.json").read_text())}
+    for name in CHECKS:
+        assert checks[name]["status"] in ("pass", "fail"), name
+        assert checks[name]["source"], name
+
+
+def test_balance_is_recorded_and_drilled(run):
+    found = json.loads((run / "trial_1" / "trial.json").read_text())["balance"]
+    assert found["hole_drilled"]
+    assert 0.0 <= found["unbalance_left_g_mm"] < found["unbalance_g_mm"]
+    drawn = ezdxf.readfile(run / "shop" / "contour.dxf").query('CIRCLE[layer=="counter_hole"]')
+    assert [2 * c.dxf.radius for c in drawn] == [pytest.approx(found["hole_diameter_mm"])]
 
 
 def test_traction_of_rolling_never_eases_the_stress(cycle):
