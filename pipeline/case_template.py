@@ -85,6 +85,7 @@ mass = "250 g"                       # with the roller and half of the spring
 stem_diameter = "12 mm"
 stem_material = "hardened_steel"
 overhang_at_max_lift = "30 mm"       # from guide A to the roller's centre
+# kind = "flat"                      # with a table [follower.face] instead of [roller]: see README
 
 [guides]
 spacing = "80 mm"                    # middle to middle
