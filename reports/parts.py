@@ -51,7 +51,8 @@ def chosen(names: Iterable[str] = ()) -> tuple[Part, ...]:
     wanted, known = list(names), [part.name for part in PARTS]
     for name in wanted:
         if name not in known:
-            raise InputError("--only", name, f"one of {', '.join(known)}")
+            listed = ", ".join(f"{part.name} ({part.words})" for part in PARTS)
+            raise InputError("--only", name, f"one of {listed}")
     return tuple(part for part in PARTS if part.name in wanted or not (wanted or part.asked))
 
 

@@ -1,0 +1,134 @@
+"""camwright report: its parts by name, from the folder alone, and never a solver in sight."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import shutil
+import subprocess
+import sys
+import webbrowser
+from pathlib import Path
+
+import pytest
+
+from geometry.errors import InputError, ResultError
+from pipeline.cli import PASSED, app
+from reports import drawings, page, parts, printing
+
+ROOT = Path(__file__).parents[2]
+RUN = ROOT / "tests" / "data" / "runs" / "schema-1-signed"
+READ_ONLY = {"pipeline.results", "pipeline.units"}
+NEEDED = READ_ONLY | {"pipeline", "pipeline.cli", "pipeline.progress"}
+SOLVERS = {"skfem", "gmsh", "clarabel", "cvxopt", "pypardiso", "meshes"}
+LISTING = """
+import sys
+from pipeline import cli
+sys.argv = ["camwright", "report", sys.argv[1]]
+try:
+    cli.main()
+except SystemExit as leaving:
+    print("left with", leaving.code)
+print("loaded", *sys.modules)
+"""
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    return Path(shutil.copytree(RUN, tmp_path / "run"))
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures left blank, where what counts is which files come."""
+    monkeypatch.setattr(drawings, "svg_and_png", lambda figure: ("<svg></svg>", b"\x89PNG"))
+
+
+def digests(folder: Path) -> dict[str, str]:
+    return {
+        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def report(*arguments: object) -> object:
+    return app(args=["report", *map(str, arguments)], standalone_mode=False)
+
+
+def test_no_solver_is_even_loaded(run: Path) -> None:
+    before = digests(run)
+    done = subprocess.run(
+        [sys.executable, "-c", LISTING, str(run)], capture_output=True, text=True, cwd=ROOT,
+        check=True, timeout=300,
+    )  # fmt: skip
+    assert "left with 0" in done.stdout
+    loaded = set(done.stdout.split("loaded ", 1)[1].split())
+    ours = {name for name in loaded if name.split(".")[0] == "pipeline"}
+    assert {name for name in ours if not name.startswith("pipeline.commands")} <= NEEDED
+    assert not {name.split(".")[0] for name in loaded} & SOLVERS
+    after = digests(run)
+    assert {name: after[name] for name in before} == before  # results are left as they were
+    assert page.PAGE in after
+
+
+@pytest.mark.parametrize("module", sorted((ROOT / "reports").glob("*.py")), ids=lambda p: p.stem)
+def test_reports_import_nothing_that_solves(module: Path) -> None:
+    named: set[str] = set()
+    for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            named |= {alias.name for alias in node.names}
+        if isinstance(node, ast.ImportFrom) and node.module:
+            named |= {node.module} if node.module != "pipeline" else {
+                f"pipeline.{alias.name}" for alias in node.names
+            }  # fmt: skip
+    solving = {name for name in named if name.split(".")[0] in SOLVERS | {"pipeline"}}
+    assert solving <= READ_ONLY
+
+
+@pytest.mark.usefixtures("quick")
+def test_one_part_alone_writes_its_files_alone(run: Path) -> None:
+    before = digests(run)
+    assert report(run, "--only", "page") == PASSED
+    assert set(digests(run)) - set(before) == {page.PAGE}
+    (run / page.PAGE).unlink()
+    assert report(run, "--only", "figures") == PASSED
+    assert {name.split("/")[0] for name in set(digests(run)) - set(before)} == {"figures"}
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_report_has_all_parts_but_those_to_ask_for(run: Path) -> None:
+    made = parts.build(run)
+    assert list(made) == [part.name for part in parts.PARTS if not part.asked]
+    assert not (run / printing.PDF).exists()
+
+
+@pytest.mark.usefixtures("quick")
+def test_pdf_comes_beside_the_rest_when_asked(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(printing.browser, "executable", lambda: "chromium")
+    monkeypatch.setattr(
+        printing.browser, "print_pdf", lambda still, pdf, footer: pdf.write_bytes(b"%PDF")
+    )
+    assert report(run, "--pdf") == PASSED
+    assert (run / page.PAGE).is_file()
+    assert (run / printing.PDF).is_file()
+
+
+def test_a_part_nobody_knows_brings_the_list(run: Path) -> None:
+    before = digests(run)
+    with pytest.raises(InputError) as refusal:
+        report(run, "--only", "pgae")
+    assert str(refusal.value).startswith("--only = pgae, must be one of figures (")
+    assert all(part.name in str(refusal.value) for part in parts.PARTS)
+    assert digests(run) == before
+
+
+@pytest.mark.usefixtures("quick")
+def test_open_shows_the_page(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[str] = []
+    monkeypatch.setattr(webbrowser, "open", shown.append)
+    with pytest.raises(ResultError, match="no such page"):
+        report(run, "--only", "figures", "--open")
+    assert shown == []
+    report(run, "--open")
+    assert shown == [(run / page.PAGE).resolve().as_uri()]
