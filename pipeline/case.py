@@ -384,6 +384,15 @@ def _require(field: str, value: float, holds: bool, limit: str) -> None:
         raise InputError(field, f"{value:.6g} m", limit)
 
 
+def _shaft_materials(case: Case) -> Iterator[tuple[str, str]]:
+    """Field and name of every material of the camshaft and its gear."""
+    shaft = case.camshaft
+    if shaft is not None and shaft.material is not None:
+        yield "camshaft.material", shaft.material
+    if shaft is not None and shaft.gear is not None:
+        yield "camshaft.gear.material", shaft.gear.material
+
+
 def _check_names(case: Case) -> None:
     known = ", ".join(sorted(case.materials))
     pin = None if case.roller_given is None else case.roller_given.pin
@@ -394,6 +403,7 @@ def _check_names(case: Case) -> None:
         ("guides.a.material", case.guides.a.material),
         ("guides.b.material", case.guides.b.material),
         *(() if pin is None else (("roller.pin.material", pin.material),)),
+        *_shaft_materials(case),
     ):
         if name not in case.materials:
             raise InputError(field, name, f"one of the materials: {known}")

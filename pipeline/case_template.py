@@ -66,6 +66,15 @@ material = "hardened_steel"
 # [cam.counter_hole]                 # drill the hole that takes the unbalance away
 # wall = "3 mm"
 
+# [camshaft]                         # its fatigue, bearings and gear are judged where given
+# bearing_spacing = "60 mm"
+# cam_position = "20 mm"             # from the first bearing; overhung places may be negative
+# gear_position = "-15 mm"
+# gear_radius = "20 mm"
+# diameter = "20 mm"
+# material = "hardened_steel"        # with fatigue_bending and tensile_strength
+# bearing_rating = "9.95 kN"
+
 [roller]
 radius = "16 mm"
 width = "11 mm"

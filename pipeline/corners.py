@@ -30,8 +30,10 @@ from pipeline.checks import (
     parts,
     roller,
     rolling,
+    shaft,
     signed,
     spring,
+    surface,
 )
 from pipeline.checks.check import Check
 from pipeline.checks.everything import CheckFunction, checked_by
@@ -53,7 +55,7 @@ TRIED: tuple[CheckFunction, ...] = tuple(
     check
     for group in (
         *(function, geometry, forces, contact_checks, roller, guides, rolling),
-        *(signed, manufacture, parts),
+        *(signed, surface, shaft, manufacture, parts),
     )
     for check in group.CHECKS
     if check not in UNMOVED

@@ -133,11 +133,19 @@ class Limits(Section):
     spring_solid: Annotated[float, In(above=0, at_most=10)] = 0.1
     spring_surge: Annotated[float, In(above=0, at_most=1e4)] = 13.0
     key_pressure: Pressure = 100e6
+    key_shear: Pressure = 60e6
+    shaft_safety: Safety = 1.5
+    shaft_bearing_life: Annotated[float, In("h", above=0, at_most=1e6)] | None = None
+    gear_bending_safety: Safety = 1.4
+    gear_contact_safety: Safety = 1.0
     unbalance: Annotated[float, In("mm/s", above=0, at_most=1e4)] | None = None
     film_ratio: Annotated[float, In(above=0, at_most=100)] = 1.0
     skid: Annotated[float, In(above=0, at_most=1)] = 0.5
     fatigue_safety: Safety = 1.0
     case_safety: Safety = 1.0
+    case_depth_ratio: Safety = 2.0
+    bore_safety: Safety = 1.0
+    guide_length: Safety = 2.0
     torque_reduction: Annotated[float, In(above=0, below=1)] = 0.4
     speed_reduction: Annotated[float, In(above=0, below=1)] | None = None
     energy_closure: Residual = 1e-9

@@ -86,8 +86,28 @@ class Cam(Section):
     source: Text = ""
 
 
+class CamshaftGear(Section):
+    """The spur gear on the camshaft; its limits are those of its material for endless life.
+
+    The teeth are of 20 deg full depth; the pinion is on the crank.
+    """
+
+    teeth: Annotated[int, Field(ge=10, le=1000)]
+    pinion_teeth: Annotated[int, Field(ge=10, le=1000)]
+    width: Length
+    material: Name
+    application_factor: Annotated[float, In(at_least=1, at_most=10)] = 1.5
+    bending_limit: Pressure | None = None
+    contact_limit: Pressure | None = None
+    source: Text = ""
+
+
 class Camshaft(Section):
-    """The cam's shaft: places from its first bearing, and the gear that drives it."""
+    """The cam's shaft: places from its first bearing, and the gear that drives it.
+
+    The notch factors are those of the keyway under the cam, as an end mill cuts it. The rating is
+    the dynamic one, C, of each of its two ball bearings.
+    """
 
     bearing_spacing: Length
     cam_position: Annotated[float, In("mm", above=-10_000, below=10_000)]
@@ -96,6 +116,12 @@ class Camshaft(Section):
     mesh_angle: Angle = radians(180.0)
     pressure_angle: Annotated[float, In("deg", at_least=0, below=45)] = radians(20.0)
     drag: Annotated[float, In("N m", at_least=0, at_most=1e6)] = 0.0
+    diameter: Length | None = None
+    material: Name | None = None
+    notch_bending: Annotated[float, In(at_least=1, at_most=10)] = 2.14
+    notch_torsion: Annotated[float, In(at_least=1, at_most=10)] = 3.0
+    bearing_rating: Force | None = None
+    gear: CamshaftGear | None = None
     source: Text = ""
 
 
@@ -308,6 +334,7 @@ class Material(Section):
     fatigue_bending: Pressure | None = None
     case_depth: Length | None = None
     core_yield_strength: Pressure | None = None
+    treatment: Literal["case_hardened", "induction_hardened", "through_hardened"] | None = None
     density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
     condition: Text = ""
     source: Text

@@ -212,14 +212,7 @@ def _shaft(case: Case, loads: Loads) -> tuple[Array, Array] | None:
     given = case.camshaft
     if given is None:
         return None
-    shaft = Camshaft(
-        given.bearing_spacing,
-        given.cam_position,
-        given.gear_position,
-        given.gear_radius,
-        given.mesh_angle,
-        given.pressure_angle,
-    )
+    shaft = Camshaft.of(given)
     found = shaft_loads(loads.axial_force, loads.tangential_force, loads.cam_torque, shaft)
     return found.load_1, found.load_2
 

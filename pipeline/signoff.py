@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,15 @@ SINGULARITIES = (
     "Places where bodies are held: excluded, none lies within ten half-widths of the contact.",
     "Ends of the roller: not in the plane model; covered by the edge derating.",
 )
+STANDING_FOR = (
+    *zip(
+        LIMITATIONS,
+        ("edge_derating", "shakedown", "shakedown_traction", "roller_radial"),
+        strict=True,
+    ),
+    *zip(SINGULARITIES, ("excluded_zone", "clear_of_holds", "edge_pressure"), strict=True),
+)
+"""Each statement with the check that fails where it would mislead."""
 
 
 def record(path: Path) -> dict[str, Any]:
@@ -81,12 +90,22 @@ def record(path: Path) -> dict[str, Any]:
             "contact_method": made.get("contact_method"),
             "benchmarks": summary.get("benchmarks"),
             "corners": results.read_json(corners).get("tried") if corners.is_file() else None,
+            "statements": _statements(checks),
         },
         "limitations": list(LIMITATIONS),
         "singularities": list(SINGULARITIES),
         "files": hashes(path),
         "presentation": [name for name, _ in _files(path) if is_presentation(name)],
     }
+
+
+def _statements(checks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """What the figures leave out, each with its check and how that stands; null: none is made."""
+    status = {check["id"]: check["status"] for check in checks}
+    return [
+        {"statement": text, "check": name, "status": status.get(name)}
+        for text, name in STANDING_FOR
+    ]
 
 
 def write(path: Path) -> dict[str, Any]:

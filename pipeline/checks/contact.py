@@ -27,7 +27,7 @@ def contact_pressure(evidence: TrialEvidence) -> Check:
         demand=1e-6 * worst.value,
         limit=limit,
         unit="MPa",
-        source=evidence.source("contact_safety", f"surface endurance of {name}: {material.source}"),
+        source=evidence.source("contact_safety", f"surface endurance of {name}", material.source),
         method="greatest contact pressure by finite elements over the turn, softer body",
         lift_can_help=True,
         note="" if limit is not None else f"the card of {name} gives no endurance pressure",
@@ -48,7 +48,9 @@ def first_yield(evidence: TrialEvidence) -> Check:
         limit=None if safety is None else yields / safety,
         unit="MPa",
         source=evidence.source(
-            "yield_safety", f"yield of {name}; p0 = 1.79 Y, Johnson (1985) sec. 6.1"
+            "yield_safety",
+            f"yield of {name}; p0 = 1.79 Y, Johnson (1985) sec. 6.1",
+            material.source,
         ),
         method="greatest von Mises stress by finite elements over the turn, softer body",
         must_have=False,
@@ -74,6 +76,7 @@ def shakedown(evidence: TrialEvidence) -> Check:
         source=evidence.source(
             "shakedown_safety",
             f"p0 <= 4.0 k, free rolling, Johnson (1985) sec. 9.2; k = Y/sqrt(3) of {name}",
+            material.source,
         ),
         method="greatest contact pressure by finite elements over the turn, softer body",
         lift_can_help=True,

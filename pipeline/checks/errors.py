@@ -19,12 +19,17 @@ OF_THE_CONTACT = {
     "shakedown_traction",
     "surface_fatigue",
     "hardened_case",
+    "dang_van",
+    "pressure_by_hardness",
+    "pressure_by_gear_limits",
 }
 """Demands proportional to the contact's pressure."""
 OF_THE_GUIDES = {
     f"bush_{name}_{side}" for name in ("pressure", "pv", "peak") for side in ("A", "B")
 }
 """Demands proportional to a guide's reaction, as the beam's meshes leave it."""
+NOT_MESHED_TWICE = {"bore_stress"}
+"""Demands of elements of one size only: nobody knows their error."""
 
 
 def with_error_bars(trial: TrialEvidence, checks: Iterable[Check]) -> tuple[Check, ...]:
@@ -51,6 +56,8 @@ def contact_error(trial: TrialEvidence) -> float | None:
 
 def _share(check: Check, contact: float | None, guides: float | None) -> float | None:
     sampled = ROUNDING if check.error_share is None else max(check.error_share, ROUNDING)
+    if check.id in NOT_MESHED_TWICE:
+        return None
     if check.id in OF_THE_CONTACT:
         return None if contact is None else sampled + contact
     if check.id in OF_THE_GUIDES:

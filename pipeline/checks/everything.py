@@ -16,11 +16,14 @@ from pipeline.checks import (
     guides,
     manufacture,
     parts,
+    plane,
     proof,
     roller,
     rolling,
+    shaft,
     signed,
     spring,
+    surface,
 )
 from pipeline.checks.check import Check
 from pipeline.checks.errors import with_error_bars
@@ -48,11 +51,16 @@ SLOW = (geometry.self_intersection, geometry.second_contact)
 ALL: tuple[CheckFunction, ...] = (*DESIGN, *rolling.CHECKS, *face.CHECKS, *evidence.CHECKS)
 
 
-SIGNED: tuple[CheckFunction, ...] = (*signed.CHECKS, *manufacture.CHECKS)
+SIGNED: tuple[CheckFunction, ...] = (
+    *signed.CHECKS,
+    *surface.CHECKS,
+    *shaft.CHECKS,
+    *manufacture.CHECKS,
+)
 """What a sign-off asks for besides."""
 
-PROOF: tuple[CheckFunction, ...] = proof.CHECKS
-"""Meshes and benchmarks behind the figures of a certified trial."""
+PROOF: tuple[CheckFunction, ...] = (*plane.CHECKS, *proof.CHECKS)
+"""What the plane model leaves out; meshes and benchmarks behind the figures of a trial."""
 
 PARTS: tuple[CheckFunction, ...] = (*parts.CHECKS, *spring.CHECKS)
 """Limits of the parts around the cam, which only a trial with its cycles tells of."""

@@ -147,6 +147,8 @@ def _heat_mismatch(evidence: TrialEvidence, cycle: Cycle) -> float:
 
 def _relative(part: float, whole: float) -> float:
     """Share of the whole; a cam that stores nothing and owes nothing owes no share."""
+    if np.isnan(part) or np.isnan(whole):
+        return np.nan
     return 0.0 if part == 0.0 else float(np.divide(abs(part), whole)) if whole > 0 else np.inf
 
 

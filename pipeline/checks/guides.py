@@ -48,7 +48,9 @@ def _pressure(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
         demand=1e-6 * worst.value,
         limit=None if limit is None else 1e-6 * limit,
         unit="MPa",
-        source=evidence.source(f"bush_pressure_{side}", guide.source or f"{guide.material} bush"),
+        source=evidence.source(
+            f"bush_pressure_{side}", guide.source or f"{guide.material} bush", guide.source
+        ),
         method="greatest reaction by finite elements over diameter x length",
         lift_can_help=True,
         note="; ".join(
@@ -90,7 +92,7 @@ def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
         demand=1e-6 * worst.value,
         limit=None if limit is None else 1e-6 * limit,
         unit="MPa m/s",
-        source=evidence.source(f"bush_pv_{side}", _pv_source(guide)),
+        source=evidence.source(f"bush_pv_{side}", _pv_source(guide), guide.source),
         method="mean |R v| over the turn by finite elements over diameter x length;"
         " R sums the pushes of both sides of the bore",
         lift_can_help=True,

@@ -194,7 +194,7 @@ def roller_pin(evidence: TrialEvidence) -> Check | None:
         demand=1e-6 * worst.value,
         limit=1e-6 * share * material.yield_strength,
         unit="MPa",
-        source=evidence.source("pin_share", f"{share:g} of the yield strength; {material.source}"),
+        source=evidence.source("pin_share", f"{share:g} of the yield strength", material.source),
         method=f"32 M/(pi d^3), {pin.mounting}, the load spread over the bearing",
         lift_can_help=True,
         **worst.place,

@@ -49,7 +49,7 @@ def roller_static(evidence: TrialEvidence) -> Check:
         unit="-",
         sense="at_least",
         source=evidence.source(
-            "roller_static_safety", f"s0 = C0/P0, ISO 76; {bearing.name}: {bearing.source}"
+            "roller_static_safety", "s0 = C0/P0, ISO 76", f"{bearing.name}: {bearing.source}"
         ),
         method="static rating over the greatest normal force",
         lift_can_help=True,
@@ -78,7 +78,7 @@ def roller_life(evidence: TrialEvidence) -> Check:
         unit="h",
         sense="at_least",
         source=evidence.source(
-            "roller_life", f"ISO 281; {bearing.name}: {bearing.source}".rstrip(": ")
+            "roller_life", "ISO 281", f"{bearing.name}: {bearing.source}".rstrip(": ")
         ),
         method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force",
         lift_can_help=True,
@@ -100,9 +100,7 @@ def roller_speed(evidence: TrialEvidence) -> Check:
         demand=RPM * worst.value,
         limit=limit,
         unit="rpm",
-        source=evidence.source(
-            "roller_speed_share", f"share of the maker's limit; {bearing.source}".rstrip("; ")
-        ),
+        source=evidence.source("roller_speed_share", "share of the maker's limit", bearing.source),
         method="rolling without slip: w (|dP/dtheta| - r) / r",
         lift_can_help=True,
         note="" if limit is not None else f"no limiting speed is given for {bearing.name}",

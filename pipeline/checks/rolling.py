@@ -61,7 +61,11 @@ def film_ratio(evidence: TrialEvidence) -> Check:
         limit=evidence.limit("film_ratio", 1.0),
         unit="-",
         sense="at_least",
-        source=evidence.source("film_ratio", "below 1 boundary, 1 to 3 mixed, above 3 full film"),
+        source=evidence.source(
+            "film_ratio",
+            "below 1 boundary, 1 to 3 mixed, above 3 full film",
+            "" if case.lubricant is None else getattr(case.lubricant, "source", ""),
+        ),
         method="least film of Dowson and Higginson (1966) where loaded, over the rms roughness",
         must_have=False,
         note=f"{', '.join(missing)} is given" if missing else "",
@@ -81,7 +85,9 @@ def surface_fatigue(evidence: TrialEvidence) -> Check:
         demand=1e-6 * worst.value,
         limit=1e-6 * torsion / safety if known and torsion and safety else None,
         unit="MPa",
-        source=evidence.source("fatigue_safety", f"Crossland (1956); limits of {name}"),
+        source=evidence.source(
+            "fatigue_safety", f"Crossland (1956); limits of {name}", card.source
+        ),
         method="root of J2's amplitude plus weighted hydrostatic stress, the load swept along "
         "the contour",
         must_have=False,
@@ -105,7 +111,7 @@ def hardened_case(evidence: TrialEvidence) -> Check:
         demand=worst.value if known else None,
         limit=None if safety is None else 1.0 / safety,
         unit="-",
-        source=evidence.source("case_safety", f"yield of case and core of {name}"),
+        source=evidence.source("case_safety", f"yield of case and core of {name}", card.source),
         method="greatest von Mises stress over the yield strength at its depth, which falls "
         "evenly from surface to core over the case depth",
         must_have=False,

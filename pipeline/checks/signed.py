@@ -100,7 +100,7 @@ def contact_pressure_at_life(evidence: TrialEvidence) -> Check:
         limit=None if limit is None else 1e-6 * limit,
         unit="MPa",
         source=evidence.source(
-            "target_life", f"log10 K = (B - log10 n)/A, Rothbart (2004) eq. 9.15; {card.source}"
+            "target_life", "log10 K = (B - log10 n)/A, Rothbart (2004) eq. 9.15", card.source
         ),
         method="greatest contact pressure by finite elements; every turn loads each place once,"
         " all turns as bad as the worst load case",
@@ -142,8 +142,8 @@ def edge_pressure(evidence: TrialEvidence) -> Check:
         unit="MPa",
         source=evidence.source(
             "edge_factor",
-            f"derate 1.3 to 2 or crown the {evidence.facing_name}, shop practice: verify; {name}: "
-            f"{material.source}",
+            f"derate 1.3 to 2 or crown the {evidence.facing_name}, shop practice: verify",
+            f"{name}: {material.source}",
         ),
         method=f"greatest contact pressure times {factor}; two dimensions cannot see the ends",
         lift_can_help=True,
@@ -171,6 +171,7 @@ def shakedown_traction(evidence: TrialEvidence) -> Check:
         source=evidence.source(
             "shakedown_safety",
             f"greatest shear along the surface <= k, Johnson (1985) sec. 9.2; k of {name}",
+            material.source,
         ),
         method="greatest contact pressure by finite elements; traction of full sliding",
         lift_can_help=True,
@@ -205,7 +206,7 @@ def guide_clearance(evidence: TrialEvidence) -> Check:
     mouth = overhang - 0.5 * guide.length
     highest = pitch.height_base + pitch.lift.highest.value + mouth
     behind = contour.roller_radius if evidence.face is None else evidence.face.thickness
-    gap = min(highest - contour.radius_max().value, mouth - behind)
+    gap = float(np.minimum(highest - contour.radius_max().value, mouth - behind))
     asked = evidence.limit("clearance", 1e-3)
     return Check(
         id="guide_clearance",
@@ -253,7 +254,7 @@ def roller_radial(evidence: TrialEvidence) -> Check:
         limit=limit,
         unit="N",
         source=evidence.source(
-            "radial_limit", f"F_r,max of a track roller; {bearing.name}: {bearing.source}"
+            "radial_limit", "F_r,max of a track roller", f"{bearing.name}: {bearing.source}"
         ),
         method="greatest normal force over the turn",
         lift_can_help=True,

@@ -151,15 +151,19 @@ def _check(
     greatest = max(evidence.preload(cycle) for cycle in evidence.cycles)
     preload = greatest * (1.0 + case.spring.preload_tolerance)
     rate = spring.rate * (1.0 + case.spring.rate_tolerance)
+    demand = measure(spring, Work(preload, preload + rate * travel, travel))
+    toleranced = case.spring.preload_tolerance > 0 or case.spring.rate_tolerance > 0
     return Check(
         id=id,
         title=title,
-        demand=measure(spring, Work(preload, preload + rate * travel, travel)),
+        demand=demand,
         limit=limit,
         unit="-",
         sense="at_least" if sense == "at_least" else "at_most",
-        source=evidence.source(id, source),
+        source=evidence.source(id, source, getattr(case.spring.design, "source", "")),
         method=method,
+        corner="preload and rate high" if toleranced else "",
+        corner_demand=demand if toleranced else None,
         lift_can_help=lift_can_help,
     )
 

@@ -82,9 +82,13 @@ class TrialEvidence:
         value = getattr(self.case.limits, name, default)
         return None if value is None else float(value)
 
-    def source(self, name: str, default: str) -> str:
-        """The clause behind a limit: the case's own words where it has some."""
-        return str(self.case.limits.sources.get(name) or default)
+    def source(self, name: str, default: str, *figures: str) -> str:
+        """The clause behind a limit: the case's own words where it has some.
+
+        Where its figures come from is told in either case: a recalled one stays one.
+        """
+        clause = str(self.case.limits.sources.get(name) or default)
+        return "; ".join([clause, *(figure for figure in figures if figure and figure != clause)])
 
 
 def rollers_only(

@@ -26,7 +26,8 @@ class BoreStress:
     """Greatest von Mises stress (n,), Pa, on bore and keyway, and where.
 
     x, y (n,) m in the cam's frame; at_edge (n,) 1 where the place is, to an element, an edge of
-    the keyway at the bore; away_from_edges (n,) Pa, the greatest elsewhere.
+    the keyway at the bore; away_from_edges (n,) Pa, the greatest elsewhere; excluded m, the
+    distance from an edge within which a place counts as at it, 0 without a keyway.
     """
 
     von_mises: Array
@@ -34,9 +35,11 @@ class BoreStress:
     y: Array
     at_edge: Array
     away_from_edges: Array
+    excluded: float = 0.0
 
     def __post_init__(self) -> None:
-        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+        names = ("von_mises", "x", "y", "at_edge", "away_from_edges")
+        freeze(self, **{name: getattr(self, name) for name in names})
 
 
 def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Array) -> BoreStress:
@@ -44,7 +47,7 @@ def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Arr
 
     The contact acts as a line force: the bore lies many half-widths below it.
     """
-    nodes, by_edge, recovery = _holes(cam)
+    nodes, by_edge, recovery, excluded = _holes(cam)
     rows = _rows(recovery, nodes)
     points = cam.body.mesh.points[:, nodes]
     measured = np.empty((nodes.size, contacts.shape[1]))
@@ -61,28 +64,30 @@ def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Arr
         y=points[1, worst],
         at_edge=by_edge[worst].astype(float),
         away_from_edges=regular,
+        excluded=excluded,
     )
 
 
-def _holes(cam: LoadedBody) -> tuple[Any, Any, StressRecovery]:
-    """Nodes (m,) of bore and keyway, which of them lie by an edge, and their stress recovery."""
+def _holes(cam: LoadedBody) -> tuple[Any, Any, StressRecovery, float]:
+    """Nodes (m,) of bore and keyway, which lie by an edge, their recovery, and how near that is."""
     mesh = cam.body.mesh
     bore = mesh.boundary_nodes("bore")
-    nodes, by_edge = bore, np.zeros(bore.size, dtype=bool)
+    nodes, by_edge, near = bore, np.zeros(bore.size, dtype=bool), 0.0
     if "keyway" in mesh.boundaries:
         keyway = mesh.boundary_nodes("keyway")
         nodes = np.union1d(bore, keyway)
         edges = mesh.points[:, np.intersect1d(bore, keyway)]
         start, end, _ = mesh.facet_triples("keyway")
-        length = np.hypot(*(mesh.points[:, end] - mesh.points[:, start])).max()
+        near = 1.5 * float(np.hypot(*(mesh.points[:, end] - mesh.points[:, start])).max())
         arm = mesh.points[:, nodes, None] - edges[:, None, :]
-        by_edge = (np.hypot(*arm) < 1.5 * length).any(axis=1)
+        by_edge = (np.hypot(*arm) < near).any(axis=1)
     held = np.zeros(mesh.points.shape[1], dtype=bool)
     held[nodes] = True
     return (
         nodes,
         by_edge,
         StressRecovery(cam.body, np.flatnonzero(held[mesh.triangles].any(axis=0))),
+        near,
     )
 
 

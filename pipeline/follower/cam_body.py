@@ -127,6 +127,11 @@ class Camshaft:
         if not 0.0 <= self.pressure_angle < np.radians(45.0):
             raise InputError("camshaft.pressure_angle", self.pressure_angle, "from 0 to pi/4 rad")
 
+    @classmethod
+    def of(cls, given: Any) -> Camshaft:
+        """The shaft as a case's section gives it."""
+        return cls(**{name: getattr(given, name) for name in cls.__dataclass_fields__})
+
 
 @dataclass(frozen=True, eq=False)
 class ShaftLoads:

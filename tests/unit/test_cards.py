@@ -8,7 +8,9 @@ from pipeline.case import parse_case
 from pipeline.case_template import template
 from pipeline.checks.contact import contact_pressure
 from pipeline.checks.trial import TrialEvidence
+from pipeline.design_fields import Limits
 from pipeline.part_fields import Material, Oil
+from pipeline.preview import closed_form_checks
 
 
 def with_card(table, *lines):
@@ -121,3 +123,56 @@ def test_a_recalled_number_makes_the_check_say_so():
 
     found = contact_pressure(TrialEvidence(hard, fake.contour(), (fake.cycle(),)))
     assert "verify" in found.source
+
+
+def carded() -> str:
+    """The template with every card it can have, and a clause of the case's own for each limit."""
+    text = template("cards").replace('material = "hardened_steel"', 'material = "hard"')
+    text = text.replace('stem_material = "hardened_steel"', 'stem_material = "hard"')
+    for side in "ab":
+        head, _, tail = text.partition(f"[guides.{side}]")
+        body, _, rest = tail.partition("\n[")
+        kept = [line for line in body.splitlines() if line.startswith(("length", "diameter"))]
+        text = f"{head}[guides.{side}]\n" + "\n".join([*kept, 'card = "pom"']) + f"\n\n[{rest}"
+    own = [name for name in Limits.model_fields if name != "sources"]
+    clauses = "".join(f'{name} = "house rule"\n' for name in own)
+    head, _, tail = text.partition("[limits.sources]\n")
+    text = f"{head}[limits.sources]\n{clauses}\n" + tail.partition("\n\n")[2]
+    return text + (
+        '\n[lubricant]\ncard = "iso_vg_68"\n'
+        '\n[materials.hard]\ncard = "case_hardened"\nfatigue_torsion = "400 MPa"\n'
+        'fatigue_bending = "600 MPa"\n'
+        '\n[spring.design]\ncard = "chrome_silicon"\nwire_diameter = "6 mm"\n'
+        'mean_diameter = "40 mm"\ncoils = 8.2\nfree_length = "130 mm"\n'
+        '\n[roller.pin]\ndiameter = "8 mm"\nspan = "16 mm"\nmaterial = "hard"\n'
+    )
+
+
+def test_every_check_that_leans_on_a_card_says_verify_whatever_the_case_says():
+    """Its own clause stands first; where the figures come from is told besides."""
+    text = carded()
+    for section in ("cam", "roller"):
+        text = text.replace(f"\n[{section}]\n", f'\n[{section}]\nroughness = "0.3 um"\n')
+    found = {c.id: c for c in closed_form_checks(parse_case(text))}
+    leaning = (
+        *("contact_pressure", "contact_pressure_at_life", "edge_pressure", "first_yield"),
+        *("shakedown", "shakedown_traction", "surface_fatigue", "dang_van", "hardened_case"),
+        *("case_depth", "pressure_by_gear_limits", "film_ratio", "roller_pin"),
+        *("bush_pressure_A", "bush_pv_A", "bush_pressure_B", "bush_pv_B", "bush_peak_A"),
+        *("bush_temperature_A", "spring_stress", "spring_fatigue", "spring_solid"),
+    )
+    for name in leaning:
+        assert "verify" in found[name].source, name
+    assert found["contact_pressure"].source.startswith("house rule; card case_hardened: ")
+
+
+@pytest.mark.parametrize(
+    ("line", "field"),
+    [
+        ('treatment = "polished"', "treatment"),
+        ("treatment = 1", "treatment"),
+    ],
+)
+def test_a_treatment_that_is_none_is_refused(line, field):
+    with pytest.raises(InputError, match=rf"materials\.extra\.{field}"):
+        with_card("materials.extra", 'card = "case_hardened"', line)

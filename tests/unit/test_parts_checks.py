@@ -13,6 +13,7 @@ from geometry.pitch_curve import PitchCurve
 from pipeline.case import parse_case
 from pipeline.case_template import template
 from pipeline.checks import parts as part_checks
+from pipeline.checks import shaft as shaft_checks
 from pipeline.checks import spring as spring_checks
 from pipeline.checks.everything import PARTS, all_checks
 from pipeline.checks.trial import TrialEvidence
@@ -281,6 +282,55 @@ def test_ring_of_a_card():
     check = part_checks.roller_ring(unknown)
     assert check.status == "not_evaluated"
     assert check.note == "no fatigue strength of the ring is given"
+
+
+@pytest.mark.parametrize(
+    ("line", "field"),
+    [
+        ('diameter = "0 mm"', r"camshaft\.diameter"),
+        ("diameter = 17", r"camshaft\.diameter"),
+        ('material = "gold"', r"camshaft\.material"),
+        ("notch_bending = 0.5", r"camshaft\.notch_bending"),
+        ('bearing_rating = "-1 N"', r"camshaft\.bearing_rating"),
+        ("[camshaft.gear]\nteeth = 4", r"camshaft\.gear\.teeth"),
+        ("[camshaft.gear]\nteeth = 40.5", r"camshaft\.gear\.teeth"),
+        ("[camshaft.gear]\nteeth = 40\npinion_teeth = 20\nwidth = '8 mm'\nmaterial = 'x'",
+         r"camshaft\.gear\.material"),
+    ],
+)  # fmt: skip
+def test_a_shaft_that_cannot_be_is_refused(line, field):
+    with pytest.raises(InputError, match=field):
+        parse_case(text(SHAFT + line + "\n"))
+
+
+def test_a_shaft_with_its_gear_is_judged():
+    """Of every load case; the teeth of 20 and 40 with the torque of the cam."""
+    given = parse_case(template("parts"))
+    more = f"""diameter = "20 mm"
+material = "{given.cam.material}"
+bearing_rating = "9.95 kN"
+
+[camshaft.gear]
+teeth = 40
+pinion_teeth = 20
+width = "12 mm"
+material = "{given.cam.material}"
+bending_limit = "300 MPa"
+contact_limit = "1200 MPa"
+source = "made up"
+"""
+    trial = evidence(parse_case(text(KEYWAY + SHAFT + more)))
+    checks = {f(trial).id: f(trial) for f in shaft_checks.CHECKS}
+    assert set(checks) == {
+        *("key_shear", "shaft_fatigue", "shaft_bearing_life", "gear_bending", "gear_contact")
+    }
+    # Neither strength nor a target life is given: open, and the note says so.
+    assert checks["shaft_fatigue"].status == "not_evaluated"
+    assert "fatigue or tensile" in checks["shaft_fatigue"].note
+    assert checks["shaft_bearing_life"].demand > 0
+    ratio = checks["gear_bending"].demand / checks["key_shear"].demand
+    assert ratio > 0
+    assert checks["gear_contact"].unit == "MPa"
 
 
 def test_guides_that_overlap_are_refused():

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from pipeline.checks import manufacture, signed
-from pipeline.checks.everything import SIGNED, all_checks
+from pipeline.checks.everything import all_checks
 from pipeline.checks.signed import pressure_at_life, shakedown_factor
 
-FUNCTIONS = {function(fake.evidence()).id: function for function in SIGNED}
+FUNCTIONS = {
+    function(fake.evidence()).id: function for function in (*signed.CHECKS, *manufacture.CHECKS)
+}
 RPM = 30.0 / np.pi
 MODULUS = 210e9 / (2.0 * (1.0 - 0.3**2))
 

@@ -38,6 +38,9 @@ def test_the_record_is_whole(tmp_path: Path) -> None:
     assert [f["error"] for f in record["figures"] if f["id"] == "x"] == [0.01]
     assert record["environment"]["versions"]["numpy"]
     assert record["limitations"] and record["singularities"]
+    said = record["limitations"] + record["singularities"]
+    assert [one["statement"] for one in record["evidence"]["statements"]] == said
+    assert all(one["check"] for one in record["evidence"]["statements"])
     assert {"case.toml", "run.json", "fields/a.vtu", "trial_1/5_cycle.csv"} <= set(record["files"])
     assert record["presentation"] == ["8_report.html"]
     assert "signoff.json" not in record["files"]

@@ -1,0 +1,88 @@
+"""Demands of the trial of `full_trial`, worked out by hand: closed forms with their sources."""
+
+import fake_trial as fake
+import full_trial as full
+import numpy as np
+
+S = 0.5 * fake.STROKE * (1.0 - np.cos(fake.THETA))
+BEND = 0.5 * fake.STROKE * np.cos(fake.THETA)
+SPRING = fake.PRELOAD + fake.RATE * S
+INERTIA = fake.MASS * fake.CAM_SPEED**2 * BEND
+RPM = 30.0 / np.pi
+MODULUS = 210e9 / (2.0 * (1.0 - 0.3**2))
+TURNS = 3.6e6 * fake.CAM_SPEED / (2.0 * np.pi)
+
+RATE = 77.2e9 * full.WIRE**4 / (8.0 * full.COIL**3 * full.COILS)
+HARDEST = fake.PRELOAD * 1.05 + RATE * 1.05 * fake.STROKE
+C = full.COIL / full.WIRE
+WAHL = (4.0 * C - 1.0) / (4.0 * C - 4.0) + 0.615 / C
+SHEAR = WAHL * 8.0 * full.COIL / (np.pi * full.WIRE**3)  # Pa per N, Wahl
+TENSILE = 1974e6 * 6.0**-0.108
+ZIMMERLI = 398e6 / (1.0 - 534e6 / (0.67 * TENSILE))
+SWING, MIDDLE = (0.5 * SHEAR * (HARDEST + sign * fake.PRELOAD * 1.05) for sign in (-1, 1))
+SOLID = full.FREE - full.WIRE * (full.COILS + 2.0)
+DEFLECTION = fake.PRELOAD * 1.05 / RATE + fake.STROKE
+COIL_MASS = 7850.0 * 0.25 * np.pi * full.WIRE**2 * np.pi * full.COIL * full.COILS
+SURGE = 0.5 * np.sqrt(RATE / COIL_MASS) * 2.0 * np.pi / fake.CAM_SPEED
+DENSE = np.linspace(0.0, np.pi, 20001)
+RADIUS = fake.BASE + 0.5 * fake.STROKE * (1.0 - np.cos(DENSE))
+SLOPE, CURVE = 0.5 * fake.STROKE * np.sin(DENSE), 0.5 * fake.STROKE * np.cos(DENSE)
+PITCH_RADIUS = (RADIUS**2 + SLOPE**2) ** 1.5 / (RADIUS**2 + 2.0 * SLOPE**2 - RADIUS * CURVE)
+TORQUE = np.abs(full.cycle().loads.cam_torque)
+
+
+def mean_life() -> float:
+    """(C/P)^3 1e6 turns at the speed of a roller that rolls on the pitch curve, hours."""
+    force = full.cycle().loads.normal_force
+    slope = 0.5 * fake.STROKE * np.sin(fake.THETA)
+    pitch = fake.BASE + S
+    speed = np.hypot(pitch, slope)
+    bend = (pitch**2 + 2.0 * slope**2 - pitch * BEND) / speed**3
+    # The contact runs along the pitch curve less the roller's turning with it.
+    spin = fake.CAM_SPEED * (speed / fake.ROLLER - 1.0)
+    assert bend.min() > 0.0
+    load = np.cbrt(np.sum(force**3 * spin) / np.sum(spin))
+    return 1e6 * (1140.0 / load) ** 3 / (spin.mean() / (2.0 * np.pi)) / 3600.0
+
+
+def shaft_safety() -> float:
+    """Greatest moment arms by statics, fibre by fibre, Shigley sec. 7-4, in plain loops."""
+    loads, d = full.cycle().loads, 0.017
+    torque = loads.cam_torque
+    tooth = torque / 0.02
+    # Meshing opposite the follower: the tooth pushes along -y, the wheels part along +x.
+    gear = np.stack([np.abs(tooth) * np.tan(np.radians(20.0)), -tooth])
+    cam = np.stack([-loads.axial_force, -loads.tangential_force])
+    second = -(cam * 0.02 + gear * -0.015) / 0.06
+    first = -cam - gear - second
+    moment = first * 0.02 + gear * 0.035
+    worst = np.inf
+    for fibre in np.radians(np.arange(0.0, 360.0, 5.0)):
+        pull = 32.0 / (np.pi * d**3) * (
+            moment[0] * np.cos(fibre + fake.THETA) + moment[1] * np.sin(fibre + fake.THETA)
+        )  # fmt: skip
+        twist = 16.0 * torque / (np.pi * d**3)
+        amplitude, mean = (
+            np.hypot(
+                2.14 * 0.5 * (pull.max() + sign * pull.min()),
+                np.sqrt(3.0) * 3.0 * 0.5 * (twist.max() + sign * twist.min()),
+            )
+            for sign in (-1.0, 1.0)
+        )
+        worst = min(worst, 1.0 / (amplitude / 400e6 + mean / 900e6))
+    return float(worst)
+
+
+def bearing_hours() -> float:
+    """ISO 281 of the harder loaded bearing at a steady speed."""
+    loads = full.cycle().loads
+    tooth = loads.cam_torque / 0.02
+    gear = np.stack([np.abs(tooth) * np.tan(np.radians(20.0)), -tooth])
+    cam = np.stack([-loads.axial_force, -loads.tangential_force])
+    second = -(cam * 0.02 + gear * -0.015) / 0.06
+    first = -cam - gear - second
+    worst = max(np.cbrt(np.mean(np.hypot(*load) ** 3)) for load in (first, second))
+    return 1e6 * (9950.0 / worst) ** 3 / (fake.CAM_SPEED / (2.0 * np.pi)) / 3600.0
+
+
+TOOTH = 1.5 * float(np.max(np.abs(full.cycle().loads.cam_torque + 0.5))) / 0.02

@@ -1,0 +1,320 @@
+"""How the checks of shape, forces, contact, roller and guides are tried."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import fake_trial as fake
+import full_trial as full
+import hand_calculations as by_hand
+import numpy as np
+from check_tools import by_limit, counted, limit_of, limited, tried
+from trial_variants import (
+    NAN,
+    NOWHERE,
+    crossings,
+    hollow,
+    lossy,
+    on_contour,
+    soft,
+    with_bearing,
+    with_contact,
+    with_cycle,
+    with_guide,
+    with_guides,
+    with_limits,
+    with_loads,
+    with_map,
+    with_material,
+    with_part,
+    with_parts,
+    with_rolling,
+)
+
+# function
+by_limit(
+    "torque_reduction",
+    "torque_reduction",
+    1.0,
+    lambda: with_cycle(residual_torque=NAN),
+    0.5,
+    "one sine less half of it",
+)
+by_limit(
+    "speed_reduction",
+    "speed_reduction",
+    1.0,
+    lambda: full.evidence(speed_ripple={"idle": (2.0, np.nan)}),
+    0.5,
+    "std 2 to 1 rad/s",
+)
+by_limit(
+    "energy_closure",
+    "energy_closure",
+    1.0,
+    lambda: with_part("spring", preload=np.nan),
+    0.0,
+    "E(2 pi) = E(0)",
+)
+by_limit(
+    "friction_balance",
+    "friction_balance",
+    1.0,
+    lambda: with_loads(cam_torque=NAN),
+    1e-7,
+    "one part in ten million more torque than heat",
+    base=lossy,
+    put=lambda given: replace(given, cycles=lossy().cycles),
+)
+# geometry
+by_limit(
+    "closure",
+    "closure",
+    1.0,
+    on_contour,
+    5e-10,
+    "as the lift's source says",
+    base=lambda: on_contour(lift_closure=5e-10),
+    put=lambda given: replace(given, contour=on_contour(lift_closure=5e-10).contour),
+)
+by_limit(
+    "pressure_angle",
+    "pressure_angle",
+    np.pi / 180.0,
+    lambda: on_contour(pitch_pressure_angle_max=lambda: NOWHERE),
+    float(np.degrees(np.arctan(np.max(by_hand.SLOPE / by_hand.RADIUS)))),
+    "tan alpha = s'/(r + s), Rothbart ch. 6",
+)
+by_limit(
+    "curvature_ratio",
+    "curvature_ratio",
+    1.0,
+    lambda: on_contour(pitch_least_convex_radius=lambda: NOWHERE),
+    float(by_hand.PITCH_RADIUS.min()) / 8e-3,
+    "(r^2 + 2 r'^2 - r r'')/..., Rothbart 6.4.2",
+)
+by_limit(
+    "undercut",
+    "undercut_factor",
+    1.0,
+    lambda: on_contour(undercut=lambda: SimpleNamespace(factor=np.nan, theta=np.nan)),
+    1.0 - 8e-3 / float(by_hand.PITCH_RADIUS.min()),
+    "1 - r kappa, Rothbart ch. 6",
+)
+tried(
+    "self_intersection",
+    counted(lambda: crossings(0), lambda: crossings(1)),
+    None,
+    None,
+    0.0,
+    "a disc that nearly is one crosses itself nowhere; a count has no NaN",
+)
+by_limit(
+    "second_contact",
+    "second_contact_depth",
+    1e-3,
+    lambda: on_contour(clearance=lambda: (np.nan, np.nan)),
+    2e-3,
+    "2 um deep",
+    base=lambda: on_contour(clearance=lambda: (-2e-6, 1.0)),
+    put=lambda given: replace(given, contour=on_contour(clearance=lambda: (-2e-6, 1.0)).contour),
+)
+by_limit(
+    "concave_radius",
+    "tool_radius",
+    1e-3 / 1.1,
+    lambda: on_contour(pitch_curvature_min=lambda: NOWHERE),
+    8.0 + 30.0**2 / (45.0 - 30.0),
+    "r + r^2/(r'' - r) in the dwellless valley",
+    base=hollow,
+    put=hollow,
+)
+tried(
+    "curvature_rate",
+    limited("curvature_rate", limit_of("curvature_rate")),
+    None,
+    None,
+    0.3804935696445838,
+    "held against differences in test_contour",
+)
+by_limit(
+    "minimum_wall",
+    "minimum_wall",
+    1.0,
+    lambda: on_contour(radius_min=lambda: NOWHERE),
+    42.0 / 10.8,
+    "least contour radius over bore and keyway",
+)
+tried(
+    "spring_travel",
+    limited("spring_travel", lambda mm: with_part("spring", travel_max=1e-3 * mm)),
+    lambda: with_part("spring", travel_max=None),
+    on_contour,
+    10.0,
+    "the stroke",
+)
+# forces
+by_limit(
+    "contact_force_margin",
+    "contact_force_margin",
+    1.0,
+    lambda: with_loads(normal_force=NAN),
+    200.0 / 242.0,
+    "least of 300 + 100 sin",
+)
+by_limit(
+    "jump",
+    "jump",
+    1.0,
+    lambda: with_loads(inertia_force=NAN),
+    float(-(by_hand.INERTIA / by_hand.SPRING).min()),
+    "-m w^2 s''/F_s, Norton",
+)
+by_limit(
+    "jam_index",
+    "jam_index",
+    1.0,
+    lambda: with_loads(jam_index=NAN),
+    0.3,
+    "greatest of 0.2 + 0.1 sin on the rise",
+)
+# contact
+tried(
+    "contact_pressure",
+    limited("contact_pressure", lambda p: with_material("steel", endurance_pressure=1e6 * p)),
+    lambda: with_material("steel", endurance_pressure=None),
+    lambda: with_contact(p0=NAN),
+    900.0,
+    "800 + 100 sin",
+)
+tried(
+    "first_yield",
+    limited("first_yield", lambda p: with_material("steel", yield_strength=1e6 * p)),
+    lambda: with_limits(yield_safety=None),
+    lambda: with_contact(von_mises=NAN),
+    500.0,
+    "400 + 100 sin",
+)
+tried(
+    "shakedown",
+    limited("shakedown", lambda p: with_material("steel", yield_strength=2.5e5 * 3**0.5 * p)),
+    lambda: with_limits(shakedown_safety=None),
+    lambda: with_contact(p0=NAN),
+    900.0,
+    "800 + 100 sin; limit 4 Y/sqrt(3), Johnson sec. 9.2",
+)
+# roller
+by_limit(
+    "roller_static",
+    "roller_static_safety",
+    1.0,
+    lambda: with_loads(normal_force=NAN),
+    1.5,
+    "C0/P0 = 600/400, ISO 76",
+)
+by_limit(
+    "roller_life",
+    "roller_life",
+    3600.0,
+    lambda: with_loads(normal_force=NAN),
+    by_hand.mean_life(),
+    "ISO 281 over the turn",
+)
+tried(
+    "roller_speed",
+    limited("roller_speed", lambda n: with_bearing(speed_limit=n / by_hand.RPM / 0.7)),
+    lambda: with_bearing(speed_limit=None),
+    lambda: with_cycle(crank_speed=np.nan),
+    by_hand.RPM * fake.CAM_SPEED * (60.0 - 8.0) / 8.0,
+    "w (R - r)/r at full lift",
+)
+# guides
+for _side, _load in (("a", 500.0), ("b", 200.0)):
+    _name = f"bush_pressure_{_side.upper()}"
+    tried(
+        _name,
+        limited(_name, lambda p, s=_side: with_guide(s, pressure_limit=1e6 * p)),
+        lambda s=_side: with_guide(s, pressure_limit=None),
+        lambda s=_side: with_guides(**{f"reaction_{s}": NAN}),
+        _load / 200.0,
+        "R/(d l), 10 by 20 mm",
+    )
+    _name = f"bush_pv_{_side.upper()}"
+    tried(
+        _name,
+        limited(_name, lambda p, s=_side: with_guide(s, pv_limit=1e6 * p)),
+        lambda s=_side: with_guide(s, pv_limit=None),
+        lambda s=_side: with_guides(**{f"rubbing_load_{s}": NAN}),
+        _load * 0.4 / 2.0 / 200.0,
+        "mean of R v sin^2, v = 0.4 m/s",
+    )
+    _name = f"bush_peak_{_side.upper()}"
+    tried(
+        _name,
+        limited(_name, lambda p: with_material("nylon", yield_strength=1e6 * p)),
+        None,
+        lambda s=_side: with_parts(**{f"bush_peak_{s}": NAN}),
+        40.0 if _side == "a" else 30.0,
+        "greatest of the turn",
+    )
+    _name = f"bush_temperature_{_side.upper()}"
+    tried(
+        _name,
+        limited(_name, lambda t: with_material("nylon", temperature_limit=t + 273.15)),
+        lambda: with_material("nylon", temperature_limit=None),
+        lambda s=_side: with_parts(
+            **{f"heat_{s}": SimpleNamespace(temperature=np.nan, mean_power=0.0)}
+        ),
+        56.85,
+        "330 K",
+    )
+# rolling, surface
+by_limit(
+    "roller_grip", "skid", 10.0, lambda: with_rolling(traction_demand=None), 0.03, "0.02 + 0.01 sin"
+)
+by_limit("film_ratio", "film_ratio", 1.0, lambda: with_rolling(film=None), 1.5, "2 + 0.5 sin")
+for _name, _field, _value in (
+    ("surface_fatigue", "crossland", 200.0),
+    ("dang_van", "dang_van", 240.0),
+):
+    tried(
+        _name,
+        limited(_name, lambda p: with_material("steel", fatigue_torsion=1e6 * p)),
+        lambda: with_material("steel", fatigue_torsion=None),
+        lambda f=_field: with_map(**{f: np.array([[np.nan]])}),
+        _value,
+        "greatest of the map",
+    )
+tried(
+    "hardened_case",
+    limited("hardened_case", lambda u: with_limits(case_safety=1.0 / u)),
+    lambda: with_material("steel", case_depth=None),
+    lambda: with_map(von_mises=np.full((1, 2), np.nan)),
+    0.8,
+    "400 MPa half way down from 600 to 400",
+)
+by_limit(
+    "case_depth",
+    "case_depth_ratio",
+    1.0,
+    lambda: with_contact(tau_depth=NAN),
+    1.0 / 0.0786,
+    "1 mm over 0.786 half-widths of 0.1 mm, Johnson sec. 4.2(c)",
+)
+tried(
+    "pressure_by_hardness",
+    limited("pressure_by_hardness", lambda p: soft(hardness=(p + 70.0) / 2.76), soft),
+    lambda: soft(hardness=None),
+    lambda: replace(soft(), cycles=with_contact(p0=NAN).cycles),
+    900.0,
+    "2.76 HB - 70 MPa, Shigley ch. 6: 344 MPa at 150 HB",
+    base=soft,
+)
+tried(
+    "pressure_by_gear_limits",
+    limited("pressure_by_gear_limits", lambda p: soft(hardness=(p - 373.0) / 1.313), soft),
+    lambda: soft(treatment=None),
+    lambda: with_contact(p0=NAN),
+    900.0,
+    "1.313 HV + 373 MPa, ISO 6336-5",
+    base=soft,
+)

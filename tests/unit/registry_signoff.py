@@ -1,0 +1,268 @@
+"""How the checks of over-speed, life, shaft, manufacture and parts are tried."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import fake_trial as fake
+import full_trial as full
+import hand_calculations as by_hand
+import numpy as np
+from check_tools import by_limit, check, counted, limit_of, limited, tried
+from trial_variants import (
+    NAN,
+    NOWHERE,
+    on_contour,
+    reversing,
+    with_bearing,
+    with_contact,
+    with_cycle,
+    with_gear,
+    with_guide,
+    with_limits,
+    with_loads,
+    with_material,
+    with_part,
+    with_parts,
+    with_ring,
+)
+
+# signed
+by_limit(
+    "jump_speed",
+    "jump_speed",
+    1.0 / (by_hand.RPM * 2.0 * fake.CAM_SPEED),
+    lambda: with_loads(inertia_force=NAN),
+    by_hand.RPM
+    * 2.0
+    * float(
+        np.sqrt(
+            np.min(
+                (by_hand.SPRING / np.where(by_hand.BEND < 0, -fake.MASS * by_hand.BEND, np.inf))[
+                    by_hand.BEND < 0
+                ]
+            )
+        )
+    ),
+    "w sqrt(F_s/(-m w^2 s'')), Norton",
+)
+by_limit(
+    "contact_at_overspeed",
+    "contact_force_margin",
+    1.0,
+    lambda: with_loads(spring_force=NAN),
+    float((by_hand.SPRING + by_hand.INERTIA).min()) / fake.PRELOAD,
+    "F_s + m w^2 s''",
+)
+tried(
+    "contact_pressure_at_life",
+    limited(
+        "contact_pressure_at_life",
+        lambda p: with_limits(
+            contact_safety=float(
+                np.sqrt(
+                    6894.757
+                    * 10.0 ** ((66.22 - np.log10(by_hand.TURNS)) / 14.15)
+                    * by_hand.MODULUS
+                    / np.pi
+                )
+            )
+            / (1e6 * p)
+        ),
+    ),
+    lambda: with_limits(target_life=None),
+    lambda: with_contact(p0=NAN),
+    900.0,
+    "800 + 100 sin; limit by Rothbart eq. 9.15",
+)
+tried(
+    "edge_pressure",
+    limited("edge_pressure", lambda p: with_material("steel", endurance_pressure=1e6 * p)),
+    lambda: with_material("steel", endurance_pressure=None),
+    lambda: with_contact(p0=NAN),
+    900.0,
+    "crowned: 800 + 100 sin",
+)
+tried(
+    "shakedown_traction",
+    limited(
+        "shakedown_traction",
+        lambda p: with_material(
+            "steel",
+            yield_strength=600e6 * p / (check("shakedown_traction", full.evidence()).limit or 1.0),
+        ),
+    ),
+    lambda: with_part("roller", friction=None),
+    lambda: with_contact(p0=NAN),
+    900.0,
+    "800 + 100 sin; limit by Melan's theorem, test_signed_checks",
+)
+by_limit(
+    "guide_clearance",
+    "clearance",
+    1e-3,
+    lambda: on_contour(radius_max=lambda: NOWHERE),
+    12.0,
+    "30 mm less half of 20 and the roller's 8",
+)
+by_limit(
+    "cam_envelope",
+    "cam_radius",
+    1e-3,
+    lambda: on_contour(radius_max=lambda: NOWHERE),
+    52.0,
+    "base 50 and stroke 10 less the roller's 8 mm",
+)
+tried(
+    "roller_radial",
+    limited("roller_radial", lambda f: with_bearing(radial_limit=f)),
+    lambda: with_bearing(radial_limit=None),
+    lambda: with_loads(normal_force=NAN),
+    400.0,
+    "300 + 100 sin",
+)
+by_limit(
+    "guide_length", "guide_length", 1.0, on_contour, 2.5, "80 + 20 mm over 30 + 10, Rothbart ch. 6"
+)
+# shaft
+by_limit(
+    "key_shear",
+    "key_shear",
+    1e6,
+    lambda: with_loads(cam_torque=NAN),
+    1e-6 * 2.0 * float(by_hand.TORQUE.max()) / (17e-3 * 5e-3 * 0.01),
+    "2 T/(d b l), DIN 6892",
+)
+by_limit(
+    "key_pressure",
+    "key_pressure",
+    1e6,
+    lambda: with_parts(key_pressure=NAN),
+    100.0,
+    "4 T/(d h l), test_cam_body",
+)
+by_limit(
+    "shaft_fatigue",
+    "shaft_safety",
+    1.0,
+    lambda: with_loads(cam_torque=NAN),
+    by_hand.shaft_safety(),
+    "Shigley sec. 7-4",
+)
+by_limit(
+    "shaft_bearing_life",
+    "shaft_bearing_life",
+    3600.0,
+    lambda: with_loads(axial_force=NAN),
+    by_hand.bearing_hours(),
+    "ISO 281",
+)
+tried(
+    "gear_bending",
+    limited("gear_bending", lambda p: with_gear(bending_limit=1e6 * 1.4 / 0.7 * p)),
+    lambda: with_gear(bending_limit=None),
+    lambda: with_loads(cam_torque=NAN),
+    1e-6 * by_hand.TOOTH / (0.01 * 1e-3 * np.pi * (0.154 - 0.912 / 40)),
+    "Lewis: F/(b m pi y), module 1 mm",
+)
+tried(
+    "gear_contact",
+    limited("gear_contact", lambda p: with_gear(contact_limit=1e6 * p)),
+    lambda: with_gear(contact_limit=None),
+    lambda: with_loads(cam_torque=NAN),
+    1e-6
+    * float(
+        np.sqrt(
+            by_hand.TOOTH
+            / np.cos(np.radians(20))
+            / 0.01
+            * by_hand.MODULUS
+            / np.pi
+            * (1 / 0.01 + 1 / 0.02)
+            / np.sin(np.radians(20))
+        )
+    ),
+    "Hertz at the pitch point: radii d sin(20 deg)/2 of 20 and 40 mm wheels",
+)
+# manufacture
+by_limit(
+    "profile_waviness",
+    "waviness",
+    1.0,
+    lambda: with_loads(normal_force=NAN),
+    0.040568761048279486,
+    "m delta (2 pi v/lambda)^2 by hand on a ring, test_signed_checks",
+)
+tried(
+    "chord_error",
+    limited("chord_error", lambda um: with_part("cam", profile_tolerance=4e-6 * um)),
+    lambda: with_part("cam", profile_tolerance=None),
+    lambda: replace(
+        full.evidence(),
+        contour=SimpleNamespace(
+            roller_radius=fake.ROLLER,
+            points=fake.contour().points,
+            radius_of_curvature=lambda theta: np.full_like(theta, np.nan),
+        ),
+    ),
+    0.5293739447429432,
+    "step^2/(8 rho) by hand on a ring, test_signed_checks",
+)
+by_limit(
+    "phase_tolerance",
+    "torque_reduction",
+    1.0,
+    lambda: with_cycle(torque_before=NAN),
+    1.0 - float(np.sqrt(1.25 - np.cos(0.02))),
+    "sin against half of it, 0.02 rad off",
+)
+# parts
+tried(
+    "jam_at_worst_friction",
+    limited("jam_at_worst_friction", limit_of("jam_index")),
+    lambda: with_guide("a", friction_max=None),
+    lambda: with_parts(friction=SimpleNamespace(jam_index_max=NAN)),
+    0.4,
+    "0.3 + 0.1 sin",
+)
+tried(
+    "elastic_contact",
+    limited("elastic_contact", limit_of("contact_force_margin")),
+    lambda: with_limits(contact_force_margin=None),
+    lambda: with_parts(
+        elastic=SimpleNamespace(response=SimpleNamespace(contact_force=NAN), flights=(), method="m")
+    ),
+    200.0 / 242.0,
+    "300 + 100 sin",
+)
+by_limit(
+    "roller_pin",
+    "pin_share",
+    1.0 / 1500.0,
+    lambda: with_parts(pin_stress=NAN),
+    300.0,
+    "200 + 100 sin; 32 M/(pi d^3) in test_parts_checks",
+)
+tried(
+    "roller_ring",
+    limited("roller_ring", lambda p: with_ring(fatigue_bending=1e6 * p)),
+    lambda: with_ring(fatigue_bending=None),
+    lambda: with_parts(ring_amplitude=NAN),
+    400.0 / (1.0 - 0.2),
+    "Goodman: 400 MPa about 400 of 2000, Shigley ch. 6",
+)
+tried(
+    "torque_reversals",
+    counted(lambda: reversing(0), lambda: reversing(1)),
+    None,
+    None,
+    0.0,
+    "a count has no NaN",
+)
+by_limit(
+    "cam_unbalance",
+    "unbalance",
+    1e-3,
+    lambda: with_cycle(crank_speed=np.nan),
+    414.7306657858135,
+    "e w; e of an eccentric disc by hand in test_cam_body",
+)
