@@ -25,6 +25,9 @@ from pipeline import units
 SAFE_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9_-])?")
 
 
+_ALLOWED = "\n\t\u200c\u200d\u200e\u200f"
+
+
 def refusal(limit: str, **context: str) -> PydanticCustomError:
     """A validation error that says what would be accepted."""
     return PydanticCustomError("limit", "must be {limit}", {"limit": limit, **context})
@@ -81,8 +84,12 @@ class In:
 
 
 def printable(text: str) -> str:
-    """The text, refused if it holds control characters."""
-    if not all(character.isprintable() or character in "\n\t" for character in text):
+    """The text, refused if it holds control characters.
+
+    Joiners and direction marks, which scripts and emoji are made with, are none; overrides of the
+    direction, which make a text read as another, are.
+    """
+    if not all(character.isprintable() or character in _ALLOWED for character in text):
         raise refusal("printable text")
     return text
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 import math
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -22,6 +23,7 @@ check not evaluated; besides that an optional check that fails; nothing."""
 HEADINGS = (
     *("check", "demand", "limit", "unit", "used", "margin", "where", "worst corner", "status"),
 )
+_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 STYLES = {"pass": "green", "fail": "red", "waived": "yellow", "not_evaluated": "magenta"}
 
 
@@ -175,7 +177,7 @@ def junit(records: Iterable[Record], name: str, fail_on: str) -> str:
     )
     for record in records:
         case = ET.SubElement(suite, "testcase", classname=f"camwright.{name}", name=record["id"])
-        text = (
+        text = _for_xml(
             f"{record['title']}: {number(record['demand'])} against {number(record['limit'])}"
             f" {record['unit']}, {record['status']}; {record['source']}"
         )
@@ -185,9 +187,15 @@ def junit(records: Iterable[Record], name: str, fail_on: str) -> str:
             ET.SubElement(case, "skipped", message=text)
         else:
             waiver = record.get("waiver")
-            ET.SubElement(case, "system-out").text = text + (f"; {waiver}" if waiver else "")
+            words = f"{text}; {_for_xml(str(waiver))}" if waiver else text
+            ET.SubElement(case, "system-out").text = words
     ET.indent(suite)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suite, "unicode") + "\n"
+
+
+def _for_xml(text: str) -> str:
+    """Text without the characters that XML cannot hold; everything else stays."""
+    return _NOT_XML.sub("\ufffd", text)
 
 
 def consistency_line(finding: Mapping[str, Any]) -> str:
