@@ -28,11 +28,18 @@ def draw(document: Mapping[str, Any], out: Path) -> tuple[Path, ...]:
     drawn = {
         "energies": _energies(document),
         "turn": _turn(document),
-        "workspace_slider_crank": _map(
-            space, "slider_crank_above_best_percent", "slider-crank above the best cam, %"
+        "workspace_slider_crank": _maps(
+            space,
+            "above the best cam, %",
+            ("slider_crank", "no offset"),
+            ("slider_crank_offset", "offset"),
         ),
-        "workspace_small_roller": _map(
-            space, "small_roller_above_best_percent", "small roller above the big one, %"
+        "workspace_eccentric_cam": _maps(
+            space,
+            "above the best cam, %",
+            ("small_roller", "small roller, no offset"),
+            ("big_roller_offset", "big roller, offset"),
+            ("small_roller_offset", "small roller, offset"),
         ),
     }
     paths = []
@@ -88,15 +95,28 @@ def _turn(document: Mapping[str, Any]) -> Canvas:
     return canvas
 
 
-def _map(space: Mapping[str, Any], values: str, title: str) -> Canvas:
+def _maps(space: Mapping[str, Any], label: str, *wanted: tuple[str, str]) -> Canvas:
+    """One workspace: a panel each for what is above the best, white where sizes forbid it."""
     crank, ratio = np.array(space["crank_mm"]), np.array(space["rod_over_crank"])
-    table = np.array(space[values])
-    with style(values):
-        canvas = Canvas(figsize=(6.4, 3.8), layout="constrained")
-        axes = canvas.add_subplot()
-        mesh = axes.pcolormesh(crank, ratio, table.T, shading="nearest", cmap="cividis")
-        canvas.colorbar(mesh, label=title)
-        axes.set_xlabel("crank or eccentricity, mm")
-        axes.set_ylabel("rod or pitch radius over crank")
-        axes.set_title(f"{table.size} combinations: {table.min():.1f} to {table.max():.1f} %")
+    tables = [np.array(space[f"{name}_above_best_percent"], dtype=float) for name, _ in wanted]
+    with style(label):
+        canvas = Canvas(figsize=(6.4, 0.8 + 2.2 * len(wanted)), layout="constrained")
+        panels = canvas.subplots(len(wanted), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, table, (name, title) in zip(panels, tables, wanted, strict=True):
+            # A scale of its own for each: an offset costs the big roller a tenth of the others.
+            mesh = axes.pcolormesh(crank, ratio, table.T, shading="nearest", cmap="cividis")
+            canvas.colorbar(mesh, ax=axes, label=label)
+            known = table[np.isfinite(table)]
+            offset = f" of {space['offset_over_crank']:g} cranks" if "offset" in name else ""
+            axes.set_title(
+                f"{title}{offset}: {known.min():.1f} to {known.max():.1f} % in {known.size} of "
+                f"{table.size} combinations",
+                fontsize="medium",
+            )
+            forbidden = ~np.isfinite(table).any(axis=0)
+            if forbidden.any():
+                axes.text(crank.mean(), ratio[forbidden].mean(), "the sizes leave no room for it",
+                          ha="center", va="center", color=COLOURS["muted"])  # fmt: skip
+            axes.set_ylabel("rod over crank")
+        panels[-1].set_xlabel("crank or eccentricity, mm; rod: pitch radius of the cam")
     return canvas

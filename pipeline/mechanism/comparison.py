@@ -28,7 +28,7 @@ from pipeline.mechanism.drive import (
     stroke_efficiency,
 )
 from pipeline.mechanism.identify import Pendulum, from_pendulum, from_run_down, read_decay
-from pipeline.mechanism.workspace import workspace
+from pipeline.mechanism.workspace import OFFSET_SHARE, Workspace, workspace
 
 Viscous = Annotated[float, In("N m s/rad", at_least=0, at_most=1e6)]
 Inertia = Annotated[float, In("kg m^2", at_least=0, at_most=1e6)]
@@ -234,8 +234,8 @@ def compared(path: Path) -> dict[str, Any]:
             "big_roller_best": space.big_is_best,
             "crank_mm": (1e3 * space.cranks).tolist(),
             "rod_over_crank": space.ratios.tolist(),
-            "slider_crank_above_best_percent": (100 * space.above_best("slider_crank")).tolist(),
-            "small_roller_above_best_percent": (100 * space.above_best("small")).tolist(),
+            "offset_over_crank": OFFSET_SHARE,
+            **{f"{name}_above_best_percent": _percent(space, of) for name, of in _RIVALS.items()},
             "energy_big_roller_J": space.big.tolist(),
         },
         "identified": [_identified(decay, path.parent) for decay in case.decays],
@@ -312,11 +312,17 @@ def lines(document: Mapping[str, Any]) -> Iterator[str]:
                 f"creep loses {found['sliding_loss_J']:.3g} J"
             )
     space = document["workspace"]
-    rod = np.array(space["slider_crank_above_best_percent"])
     yield (
         f"sizes: the big roller without offset is best in {space['big_roller_best']} of "
-        f"{space['combinations']} combinations; the slider-crank lies {rod.min():.1f} to "
-        f"{rod.max():.1f} % above it"
+        f"{space['combinations']} combinations; the slider-crank lies "
+        f"{_range_of(space, 'slider_crank')} % above it, the small roller "
+        f"{_range_of(space, 'small_roller')} %"
+    )
+    yield (
+        f"with an offset of {space['offset_over_crank']:g} cranks, where the sizes allow it, above "
+        f"it: slider-crank {_range_of(space, 'slider_crank_offset')} %, "
+        f"big roller {_range_of(space, 'big_roller_offset')} %, "
+        f"small {_range_of(space, 'small_roller_offset')} %"
     )
     for found in document["identified"]:
         low, high = found["viscous_interval"]
@@ -330,3 +336,23 @@ def lines(document: Mapping[str, Any]) -> Iterator[str]:
 
 def _row(name: str, losses: Mapping[str, float]) -> str:
     return f"{name:34}" + "".join(f"{value:9.2f}" for value in losses.values())
+
+
+_RIVALS = {
+    "slider_crank": "slider_crank",
+    "slider_crank_offset": "slider_crank_offset",
+    "small_roller": "small",
+    "big_roller_offset": "big_offset",
+    "small_roller_offset": "small_offset",
+}
+
+
+def _percent(space: Workspace, name: str) -> list[list[float | None]]:
+    """Energy over the best one's, less one, in percent; None where the sizes do not allow it."""
+    rows = 100.0 * space.above_best(name)
+    return [[float(v) if np.isfinite(v) else None for v in row] for row in rows]
+
+
+def _range_of(space: Mapping[str, Any], name: str) -> str:
+    values = np.array(space[f"{name}_above_best_percent"], dtype=float)
+    return f"{np.nanmin(values):.1f} to {np.nanmax(values):.1f}"

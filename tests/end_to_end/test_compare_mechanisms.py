@@ -21,8 +21,21 @@ def document():
 
 def test_prints_the_energies_and_the_slip_beside_them(document):
     text = "\n".join(lines(document))
-    for figure in ("47.38", "44.31", "122.50", "153 of 153", "0.8 to 10.9 %", "slipping at mu 0.2"):
+    for figure in (
+        "47.38", "44.31", "122.50", "153 of 153", "0.8 to 10.9 %", "4.6 to 65.2 %",
+        "slipping at mu 0.2", "with an offset of 0.75 cranks",
+    ):  # fmt: skip
         assert figure in text
+
+
+def test_an_offset_never_pays_where_there_is_room_for_it(document):
+    """Rods of 3.5 cranks and more leave room for an offset of 0.75: 7 ratios of 9, 17 cranks."""
+    space = document["workspace"]
+    for name in ("slider_crank", "big_roller", "small_roller"):
+        offset = np.array(space[f"{name}_offset_above_best_percent"], dtype=float)
+        assert np.isfinite(offset).sum() == 17 * 7
+        assert np.isnan(offset[:, :2]).all()
+        assert np.nanmin(offset) >= 0.0
 
 
 def test_document_is_json(document):
@@ -32,7 +45,7 @@ def test_document_is_json(document):
 def test_draws_both_workspaces_and_the_turn(document, tmp_path):
     drawn = mechanisms.draw(document, tmp_path)
     assert [path.stem for path in drawn] == [
-        "energies", "turn", "workspace_slider_crank", "workspace_small_roller",
+        "energies", "turn", "workspace_slider_crank", "workspace_eccentric_cam",
     ]  # fmt: skip
     for path in drawn:
         assert path.read_bytes().startswith(b"\x89PNG")
