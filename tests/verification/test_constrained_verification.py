@@ -80,14 +80,15 @@ def test_delivered_ripple_is_that_of_the_follower(limited, published, idle):
     assert np.std(left) / np.std(idle.torque) == pytest.approx(limited.ripple, rel=1e-5)
 
 
-def moving_average(case, torque, strength, rise):
-    target = 2 * smoothed(torque, Smoother().stretched(strength))
-    lift = lift_from_torque(uniform_turn(720), target - target.mean(), 24.2e3, 242.0, rise)
-    pitch = PitchCurve(lift, 0.05)
+def moving_average(case, torque, strength, rise, base=0.05):
+    target = 2 * smoothed(torque, Smoother().stretched(strength))[::2]
+    lift = lift_from_torque(uniform_turn(360), target - target.mean(), 24.2e3, 242.0, rise)
     speed = case.load_cases[0].speed / 2
-    loads = follower_loads(pitch, FollowerSystem.from_case(case), speed, uniform_turn(720))
+    system = FollowerSystem.from_case(case)
+    loads = follower_loads(PitchCurve(lift, base), system, speed, uniform_turn(360))
     angle = float(np.degrees(np.abs(loads.pressure_angle).max()))
-    return angle, float(loads.normal_force.max()), float(np.std(torque - loads.cam_torque / 2))
+    rest = float(np.std(torque[::2] - loads.cam_torque / 2))
+    return angle, float(loads.normal_force.max()), rest
 
 
 def test_leaves_a_third_of_the_moving_average_at_the_same_pressure_angle(published, idle):
@@ -98,17 +99,22 @@ def test_leaves_a_third_of_the_moving_average_at_the_same_pressure_angle(publish
     assert 3.0 * design.ripple * np.std(idle.torque) <= rest
 
 
-def test_leaves_less_than_any_moving_average_within_angle_and_force(published, idle, limited):
-    """E0 free for the average: of all widths and rises that keep both limits, the best."""
+def test_leaves_less_than_any_moving_average_within_angle_and_force(published, idle):
+    """E0 and the base radius free for both: of all averages that keep both limits, the best."""
     case, _ = published
+    bases = (0.045, 0.065)
+    freed = replace(problem(idle, normal_force=1100.0), freed={"base_radius": bases})
+    design = synthesise(freed)
+    assert design.feasible
     best = np.inf
-    for strength in np.linspace(0.2, 5.0, 17):
-        for rise in np.linspace(0.0, 16.0, 17):
-            angle, force, rest = moving_average(case, idle.torque, strength, rise)
-            if angle <= 30.0 and force <= 1100.0:
-                best = min(best, rest)
+    for strength in np.linspace(0.2, 4.0, 11):
+        for rise in np.linspace(0.0, 14.0, 8):
+            for base in np.linspace(*bases, 4):
+                angle, force, rest = moving_average(case, idle.torque, strength, rise, base)
+                if angle <= 30.0 and force <= 1100.0:
+                    best = min(best, rest)
     assert np.isfinite(best)
-    assert 1.4 * limited.ripple * np.std(idle.torque) <= best
+    assert 1.4 * design.ripple * np.std(idle.torque) <= best
 
 
 def test_lift_closes_and_scales_with_the_spring(idle):
