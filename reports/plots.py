@@ -2,7 +2,8 @@
 
 Every colour has a name. In the SVG it becomes a style variable of the page, so one drawing reads
 on white paper and on a dark screen; in the PNG it is the colour of the light theme. The hues are
-those of Okabe and Ito (2008), told apart by the colour-blind; dashes repeat what hue says.
+those of Okabe and Ito (2008), told apart by the colour-blind, the pale ones darkened to stand off
+white paper; dashes repeat what hue says.
 """
 
 from __future__ import annotations
@@ -34,9 +35,9 @@ COLOURS = {
     "blue": "#0072b2",
     "vermillion": "#d55e00",
     "green": "#009e73",
-    "orange": "#e69f00",
-    "sky": "#56b4e9",
-    "purple": "#cc79a7",
+    "orange": "#b27a00",
+    "sky": "#2f8fc6",
+    "purple": "#c069a0",
     "ink": "#1b1f24",
     "muted": "#59616b",
     "grid": "#e2e6eb",
