@@ -1,0 +1,81 @@
+"""CPU seconds of one synthesis and of a case with finite elements in the loop.
+
+python benchmarks/synthesis.py [positions]; 0 positions leave the loop out.
+
+The synthesis has 96 coefficients, 720 points and one load case; the loop is the whole run of the
+redesigned GX120: starts, trials, certificate, fields, report. Both budgets are told in solutions
+of 1000 dense equations on the same core, so that they hold on another machine: 2 s and 90 s where
+one takes 20 ms. Beyond a budget the exit code is 1.
+"""
+
+from __future__ import annotations
+
+import resource
+import sys
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from pipeline import trial as road
+from pipeline.case import load_case_file
+from pipeline.progress import Silent
+from pipeline.run import run_case
+from pipeline.smoothing.constrained import synthesise
+from pipeline.smoothing.problem import problem_of
+
+ROOT = Path(__file__).resolve().parent.parent
+POSITIONS = 720
+SYNTHESIS_BUDGET, LOOP_BUDGET = 100.0, 4500.0  # dense solutions
+ROUNDS = 5
+
+
+def cpu() -> float:
+    """CPU seconds of this process and of those it waited for."""
+    spent = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(each.ru_utime + each.ru_stime for each in spent)
+
+
+def dense_solution() -> float:
+    """Seconds of one solution of 1000 dense equations, the least of some rounds."""
+    random = np.random.default_rng(0)
+    matrix, right = random.normal(size=(1000, 1000)), random.normal(size=1000)
+    found = []
+    for _ in range(ROUNDS):
+        start = time.process_time()
+        np.linalg.solve(matrix, right)
+        found.append(time.process_time() - start)
+    return min(found)
+
+
+def main() -> int:
+    positions = int(sys.argv[1]) if len(sys.argv) > 1 else POSITIONS
+    case = load_case_file(ROOT / "cases" / "gx120-signed.toml")
+    problem = problem_of(case, road.engine_torques(case))
+    alone = replace(problem, scenarios=problem.scenarios[:1])
+    unit, start = dense_solution(), cpu()
+    design = synthesise(alone)
+    seconds = cpu() - start
+    over = seconds > SYNTHESIS_BUDGET * unit
+    print(
+        f"synthesis: {seconds:.2f} s, {design.steps} steps, ripple left {design.ripple:.5f}; "
+        f"{seconds / unit:.0f} dense solutions of {1e3 * unit:.1f} ms, "
+        f"budget {SYNTHESIS_BUDGET:.0f}"
+    )
+    if positions:
+        start = cpu()
+        with tempfile.TemporaryDirectory() as folder:
+            summary = run_case(case, Path(folder) / "run", positions=positions, progress=Silent())
+        seconds = cpu() - start
+        over = over or seconds > LOOP_BUDGET * unit
+        print(
+            f"loop: {seconds:.1f} s, {positions} positions, {summary['trials']} trials, verdict "
+            f"{summary['verdict']}; {seconds / unit:.0f} dense solutions, budget {LOOP_BUDGET:.0f}"
+        )
+    return 1 if over else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
