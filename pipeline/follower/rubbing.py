@@ -33,6 +33,7 @@ from pipeline.follower.stem import Stem
 
 RESIDUAL = 1e-10  # of the axial equilibrium, over the cam's push
 _ROUNDS_MAX = 100  # bisection alone ends the widest bracket, F to F/JAM_FLOOR, in 40
+_CLIMB = 40  # rounds in which a place without an upper bound yet may go up slowly
 
 # Values at some of the positions, which are numbered by the second argument.
 Answer = Callable[[Array, NDArray[np.intp]], Array]
@@ -76,9 +77,11 @@ def guided_loads(
 
     With play c depends on the load, so that the equation is solved for F_a, at all angles at
     once. On the way out F_a lies between F and F/`JAM_FLOOR`, on the way back between 0 and F,
-    and both sides are continuous: a solution exists whatever the friction. While the jam index
-    is below 1 - `JAM_FLOOR` it is a balance of forces; at jamming it is the bound of the forces,
-    and `jam_index` tells of it as with `follower_loads`.
+    and both sides are continuous: a solution exists whatever the friction. On the way out the
+    search goes up from F: where guides that bite harder under more load know several answers,
+    the least push that moves the follower is the one. While the jam index is below
+    1 - `JAM_FLOOR` it is a balance of forces; at jamming it is the bound of the forces, and
+    `jam_index` tells of it as with `follower_loads`.
 
     Parameters
     ----------
@@ -113,7 +116,8 @@ def guided_loads(
 
     force, outward = free.axial_force, slope > 0.0
     high = np.where(outward, force / JAM_FLOOR, force)
-    push, rounds = balanced(answer, np.where(outward, force, 0.0), high, points.axial_force)
+    low, start = np.where(outward, force, 0.0), np.where(outward, force, points.axial_force)
+    push, rounds = balanced(answer, low, high, start)
     everywhere = np.arange(theta.size)
     a, b = bores.factors(push, everywhere)
     loads = follower_loads(pitch, replace(system, rubbing=Rubbing(theta, a, b)), cam_speed, theta)
@@ -138,7 +142,8 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
     """Values x that are their own answer, x = f(x), each of its own function within a bracket.
 
     f(low) >= low and f(high) <= high, f continuous: the secant through the two last values where
-    it stays in the bracket and at least halves the miss, else the middle of the bracket.
+    it stays in the bracket. Where it does not halve the miss the middle of the bracket is taken,
+    once a place with f(x) < x bounds it; until then the way is up, by the secant or to f(x).
 
     Parameters
     ----------
@@ -158,6 +163,7 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
     """
     x, low, high = np.clip(start, low, high), low.copy(), high.copy()
     before, missed = np.full_like(x, np.nan), np.full_like(x, np.inf)
+    bounded = np.zeros(x.shape, dtype=bool)
     at = np.flatnonzero(high > 0.0)
     x[high <= 0.0] = 0.0
     for rounds in range(_ROUNDS_MAX):
@@ -168,13 +174,14 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
         open_ = np.abs(miss) > 0.01 * RESIDUAL * found
         low[at] = np.where(miss < 0.0, now, low[at])
         high[at] = np.where(miss > 0.0, now, high[at])
+        bounded[at] |= miss > 0.0
         with np.errstate(invalid="ignore", divide="ignore"):
             secant = now - miss * (now - before[at]) / (miss - missed[at])
-        next_ = np.where(np.isfinite(secant), secant, found)
+        within = (secant > low[at]) & (secant <= high[at])
         slow = np.abs(miss) > 0.5 * np.abs(missed[at])
-        outside = ~((next_ > low[at]) & (next_ < high[at]))
-        middle = 0.5 * (low[at] + high[at])
-        x[at] = np.where(open_, np.where(slow | outside, middle, next_), found)
+        halved = slow & (bounded[at] | (rounds >= _CLIMB))
+        next_ = np.where(halved, 0.5 * (low[at] + high[at]), np.where(within, secant, found))
+        x[at] = np.where(open_, next_, found)
         before[at], missed[at] = now, miss
         at = at[open_]
     raise ContactError(f"friction: {at.size} positions not in balance after {_ROUNDS_MAX} rounds")

@@ -135,6 +135,59 @@ def test_a_jam_is_told_by_its_index_and_the_forces_stay_finite():
     )
 
 
+def test_the_least_push_that_moves_the_follower():
+    """A stiff tight guide B bites harder under more load: at some angles a balance at 0.6 of the
+    jam, another at 0.9 and the jam itself answer. Below the push found none does.
+
+    The guides are solved anew at 40 pushes from that without friction up to 0.98 of the one found.
+    """
+    lift = Lift(THETA, 0.0134 * (1.0 - np.cos(THETA)))
+    pitch = PitchCurve(lift, 0.0315, -0.0092)
+    pair = GuidePair(0.0551, Guide(0.0113, 0.01, 1e-5, 5.4e8), Guide(0.027, 0.01, 1e-6, 9.9e11))
+    system = FollowerSystem(0.175, 24.2e3, 242.0, 0.0551, 0.0069, 0.105, 0.384)
+    found = guided(system, pair, pitch).loads
+    free = follower_loads(
+        pitch, replace(system, friction_a=0.0, friction_b=0.0), SPEED, THETA
+    ).axial_force
+    rising = (found.lift_slope > 1e-4) & (found.jam_index > 0.5) & ~found.jammed
+
+    def needed(push):
+        bearing = guide_reactions(push * np.tan(found.pressure_angle), found.overhang, STEM, pair)
+        return free + 0.105 * bearing.rubbing_load_a + 0.384 * bearing.rubbing_load_b
+
+    for share in np.linspace(0.0, 1.0, 40):
+        push = free + share * (0.98 * found.axial_force - free)
+        assert (needed(push) > push)[rising].all()
+    more = [
+        push
+        for push in np.geomspace(1.0, 60.0, 40)
+        if (needed(push * found.axial_force) > push * found.axial_force)[rising].any()
+    ]
+    assert rising.any()
+    assert more[-1] > 2.0  # the same guides would hold the follower fast, pushed so hard
+    np.testing.assert_allclose(
+        needed(found.axial_force)[rising], found.axial_force[rising], rtol=1e-9
+    )
+
+
+def test_machines_at_random_are_in_balance():
+    """Lengths, plays, stiffness, friction and offset at random: 1e-10 everywhere, in few rounds."""
+    rng = np.random.default_rng(8)
+    rounds = []
+    for _ in range(20):
+        length, play = rng.uniform(0.005, 0.04, 2), rng.choice([0.0, 1e-6, 5e-5, 2e-4], 2)
+        stiff = 10 ** rng.uniform(8.5, 12.0, 2)
+        a, b = (Guide(n, 0.01, c, k) for n, c, k in zip(length, play, stiff, strict=True))
+        pair = GuidePair(float(rng.uniform(0.045, 0.1)), a, b)
+        reach = 0.5 * float(length[0]) + float(rng.uniform(0.001, 0.05))
+        mu = rng.uniform(0.0, 0.3, 2)
+        system = FollowerSystem(0.175, 24.2e3, 242.0, pair.spacing, reach, *map(float, mu))
+        found = guided(system, pair, PitchCurve(PITCH.lift, 0.05, float(rng.uniform(-0.02, 0.02))))
+        assert found.residual.max() <= 1e-10
+        rounds.append(found.rounds)
+    assert np.mean(rounds) < 15
+
+
 def test_lost_contact_rubs_nothing():
     found = guided_loads(PITCH, SYSTEM, STEM, PAIR, 900.0, THETA)
     assert found.loads.separated.any()
