@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,10 @@ from pipeline.follower.cam_body import (
     Unbalance,
     counter_hole,
     greatest_hole,
+    rotating_force,
     unbalance,
 )
+from pipeline.part_fields import Cam
 
 WALL = 3e-3
 """Steel left around a hole that the case does not ask for, m."""
@@ -72,8 +75,12 @@ class Balance:
 
 def balance(case: Case, contour: Contour) -> Balance:
     """Unbalance of the cam with bore and keyway, and the hole that takes it away."""
-    cam = case.cam
-    density = case.material(cam.material).density
+    density = case.material(case.cam.material).density
+    return _balance(contour, case.cam, density)
+
+
+@lru_cache(maxsize=16)
+def _balance(contour: Contour, cam: Cam, density: float) -> Balance:
     found = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density)
     asked = cam.counter_hole
     wall = WALL if asked is None else asked.wall
@@ -86,6 +93,11 @@ def balance(case: Case, contour: Contour) -> Balance:
         except GeometryError as error:
             missed = str(error)
     return Balance(found, hole, missed, asked is not None, density * cam.width)
+
+
+def unbalance_force(case: Case, contour: Contour, cam_speed: float, theta: Array) -> Array:
+    """What the cam as made throws at its shaft, (2, n), N, as `rotating_force` has it."""
+    return rotating_force(balance(case, contour).as_made, cam_speed, theta)
 
 
 def drilled_hole(case: Case, contour: Contour) -> CounterHole | None:

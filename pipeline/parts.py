@@ -10,6 +10,7 @@ import numpy as np
 
 from geometry.arrays import Array, freeze
 from geometry.contour import Contour
+from pipeline.balance import unbalance_force
 from pipeline.case import Case
 from pipeline.contact.harmonics import Bush, Pin
 from pipeline.contact.pin_in_hole import peak_pressure
@@ -117,7 +118,7 @@ def parts_history(
     cam_speed = given.crank_speed / case.mechanism.gear_ratio
     friction, shares = _guided(case, contour, given, cam_speed)
     spring = case_spring(case)
-    shaft = _shaft(case, loads)
+    shaft = _shaft(case, contour, loads, cam_speed)
     amplitude, mean, correction = _ring(case, contour, loads, ring)
     spin, spin_acceleration = _spin(case, contour, loads, cam_speed)
     return PartsHistory(
@@ -208,12 +209,20 @@ def _key(case: Case, loads: Loads) -> Array | None:
     ).pressure
 
 
-def _shaft(case: Case, loads: Loads) -> tuple[Array, Array] | None:
+def _shaft(
+    case: Case, contour: Contour, loads: Loads, cam_speed: float
+) -> tuple[Array, Array] | None:
     given = case.camshaft
     if given is None:
         return None
-    shaft = Camshaft.of(given)
-    found = shaft_loads(loads.axial_force, loads.tangential_force, loads.cam_torque, shaft)
+    thrown = unbalance_force(case, contour, cam_speed, loads.theta)
+    found = shaft_loads(
+        loads.axial_force,
+        loads.tangential_force,
+        loads.cam_torque,
+        Camshaft.of(given),
+        thrown,
+    )
     return found.load_1, found.load_2
 
 

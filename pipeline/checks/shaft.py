@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geometry.arrays import Array
+from pipeline.balance import unbalance_force
 from pipeline.checks.check import Check, not_described
 from pipeline.checks.trial import TrialEvidence, greatest, worst_case
 from pipeline.contact.hertz import contact_modulus
@@ -24,7 +25,6 @@ from pipeline.follower.shaft_strength import (
 )
 
 if TYPE_CHECKING:
-    from pipeline.case import Case
     from pipeline.cycle import Cycle
     from pipeline.part_fields import Camshaft as CaseShaft
     from pipeline.part_fields import CamshaftGear
@@ -83,7 +83,7 @@ def shaft_fatigue(evidence: TrialEvidence) -> Check:
     )
 
     def safety(cycle: Cycle) -> float:
-        loads, shaft = _loads(case, cycle)
+        loads, shaft = _loads(evidence, cycle)
         moment = bending_moment(loads, shaft, shaft.cam_position)
         return fatigue_safety(cycle.theta, moment, cycle.loads.cam_torque, section)
 
@@ -118,7 +118,7 @@ def shaft_bearing_life(evidence: TrialEvidence) -> Check:
         return not_described("shaft_bearing_life", title, "h", note, must_have=False)
 
     def life(cycle: Cycle) -> float:
-        loads, _ = _loads(case, cycle)
+        loads, _ = _loads(evidence, cycle)
         if not (np.isfinite(loads.load_1).all() and np.isfinite(loads.load_2).all()):
             return float(np.nan)
         spin = np.full(cycle.theta.size, evidence.cam_speed(cycle))
@@ -229,9 +229,12 @@ def _tooth_force(shaft: CaseShaft, gear: CamshaftGear, cycle: Cycle) -> Array:
     return np.asarray(gear.application_factor * torque / shaft.gear_radius)
 
 
-def _loads(case: Case, cycle: Cycle) -> tuple[ShaftLoads, Camshaft]:
-    shaft, loads = Camshaft.of(case.camshaft), cycle.loads
-    return shaft_loads(loads.axial_force, loads.tangential_force, loads.cam_torque, shaft), shaft
+def _loads(evidence: TrialEvidence, cycle: Cycle) -> tuple[ShaftLoads, Camshaft]:
+    shaft, loads = Camshaft.of(evidence.case.camshaft), cycle.loads
+    speed = evidence.cam_speed(cycle)
+    thrown = unbalance_force(evidence.case, evidence.contour, speed, cycle.theta)
+    forces = (loads.axial_force, loads.tangential_force, loads.cam_torque)
+    return shaft_loads(*forces, shaft, thrown), shaft
 
 
 CHECKS = (key_shear, shaft_fatigue, shaft_bearing_life, gear_bending, gear_contact)

@@ -230,6 +230,16 @@ class Unbalance:
         return self.product * cam_speed**2
 
 
+def rotating_force(found: Unbalance, cam_speed: float, theta: Array) -> Array:
+    """Centrifugal force of an unbalance on the shaft, (2, n), N, in the frame of `ShaftLoads`.
+
+    At the cam angle of the heavy side it points along the follower; from there it turns with
+    the cam, in the sense of a positive torque.
+    """
+    turned = finite("theta", theta) - found.angle
+    return found.force(cam_speed) * np.stack([np.cos(turned), np.sin(turned)])
+
+
 def unbalance(
     contour: Contour, bore_radius: float, keyway: Any, width: float, density: float
 ) -> Unbalance:

@@ -15,6 +15,7 @@ from pipeline.follower.cam_body import (
     Camshaft,
     counter_hole,
     key_stress,
+    rotating_force,
     shaft_loads,
     torque_reversals,
     unbalance,
@@ -104,6 +105,22 @@ def test_unbalance_of_an_eccentric_disc():
     assert found.mass == pytest.approx(DENSITY * WIDTH * found.area)
     assert found.force(80.0) == pytest.approx(DENSITY * WIDTH * ECCENTRICITY * full * 6400)
     assert found.eccentricity == pytest.approx(ECCENTRICITY * full / found.area)
+
+
+def test_unbalance_turns_with_the_cam():
+    """Out along the follower where the heavy side is under it; m e w^2 all the way round.
+
+    The sense is that of a positive torque, in which the shaft turns: a quarter turn later it points to
+    positive y.
+    """
+    found = unbalance(eccentric(), 8.5e-3, None, WIDTH, DENSITY)
+    force = rotating_force(found, 80.0, found.angle + np.array([0.0, 0.5 * np.pi, 4.0]))
+    np.testing.assert_allclose(np.hypot(*force), found.force(80.0), rtol=1e-12)
+    np.testing.assert_allclose(force[:, 0], [found.force(80.0), 0.0], atol=1e-9)
+    np.testing.assert_allclose(force[:, 1], [0.0, found.force(80.0)], atol=1e-9)
+    alone = shaft_loads(np.zeros(3), np.zeros(3), np.zeros(3), SHAFT, force)
+    np.testing.assert_allclose(alone.load_2, found.force(80.0) * 0.02 / 0.06, rtol=1e-12)
+    np.testing.assert_allclose(alone.load_1 + alone.load_2, found.force(80.0), rtol=1e-12)
 
 
 def test_keyway_is_taken_off_exactly():
