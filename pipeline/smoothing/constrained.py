@@ -22,13 +22,12 @@ from pipeline.smoothing.design import (
     RESERVE,
     Design,
     Problem,
-    coarsened,
 )
 from pipeline.smoothing.grid import Grid
 from pipeline.smoothing.search import LEAST_ENERGY, Search, State
 
 __all__ = [
-    "RESERVE", "TORQUE_REDUCTION", "Design", "Problem", "Search", "coarsened", "synthesise",
+    "RESERVE", "TORQUE_REDUCTION", "Design", "Problem", "Search", "started", "synthesise",
 ]  # fmt: skip
 
 _ROUNDS = 4

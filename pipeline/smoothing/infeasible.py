@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.smoothing.constrained import TORQUE_REDUCTION, Design, Problem, synthesise
+from pipeline.checks.function import TORQUE_REDUCTION
+from pipeline.smoothing.constrained import synthesise
+from pipeline.smoothing.design import Design, Problem, coarsened
 
-_COEFFICIENTS, _POINTS = 36, 240  # enough to tell whether there is a cam at all
 _FACTOR_MAX = 4.0
 _BISECTIONS = 5
 _IN_HAND = 1.02  # a relaxation is given with this much beyond the least one found
@@ -93,19 +94,6 @@ def infeasibility(problem: Problem) -> Infeasibility:
     return Infeasibility(
         tuple(reversed(conflict)), tuple(sorted(kept, key=lambda item: item.factor))
     )
-
-
-def coarsened(problem: Problem) -> Problem:
-    """The problem on a coarser turn, as quick as a yes or no asks for."""
-    turns = tuple(
-        replace(item, torque=_thinned(item.torque, problem.points)) for item in problem.scenarios
-    )
-    return replace(problem, scenarios=turns, points=_POINTS, coefficients=_COEFFICIENTS, seed=None)
-
-
-def _thinned(torque: Any, points: int) -> Any:
-    spectrum = np.fft.rfft(torque)[: _POINTS // 2]
-    return np.fft.irfft(spectrum, n=_POINTS) * (_POINTS / points)
 
 
 def _possible(problem: Problem) -> bool:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pipeline.smoothing.constrained import RESERVE, Design, Problem
+from pipeline.smoothing.design import RESERVE, Design, Problem
 from pipeline.smoothing.constraints import Machine, Ratings
 
 BINDING = 2e-3  # below the reserve by less than this share of a limit: it binds
@@ -79,9 +79,6 @@ def prices(design: Design, problem: Problem) -> list[dict[str, Any]]:
 
 def _slope(name: str, limit: float, ratings: Ratings) -> float:
     """By how much the utilisation falls for one more unit of the limit."""
-    if name == "pressure_angle":
-        angle = np.radians(limit)
-        return float(np.radians(1.0) / (np.sin(angle) * np.cos(angle)))
     if name == "contact_pressure":
         # only the share N / F_lim falls, with the square; at the limit it is 1 - r kappa
         return 2.0 / limit
