@@ -1,4 +1,4 @@
-"""The map of a turn as a picture: greatest stress under the contour, unrolled."""
+"""The map of a turn as pictures: greatest stress under the contour, in its place and unrolled."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from geometry.arrays import Array
 from geometry.errors import ResultError
-from reports.plots import FIGURE_WIDTH, style
+from reports.plots import COLOURS, FIGURE_WIDTH, style
 
 FILE = "5_envelope.npz"
 MAPS = (("von_mises_MPa", "von Mises"), ("shear_range_MPa", "range of shear along the surface"))
@@ -66,10 +66,62 @@ def drawn(envelope: dict[str, Array]) -> bytes:
             canvas.colorbar(shown, ax=ax, label="MPa", pad=0.01)
         ax.set_xlabel("cam angle, deg")
         ax.set_xticks(np.arange(0, 361, 45))
-        stream = io.BytesIO()
-        canvas.savefig(
-            stream, format="png", dpi=150, facecolor="white", metadata={"Software": None}
+        return _png(canvas)
+
+
+def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Array) -> bytes:
+    """PNG of the map of von Mises stress in its place along the contour, depths enlarged.
+
+    The contour (2, n), mm, and its outward normals (2, n) belong to cam angles (n,), deg.
+    """
+    at = envelope["cam_angle_deg"]
+    place, up = (_between(at, angle, part) for part in (contour, normal))
+    depth, values = envelope["depth_mm"], envelope["von_mises_MPa"]
+    radius = np.hypot(*place)
+    scale = _enlarged(0.25 * float(radius.min()) / float(np.nanmax(depth)))
+    band = place[:, :, None] - up[:, :, None] * scale * depth
+    closed, shown = (np.concatenate([v, v[..., :1, :]], axis=-2) for v in (band, values))
+    found = worst(envelope, "von_mises_MPa")
+    station = int(np.argmin(np.abs(at - found[1])))
+    with style("envelope-around"):
+        canvas = Figure(figsize=(FIGURE_WIDTH, 4.7), layout="constrained")
+        ax = canvas.add_subplot()
+        mesh = ax.pcolormesh(
+            *closed, shown, cmap="viridis", shading="gouraud", vmin=0.0, rasterized=True
         )
+        ax.plot(*closed[:, :, 0], color=COLOURS["ink"], linewidth=0.8)
+        for mark in range(0, 360, 45):
+            here = int(np.argmin(np.abs(at - mark)))
+            x, y = place[:, here] + 0.09 * radius.max() * up[:, here]
+            ax.text(x, y, f"{mark}°", ha="center", va="center", fontsize=8, color=COLOURS["muted"])
+        x, y = place[:, station] - scale * found[2] * up[:, station]
+        ax.annotate(
+            f"{found[0]:.4g} MPa\nat {found[1]:g}°, {found[2]:.2g} mm deep",
+            (x, y), (0.0, 0.0), ha="center", va="center",
+            arrowprops={"arrowstyle": "-", "color": COLOURS["ink"], "linewidth": 0.8},
+        )  # fmt: skip
+        far = 0.15 * radius.max()
+        span = [(part.min() - far, part.max() + far) for part in place]
+        ax.set(aspect="equal", xlabel="x, mm", ylabel="y, mm", xlim=span[0], ylim=span[1])
+        ax.set_title(f"depths drawn {scale:g} times as large", fontsize=8.5, loc="left")
+        canvas.colorbar(mesh, ax=ax, label="greatest von Mises stress of the turn, MPa", pad=0.01)
+        return _png(canvas)
+
+
+def _between(at: Array, angle: Array, values: Array) -> Array:
+    """Values (2, n) at angles (n,), deg, of one turn, at other angles: (2, m)."""
+    return np.stack([np.interp(at, angle, part, period=360.0) for part in values])
+
+
+def _enlarged(wanted: float) -> float:
+    """The round number next below: 1, 2 or 5 times a power of ten."""
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step for step in (1.0, 2.0, 5.0) if step * power <= wanted) * power)
+
+
+def _png(canvas: Figure) -> bytes:
+    stream = io.BytesIO()
+    canvas.savefig(stream, format="png", dpi=150, facecolor="white", metadata={"Software": None})
     return stream.getvalue()
 
 

@@ -31,6 +31,8 @@ PARTS = (
     Part("figures", "the plots as PNG", drawings.write),
     Part("fields", "pictures of the stress at the worst angle",
          partial(pictures.write_pictures, pictures.stress_pictures)),
+    Part("bushes", "picture of the pressure in the guides",
+         partial(pictures.write_pictures, pictures.bush_pictures)),
     Part("envelope", "map of the greatest stress under the contour",
          partial(pictures.write_pictures, pictures.envelope_pictures)),
     Part("page", page.PAGE, page.write),

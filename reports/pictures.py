@@ -8,8 +8,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
+
 from geometry.errors import ResultError
-from reports import envelope, scene, tables
+from reports import bushes, contact_pressure, envelope, scene, tables
+from reports.contact_pressure import over_the_contact
 from reports.material import Material
 from reports.output import FIGURES, write_whole
 
@@ -52,14 +55,18 @@ def stress_pictures(material: Material) -> Sequence[Picture]:
     given = field.notes.get("cam_angle_deg", turn.columns["cam_angle_deg"][turn.worst])
     angle = tables.number(float(given))
     peak = tables.quantity(views[0].clim[1], "MPa")
+    final = material.run.final
+    above = over_the_contact(
+        final.path / contact_pressure.FILE, final.cycle, float(given), half_width
+    )
     return (
         Picture(
-            f"Von Mises stress under the {turn.follower_name}",
+            f"Contact pressure and von Mises stress under the {turn.follower_name}",
             f"At {angle} deg of the cam, where the contact pressure is greatest. Lengths count "
             f"half-widths; lines at 20, 40, 60, 80 and 95 % of the greatest, {peak}. "
             "Shapes are deformed at true scale.",
             f"Von Mises stress within four half-widths of the contact; greatest value {peak}.",
-            "field-contact", scene.frame_contact(rasters[0], half_width, turn.follower_name),
+            "field-contact", scene.frame_contact(rasters[0], half_width, turn.follower_name, above),
             rasters[0].note,
         ),
         Picture(
@@ -83,6 +90,12 @@ def envelope_pictures(material: Material) -> Sequence[Picture]:
         found = envelope.read_envelope(file, material.turn.load_case)
     except ResultError as error:
         return (Picture(title, note=f"There is no map of the turn: {error}."),)
+    contour = material.run.final.contour.columns
+    shape = (
+        contour["cam_angle_deg"],
+        np.stack([contour["contour_x_mm"], contour["contour_y_mm"]]),
+        np.stack([contour["normal_x"], contour["normal_y"]]),
+    )
     mises, angle, depth = envelope.worst(found, "von_mises_MPa")
     where = (
         f"{tables.quantity(mises, 'MPa')} of von Mises stress at {tables.number(angle)} deg of "
@@ -97,10 +110,51 @@ def envelope_pictures(material: Material) -> Sequence[Picture]:
             "envelope",
             envelope.drawn(found),
         ),
+        Picture(
+            "The same map in its place along the contour",
+            "Von Mises stress; angles are those of the cam, depths are drawn larger than they are.",
+            f"Map of von Mises stress as a band along the contour; greatest {where}.",
+            "envelope-contour",
+            envelope.around(found, *shape),
+        ),
     )
 
 
-PICTURES: tuple[Callable[[Material], Sequence[Picture]], ...] = (stress_pictures, envelope_pictures)
+@lru_cache(maxsize=1)
+def bush_pictures(material: Material) -> Sequence[Picture]:
+    """The pressure in both guides; older runs kept none."""
+    file = material.run.final.path / bushes.FILE
+    if not file.exists():
+        return ()
+    title = "Pressure in the guides"
+    try:
+        found = bushes.read_bushes(file, material.turn.load_case)
+    except ResultError as error:
+        return (Picture(title, note=f"There is no picture of the guides: {error}."),)
+    peaks = ", ".join(
+        f"guide {bush.name} {tables.quantity(bush.peak, 'MPa')} at "
+        f"{tables.number(bush.worst_angle)} deg of the cam" for bush in found
+    )  # fmt: skip
+    return (
+        Picture(
+            title,
+            "Left the guide's push on the stem per length over the turn; in the middle the "
+            "pressure all round the bore at the angle where it is greatest (dashed on the left), "
+            "0 deg facing the side force; right the slice with the greatest pressure, drawn "
+            f"outwards from the bore. Greatest: {peaks}. At a mouth with a sharp edge the "
+            "pressure is that of a bush whose slices do not help one another.",
+            f"Maps of the pressure in both guides; greatest {peaks}.",
+            "bush-pressure",
+            bushes.drawn(found),
+        ),
+    )
+
+
+PICTURES: tuple[Callable[[Material], Sequence[Picture]], ...] = (
+    stress_pictures,
+    envelope_pictures,
+    bush_pictures,
+)
 """What the page shows beside the plots, in this order."""
 
 

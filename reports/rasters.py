@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,20 +16,31 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from matplotlib.tri import Triangulation
 
 from geometry.arrays import Array
-from reports.plots import style
+from reports.figures import SERIES
+from reports.plots import COLOURS, style
+
+_ABOVE, _GAP = 1.25, 0.1  # inches
+
+
+@dataclass(frozen=True, eq=False)
+class Above:
+    """Curves on the horizontal axis of a raster: label, places (n,), values (n,); first filled."""
+
+    title: str
+    curves: tuple[tuple[str, Array, Array], ...]
 
 
 def framed(
     image: Array, extent: tuple[float, float, float, float], labels: tuple[str, str], title: str,
     colour_map: Any, clim: tuple[float, float], log: bool, bar: tuple[float, str] | None,
-    notes: tuple[tuple[str, float], ...] = (),
+    notes: tuple[tuple[str, float], ...] = (), above: Above | None = None,
 ) -> bytes:  # fmt: skip
     """A rendered raster (rows, columns, 3) inside axes, with colour bar and scale bar, as PNG."""
     with style("picture"):
         width = 6.4
         tall = (extent[3] - extent[2]) / (extent[1] - extent[0])
         inner = width - 0.62 - 1.05
-        height = inner * tall + 0.46 + 0.16
+        height = inner * tall + 0.46 + 0.16 + (0.0 if above is None else _ABOVE + _GAP)
         canvas = Figure(figsize=(width, height))
         ax = canvas.add_axes((0.62 / width, 0.46 / height, inner / width, inner * tall / height))
         ax.imshow(image, extent=extent, interpolation="antialiased", aspect="equal")
@@ -50,11 +62,28 @@ def framed(
                         va="top" if height_share > 0.5 else "bottom", fontsize=9)  # fmt: skip
         if bar is not None:
             _scale_bar(ax, extent, bar)
+        if above is not None:
+            low = 0.46 + inner * tall + _GAP
+            place = (0.62 / width, low / height, inner / width, _ABOVE / height)
+            _draw_above(canvas.add_axes(place), (extent[0], extent[1]), above)
         stream = io.BytesIO()
         canvas.savefig(
             stream, format="png", dpi=190, facecolor="white", metadata={"Software": None}
         )
     return stream.getvalue()
+
+
+def _draw_above(ax: Axes, span: tuple[float, float], above: Above) -> None:
+    for number, (label, places, values) in enumerate(above.curves):
+        colour = COLOURS[SERIES[number]]
+        ax.plot(places, values, color=colour, dashes=(4, 3) if number else (), label=label)
+        if not number:
+            ax.fill_between(places, values, color=colour, alpha=0.22, linewidth=0)
+    ax.set(xlim=span, ylabel=above.title)
+    ax.set_ylim(bottom=0.0)
+    ax.tick_params(labelbottom=False)
+    ax.grid(visible=True)
+    ax.legend(loc="upper right", frameon=False)
 
 
 def _scale_bar(ax: Axes, extent: tuple[float, float, float, float], bar: tuple[float, str]) -> None:

@@ -191,14 +191,16 @@ def body_picture(vtu: Path) -> bytes:
     return frame_body(render(vtu, [body_view(read_field(vtu))])[0])
 
 
-def frame_contact(raster: Raster, half_width_mm: float, name: str = "roller") -> bytes:
+def frame_contact(
+    raster: Raster, half_width_mm: float, name: str = "roller", above: rasters.Above | None = None
+) -> bytes:
     """The contact raster in axes that count half-widths; `name` is that of the upper body."""
     extent = tuple(edge / half_width_mm for edge in raster.view.window)
     return rasters.framed(
         raster.pixels, (extent[0], extent[1], extent[2], extent[3]),
         ("along the contact, x / a", "along the normal, z / a"), "von Mises stress, MPa",
         COLOUR_MAP, raster.view.clim, raster.view.log, (1.0, f"a = {half_width_mm:.3g} mm"),
-        ((name, 0.97), ("cam", 0.40)),
+        ((name, 0.97), ("cam", 0.40)), above,
     )  # fmt: skip
 
 

@@ -105,7 +105,7 @@
     return pairs.map((_, t) => t);
   }
 
-  const { side, top } = data.reach, deep = 0.3 * (side + top), unit = (side + top) / 1.4;
+  const { side, top } = data.reach, deep = 0.3 * (side + top), unit = (side + top) / 1.3;
   const axis = (range) => ({ range, visible: false, autorange: false });
   const layout = () => ({
     margin: { l: 0, r: 0, t: 0, b: 0 }, showlegend: false, uirevision: "kept",

@@ -41,3 +41,16 @@ def test_a_load_case_or_file_that_is_not_there_is_told(path):
         envelope.read_envelope(path, "idle")
     with pytest.raises(ResultError):
         envelope.read_envelope(path.parent / "none.npz", "rated")
+
+
+def test_draws_the_map_in_its_place_along_the_contour(path):
+    found = envelope.read_envelope(path, "rated")
+    angle = np.arange(0.0, 360.0, 10.0)
+    normal = np.stack([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    png = envelope.around(found, angle, 40.0 * normal, normal)
+    assert png.startswith(b"\x89PNG") and len(png) > 5000
+
+
+@pytest.mark.parametrize(("wanted", "drawn"), [(1.0, 1.0), (1.99, 1.0), (26.0, 20.0), (0.6, 0.5)])
+def test_depths_are_enlarged_by_a_round_number(wanted, drawn):
+    assert envelope._enlarged(wanted) == pytest.approx(drawn)
