@@ -13,8 +13,9 @@ from geometry.arrays import uniform_turn
 from geometry.energy import lift_from_torque
 from pipeline import trial as road
 from pipeline.case import load_case_file
-from pipeline.smoothing.constrained import Problem, coarsened, synthesise
+from pipeline.smoothing.constrained import Problem, synthesise
 from pipeline.smoothing.constraints import Machine, Ratings, Scenario
+from pipeline.smoothing.design import coarsened
 from pipeline.smoothing.grid import Grid
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.search import Search
