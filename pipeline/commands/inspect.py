@@ -24,8 +24,9 @@ def inspect(
         Path, typer.Argument(metavar="MEASURED", help="Measured surface points (CSV).")
     ],
     tolerance: Annotated[
-        str, typer.Option(help="Full width of the tolerance band of the form.")
-    ] = "20 um",
+        str | None,
+        typer.Option(help="Full width of the band of the form; that of the inspection sheet."),
+    ] = None,
     keep_phase: Annotated[
         bool, typer.Option("--keep-phase", help="Angles are the keyway's: run it turned.")
     ] = False,
@@ -34,13 +35,15 @@ def inspect(
 ) -> int:
     """Fit a measured cam to its drawing and judge the real part: exit 0 passed, 1 failed."""
     from pipeline import inspection, units
+    from pipeline.shop import order_of
     from reports.inspection import draw
 
-    band = units.parse(tolerance, "um", "--tolerance")
-    if not band > 0:
+    asked = None if tolerance is None else units.parse(tolerance, "um", "--tolerance")
+    if asked is not None and not asked > 0:
         raise InputError("--tolerance", tolerance, "> 0 um")
     points = inspection.read_measured(measured)
     case, contour = inspection.nominal(folder)
+    band = order_of(case).tolerance if asked is None else asked
     with progress_shown() as progress:
         part = inspection.inspect_part(
             case, contour, points, keep_phase=keep_phase, jobs=jobs, tell=progress.stage
