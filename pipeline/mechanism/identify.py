@@ -176,9 +176,10 @@ def _fitted(
 ) -> Identified:
     """Least squares from a start; intervals by the linearised covariance and Student's t."""
     scale = np.maximum(np.abs(start), 1e-6)
-    # steps far above the tolerance of an integration within `miss`
+    # Steps far above what an integration within `miss` leaves to chance where the speed changes
+    # its sign: a hundred times smaller ones made intervals of half their width.
     found = least_squares(
-        miss, start, diff_step=np.full(start.size, 1e-5), x_scale=scale, xtol=1e-9, ftol=1e-9
+        miss, start, diff_step=np.full(start.size, 1e-3), x_scale=scale, xtol=1e-9, ftol=1e-9
     )
     if not found.success:
         raise InputError("decay", str(found.message), "a decay that friction explains")
