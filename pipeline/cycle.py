@@ -110,6 +110,9 @@ class Cycle(Turn):
             "residual_guide_force": guides.force_residual,
             "residual_guide_moment": guides.moment_residual,
             "residual_friction": self.friction_residual,
+            "stem_slope_A": guides.slope_a,
+            "stem_slope_B": guides.slope_b,
+            "roller_deflection": guides.roller_deflection,
         }
         if self.torque_before is not None and self.residual_torque is not None:
             found |= {"torque_before": self.torque_before, "torque_after": self.residual_torque}

@@ -95,6 +95,7 @@ CYCLE = _columns(
     "shear_range?~ [MPa]; bore_stress?~ [MPa]; bore_stress_at_edge?~;"
     "bore_stress_off_edges?~ [MPa];"
     "jam_index_statics?; cam_speed? [rad/s]; residual_friction?; normal_force_statics? [N];"
+    "stem_slope_A? [deg]; stem_slope_B? [deg]; roller_deflection? [um];"
     "reaction_by_length? [N]; reaction_by_clearance? [N];"
     "normal_force_by_length? [N]; normal_force_by_clearance? [N];"
     "bush_peak_A? [MPa]; bush_peak_B? [MPa]; rubbing_load_A? [N]; rubbing_load_B? [N];"

@@ -10,6 +10,7 @@ from geometry.contour import Contour
 from geometry.errors import InputError
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
+from pipeline import results
 from pipeline.case import parse_case
 from pipeline.case_template import template
 from pipeline.checks import parts as part_checks
@@ -238,6 +239,30 @@ def test_a_card_fills_in_what_the_case_leaves_out():
     assert again.roller.bearing.C0 == 670.0
     with pytest.raises(InputError, match="maker_2_625"):
         case('card = "nobody"')
+
+
+def test_columns_of_a_turn_close(bare):
+    """What one row says of friction, force, heat and shares adds up: 1e-9 of the greatest."""
+    cycle, guides = bare.cycles[0], bare.case.guides
+    found = results.table(results.CYCLE, cycle.columns(bare.case.mechanism.gear_ratio))
+    v, rubs = found["velocity_m_per_s"], found["friction_A_N"] + found["friction_B_N"]
+
+    def same(one, other):
+        np.testing.assert_allclose(one, other, atol=1e-9 * np.abs(other).max())
+
+    pressed = found["spring_force_N"] + found["inertia_force_N"] + found["viscous_force_N"]
+    same(pressed + np.sign(v) * rubs, found["axial_force_N"])
+    for side, guide in (("A", guides.a), ("B", guides.b)):
+        same(guide.friction * found[f"rubbing_load_{side}_N"], found[f"friction_{side}_N"])
+        same(found[f"friction_{side}_N"] * np.abs(v), found[f"friction_heat_{side}_W"])
+        changed = found["reaction_by_length_N"] + found["reaction_by_clearance_N"]
+        same(found[f"reaction_{side}_statics_N"] + changed, found[f"reaction_{side}_N"])
+    changed = found["normal_force_by_length_N"] + found["normal_force_by_clearance_N"]
+    same(found["normal_force_statics_N"] + changed, found["normal_force_N"])
+    heat = (found["friction_heat_A_W"] + found["friction_heat_B_W"]).mean()
+    assert np.mean(found["cam_torque_Nm"]) * bare.cam_speed(cycle) == pytest.approx(heat, rel=1e-9)
+    assert found["residual_friction"].max() <= 1e-10
+    same(np.radians(found["stem_slope_A_deg"]), cycle.guides.slope_a)
 
 
 def test_overspeed_jumps_and_lands(bare):
