@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,6 @@ from pipeline.follower.cam_body import (
     rotating_force,
     unbalance,
 )
-from pipeline.part_fields import Cam
 
 WALL = 3e-3
 """Steel left around a hole that the case does not ask for, m."""
@@ -75,13 +73,7 @@ class Balance:
 
 def balance(case: Case, contour: Contour) -> Balance:
     """Unbalance of the cam with bore and keyway, and the hole that takes it away."""
-    density = case.material(case.cam.material).density
-    return _balance(contour, case.cam, density)
-
-
-@lru_cache(maxsize=16)
-def _balance(contour: Contour, cam: Cam, density: float) -> Balance:
-    found = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density)
+    cam, found = case.cam, _unbalance(case, contour)
     asked = cam.counter_hole
     wall = WALL if asked is None else asked.wall
     depth = 0.0 if cam.keyway is None else cam.keyway.depth
@@ -92,12 +84,21 @@ def _balance(contour: Contour, cam: Cam, density: float) -> Balance:
             break
         except GeometryError as error:
             missed = str(error)
+    density = case.material(cam.material).density
     return Balance(found, hole, missed, asked is not None, density * cam.width)
+
+
+def _unbalance(case: Case, contour: Contour) -> Unbalance:
+    cam = case.cam
+    density = case.material(cam.material).density
+    return unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density)
 
 
 def unbalance_force(case: Case, contour: Contour, cam_speed: float, theta: Array) -> Array:
     """What the cam as made throws at its shaft, (2, n), N, as `rotating_force` has it."""
-    return rotating_force(balance(case, contour).as_made, cam_speed, theta)
+    asked = getattr(case.cam, "counter_hole", None) is not None
+    made = balance(case, contour).as_made if asked else _unbalance(case, contour)
+    return rotating_force(made, cam_speed, theta)
 
 
 def drilled_hole(case: Case, contour: Contour) -> CounterHole | None:

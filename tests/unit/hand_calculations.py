@@ -45,6 +45,21 @@ def mean_life() -> float:
     return 1e6 * (1140.0 / load) ** 3 / (spin.mean() / (2.0 * np.pi)) / 3600.0
 
 
+def thrown() -> np.ndarray:
+    """m e w^2 of a polygon of the contour less the keyway in strips, turning with the shaft."""
+    x, y = fake.contour().polygon(7200)
+    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
+    moment = np.array([np.sum((v + np.roll(v, -1)) * cross) / 6.0 for v in (x, y)])
+    key, cam = full.KEY, full.case().cam
+    across = ((np.arange(2000) + 0.5) / 2000 - 0.5) * key.width
+    bore, floor = np.sqrt(cam.bore_radius**2 - across**2), cam.bore_radius + key.depth
+    arm = np.mean(floor**2 - bore**2) / 2.0 * key.width
+    moment -= arm * np.array([np.cos(key.angle), np.sin(key.angle)])
+    size = 7850.0 * cam.width * np.hypot(*moment) * fake.CAM_SPEED**2
+    turned = fake.THETA - np.arctan2(moment[1], moment[0])
+    return size * np.stack([np.cos(turned), np.sin(turned)])
+
+
 def shaft_safety() -> float:
     """Greatest moment arms by statics, fibre by fibre, Shigley sec. 7-4, in plain loops."""
     loads, d = full.cycle().loads, 0.017
@@ -52,7 +67,7 @@ def shaft_safety() -> float:
     tooth = torque / 0.02
     # Meshing opposite the follower: the tooth pushes along -y, the wheels part along +x.
     gear = np.stack([np.abs(tooth) * np.tan(np.radians(20.0)), -tooth])
-    cam = np.stack([-loads.axial_force, -loads.tangential_force])
+    cam = np.stack([-loads.axial_force, -loads.tangential_force]) + thrown()
     second = -(cam * 0.02 + gear * -0.015) / 0.06
     first = -cam - gear - second
     moment = first * 0.02 + gear * 0.035
@@ -78,7 +93,7 @@ def bearing_hours() -> float:
     loads = full.cycle().loads
     tooth = loads.cam_torque / 0.02
     gear = np.stack([np.abs(tooth) * np.tan(np.radians(20.0)), -tooth])
-    cam = np.stack([-loads.axial_force, -loads.tangential_force])
+    cam = np.stack([-loads.axial_force, -loads.tangential_force]) + thrown()
     second = -(cam * 0.02 + gear * -0.015) / 0.06
     first = -cam - gear - second
     worst = max(np.cbrt(np.mean(np.hypot(*load) ** 3)) for load in (first, second))

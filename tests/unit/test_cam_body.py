@@ -110,8 +110,8 @@ def test_unbalance_of_an_eccentric_disc():
 def test_unbalance_turns_with_the_cam():
     """Out along the follower where the heavy side is under it; m e w^2 all the way round.
 
-    The sense is that of a positive torque, in which the shaft turns: a quarter turn later it points to
-    positive y.
+    The sense is that of a positive torque, in which the shaft turns: to positive y a quarter
+    turn later.
     """
     found = unbalance(eccentric(), 8.5e-3, None, WIDTH, DENSITY)
     force = rotating_force(found, 80.0, found.angle + np.array([0.0, 0.5 * np.pi, 4.0]))
