@@ -102,7 +102,8 @@ spacing = "80 mm"                    # middle to middle
 [guides.a]                           # next to the cam
 length = "24 mm"
 diameter = "12 mm"
-friction = 0.04
+friction = 0.04                      # friction_min and friction_max bound it; of a nylon bush
+                                     # lubrication, "dry" to "flooded", grades the PV limit
 clearance = "0.05 mm"
 material = "bronze"
 pressure_limit = "14 MPa"

@@ -144,6 +144,7 @@ def residuals(turn: Turn) -> list[tuple[str, str]]:
         "residual_complementarity": "pressure times gap",
         "residual_guide_force": "forces on the follower",
         "residual_guide_moment": "moments on the follower",
+        "residual_friction": "forces along the stem, friction of the guides among them",
     }
     return [
         (words, tables.number(float(np.max(np.abs(turn.columns[name]))), 2))
