@@ -133,6 +133,7 @@ class Limits(Section):
     spring_solid: Annotated[float, In(above=0, at_most=10)] = 0.1
     spring_surge: Annotated[float, In(above=0, at_most=1e4)] = 13.0
     key_pressure: Pressure = 100e6
+    bore_pressure: Pressure = 100e6
     key_shear: Pressure = 60e6
     shaft_safety: Safety = 1.5
     shaft_bearing_life: Annotated[float, In("h", above=0, at_most=1e6)] | None = None

@@ -266,6 +266,26 @@ def key_pressure(evidence: TrialEvidence) -> Check | None:
     )
 
 
+def bore_pressure(evidence: TrialEvidence) -> Check | None:
+    """Mean pressure of the cam's bore on its shaft."""
+    if not _known(evidence):
+        return None
+    worst = greatest(evidence, lambda cycle: _parts(cycle).bore_pressure)
+    limit = evidence.limit("bore_pressure", 100e6)
+    return Check(
+        id="bore_pressure",
+        title="Pressure of the bore on the shaft",
+        demand=1e-6 * worst.value,
+        limit=None if limit is None else 1e-6 * limit,
+        unit="MPa",
+        source=evidence.source("bore_pressure", "100 MPa as for a key, DIN 6892: verify"),
+        method="greatest normal force over bore diameter and cam width",
+        must_have=False,
+        lift_can_help=True,
+        **worst.place,
+    )
+
+
 def torque_reversals(evidence: TrialEvidence) -> Check | None:
     """Whether the gear's and the key's flanks stay together."""
     if not _known(evidence):
@@ -337,6 +357,7 @@ CHECKS = (
     roller_pin,
     roller_ring,
     key_pressure,
+    bore_pressure,
     torque_reversals,
     cam_unbalance,
 )

@@ -95,7 +95,11 @@ def case(**changes):
         "camshaft": shaft,
         "materials": materials,
         "limits": fake.asked(
-            unbalance=1.0, shaft_bearing_life=3600.0, key_pressure=200e6, curvature_rate=1e6
+            unbalance=1.0,
+            shaft_bearing_life=3600.0,
+            key_pressure=200e6,
+            bore_pressure=100e6,
+            curvature_rate=1e6,
         ),
     }
     made = fake.changed(base, **(plain | changes))
@@ -121,6 +125,7 @@ def parts(**changes):
         "ring_amplitude": 300e6 + 100e6 * WAVE,
         "ring_mean": np.full(fake.POSITIONS, 400e6),
         "key_pressure": 100e6 * WAVE,
+        "bore_pressure": 20e6 + 10e6 * WAVE,
         "reversals": (),
         "surge_force": None,
         "shares": SimpleNamespace(reaction_a=SHARE, reaction_b=SHARE),

@@ -141,6 +141,14 @@ by_limit(
     "4 T/(d h l), test_cam_body",
 )
 by_limit(
+    "bore_pressure",
+    "bore_pressure",
+    1e6,
+    lambda: with_parts(bore_pressure=NAN),
+    30.0,
+    "20 + 10 sin; N/(d w) in test_parts_checks",
+)
+by_limit(
     "shaft_fatigue",
     "shaft_safety",
     1.0,

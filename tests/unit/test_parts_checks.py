@@ -217,6 +217,8 @@ def test_columns_of_all_parts(full):
     columns = full.cycles[0].columns(2.0)
     for name in ("bush_peak_A", "spring_stress", "pin_stress", "shaft_bearing_2", "key_pressure"):
         assert np.isfinite(columns[name]).all()
+    force = full.cycles[0].loads.normal_force
+    np.testing.assert_allclose(columns["bore_pressure"], force / (2 * 10e-3 * 10e-3), rtol=1e-12)
     # the wall of a bush spreads nothing: its peak is above the projected pressure
     guides = full.cycles[0].guides
     loaded = guides.pressure_max_a > 0
