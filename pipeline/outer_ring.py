@@ -61,6 +61,16 @@ def why_solid(case: Case) -> str:
     return ""
 
 
+def roller_in_words(case: Case) -> str:
+    """How the contact takes the roller; "" under a flat face."""
+    if case.roller_given is None:
+        return ""
+    solid = why_solid(case)
+    if solid:
+        return f"the roller is solid on its hub, as {solid}"
+    return "the roller is its bearing's outer ring on balls, in contact over one of them"
+
+
 def outer_ring(case: Case, width: float) -> OuterRing | None:
     """The ring under a contact of a width (m); None where the roller is solid: `why_solid`.
 

@@ -17,6 +17,7 @@ from pipeline.contact.convergence import Convergence
 from pipeline.contact.history import CertificatePoint
 from pipeline.cycle import Cycle, contact_width
 from pipeline.engine.torque import Torque
+from pipeline.outer_ring import roller_in_words
 from pipeline.trial import Trial
 
 _MM, _MPA = 1e3, 1e-6
@@ -131,7 +132,9 @@ def trial_record(case: Case, trial: Trial) -> dict[str, Any]:
         "synthesis": trial.synthesis,
         "prices": None if trial.synthesis is None else trial.synthesis["prices"],
         "closure_mm": _MM * trial.lift.closure,
-        "contact_method": trial.cycles[0].contact.method,
+        "contact_method": "; ".join(
+            filter(None, (trial.cycles[0].contact.method, roller_in_words(case)))
+        ),
         "line_contact_width_mm": _MM * contact_width(case),
         "balance": balance(case, trial.contour).record(),
         "mesh": None

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from pipeline.cards.fill import filled
-from pipeline.case import Case
+from pipeline.case import Case, load_case_file
+from pipeline.outer_ring import roller_in_words
 from pipeline.progress import Silent
 from pipeline.run import run_case
 
@@ -98,6 +99,19 @@ def test_every_part_that_is_described_is_judged(run):
     for name in CHECKS:
         assert checks[name]["status"] in ("pass", "fail"), name
         assert checks[name]["source"], name
+
+
+def test_the_method_says_how_the_roller_is_taken(run):
+    """As a ring where balls and ring are given; else solid, and why."""
+    record = json.loads((run / "trial_1" / "trial.json").read_text())
+    assert "outer ring on balls" in record["contact_method"]
+    case = load_case_file(run / "case.toml")
+    bearing = case.roller.bearing.model_copy(update={"ring": None})
+    roller = case.roller.model_copy(update={"bearing": bearing})
+    plain = case.model_copy(update={"roller_given": roller})
+    assert roller_in_words(plain) == (
+        "the roller is solid on its hub, as no ring and balls of the bearing are given"
+    )
 
 
 def test_balance_is_recorded_and_drilled(run):
