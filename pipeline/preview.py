@@ -1,12 +1,14 @@
 """The checks of a case by closed forms, before anything is solved: a look ahead, never a sign-off.
 
-Torque, lift, contour, loads and guides are those of a run's first trial; the contact is Hertz's.
+Torque, lift, contour, loads and guides are those of a run; the contact is Hertz's.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from geometry.lift import Lift
 from pipeline import trial as road
 from pipeline.ahead import foreseen_cycle
 from pipeline.case import Case
@@ -16,29 +18,35 @@ from pipeline.checks.everything import DESIGN, PARTS, SIGNED, checked_by
 from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import in_order
 from pipeline.cycle import Cycle, Turn, finished
+from pipeline.engine.torque import Torque
+from pipeline.smoothing import loop
 from pipeline.smoothing.constrained import synthesise
-from pipeline.smoothing.design import Design
-from pipeline.smoothing.loop import redrawn
+from pipeline.smoothing.design import Design, Problem
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 from pipeline.speed import rubbing_of, speed_ripple
 
 MARK = "closed forms only: "
+_ROUNDS = 4  # of synthesis and correction
 
 
 @dataclass(frozen=True, eq=False)
 class LookAhead:
-    """What closed forms foresee: the case as drawn, the synthesis if one drew it, the turns."""
+    """What closed forms foresee: the case as drawn, the turns, the checks.
+
+    design and the problem it answers are those of the synthesis; None where none drew the lift.
+    """
 
     case: Case
-    design: Design | None
     contour: road.Contour
     cycles: tuple[Cycle, ...]
     checks: tuple[Check, ...]
+    design: Design | None = None
+    problem: Problem | None = None
 
 
 def closed_form_checks(case: Case) -> tuple[Check, ...]:
-    """Checks of the first trial by closed forms, with a must-have that says so.
+    """Checks of a case by closed forms, with a must-have that says so.
 
     Raises
     ------
@@ -49,20 +57,36 @@ def closed_form_checks(case: Case) -> tuple[Check, ...]:
 
 
 def look_ahead(case: Case) -> LookAhead:
-    """The first trial by closed forms, with all that its checks rest upon.
+    """What a run of the case is about to find, by closed forms, with all its checks rest upon.
+
+    A synthesis is corrected by what length and clearance of the guides make of it, in as many
+    rounds as that moves a limit in use, as the trials of a run are by finite elements.
 
     Raises
     ------
     CamError
         If there is no such cam.
     """
-    torques, design = road.engine_torques(case), None
-    if case.smoothing.kind == "constrained":
-        design = synthesise(problem_of(case, torques))
-        case, lift = redrawn(case, design), design.lift()
-    else:
+    torques = road.engine_torques(case)
+    if case.smoothing.kind != "constrained":
         smoother = None if case.engine is None else Smoother.from_case(case.smoothing)
-        lift = road.designed_lift(case, torques, smoother)
+        return _seen(case, torques, road.designed_lift(case, torques, smoother))
+    problem: Problem = problem_of(case, torques)
+    earlier: loop.Moved | None = None
+    for _ in range(_ROUNDS):
+        design = synthesise(problem)
+        seen = _seen(loop.redrawn(case, design), torques, design.lift())
+        seen = replace(seen, design=design, problem=problem)
+        corrections = loop.corrections_of(seen.cycles)
+        moved = loop.moved(design, problem, corrections)
+        if not design.feasible or loop.settled(moved, seen.checks):
+            break
+        problem = loop.refined_problem(problem, design, corrections, moved.swing(earlier))
+        earlier = moved
+    return seen
+
+
+def _seen(case: Case, torques: Mapping[str, Torque], lift: Lift) -> LookAhead:
     contour = road.cam_contour(case, lift)
     sound = road.is_body(contour)
     turns = road.turns_of(case, contour, torques, case.solver.positions)
@@ -71,7 +95,7 @@ def look_ahead(case: Case) -> LookAhead:
     evidence = TrialEvidence(case=case, contour=contour, cycles=cycles, speed_ripple=speed)
     found = checked_by(evidence, (*DESIGN, *rolling.CHECKS, *SIGNED, *PARTS))
     marked = (replace(check, method=MARK + check.method) for check in found)
-    return LookAhead(case, design, contour, cycles, in_order((_unsigned(), *marked)))
+    return LookAhead(case, contour, cycles, in_order((_unsigned(), *marked)))
 
 
 def _cycle(case: Case, contour: road.Contour, given: Turn, sound: bool) -> Cycle:

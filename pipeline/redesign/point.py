@@ -108,8 +108,8 @@ def point_of(case: Case) -> Point:
     if rest is None or torque is None:
         raise InputError("engine", "missing", "given: a redesign balances its torque")
     dearest = []
-    if design is not None and design.feasible:
-        dearest = prices(design, problem_of(case, road.engine_torques(case)))
+    if design is not None and seen.problem is not None and design.feasible:
+        dearest = prices(design, seen.problem)
     blocking = [check for check in seen.checks if check.blocks and check.id != SIGNED_OFF]
     return Point(
         feasible=design is not None and design.feasible,

@@ -28,6 +28,7 @@ AGAINST = {"size": "cam_radius_mm", "mass": "mass_g"}
 RECORD = "redesign.json"
 MOST_POINTS = 12  # of a front that are solved whole
 _BUSY = 64  # more processes than this have nothing to do
+_OF_A_BRANCH = 16  # choices it asks for, about
 _OURS = re.compile(rf"redesign\.(json|html|png)|point_\d+\.toml|inputs|{SOLVED}")
 
 Record = dict[str, Any]
@@ -127,6 +128,7 @@ def _searched(
     found: list[Tried] = []
     refusals: list[InputError] = []
     waiting: dict[Any, tuple[Branch, Choice]] = {}
+    expected = _OF_A_BRANCH * len(running)
 
     def ask(branch: Branch, answer: Rough | None) -> None:
         """The branch's next choice that can be built goes to the workers."""
@@ -153,7 +155,7 @@ def _searched(
             branch, choice = waiting.pop(future)
             record = future.result()
             found.append((choice, record))
-            progress.advance(len(found), len(found) + len(waiting) + 1)
+            progress.advance(len(found), max(expected, len(found) + len(waiting)))
             ask(branch, Rough(**record) if "why" not in record else Rough.impossible())
     if refusals and len(refusals) == len(found):
         raise refusals[0]  # nothing fits: it is the case, not the parts

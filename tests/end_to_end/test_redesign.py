@@ -1,0 +1,154 @@
+"""`camwright redesign`: a front of cases that are what it says of them, kept and used again."""
+
+import json
+import subprocess
+import sys
+from concurrent.futures import Future
+from contextlib import nullcontext
+from pathlib import Path
+
+import pytest
+
+from geometry.errors import InputError, ResultError
+from pipeline.case import load_case_file
+from pipeline.preview import closed_form_checks
+from pipeline.progress import Silent
+from pipeline.redesign import search, study
+from pipeline.redesign.catalogue import Catalogue, catalogue_of
+from reports import redesign as page
+
+CASES = Path(__file__).parents[2] / "cases"
+ROLLERS = ("maker_1_625_2RS", "track_roller_35x16")
+
+
+class Inline:
+    """Stands for the processes: each piece of work is done as it is handed in."""
+
+    def submit(self, function, task):
+        future = Future()
+        future.set_result(function(task))
+        return future
+
+
+@pytest.fixture(scope="module")
+def small():
+    """Two rollers, one spring, one bush and two rooms, worked through in this process."""
+    whole = catalogue_of(None)
+    few = Catalogue(
+        {name: whole.rollers[name] for name in ROLLERS},
+        {"60 x 42": whole.springs["60 x 42"]},
+        {"bronze": whole.bushes["bronze"]},
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study, "catalogue_of", lambda folder: few)
+        patch.setattr(study, "pool", lambda workers: nullcontext(Inline()))
+        patch.setattr(study, "versions", lambda: {"source": "of the test"})
+        patch.setattr(search, "RUNGS", 2)
+        yield
+
+
+@pytest.fixture(scope="module")
+def case_file(tmp_path_factory):
+    """The redesigned GX120's parts under a moving average, at idle, on a coarser turn."""
+    text = (CASES / "gx120-signed.toml").read_text(encoding="utf-8")
+    text = text[: text.index('[[load_case]]\nname = "overspeed"')]
+    text = text.replace('kind = "constrained"', 'kind = "moving_average"\ncoefficients = 36')
+    text = text.replace("roller_static_safety = 1.5", "roller_static_safety = 3.0")
+    path = tmp_path_factory.mktemp("case") / "small.toml"
+    path.write_text(text.replace("positions = 720", "positions = 90"), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def done(small, case_file, tmp_path_factory):
+    out = tmp_path_factory.mktemp("redesign") / "out"
+    return out, study.redesign(case_file, out, "size", 2, Silent())
+
+
+def test_points_are_a_front_of_feasible_cases(done):
+    _, document = done
+    points = document["points"]
+    assert points
+    sizes = [point["cam_radius_mm"] for point in points]
+    ripples = [point["ripple_left_Nm"] for point in points]
+    assert sizes == sorted(sizes)
+    assert ripples == sorted(ripples, reverse=True)
+    assert all(point["feasible"] and not point["failing"] for point in points)
+    assert {point["roller"] for point in points} == {"track_roller_35x16"}
+    why = {one["part"]: one["why"] for one in document["pruned"]}
+    assert "127 N" in why["maker_1_625_2RS"]  # 380 N over a safety of 3
+
+
+def test_a_point_is_what_its_case_file_gives(done):
+    out, document = done
+    point = document["points"][-1]
+    case = load_case_file(out / point["file"])
+    checks = {check.id: check for check in closed_form_checks(case)}
+    # the same case by the same functions: nothing may differ
+    assert checks["torque_reduction"].demand == pytest.approx(point["torque_reduction"], rel=1e-9)
+    assert checks["cam_envelope"].demand == pytest.approx(point["cam_radius_mm"], rel=1e-9)
+    failing = {c.id for c in checks.values() if c.must_have and c.status == "fail"}
+    assert not failing
+    assert case.roller.radius == 0.0175
+
+
+def test_what_is_solved_is_used_again(done, case_file):
+    out, document = done
+    kept = {path: path.stat().st_mtime_ns for path in (out / "solved").iterdir()}
+    lost = next(path for path in sorted(kept) if path.name.startswith("rough"))
+    lost.unlink()  # as if the search had been killed before it
+    assert study.redesign(case_file, out, "size", 1, Silent()) == document
+    assert lost.is_file()
+    assert all(path.stat().st_mtime_ns == kept[path] for path in kept if path != lost)
+
+
+def test_page_and_record(done):
+    out, document = done
+    assert json.loads((out / "redesign.json").read_text(encoding="utf-8")) == document
+    made = page.write(out, document | {"case": "<b>"})
+    text = made.read_text(encoding="utf-8")
+    assert "&lt;b&gt;" in text and "<b>" not in text
+    assert "track_roller_35x16" in text and "too little for the reduction" in text
+    assert (out / "redesign.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_leaves_other_folders_alone(small, case_file, tmp_path):
+    (tmp_path / "letter.txt").write_text("mine")
+    with pytest.raises(ResultError, match="something other"):
+        study.redesign(case_file, tmp_path, "size", 1, Silent())
+    assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
+    (tmp_path / "letter.txt").rename(tmp_path / "redesign.json")
+    (tmp_path / "redesign.json").write_text('{"case": "another"}')
+    with pytest.raises(ResultError, match="another case"):
+        study.redesign(case_file, tmp_path, "size", 1, Silent())
+
+
+def test_refuses_what_cannot_be_redesigned(case_file, tmp_path):
+    with pytest.raises(InputError, match="--against"):
+        study.redesign(case_file, tmp_path / "out", "price", 1, Silent())
+    with pytest.raises(InputError, match="engine"):
+        given = CASES / "papers" / "eccentric.toml"
+        study.redesign(given, tmp_path / "out", "size", 1, Silent())
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_error_is_one_line(tmp_path):
+    case = str(CASES / "gx120.toml")
+    done = subprocess.run(
+        [sys.executable, "-m", "pipeline.cli", "redesign", case, "--jobs", "0"],
+        capture_output=True, text=True, check=False, cwd=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert done.stderr.startswith("camwright: --jobs = 0") and done.stderr.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_whole_catalogue_for_the_published_engine(tmp_path):
+    document = study.redesign(CASES / "gx120.toml", tmp_path / "out", "size", 2, Silent())
+    assert document["given"]["failing"]
+    points = document["points"]
+    assert len(points) >= 3
+    for point in points:
+        assert point["torque_reduction"] >= 0.4
+        assert load_case_file(tmp_path / "out" / point["file"]).roller.radius > 0.008
