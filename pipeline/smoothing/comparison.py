@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.contour import Contour
 from geometry.errors import CamError
 from geometry.lift import Lift
 from pipeline import cycle as cycles
@@ -17,8 +18,7 @@ from pipeline.checks.everything import design_checks
 from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import binding, verdict
 from pipeline.engine.torque import Torque
-from pipeline.smoothing.constrained import synthesise
-from pipeline.smoothing.loop import redrawn
+from pipeline.preview import look_ahead
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 
@@ -52,7 +52,8 @@ def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
     InputError
         If the case has no engine.
     """
-    problem = problem_of(case, torques)
+    problem_of(case, torques)  # refuses a case that has nothing to smooth
+    case = case.with_positions(_POSITIONS)
     for smoother in _SMOOTHERS:
         words = smoother.width_in_words
         try:
@@ -60,9 +61,16 @@ def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
             yield _judged(case, torques, smoother.kind, words, lift)
         except CamError as error:
             yield Compared(smoother.kind, words, None, {"verdict": "fail", "why": str(error)})
-    design = synthesise(problem)
-    words = "least ripple within all limits" if design.feasible else "no cam keeps all limits"
-    yield _judged(redrawn(case, design), torques, "constrained", words, design.lift())
+    yield _constrained(case)
+
+
+def _constrained(case: Case) -> Compared:
+    smoothing = case.smoothing.model_copy(update={"kind": "constrained"})
+    seen = look_ahead(case.model_copy(update={"smoothing": smoothing}))
+    kept = seen.design is not None and seen.design.feasible
+    words = "least ripple within all limits" if kept else "no cam keeps all limits"
+    record = _record(seen.case, seen.contour, seen.cycles)
+    return Compared("constrained", words, seen.contour.pitch.lift, record)
 
 
 def _judged(
@@ -71,16 +79,19 @@ def _judged(
     contour = road.cam_contour(case, lift)
     turns = road.turns_of(case, contour, torques, _POSITIONS)
     found = tuple(cycles.closed_form_cycle(case, contour, given) for given in turns)
+    return Compared(kind, words, lift, _record(case, contour, found))
+
+
+def _record(case: Case, contour: Contour, found: tuple[cycles.Cycle, ...]) -> dict[str, Any]:
     checks = design_checks(TrialEvidence(case=case, contour=contour, cycles=found))
-    rest = turns[0].residual_torque
-    record = {
+    rest = found[0].residual_torque
+    return {
         "pressure_angle_max_deg": float(np.degrees(contour.pitch.pressure_angle_max().value)),
-        "lift_max_mm": 1e3 * lift.highest.value,
-        "normal_force_max_N": max(float(t.loads.normal_force.max()) for t in turns),
+        "lift_max_mm": 1e3 * contour.pitch.lift.highest.value,
+        "normal_force_max_N": max(float(c.loads.normal_force.max()) for c in found),
         "p0_max_MPa": 1e-6 * max(float(np.max(c.contact.p0)) for c in found),
         "residual_std_Nm": None if rest is None else float(np.std(rest)),
         "residual_p2p_Nm": None if rest is None else float(np.ptp(rest)),
         "verdict": verdict(checks),
         "binding": list(binding(checks)),
     }
-    return Compared(kind, words, lift, record)

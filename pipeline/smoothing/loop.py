@@ -89,10 +89,8 @@ class Moved(NamedTuple):
     def sentence(self) -> str:
         if not self.limit:
             return "finite elements move no limit that is used by half"
-        name = self.limit.replace("_", " ")
-        return (
-            f"finite elements move {name} from {self.before:.4g} to {self.after:.4g} of its limit"
-        )
+        way = f"from {self.before:.4g} to {self.after:.4g} of its limit"
+        return f"finite elements move {self.limit} {way}"
 
 
 def moved(design: Design, problem: Problem, corrections: Mapping[str, Correction]) -> Moved:

@@ -24,7 +24,12 @@ def test_compare_tabulates_and_draws(tmp_path):
     assert (ours["smoother"], ours["verdict"]) == ("constrained", "pass")
     others = [float(row["residual_std_Nm"]) for row in rows[:-1] if row["residual_std_Nm"]]
     assert 2.0 * float(ours["residual_std_Nm"]) < min(others)
-    assert {"none", "moving_average", "savitzky_golay", "harmonic"} <= {r["smoother"] for r in rows}
+    kinds = {"none", "moving_average", "savitzky_golay", "harmonic", "smoothing_spline"}
+    assert kinds <= {row["smoother"] for row in rows}
+    assert all(row["verdict"] in ("pass", "fail") for row in rows)
+    assert all((row["binding"] != "[]") == (row["verdict"] == "fail") for row in rows)
+    page = (tmp_path / "smoothers.html").read_text(encoding="utf-8")
+    assert "what fails" in page and "smoothing spline of curvature weight" in page
     assert (tmp_path / "smoothers.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -58,5 +58,5 @@ def test_part_of_the_way_from_one_correction_to_another():
 
 
 def test_sentence_names_the_limit_and_both_shares():
-    assert "bush pv A from 0.9 to 0.95" in moved(0.9, 0.95).sentence
+    assert "bush_pv_A from 0.9 to 0.95" in moved(0.9, 0.95).sentence
     assert "no limit" in Moved("", 0.0, 0.0).sentence
