@@ -12,12 +12,15 @@ from pipeline.rolling import rolling_history
 
 
 def foreseen_cycle(case: Case, contour: Contour, given: Turn) -> Cycle:
-    """The turn with Hertz's contact, the guides, the parts and what rolling does."""
+    """The turn with Hertz's contact, the guides, the parts and what rolling does.
+
+    Where an elastic follower leaves the cam, its flights are not followed.
+    """
     state, pair = case.at(given.load_case), contact_pair(case, contour)
     speed = given.crank_speed / case.mechanism.gear_ratio
     force = given.loads.normal_force
     contact = closed_form_history(pair, given.theta, force)
     return replace(
-        finished(case, contour, given, contact),
+        finished(case, contour, given, contact, flights=False),
         rolling=rolling_history(state, pair, None, given.loads, contact, speed),
     )

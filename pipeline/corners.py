@@ -42,7 +42,8 @@ from pipeline.cycle import Turn, turn
 from pipeline.engine.torque import Torque
 from pipeline.speed import rubbing_of, speed_ripple
 
-POSITIONS = 180
+POSITIONS = 90
+"""Angles a turn: a corner asks for the ratio of two demands, not for either."""
 UNMOVED: tuple[CheckFunction, ...] = (
     *(function.energy_closure, function.friction_balance),
     *(geometry.closure, geometry.self_intersection, geometry.second_contact),

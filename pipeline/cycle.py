@@ -189,13 +189,21 @@ def turn(
 
 
 def finished(
-    case: Case, contour: Contour, given: Turn, contact: ContactHistory, ahead: bool = False
+    case: Case,
+    contour: Contour,
+    given: Turn,
+    contact: ContactHistory,
+    ahead: bool = False,
+    flights: bool = True,
 ) -> Cycle:
-    """The cycle of a turn whose contact is solved; a look ahead asks nothing of the parts."""
+    """The cycle of a turn whose contact is solved; a look ahead asks nothing of the parts.
+
+    Nor does one that wants the parts without following the follower where it flies.
+    """
     parts = None
     if not ahead:
         ring = outer_ring(case, contact_width(case))
-        parts = parts_history(case.at(given.load_case), contour, given, ring)
+        parts = parts_history(case.at(given.load_case), contour, given, ring, flights)
     return Cycle(
         **{item.name: getattr(given, item.name) for item in fields(Turn)},
         pressure_angle=given.loads.pressure_angle,

@@ -48,8 +48,10 @@ def elastic_follower(case: Case) -> ElasticFollower:
     )
 
 
-def elastic_history(case: Case, lift: Lift, at: Array, cam_speed: Array) -> ElasticHistory:
-    """The elastic follower at equal angles of a turn.
+def elastic_history(
+    case: Case, lift: Lift, at: Array, cam_speed: Array, flights_too: bool = True
+) -> ElasticHistory:
+    """The elastic follower at equal angles of a turn; its flights cost the most by far.
 
     Parameters
     ----------
@@ -61,7 +63,7 @@ def elastic_history(case: Case, lift: Lift, at: Array, cam_speed: Array) -> Elas
     response = periodic_response(at, cam_speed, follower)
     flights: tuple[Flight, ...] = ()
     force = float(response.contact_force.max())
-    if response.lost:
+    if response.lost and flights_too:
         start = (float(response.position[0]), float(response.velocity[0]))
         jump = bounce(lift, _law(cam_speed), follower, BOUNCE_TURNS, start)
         flights, force = jump.flights, float(jump.contact_force.max())

@@ -111,7 +111,11 @@ class PartsHistory:
 
 
 def parts_history(
-    case: Case, contour: Contour, given: Turn, ring: OuterRing | None = None
+    case: Case,
+    contour: Contour,
+    given: Turn,
+    ring: OuterRing | None = None,
+    flights: bool = True,
 ) -> PartsHistory:
     """All parts of a turn at equal angles, of a case at its load case."""
     loads, guides = given.loads, given.guides
@@ -131,7 +135,9 @@ def parts_history(
         friction=friction,
         viscous_force=loads.viscous_force,
         shares=shares,
-        elastic=elastic_history(case, contour.pitch.lift, loads.lift, given.cam_speed),
+        elastic=elastic_history(
+            case, contour.pitch.lift, loads.lift, given.cam_speed, flights_too=flights
+        ),
         reversals=torque_reversals(loads.theta, loads.cam_torque, _drag(case)),
         bore_pressure=loads.normal_force / (2.0 * case.cam.bore_radius * case.cam.width),
         key_pressure=_key(case, loads),
