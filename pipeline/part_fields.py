@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import radians
+from math import pi, radians, sin
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
@@ -125,6 +125,13 @@ class Camshaft(Section):
     source: Text = ""
 
 
+class ValveTrain(Section):
+    """Asks for the machine motion of a valve cam; the cam's mass counts as that of a disc."""
+
+    cam_mass: Mass
+    source: Text = ""
+
+
 class OuterRing(Section):
     """A bearing's outer ring where it is itself the roller: carried by its balls alone.
 
@@ -147,10 +154,12 @@ class OuterRing(Section):
 
     @model_validator(mode="after")
     def _leaves_room_for_balls(self) -> Self:
-        if not 0.0 < self.ball_diameter < self.pitch_diameter:
+        if not self.ball_diameter > 0.0:
             raise refusal(
                 "of outer_diameter > pitch_diameter + 2 thickness, to leave the balls room"
             )
+        if not self.ball_diameter < self.pitch_diameter * sin(pi / self.balls):
+            raise refusal("of balls that do not overlap on the pitch circle")
         if not self.thickness < 0.2 * self.outer_diameter:
             raise refusal("of thickness < 0.2 outer_diameter, a thin ring")
         return self
