@@ -132,6 +132,15 @@ def remarks(records: Iterable[Record]) -> list[str]:
     return [*still_open, *waived, *told]
 
 
+def binding_lines(records: Iterable[Record], binding: Sequence[str]) -> list[str]:
+    """What stands in the way of the verdict: limits passed, and limits that nobody can judge."""
+    missing = {r["id"] for r in records if r["status"] == "not_evaluated"}
+    known = [name for name in binding if name not in missing]
+    unknown = [name for name in binding if name in missing]
+    told = [f"binding: {', '.join(known)}"] if known else []
+    return told + ([f"binding, as a number is missing: {', '.join(unknown)}"] if unknown else [])
+
+
 def place(record: Record) -> str:
     """Load case and angle where a check is decided."""
     angle = record.get("cam_angle_deg")

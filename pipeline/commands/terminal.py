@@ -56,7 +56,7 @@ def progress_shown() -> Iterator[Progress]:
 
 def show(document: dict[str, Any], folder: Path | None) -> None:
     """Checks by utilisation, what else is to be known, then the verdict and the report's place."""
-    from pipeline.check_command import consistency_line, remarks, table
+    from pipeline.check_command import binding_lines, consistency_line, remarks, table
 
     stdout.print(table(document["checks"]))
     for line in remarks(document["checks"]):
@@ -74,8 +74,8 @@ def show(document: dict[str, Any], folder: Path | None) -> None:
         stdout.print(f"verdict: {document['verdict']} after {trials}", markup=False)
         if document["statement"]:
             stdout.print(document["statement"], markup=False)
-    if document["binding"]:
-        stdout.print(f"binding: {', '.join(document['binding'])}", markup=False)
+    for line in binding_lines(document["checks"], document["binding"]):
+        stdout.print(line, markup=False)
     for finding in document.get("consistency", ()):
         stdout.print(consistency_line(finding), markup=False)
     if folder is not None:

@@ -178,16 +178,18 @@ def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
     """Which limits bind, how far smoothing moved them, and what it cannot do."""
     first = {check.id: check for check in attempts[0].checks}
     by_id = {check.id: check for check in latest.checks}
-    parts = [cause]
+    parts, unknown = [cause], []
     for name in binding(latest.checks):
         check = by_id[name]
         if check.utilisation is None:
-            parts.append(f"{name} is not evaluated")
+            unknown.append(name)
             continue
         began = first[name].utilisation if name in first else None
         history = f"{began:.3g} at trial 1, " if began is not None and len(attempts) > 1 else ""
         remark = "" if check.lift_can_help else ", not a matter of a gentler lift"
         parts.append(f"{name} at {history}{check.utilisation:.3g} of its limit now{remark}")
+    if unknown:
+        parts.append(f"not judged, as the case leaves a number out: {', '.join(unknown)}")
     return "; ".join(parts)
 
 

@@ -16,7 +16,7 @@ from geometry.errors import InputError
 from pipeline import cli
 from pipeline.baseline import changes, lines
 from pipeline.case_template import template
-from pipeline.check_command import failing, junit, remarks, rows, selected
+from pipeline.check_command import binding_lines, failing, junit, remarks, rows, selected
 from pipeline.run_folder import RunFolder
 
 RECORDS = (
@@ -157,3 +157,16 @@ def test_a_case_file_is_looked_ahead_and_never_passes(tmp_path: Path, command: C
 def test_a_finished_run_is_checked_from_its_folder(tmp_path: Path, command: Command) -> None:
     out = write_run(tmp_path / "good")
     assert command("check", out, "--verify-record")[0] == 0
+
+
+def test_what_binds_is_told_apart_from_what_nobody_can_judge():
+    records = [
+        {"id": "roller_static", "status": "fail"},
+        {"id": "bush_pv_B", "status": "not_evaluated"},
+        {"id": "closure", "status": "pass"},
+    ]
+    assert binding_lines(records, ["bush_pv_B", "roller_static"]) == [
+        "binding: roller_static",
+        "binding, as a number is missing: bush_pv_B",
+    ]
+    assert binding_lines(records, []) == []
