@@ -20,6 +20,7 @@ from pipeline.outer_ring import why_solid
 
 if TYPE_CHECKING:
     from pipeline.cycle import Cycle
+    from pipeline.elastic_history import ElasticHistory
     from pipeline.part_fields import Guide
     from pipeline.parts import PartsHistory
 
@@ -66,7 +67,6 @@ def elastic_contact(evidence: TrialEvidence) -> Check | None:
         lambda cycle: _parts(cycle).elastic.response.contact_force / evidence.preload(cycle),
     )
     histories = [_parts(cycle).elastic for cycle in evidence.cycles]
-    flights = sum(len(history.flights) for history in histories)
     methods = "; ".join(dict.fromkeys(history.method for history in histories))
     return Check(
         id="elastic_contact",
@@ -81,8 +81,23 @@ def elastic_contact(evidence: TrialEvidence) -> Check | None:
         method=f"one mass on the stem's stiffness, free of friction: {methods}",
         must_have=False,
         lift_can_help=True,
-        note=f"{flights} losses of contact in a turn" if flights else "",
+        note=_flights(histories),
         **worst.place,
+    )
+
+
+def _flights(histories: list[ElasticHistory]) -> str:
+    """How often the contact is lost in a turn, and the highest of the flights."""
+    flights = [flight for history in histories for flight in history.flights]
+    if not flights:
+        return ""
+    high = max(flights, key=lambda flight: flight.height)
+    jump, landing = (np.degrees(angle) % 360.0 for angle in (high.jump, high.landing))
+    force = max(history.force_max for history in histories)
+    return (
+        f"{len(flights)} losses of contact in a turn; the highest jumps at {jump:.1f} deg and lands"
+        f" at {landing:.1f} deg, {1e3 * high.height:.3g} mm up, with {high.landing_speed:.3g} m/s;"
+        f" greatest force of impact {force:.4g} N"
     )
 
 

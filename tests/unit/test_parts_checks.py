@@ -278,6 +278,9 @@ def test_overspeed_jumps_and_lands(bare):
     check = part_checks.elastic_contact(given)
     assert check.status == "fail"
     assert f"{len(elastic.flights)} losses of contact" in check.note
+    highest = max(elastic.flights, key=lambda flight: flight.height)
+    assert f"jumps at {np.degrees(highest.jump) % 360:.1f} deg" in check.note
+    assert f"{highest.landing_speed:.3g} m/s" in check.note
 
 
 def test_ring_of_a_card():
