@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from reports.tables import DASH, number, quantity, words
+from reports.tables import DASH, number, quantity, words, worst_corner
 
 Rows = list[list[str]]
 
@@ -17,7 +17,6 @@ PRICES_HEAD = (
 CONSISTENCY_HEAD = ("quantity", "load case", "how", "given", "implied", "difference")
 SPEED_HEAD = ("load case", "crank", "standard deviation", "peak to peak", "fluctuation")
 CORNERS_HEAD = ("check", "corner", "nominal", "there")
-NOMINAL = "nominal"
 BENCHMARKS = {
     "nafems_p0": "NAFEMS R0094 case 1, peak pressure",
     "nafems_half_width": "NAFEMS R0094 case 1, half-width",
@@ -95,16 +94,13 @@ def benchmarks(record: Any) -> list[tuple[str, str]]:
 
 
 def corners(checks: Sequence[Mapping[str, Any]]) -> Table:
-    """Checks whose demand is greater at a corner of the tolerances than nominally."""
+    """Checks that a corner of the tolerances asks more of than the nominal case."""
+    found = ((check, worst_corner(check)) for check in checks)
     rows = [
-        [
-            str(check["title"]), str(check["corner"]),
-            quantity(check["demand"], str(check["unit"])),
-            quantity(check["corner_demand"], str(check["unit"])),
-        ]
-        for check in checks
-        if check.get("corner") not in (None, "", NOMINAL) and check.get("corner_demand") is not None
-    ]  # fmt: skip
+        [str(check["title"]), at[0], quantity(check["demand"], str(check["unit"])), at[1]]
+        for check, at in found
+        if at is not None
+    ]
     return Table("Tolerance corners", CORNERS_HEAD, rows, 2)
 
 

@@ -45,6 +45,8 @@ HEADLINES = {
     "fe_vs_hertz_p0_max_percent": ("p0, finite elements against Hertz, at most", "%"),
     "residual_equilibrium_max": ("Equilibrium residual, relative, at most", ""),
 }
+LEAST_ERROR = 1e-4
+"""Of a demand: an error bar below it does not show in the digits of the demand."""
 STATUS = {
     "pass": "pass",
     "fail": "fail",
@@ -169,23 +171,34 @@ def check_rows(checks: Sequence[Mapping[str, Any]]) -> list[CheckRow]:
             source=str(check.get("source") or ""), method=str(check.get("method") or ""),
             note=str(check.get("note") or ""), waiver=_waiver(check.get("waiver")),
             must_have=bool(check.get("must_have", True)),
-            error=_error(check.get("error"), unit), corner=_corner(check, unit),
+            error=_error(check, unit), corner=": ".join(worst_corner(check) or ()),
         ))  # fmt: skip
     return rows
 
 
-def _error(value: Any, unit: str) -> str:
-    """The error bar of a demand, in its unit; none where it is not known."""
-    known = isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value)
-    _, scale = SHOWN_AS.get(unit, (unit, 1.0))
-    return f"±\N{NO-BREAK SPACE}{number(scale * float(value), 2)}" if known else ""
-
-
-def _corner(check: Mapping[str, Any], unit: str) -> str:
-    """The corner of the tolerances that governs a check, with the demand there."""
-    if check.get("corner") in (None, "", "nominal") or check.get("corner_demand") is None:
+def _error(check: Mapping[str, Any], unit: str) -> str:
+    """The error bar of a demand, in its unit; none where it is below the digits shown."""
+    error, demand = (_finite(check.get(name)) for name in ("error", "demand"))
+    if error is None or demand is None or not error or error < LEAST_ERROR * abs(demand):
         return ""
-    return f"{check['corner']}: {quantity(check['corner_demand'], unit)}"
+    scale = SHOWN_AS[unit][1] if unit in SHOWN_AS else 1.0
+    return f"±\N{NO-BREAK SPACE}{number(scale * error, 2)}"
+
+
+def _finite(value: Any) -> float | None:
+    return float(value) if isinstance(value, (int, float)) and isfinite(value) else None
+
+
+def worst_corner(check: Mapping[str, Any]) -> tuple[str, str] | None:
+    """The corner of the tolerances that governs a check and the demand there; None at none.
+
+    A corner that changes no digit shown is none.
+    """
+    unit, demand = str(check.get("unit") or ""), check.get("corner_demand")
+    if not check.get("corner") or demand is None:
+        return None
+    there = quantity(demand, unit)
+    return None if there == quantity(check.get("demand"), unit) else (str(check["corner"]), there)
 
 
 def _bar(value: float | None) -> float | None:
