@@ -24,7 +24,8 @@ from pipeline.smoothing.design import (
     Problem,
 )
 from pipeline.smoothing.grid import Grid
-from pipeline.smoothing.search import LEAST_ENERGY, Search, State
+from pipeline.smoothing.model import State
+from pipeline.smoothing.search import LEAST_ENERGY, Search
 
 __all__ = [
     "RESERVE", "TORQUE_REDUCTION", "Design", "Problem", "Search", "started", "synthesise",

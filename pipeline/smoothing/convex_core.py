@@ -20,6 +20,7 @@ from scipy.sparse import csr_array
 from geometry.arrays import Array, readonly, uniform_turn
 from pipeline.smoothing.convex import Cones
 from pipeline.smoothing.design import COARSE_POINTS, RESERVE, Problem, thinned
+from pipeline.smoothing.ripple import ripple_of, triangle
 from pipeline.smoothing.search import Search
 from pipeline.smoothing.spline_energy import basis_matrix
 
@@ -106,9 +107,8 @@ def _ripple(search: Search, program: Cones) -> None:
     slope = basis_matrix(search.turn.theta, count, 1).toarray() * search.scale
     for item in problem.scenarios:
         columns = np.column_stack([-slope / problem.gear_ratio, item.torque])
-        ripple = item.weight * search.ripple_of(item, columns)
-        triangle = np.asarray(np.linalg.qr(ripple, mode="r"))
-        program.norm_at_most(triangle[:, :-1], triangle[:, -1], count)
+        level, slopes = triangle(item.weight * ripple_of(problem, item, columns))
+        program.norm_at_most(slopes, level, count)
     third = basis_matrix(search.turn.theta, count, 3).toarray() * search.scale
     norm = float(np.linalg.norm(third @ search.exact)) / search.scale or 1.0
     jerk = np.sqrt(problem.jerk_weight) / norm * third

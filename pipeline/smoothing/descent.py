@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from geometry.arrays import Array
 from pipeline.smoothing.convex import Answer, Reach, solved
 from pipeline.smoothing.design import FEASIBLE, RESERVE
-from pipeline.smoothing.search import Model, Search, State
+from pipeline.smoothing.model import Model, State
+from pipeline.smoothing.search import Search
 
 PENALTY, _PENALTY_MAX = 20.0, 2e3
 _STEPS_MAX = 60

@@ -10,7 +10,7 @@ import numpy as np
 from geometry.arrays import Array, readonly, uniform_turn
 from geometry.lift import Lift
 from pipeline.checks.function import TORQUE_REDUCTION
-from pipeline.smoothing.constraints import Machine, Ratings, Scenario
+from pipeline.smoothing.scenario import Machine, Ratings, Scenario
 from pipeline.smoothing.spline_energy import basis_matrix
 
 RESERVE = 1e-3  # share of every limit kept in hand, for what lies between the points

@@ -12,9 +12,9 @@ from geometry.arrays import Array
 from pipeline.case import Case
 from pipeline.checks.check import Check
 from pipeline.cycle import Cycle
-from pipeline.smoothing.constraints import Correction
 from pipeline.smoothing.design import RESERVE, Design, Problem
 from pipeline.smoothing.prices import prices
+from pipeline.smoothing.scenario import Correction
 from pipeline.smoothing.search import Search
 from pipeline.smoothing.starts import Starts
 

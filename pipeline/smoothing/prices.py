@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pipeline.smoothing.constraints import Machine, Ratings
 from pipeline.smoothing.design import RESERVE, Design, Problem
+from pipeline.smoothing.scenario import Machine, Ratings
 
 BINDING = 2e-3  # below the reserve by less than this share of a limit: it binds
 

@@ -14,8 +14,8 @@ from pipeline.cycle import CREEP
 from pipeline.design_fields import LoadCase
 from pipeline.engine.torque import Torque
 from pipeline.smoothing.constrained import Problem
-from pipeline.smoothing.constraints import Correction, Machine, Scenario
 from pipeline.smoothing.ratings import ratings_of
+from pipeline.smoothing.scenario import Correction, Machine, Scenario
 
 POINTS = 720
 

@@ -15,7 +15,7 @@ from pipeline.cycle import CREEP, contact_width
 from pipeline.follower.roller import HOUR
 from pipeline.part_fields import Guide
 from pipeline.shop import largest_tool
-from pipeline.smoothing.constraints import LIFE_UNIT, Ratings
+from pipeline.smoothing.scenario import LIFE_UNIT, Ratings
 
 
 def ratings_of(case: Case) -> Ratings:

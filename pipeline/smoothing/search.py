@@ -3,98 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from geometry.arrays import Array, uniform_turn
 from pipeline.checks.function import TORQUE_REDUCTION
 from pipeline.smoothing.constraints import (
     Jet,
-    Machine,
     Mean,
-    Ratings,
-    Scenario,
     Values,
     delivered_torque,
     lift_jet,
     load_utilisations,
     shape_utilisations,
 )
-from pipeline.smoothing.convex import Norm, Rows
+from pipeline.smoothing.convex import Norm
 from pipeline.smoothing.design import RESERVE, Problem
 from pipeline.smoothing.gradients import FREED, Function, Gradient, differentiated
 from pipeline.smoothing.grid import Grid
+from pipeline.smoothing.model import Linear, Model, State, Summit
+from pipeline.smoothing.ripple import ripple_of, torque_ripple, triangle
+from pipeline.smoothing.scenario import Machine, Ratings, Scenario
 from pipeline.smoothing.spline_energy import basis_matrix, exact_start
 
 INITIAL_ENERGY = "initial_energy"
 LEAST_ENERGY = "least_energy"
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """A place in the search: coefficients, machine, and all that depends on them."""
-
-    coefficients: Array
-    machine: Machine
-    ripple: float
-    jerk: float
-    utilisation: dict[str, float]
-
-    def merit(self, penalty: float, ripple_weight: float) -> float:
-        """What the descent lowers: ripple, jerk, and how far each limit is passed."""
-        over = sum(max(0.0, value - 1.0 + RESERVE) for value in self.utilisation.values())
-        return ripple_weight * self.ripple + self.jerk + penalty * over
-
-
-@dataclass(frozen=True, eq=False)
-class Linear:
-    """A limit near a state: level (m,), entries (m, w) in the columns (m, w) of the unknowns."""
-
-    name: str
-    level: Array
-    entries: Array
-    columns: NDArray[np.intp]
-    elastic: bool = True
-
-    def at(self, step: Array) -> Array:
-        """The model at a step, (m,)."""
-        return np.asarray(self.level + np.sum(self.entries * step[self.columns], axis=1))
-
-    def highest(self, reach: Array) -> Array:
-        """The most that the model can come to while each unknown moves by its reach, (m,)."""
-        return np.asarray(self.level + np.sum(np.abs(self.entries) * reach[self.columns], axis=1))
-
-    def matrix(self, chosen: NDArray[np.bool_], size: int) -> csr_array:
-        """The entries of some rows, (rows, size)."""
-        entries, columns = self.entries[chosen], self.columns[chosen]
-        starts = np.arange(len(entries) + 1) * self.entries.shape[1]
-        return csr_array((entries.ravel(), columns.ravel(), starts), shape=(len(entries), size))
-
-    def rows(self, chosen: NDArray[np.bool_], size: int) -> Rows:
-        return Rows(self.name, self.level[chosen], self.matrix(chosen, size), self.elastic)
-
-
-class Model(NamedTuple):
-    """A synthesis near a state: ripples, limits, and the jerk's curvature and slope."""
-
-    norms: list[Norm]
-    limits: list[Linear]
-    curvature: Array
-    slope: Array
-
-
-class Summit(NamedTuple):
-    """The greatest lift, m, and its derivatives by the coefficients and by k, P, r0."""
-
-    lift: float
-    entries: Array
-    columns: NDArray[np.intp]
-    shared: Array
 
 
 class Search:
@@ -207,9 +143,11 @@ class Search:
             most[INITIAL_ENERGY] = 1.0 - RESERVE + over / self.scale
         ripple = 0.0
         for item, left in self.left(coefficients, machine):
-            ripple = max(ripple, item.weight * float(np.linalg.norm(self.ripple_of(item, left))))
+            ripple = max(
+                ripple, item.weight * float(np.linalg.norm(ripple_of(self.problem, item, left)))
+            )
             if self.problem.ceiling is not None:
-                over = float(np.linalg.norm(_torque_ripple(item, left))) - self.problem.ceiling
+                over = float(np.linalg.norm(torque_ripple(item, left))) - self.problem.ceiling
                 used = 1.0 - RESERVE + over
                 most[TORQUE_REDUCTION] = max(most.get(TORQUE_REDUCTION, used), used)
         jerk = self._jerk_scale * lift_jet(energy, machine).jerk
@@ -226,16 +164,6 @@ class Search:
                 asked = item.torque_at(float(machine.phase))[0]
                 found.append((item, asked - torque / problem.gear_ratio))
         return found
-
-    def ripple_of(self, item: Scenario, values: Array) -> Array:
-        """Torque and speed ripple of columns of crank torque, each over that of the engine."""
-        problem = self.problem
-        parts = [np.sqrt(problem.torque_weight) * _torque_ripple(item, values)]
-        if problem.speed_weight > 0:
-            before = _integral(item.torque - item.torque.mean())
-            norm = np.sqrt(before.size) * float(np.std(before))
-            parts.append(np.sqrt(problem.speed_weight) / norm * _integral(values))
-        return np.concatenate(parts)
 
     def model(self, state: State) -> Model:
         """Linear and quadratic models of ripple, limits and jerk near a state."""
@@ -265,13 +193,13 @@ class Search:
             if "phase" in problem.freed:
                 slopes[:, problem.coefficients + list(problem.freed).index("phase")] += turning
             columns = np.column_stack([slopes, left])
-            charged = _triangle(self.ripple_of(item, columns))
+            charged = triangle(ripple_of(problem, item, columns))
             if problem.speed_weight == 0.0 and problem.torque_weight == 1.0:
                 found.append(Norm(*charged, item.weight, problem.ceiling))
                 continue
             found.append(Norm(*charged, item.weight))
             if problem.ceiling is not None:
-                bounded = _triangle(_torque_ripple(item, columns))
+                bounded = triangle(torque_ripple(item, columns))
                 found.append(Norm(*bounded, weight=0.0, ceiling=problem.ceiling))
         return found
 
@@ -380,23 +308,3 @@ def _loads(
     scenario: Scenario, ratings: Ratings, jet: Jet, top: Values, machine: Machine
 ) -> Mapping[str, Values | Mean]:
     return load_utilisations(jet, top, machine, ratings, scenario)
-
-
-def _torque_ripple(item: Scenario, values: Array) -> Array:
-    """Columns of crank torque about their means; their norm is the std over the engine's."""
-    before = item.torque - item.torque.mean()
-    return (values - values.mean(axis=0)) / (np.sqrt(before.size) * np.std(before))
-
-
-def _triangle(columns: Array) -> tuple[Array, Array]:
-    """Level and slopes of as few rows, the norm of which is that of all: slopes, then level."""
-    triangle = np.asarray(np.linalg.qr(columns, mode="r"))
-    return triangle[:, -1], triangle[:, :-1]
-
-
-def _integral(values: Array) -> Array:
-    """Integral of periodic columns by the angle, its mean taken off; of a turn of any length."""
-    spectrum = np.fft.rfft(values, axis=0)
-    order = np.arange(spectrum.shape[0]).reshape(-1, *[1] * (spectrum.ndim - 1))
-    spectrum = np.divide(spectrum, 1j * order, out=np.zeros_like(spectrum), where=order > 0)
-    return np.fft.irfft(spectrum, n=values.shape[0], axis=0)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from pipeline.checks.check import Check
-from pipeline.smoothing.constraints import Correction
 from pipeline.smoothing.loop import SETTLED, Moved, settled
+from pipeline.smoothing.scenario import Correction
 
 
 def moved(before, after, limit="bush_pv_A"):

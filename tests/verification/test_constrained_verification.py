@@ -14,9 +14,9 @@ from pipeline import trial as road
 from pipeline.case import load_case_file
 from pipeline.follower.forces import FollowerSystem, follower_loads
 from pipeline.smoothing.constrained import RESERVE, Problem, synthesise
-from pipeline.smoothing.constraints import Machine, Ratings, Scenario
 from pipeline.smoothing.infeasible import infeasibility
 from pipeline.smoothing.prices import prices
+from pipeline.smoothing.scenario import Machine, Ratings, Scenario
 from pipeline.smoothing.smoothers import Smoother, smoothed
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -17,19 +17,11 @@ from pipeline.checks.geometry import concave_radius
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import closed_form_history
 from pipeline.cycle import contact_pair, finished
-from pipeline.smoothing.constraints import (
-    Correction,
-    Jet,
-    Machine,
-    Mean,
-    Ratings,
-    Scenario,
-    load_utilisations,
-    shape_utilisations,
-)
+from pipeline.smoothing.constraints import Jet, Mean, load_utilisations, shape_utilisations
 from pipeline.smoothing.design import Problem
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.ratings import pressure_limits, ratings_of
+from pipeline.smoothing.scenario import Correction, Machine, Ratings, Scenario
 from pipeline.smoothing.search import INITIAL_ENERGY, LEAST_ENERGY, Search
 
 CASES = Path(__file__).parents[2] / "cases"

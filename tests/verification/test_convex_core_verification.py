@@ -8,9 +8,9 @@ from scipy.optimize import NonlinearConstraint, minimize
 
 from geometry.arrays import uniform_turn
 from pipeline.smoothing.constrained import RESERVE, Problem, started
-from pipeline.smoothing.constraints import Machine, Ratings, Scenario
 from pipeline.smoothing.convex_core import convex_start
 from pipeline.smoothing.descent import descended
+from pipeline.smoothing.scenario import Machine, Ratings, Scenario
 from pipeline.smoothing.search import Search
 from pipeline.smoothing.spline_energy import basis_matrix
 

@@ -14,10 +14,10 @@ from geometry.energy import lift_from_torque
 from pipeline import trial as road
 from pipeline.case import load_case_file
 from pipeline.smoothing.constrained import Problem, synthesise
-from pipeline.smoothing.constraints import Machine, Ratings, Scenario
 from pipeline.smoothing.design import coarsened
 from pipeline.smoothing.grid import Grid
 from pipeline.smoothing.problem import problem_of
+from pipeline.smoothing.scenario import Machine, Ratings, Scenario
 from pipeline.smoothing.search import Search
 from pipeline.smoothing.smoothers import KINDS, Smoother, smoothed
 from pipeline.smoothing.spline_energy import exact_start, fitted_energy
