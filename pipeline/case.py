@@ -46,6 +46,7 @@ from pipeline.part_fields import (
     Oil,
     Roller,
     Spring,
+    ValveTrain,
 )
 from pipeline.results import hash_inputs
 from pipeline.shop_fields import Shop
@@ -70,6 +71,7 @@ class Case(Section):
     spring: Spring
     cam: Cam
     camshaft: Camshaft | None = None
+    valve_train: ValveTrain | None = None
     roller_given: Annotated[Roller | None, Field(alias="roller")] = None
     follower: Follower
     guides: Guides
@@ -268,6 +270,9 @@ def _check_road(case: Case) -> None:
         raise InputError("engine, lift", found, "exactly one of the two")
     if isinstance(case.lift, LiftSegments):
         motion_of(case.lift)
+    elif case.valve_train is not None:
+        limit = 'left out unless lift.kind = "segments"'
+        raise InputError("valve_train", "a table", limit)
     if case.follower.kind == "roller":
         _ = case.roller  # refuses a case without
     elif case.roller_given is not None:

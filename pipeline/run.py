@@ -43,6 +43,7 @@ from pipeline.smoothing.smoothers import Smoother
 from pipeline.smoothing.starts import Starts, explored
 from pipeline.speed import consistency, rubbing_of, speed_record, study_of
 from pipeline.trial import Trial
+from pipeline.valve_train import valve_record
 
 
 @dataclass
@@ -129,6 +130,7 @@ def run_case(
             "prices": None if final.synthesis is None else final.synthesis["prices"],
             "benchmarks": benchmarks(case.contact_radius) if final.certificate else None,
             "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
+            "valve_train": valve_record(case, final.cycles),
             **_crank_speed(folder, case, torques, final),
         }
         with watch.stage("report"):

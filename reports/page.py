@@ -92,6 +92,7 @@ def context(material: Material) -> dict[str, Any]:
         "corners": proof.corners(final.checks),
         "consistency": proof.consistency(summary.get("consistency")),
         "crank_speed": proof.crank_speed(summary.get("speed")),
+        "valve_train": proof.valve_train(summary.get("valve_train")),
         "mesh": tables.named_rows({k: v for k, v in mesh.items() if k != "sha256"}),
         "method": str(final.record.get("contact_method") or ""),
         "residuals": residuals(turn),

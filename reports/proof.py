@@ -16,6 +16,7 @@ PRICES_HEAD = (
 )  # fmt: skip
 CONSISTENCY_HEAD = ("quantity", "load case", "how", "given", "implied", "difference")
 SPEED_HEAD = ("load case", "crank", "standard deviation", "peak to peak", "fluctuation")
+VALVE_HEAD = ("figure", "load case", "what it is", "value")
 CORNERS_HEAD = ("check", "corner", "nominal", "there")
 BENCHMARKS = {
     "nafems_p0": "NAFEMS R0094 case 1, peak pressure",
@@ -81,6 +82,18 @@ def crank_speed(record: Any) -> Table:
         if isinstance(states.get(state), Mapping)
     ]  # fmt: skip
     return Table("Crank speed", SPEED_HEAD, rows, 2)
+
+
+def valve_train(record: Any) -> Table:
+    """The machine motion of a valve cam, with what of it is reconstructed."""
+    rows = [
+        [
+            str(one["name"]), str(one["load_case"]) or DASH, str(one["note"]),
+            quantity(one["value"], "" if one["unit"] == "-" else str(one["unit"])),
+        ]
+        for one in _records(record.get("rows") if isinstance(record, Mapping) else None)
+    ]  # fmt: skip
+    return Table("Machine motion of the valve cam", VALVE_HEAD, rows, 3)
 
 
 def benchmarks(record: Any) -> list[tuple[str, str]]:

@@ -17,6 +17,7 @@ from pipeline.follower.stem import Stem, end_flexibility, stem_compliance
 
 KNOTS = 25  # per guide; odd, so that the middle of the guide is one of them
 RESIDUAL_LIMIT = 1e-9
+_NO_LOAD = 1e-290  # N: the slope a spline leaves in a dwell; so near to zero digits are lost
 WALL_SHARE = 0.25  # wall of a plain bushing over its bore, where the drawing gives none
 
 
@@ -348,7 +349,7 @@ def lobatto(count: int) -> tuple[Array, Array]:
 
 def _relative(error: Array, scale: Array) -> Array:
     """|error| / scale, 0 where there is no load."""
-    return np.divide(np.abs(error), scale, out=np.zeros_like(scale), where=scale > 0.0)
+    return np.divide(np.abs(error), scale, out=np.zeros_like(scale), where=scale > _NO_LOAD)
 
 
 def _certify(result: GuideReactions) -> None:

@@ -69,7 +69,9 @@ class ValveCam:
         return float(np.sqrt(prime**2 - self.offset**2))
 
     def pressure_angle(self, phi: ArrayLike) -> Array:
-        """delta of the roller, rad (eqs 6.2 to 6.4)."""
+        """delta of the roller, rad (eqs 6.2 to 6.4); a flat follower has none."""
+        if self.module == "C":
+            return np.zeros(np.shape(phi))
         return np.arctan2(self.motion(phi, 1) - self.offset, self.height_base + self.motion(phi))
 
     def contour_radius_square(self, phi: ArrayLike, derivative: int = 0) -> Array:
