@@ -206,3 +206,25 @@ def test_twenty_random_starts_agree_on_the_redesigned_case():
     _, starts = explored(problem_of(case, road.engine_torques(case)), 20, seed=7)
     assert len(starts.ripples) == 20
     assert starts.agree, starts.sentence
+
+
+def test_ripple_of_the_speed_is_lowered_as_that_of_the_torque_is():
+    """Short waves hardly show in the speed; the descent must not lose itself in them."""
+    asked = engine(3)
+    by_speed = problem(asked, torque_weight=0.0, speed_weight=1.0)
+    found, other = synthesise(by_speed), synthesise(problem(asked))
+    assert found.feasible and found.converged
+    search = Search(by_speed)
+    assert found.ripple < search.state(other.coefficients, other.machine).ripple
+    assert Search(problem(asked)).state(found.coefficients, found.machine).ripple > other.ripple
+
+
+def test_reduction_of_the_torque_holds_while_the_speed_is_lowered():
+    asked = engine(3)
+    least = synthesise(problem(asked)).ripple
+    given_problem = problem(
+        asked, torque_weight=0.0, speed_weight=1.0, torque_reduction=1.0 - 1.05 * least
+    )
+    design = synthesise(given_problem)
+    assert design.feasible
+    assert Search(problem(asked)).state(design.coefficients, design.machine).ripple <= 1.05 * least
