@@ -148,6 +148,8 @@ spacing = "5 deg"                    # crank angle: 12 points make a window of 6
 [limits]
 pressure_angle = "30 deg"
 torque_reduction = 0.4               # least share of the torque ripple to take away
+# curvature_rate = "500 1/m/rad"     # how fast the contour's curvature may change
+# tool_radius = "10 mm"              # hollows at least a tenth wider than the tool
 
 [limits.sources]
 torque_reduction = "what this design is for"
