@@ -62,6 +62,10 @@
     place.addEventListener("blur", () => Plotly.Fx.unhover(place));
   }
 
+  /* The drawing itself says nothing aloud: its place has a name, and its values are told. */
+  const mute = (...elements) =>
+    elements.forEach((one) => one && one.setAttribute("aria-hidden", "true"));
+
   /* A legend that breaks into lines on a narrow screen gets the room it takes. */
   function roomy(place, layout) {
     const legend = place.querySelector(".infolayer > .legend");
@@ -79,6 +83,7 @@
     Plotly.newPlot(place, made.data, made.layout, config).then(() => {
       place.parentNode.classList.add("interactive");
       roomy(place, made.layout);
+      mute(...place.children, document.getElementById("js-plotly-tester"));
       place.dataset.drawn = "done";
       reachable(place, spec);
     }).catch((error) => { place.hidden = true; console.error(error); });

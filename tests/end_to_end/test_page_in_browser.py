@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import sys
 import time
@@ -69,6 +70,34 @@ def test_every_plot_is_drawn_and_answers(report: Path, tab: browser.Tab, width: 
     assert tab.complaints() == []
     assert tab.evaluate("window.broken") is None
     assert "עברית" in tab.evaluate("document.querySelector('h1').textContent")
+
+
+def test_a_screen_reader_finds_its_way(report: Path, tab: browser.Tab) -> None:
+    """Headings in order, a name for every picture, and tables that stay tables on a telephone."""
+    tab.size(390, 900)
+    tab.open(report)
+    tab.wait(ALL_DRAWN)
+    nodes = [node for node in tab.call("Accessibility.getFullAXTree")["nodes"]
+             if not node.get("ignored")]  # fmt: skip
+    by_role: dict[str, list[dict]] = {}
+    for node in nodes:
+        by_role.setdefault(node["role"]["value"], []).append(node)
+    levels = [
+        next(p["value"]["value"] for p in node["properties"] if p["name"] == "level")
+        for node in by_role["heading"]
+    ]
+    assert levels[0] == 1 and levels.count(1) == 1
+    assert all(after <= before + 1 for before, after in itertools.pairwise(levels))
+    for role in ("heading", "image", "link", "region", "table"):
+        assert all(node["name"]["value"].strip() for node in by_role.get(role, [])), role
+    assert "SvgRoot" not in by_role  # or every tick of every plot would be read out
+    checks = len(report_fixture.checks())
+    assert len(by_role["row"]) > checks
+    assert len(by_role["rowheader"]) >= checks
+    reached = [name for name in ("main", "navigation") if name in by_role]
+    assert reached == ["main", "navigation"]
+    lacking = "[...document.querySelectorAll('.live')].filter(e => e.tabIndex !== 0).length"
+    assert tab.evaluate(lacking) == 0
 
 
 def test_print_shows_the_still_drawings(report: Path, tab: browser.Tab) -> None:
