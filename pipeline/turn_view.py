@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.spatial import Delaunay
+from scipy.spatial import cKDTree
 
 from geometry.arrays import Array, uniform_turn
+from meshes.body import BodyMesh
 from meshes.cam_outline import KeywayLike
 from pipeline.contact import stress
 from pipeline.contact.bodies import LoadedBody, hertz_stress
@@ -28,8 +29,8 @@ FRAMES = 360
 
 _MM, _MPA = 1e3, 1e-6
 _LAYERS, _GRADING = 19, 4.5
-_TOGETHER = 24
-_INWARD = 1e-3  # a point on the surface may lie outside of the mesh's chords by less
+_TOGETHER = 12
+_NEAR = 16  # elements about a point among which the one that holds it is looked for
 
 
 def turn_view(
@@ -52,7 +53,7 @@ def turn_view(
     count = cycle.theta.size
     shown = np.arange(0, count, -(-count // FRAMES))
     points = cam_points(pair, 2 * shown.size)
-    between = linear(bodies.cam.body.mesh.points, points)
+    between = linear(bodies.cam.body.mesh, points)
     places = follower_places(pair, cycle.theta[shown])
     on_cam, on_other = [], []
     for start in range(0, shown.size, _TOGETHER):
@@ -125,15 +126,26 @@ def _graded(outer: Array, inner: Array) -> Array:
     return outer[:, :, None] + (inner - outer)[:, :, None] * share
 
 
-def linear(nodes: Array, points: Array) -> sparse.csr_array:
-    """What takes values at nodes (2, n) to points (2, ...) inside of them, by straight lines."""
-    mesh = Delaunay(nodes.T)
-    at = (1 - _INWARD) * points.reshape(2, -1).T
-    simplex = mesh.find_simplex(at)
-    frame = mesh.transform[simplex]
-    part = np.einsum("mij,mj->mi", frame[:, :2], at - frame[:, 2])
-    weights = np.column_stack([part, 1 - part.sum(axis=1)])
-    rows = np.repeat(np.arange(len(at)), 3)
-    columns = mesh.simplices[simplex].ravel()
-    shape = (len(at), nodes.shape[1])
-    return sparse.coo_array((weights.ravel(), (rows, columns)), shape=shape).tocsr()
+def linear(mesh: BodyMesh, points: Array) -> sparse.csr_array:
+    """What takes values at the nodes of a mesh to points (2, ...) of the body, by straight lines.
+
+    A point on a curved edge, just beyond its chord, takes the value of the chord.
+    """
+    flat = points.reshape(2, -1)
+    corners = mesh.triangles[:3]
+    places = mesh.points[:, corners]
+    near = cKDTree(places.mean(axis=1).T).query(flat.T, k=min(_NEAR, corners.shape[1]))[1]
+    a, b, c = (places[:, k, near] for k in range(3))
+    parts = np.stack([_twice_area(flat[:, :, None], b, c), _twice_area(a, flat[:, :, None], c),
+                      _twice_area(a, b, flat[:, :, None])]) / _twice_area(a, b, c)  # fmt: skip
+    chosen = parts.min(axis=0).argmax(axis=1)
+    each = np.arange(flat.shape[1])
+    weights = np.maximum(parts[:, each, chosen], 0.0)
+    weights /= weights.sum(axis=0)
+    columns = corners[:, near[each, chosen]]
+    entries: Any = (weights.ravel(), (np.tile(each, 3), columns.ravel()))
+    return sparse.coo_array(entries, shape=(flat.shape[1], mesh.points.shape[1])).tocsr()
+
+
+def _twice_area(a: Array, b: Array, c: Array) -> Array:
+    return np.asarray((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]))

@@ -30,6 +30,7 @@ from reports.film_raster import (
     painted,
 )
 from reports.material import Material
+from reports.page import shortened
 from reports.plots import COLOURS, style
 from reports.turn_view import TurnView
 
@@ -37,12 +38,12 @@ SIZE = (1280, 720)
 FLOOR_SHARE, TOP_SHARE = 0.5e-3, 0.2
 """The bodies' colours run between these shares of the turn's greatest von Mises stress."""
 
-_BODY = (20, 56, 548, 640)  # left, top, width, height of the bodies' panel, pixels
-_BODY_BAR = (584, 96, 14, 560)
+_BODY = (20, 84, 548, 624)  # left, top, width, height of the bodies' panel, pixels
+_BODY_BAR = (584, 110, 14, 560)
 _PATCH = (742, 64, 400, 300)
 _PATCH_BAR = (1158, 64, 14, 300)
 _TRACE = (742, 440, 506, 216)
-_STAMP = (34, 66)
+_STAMP = (20, 42)
 _STEEL, _DARK, _SHAFT = (np.array(c) for c in ((196, 204, 213), (89, 97, 107), (223, 228, 234)))
 _INK, _MARK, _PRESSURE = (np.array(c) for c in ((27, 31, 36), (213, 94, 0), (0, 114, 178)))
 
@@ -84,8 +85,9 @@ class Stage:
             guide = (middle - 0.5 * length, middle + 0.5 * length, stem)
         cases = {str(c.get("name")): c for c in material.case.get("load_case", ())}
         ratio = float(cycle["crank_angle_deg"][1] / cycle["cam_angle_deg"][1])
+        title = str(material.case.get("title") or material.run.summary["case"])
         return cls(
-            view, patches, cycle, str(material.case.get("title") or material.run.summary["case"]),
+            view, patches, cycle, shortened(title, 90),
             str(cases.get(view.load_case, {}).get("speed", "")), ratio, guide,
         )  # fmt: skip
 
@@ -180,16 +182,15 @@ class Stage:
         row = int(self.view.position[k])
         angle = float(self.view.angle[k])
         draw.text(_STAMP, f"cam {angle:5.1f}°", font=_font(26), fill=COLOURS["ink"])
-        lines = [f"crank {angle * self.gear_ratio:5.1f}°"] + [
+        told = [f"crank {angle * self.gear_ratio:5.1f}°"] + [
             f"{words} {float(self.columns[name][row]):.4g} {unit}"
             for words, name, unit in (
                 ("p0", "p0_fe_MPa", "MPa"), ("force", "normal_force_N", "N"),
                 ("half-width", "half_width_fe_mm", "mm"), ("lift", "lift_mm", "mm"),
             ) if name in self.columns
         ]  # fmt: skip
-        for number, line in enumerate(lines):
-            draw.text((_STAMP[0], _STAMP[1] + 36 + 19 * number), line, font=_font(14),
-                      fill=COLOURS["ink"])  # fmt: skip
+        beside = (_STAMP[0] + 158, _STAMP[1] + 11)
+        draw.text(beside, " · ".join(told), font=_font(13), fill=COLOURS["ink"])
         left, top, width, height = _TRACE
         x = left + width * angle / 360.0
         draw.line([(x, top), (x, top + height)], fill=COLOURS["vermillion"], width=2)

@@ -68,7 +68,7 @@ class PatchSeries:
         ax.set(xlim=(_LEFT, _RIGHT), ylim=(_DEEP, _HIGH), xlabel="along the contact, x / a",
                ylabel="depth, z / a", xticks=np.arange(-2, 3), yticks=(-1, 0, 1))  # fmt: skip
         ax.set_title(
-            "Under the roller: contact pressure (blue, of its greatest) and stress in the cam",
+            "The contact: pressure (blue, of its greatest) and stress in the cam",
             fontsize=8.5, loc="left", color=COLOURS["ink"],
         )  # fmt: skip
 

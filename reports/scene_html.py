@@ -112,9 +112,9 @@ def _greatest(material: Material, view: TurnView, stations: int) -> Array | None
 
 
 def _cam(view: TurnView, width: float) -> Solid:
-    """Both faces of the cam and the wall of its bore."""
+    """Both faces of the cam."""
     outer, inner = view.cam[:, :, 0], view.cam[:, :, -1]
-    return joined([ring(inner, width), *(tube(outer, inner, side * width / 2) for side in (-1, 1))])
+    return joined([tube(outer, inner, side * width / 2) for side in (-1, 1)])
 
 
 def _roller(view: TurnView, width: float) -> dict[str, Any]:

@@ -68,6 +68,7 @@
       line: { width: 7, ...(range || { color: DARK }) } });
     made.push({ type: "scatter3d", mode: "lines", x: hole.x, y: hole.y, z: hole.z,
       hoverinfo: "skip", line: { width: 2, color: "#59616b" } });
+    made.push(solid(data.bodies.bore, { color: "#7d8894", lighting: PLAIN }));
     if (data.roller) made.push(solid(follower, { color: DARK }));
     if (guide) made.push(solid(guide, { color: "#6c7783", opacity: 0.35 }));
     return made;
@@ -94,6 +95,7 @@
       zs[4] = [1.02 * data.half, 1.02 * data.half];
     } else pairs.push([[], []]);
     for (const line of [rim, hole]) pairs.push(turned(line, turn));
+    pairs.push(around(data.bodies.bore.x, data.bodies.bore.y, turn));
     if (data.roller) pairs.push(at(follower, 0));
     return { pairs, zs };
   }
@@ -105,7 +107,7 @@
     return pairs.map((_, t) => t);
   }
 
-  const { side, top } = data.reach, deep = 0.3 * (side + top), unit = (side + top) / 1.3;
+  const { side, top } = data.reach, deep = 0.3 * (side + top), unit = (side + top) / 1.22;
   const axis = (range) => ({ range, visible: false, autorange: false });
   const layout = () => ({
     margin: { l: 0, r: 0, t: 0, b: 0 }, showlegend: false, uirevision: "kept",

@@ -84,7 +84,7 @@ def test_camera_and_colours_stay(stage: Stage) -> None:
     for rows, columns in (((0, 40), (0, 1280)), ((90, 680), (580, 680)), ((64, 364), (1155, 1280)),
                           ((660, 720), (690, 1280))):  # fmt: skip
         assert not moved[slice(*rows), slice(*columns)].any()
-    assert moved[60:690, 20:568].mean() > 0.05 and moved[64:364, 742:1142].any()
+    assert moved[84:700, 20:568].mean() > 0.05 and moved[64:364, 742:1142].any()
 
 
 def test_follower_stands_on_its_axis_and_touches_the_cam(stage: Stage) -> None:

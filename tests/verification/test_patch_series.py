@@ -25,7 +25,7 @@ from pipeline.fields import facing, write_bodies
 from pipeline.follower.guides import lobatto
 from pipeline.parts import bush_pair
 from pipeline.patch_series import INDEX, patch_mesh, patch_stress, write_patches
-from pipeline.turn_view import bore_reach, turn_view
+from pipeline.turn_view import bore_reach, linear, turn_view
 
 POSITIONS = 12
 
@@ -255,3 +255,19 @@ def test_slices_cover_what_is_loaded_and_its_neighbours() -> None:
     assert loaded_length(knots, np.eye(9)[0])[[0, -1]].tolist() == [-1.0, -0.75]
     assert loaded_length(knots, np.eye(9)[4])[[0, -1]].tolist() == [-0.25, 0.25]
     assert loaded_length(knots, np.zeros(9))[[0, -1]].tolist() == [-1.0, 1.0]
+
+
+def test_values_between_nodes_are_those_of_straight_lines(series, view) -> None:
+    mesh = series[3].cam.body.mesh
+    points = 1e-3 * view["cam_mm"]
+    between = linear(mesh, points)
+    np.testing.assert_allclose(between.sum(axis=1), 1.0, rtol=1e-12)
+    found = between @ (0.2 + mesh.points[0] - 2 * mesh.points[1])
+    expected = (0.2 + points[0] - 2 * points[1]).ravel()
+    # exact but on the surfaces: the arcs bulge over the chords by up to 20 um, the slope is 2.2
+    np.testing.assert_allclose(found, expected, rtol=0, atol=5e-5)
+    deep = np.s_[:, 3:-3]
+    shape = points.shape[1:]
+    np.testing.assert_allclose(
+        found.reshape(shape)[deep], expected.reshape(shape)[deep], rtol=0, atol=1e-12
+    )
