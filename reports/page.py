@@ -25,11 +25,11 @@ LONG = 700
 UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 ASSUMPTIONS = (
     "The contact is two-dimensional and in plane strain: every slice across the width carries the "
-    "same load. Edge stress at the ends of the roller, tilt and crowning are not in the numbers.",
+    "same load. Edge stress at its ends, tilt and crowning are not in the numbers.",
     "Both bodies are linear elastic. Where the shakedown or yield check fails, the true stresses "
     "differ from those shown.",
     "Surfaces are smooth and dry of film: roughness, lubrication and traction on the contact are "
-    "left out. The roller turns freely.",
+    "left out. A roller turns freely; a flat face drags on the follower by the friction given.",
     "Loads are those of a constant cam speed; the ripple of the engine's speed acts on the elastic "
     "stem alone, where the case gives the crankshaft's inertia.",
     "The camshaft, its bearings and the drive between crank and cam are rigid and without play.",
@@ -39,8 +39,8 @@ ASSUMPTIONS = (
     "direction of motion; it is in balance with guides of finite length and clearance.",
     "Stress at the keyway's corners and at the edge of the bore depends on fillets the case does "
     "not give, and is excluded from every check.",
-    "The pressure of Hertz's theory takes both bodies for half-planes; a roller of finite size "
-    "differs a little, which is part of the difference shown.",
+    "The pressure of Hertz's theory takes both bodies for half-planes; bodies of finite size "
+    "differ a little, which is part of the difference shown.",
 )
 
 
