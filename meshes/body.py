@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geometry.arrays import Array, finite, freeze, positive
+from geometry.drawing import HoleLike
 from geometry.errors import InputError, MeshError
 from meshes.cam_outline import (
     ContourLike,
@@ -20,6 +21,7 @@ from meshes.cam_outline import (
     cam_size,
     contour_piece,
     hole_pieces,
+    hole_size,
     trace,
 )
 from meshes.mesher import Index, Triangulation, triangulate
@@ -341,7 +343,11 @@ def _mirrored(half: Triangulation, axis: str) -> BodyMesh:
 
 
 def cam_mesh(
-    contour: ContourLike, bore_radius: float, keyway: KeywayLike | None, sizing: Sizing
+    contour: ContourLike,
+    bore_radius: float,
+    keyway: KeywayLike | None,
+    sizing: Sizing,
+    counter_hole: HoleLike | None = None,
 ) -> BodyMesh:
     """A cam, fine at the contact point on its contour.
 
@@ -351,19 +357,20 @@ def cam_mesh(
     bore_radius : float             m, bore centred on the origin
     keyway : KeywayLike or None     slot into the bore: width, depth (m), angle (rad)
     sizing : Sizing
+    counter_hole : HoleLike or None   round hole clear of bore and contour
 
     Returns
     -------
     BodyMesh
-        With boundaries "contour", "bore" and, if there is one, "keyway". Corners and middles
-        of "contour" lie on the contour itself.
+        With boundaries "contour", "bore" and, if there is one, "keyway" and "counter_hole".
+        Corners and middles of "contour" lie on the contour itself.
 
     Raises
     ------
     InputError
         If a dimension is out of bounds or the contact point is not on the contour.
     GeometryError
-        If the contour is undercut or crosses itself, or bore or keyway reach it.
+        If the contour is undercut or crosses itself, or bore, keyway or hole reach it.
     MeshError
         If the region cannot be meshed.
     """
@@ -371,4 +378,9 @@ def cam_mesh(
     path = trace(contour)
     size = cam_size(path, bore_radius, keyway, sizing)
     loops = [[contour_piece(path, sizing)], hole]
+    if counter_hole is not None:
+        size = hole_size(size, path, counter_hole)
+        x, y = counter_hole.centre.tolist()
+        turn = 2 * np.pi
+        loops.append([arc("counter_hole", counter_hole.radius, turn, 0.0, (x, y))])
     return _body(triangulate(_discretised(loops, size), size))

@@ -10,12 +10,14 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq, minimize_scalar
 
 from geometry.arrays import FULL_TURN, Array, positive
+from geometry.drawing import HoleLike
 from geometry.errors import GeometryError, InputError
 from meshes.outline import Piece, Zone, arc, line
 from meshes.sizing import EDGES_PER_TURN, SizeField, Sizing
 
 _SAMPLES = 7200  # of the contour; half a tenth of a degree
 _WALL_LEAST = 0.01  # of the bore radius
+_EDGES_ACROSS_HOLE_WALL = 4
 
 
 class ContourLike(Protocol):
@@ -157,6 +159,21 @@ def cam_size(
     kappa = np.maximum(np.abs(path.contour.curvature(path.theta)), 1e-12)
     limits = np.maximum(FULL_TURN / EDGES_PER_TURN / kappa, floor)
     return size.below(path.points, limits)
+
+
+def hole_size(size: SizeField, path: Trace, hole: HoleLike) -> SizeField:
+    """The field with the elements that a hole and the wall it leaves to the contour ask for.
+
+    Raises
+    ------
+    GeometryError
+        If the hole reaches the contour.
+    """
+    wall = float(np.hypot(*(path.points - hole.centre[:, None])).min()) - hole.radius
+    if not wall > 0.0:
+        raise GeometryError(f"wall of the counter-hole = {wall * 1e3:.3f} mm, must be > 0 mm")
+    finest = min(FULL_TURN * hole.radius / EDGES_PER_TURN, wall / _EDGES_ACROSS_HOLE_WALL)
+    return size.with_spot(hole.centre, finest, hole.radius + wall)
 
 
 def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -> SizeField:

@@ -9,6 +9,7 @@ import numpy as np
 
 from geometry.arrays import Array, freeze, uniform_turn
 from geometry.contour import Contour
+from pipeline.balance import drilled_hole
 from pipeline.case import Case
 from pipeline.contact.elastic_body import Elastic
 from pipeline.contact.follower_body import FaceBody, FollowerBody, RollerBody
@@ -150,6 +151,7 @@ def contact_pair(case: Case, contour: Contour) -> ContactPair:
         keyway=case.cam.keyway,
         cam=Elastic(cam.E, cam.nu),
         follower=follower_body(case),
+        counter_hole=drilled_hole(case, contour),
     )
 
 

@@ -184,6 +184,8 @@ def chunk_key(pair: ContactPair, given: Turn) -> str:
     digest = hashlib.sha256(pair.contour.pitch.lift.values.tobytes())
     digest.update(given.loads.normal_force.tobytes())
     digest.update(repr((pair.width, pair.bore_radius, pair.cam, pair.follower)).encode())
+    if pair.counter_hole is not None:
+        digest.update(np.array([*pair.counter_hole.centre, pair.counter_hole.radius]).tobytes())
     return digest.hexdigest()
 
 

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from geometry.arrays import Array
 from geometry.contour import Contour
+from geometry.drawing import HoleLike
 from geometry.errors import ContactError
 from meshes.body import BodyMesh, cam_mesh
 from meshes.cam_outline import KeywayLike
@@ -42,6 +43,7 @@ class ContactPair:
     keyway: KeywayLike | None
     cam: Elastic
     follower: FollowerBody
+    counter_hole: HoleLike | None = None
 
     @property
     def contact_modulus(self) -> float:
@@ -94,13 +96,14 @@ class CycleBodies:
             pair.bore_radius,
             pair.keyway,
             Sizing(far_size=min(outline / _GRID_OF_CYCLE_MESH, wall / EDGES_ACROSS_WALL)),
+            pair.counter_hole,
         )
-        keyed = ("keyway",) if "keyway" in cam.boundaries else ()
+        cut = tuple(name for name in ("keyway", "counter_hole") if name in cam.boundaries)
         other = pair.follower
         mesh = other.coarse_mesh()
         facing = elastic_body(mesh, other.material, other.held, other.springs(mesh, None, 0.0))
         return cls(
-            LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", keyed),
+            LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", cut),
             LoadedBody(facing, other.surface, other.free),
         )
 

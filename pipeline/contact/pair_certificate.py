@@ -57,7 +57,7 @@ def contact_meshes(
         )
 
     far = float(pair.contour.perimeter()) / _FAR_ON_OUTLINE
-    cam = cam_mesh(pair.contour, pair.bore_radius, pair.keyway, sizing(far))
+    cam = cam_mesh(pair.contour, pair.bore_radius, pair.keyway, sizing(far), pair.counter_hole)
     other = pair.follower
     return cam, other.mesh_at(pair.contour, theta, sizing(other.far_size))
 

@@ -1,6 +1,7 @@
 """A cam's balance: the hole that is left out or drilled, in the check, the record and the shop."""
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import ezdxf
@@ -12,12 +13,17 @@ from geometry.contour import Contour
 from geometry.errors import GeometryError
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
+from meshes.body import cam_mesh
+from meshes.sizing import Sizing
 from pipeline.balance import WALL, balance, drilled_hole
 from pipeline.case import parse_case
 from pipeline.case_template import template
 from pipeline.checks.parts import cam_unbalance
 from pipeline.checks.trial import TrialEvidence
-from pipeline.follower.cam_body import greatest_hole, unbalance
+from pipeline.contact.pair import CycleBodies, pair_history
+from pipeline.contact.pair_certificate import solve_pair
+from pipeline.cycle import contact_pair
+from pipeline.follower.cam_body import CounterHole, greatest_hole, unbalance
 from pipeline.shop import outline_of, write_shop
 
 KEY = '\n[cam.keyway]\nwidth = "6 mm"\ndepth = "2.8 mm"\nangle = "50 deg"\n'
@@ -159,3 +165,37 @@ def test_the_shop_drills_it(tmp_path):
     assert volume == pytest.approx(1e9 * found.left.area * case.cam.width, rel=1e-6)
     assert np.hypot(*centre[:2]) < 1e-4  # mm; before the hole it was a hundred times that
     assert found.unbalance.eccentricity > 1e-5
+
+
+def test_the_contact_feels_the_hole():
+    """Over its thin wall the cam bends and bears more shear; cycle and certificate say the same.
+
+    Elsewhere it changes nothing. One mesh of the certificate: pressure to 0.1 %, shear to 2 %.
+    """
+    case = case_of(ASKED)
+    pair = contact_pair(case, HEAVY)
+    theta = uniform_turn(3600)
+    hole = pair.counter_hole
+    thinnest = theta[np.argmin(np.hypot(*(HEAVY.points(theta) - hole.centre[:, None])))]
+    at, force = np.array([thinnest, thinnest + 2.0]), np.full(2, 3000.0)
+    without = replace(pair, counter_hole=None)
+    drilled, whole = (
+        pair_history(each, CycleBodies.meshed(each), at, force) for each in (pair, without)
+    )
+    change = drilled.tau_max / whole.tau_max - 1.0
+    assert change[0] > 0.1
+    assert abs(change[1]) < 5e-3
+    full = solve_pair(pair, float(at[0]), 3000.0).solution
+    assert full.p0 == pytest.approx(drilled.p0[0], rel=1e-3)
+    assert full.tau_max == pytest.approx(drilled.tau_max[0], rel=0.02)
+
+
+def test_the_mesh_leaves_the_hole_out():
+    found = balance(case_of(), HEAVY)
+    sizing = Sizing(far_size=3e-3)
+    holed, whole = (cam_mesh(HEAVY, 0.01, None, sizing, each) for each in (found.hole, None))
+    assert whole.area - holed.area == pytest.approx(np.pi * found.hole.radius**2, rel=1e-4)
+    assert "counter_hole" in holed.boundaries
+    out = CounterHole(np.array([0.05, 0.0]), 0.05)
+    with pytest.raises(GeometryError, match="wall of the counter-hole"):
+        cam_mesh(HEAVY, 0.01, None, sizing, out)
