@@ -104,6 +104,37 @@ def test_measured_cam_is_judged_under_the_face(folder, tmp_path):
     assert 3.0 < float(re.search(r"\b3: ([\d.]+) um", said)[1]) < 4.0
 
 
+def sharp_cam():
+    """The flat cam with a lift that bends more than its base circle makes up for."""
+    text = case_text().replace('stroke = "6 mm"', 'stroke = "10 mm"')
+    text = text.replace('stroke = "-6 mm"', 'stroke = "-10 mm"').replace('"16 mm"', '"30 mm"')
+    return text.replace('"13 mm"', '"8 mm"').replace('bore_radius = "6 mm"', 'bore_radius = "3 mm"')
+
+
+def third_cam():
+    """The published cam B3 under its roller."""
+    return CASE.with_name("petrescu_b3.toml").read_text() + "\n[solver]\npositions = 36\n"
+
+
+@pytest.mark.parametrize("cam", [pytest.param(sharp_cam, marks=pytest.mark.slow), third_cam])
+def test_undercut_is_a_verdict_through_the_road(tmp_path, cam):
+    (tmp_path / "cut.toml").write_text(cam())
+    code, said = camwright("run", tmp_path / "cut.toml", "--out", tmp_path / "run")
+    assert code == 0, said
+    run = load_run(tmp_path / "run")
+    checks = {check["id"]: check for check in run.final.checks}
+    assert run.verdict == "fail"
+    for name in ("undercut", "self_intersection", "second_contact"):
+        assert checks[name]["status"] == "fail", name
+    assert checks["undercut"]["demand"] < 0
+    assert "undercut" in run.summary["binding"]
+    assert np.isnan(run.final.cycle["p0_fe_MPa"]).all()
+    page = (tmp_path / "run" / "8_report.html").read_text()
+    assert "Machine motion of the valve cam" in page
+    assert "reconstructed" in page
+    assert "no efficiency" in page
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
