@@ -30,6 +30,7 @@ from pipeline.checks import (
     parts,
     roller,
     rolling,
+    running,
     shaft,
     signed,
     spring,
@@ -46,7 +47,8 @@ POSITIONS = 90
 """Angles a turn: a corner asks for the ratio of two demands, not for either."""
 UNMOVED: tuple[CheckFunction, ...] = (
     *(function.energy_closure, function.friction_balance),
-    *(geometry.closure, geometry.self_intersection, geometry.second_contact),
+    *(geometry.closure, geometry.acceleration_step),
+    *(geometry.self_intersection, geometry.second_contact),
     *(geometry.spring_travel, signed.guide_length, parts.cam_unbalance),
     *spring.CHECKS,
     *(manufacture.chord_error, manufacture.phase_tolerance),
@@ -56,7 +58,7 @@ TRIED: tuple[CheckFunction, ...] = tuple(
     check
     for group in (
         *(function, geometry, forces, contact_checks, roller, guides, rolling),
-        *(signed, surface, shaft, manufacture, parts),
+        *(signed, surface, shaft, manufacture, parts, running),
     )
     for check in group.CHECKS
     if check not in UNMOVED

@@ -146,6 +146,9 @@ class Limits(Section):
     case_safety: Safety = 1.0
     case_depth_ratio: Safety = 2.0
     bore_safety: Safety = 1.0
+    viscosity_ratio: Safety = 1.0
+    wear_depth: Length = 5e-5
+    acceleration_step: Fraction = 0.2
     guide_length: Safety = 2.0
     torque_reduction: Annotated[float, In(above=0, below=1)] = 0.4
     speed_reduction: Annotated[float, In(above=0, below=1)] | None = None

@@ -166,7 +166,7 @@ class OuterRing(Section):
 
 
 class Bearing(Section):
-    """The roller's bearing as its maker rates it."""
+    """The roller's bearing as its maker rates it; the viscosity is that of its oil as it runs."""
 
     name: Text
     C: Force | None = None
@@ -175,6 +175,8 @@ class Bearing(Section):
     speed_limit: Annotated[float, In("rpm", above=0, at_most=1e6)] | None = None
     drag_torque: Annotated[float, In("N mm", at_least=0, at_most=1e6)] | None = None
     friction: Annotated[float, In(at_least=0, below=1)] | None = None
+    viscosity: Annotated[float, In("mm^2/s", above=0, at_most=1e5)] | None = None
+    pitch_diameter: Length | None = None
     ring: OuterRing | None = None
     source: Text = ""
 
@@ -305,6 +307,7 @@ class Guide(Section):
     pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e6)] | None = None
     stiffness: Annotated[float, In("N/mm", above=0, at_most=1e9)] | None = None
     thermal_resistance: Annotated[float, In("K/W", above=0, at_most=1e6)] | None = None
+    wear_rate: Annotated[float, In("mm^3/N/m", above=0, at_most=1e3)] | None = None
     source: Text = ""
 
     @model_validator(mode="after")
@@ -327,7 +330,10 @@ class Guides(Section):
 
 
 class Material(Section):
-    """A material card: elastic constants, strengths and where they come from."""
+    """A material card: elastic constants, strengths and where they come from.
+
+    swelling is the growth of a length from dry to as wet as it gets.
+    """
 
     E: Annotated[float, In("GPa", above=0, at_most=1e5)]
     nu: Annotated[float, In(at_least=0, below=0.5)]
@@ -343,6 +349,8 @@ class Material(Section):
     fatigue_bending: Pressure | None = None
     case_depth: Length | None = None
     core_yield_strength: Pressure | None = None
+    expansion: Annotated[float, In("1/K", at_least=0, at_most=1e-2)] | None = None
+    swelling: Annotated[float, In(at_least=0, below=1)] = 0.0
     treatment: Literal["case_hardened", "induction_hardened", "through_hardened"] | None = None
     density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
     condition: Text = ""

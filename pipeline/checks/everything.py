@@ -20,6 +20,7 @@ from pipeline.checks import (
     proof,
     roller,
     rolling,
+    running,
     shaft,
     signed,
     spring,
@@ -62,7 +63,7 @@ SIGNED: tuple[CheckFunction, ...] = (
 PROOF: tuple[CheckFunction, ...] = (*plane.CHECKS, *proof.CHECKS)
 """What the plane model leaves out; meshes and benchmarks behind the figures of a trial."""
 
-PARTS: tuple[CheckFunction, ...] = (*parts.CHECKS, *spring.CHECKS)
+PARTS: tuple[CheckFunction, ...] = (*parts.CHECKS, *spring.CHECKS, *running.CHECKS)
 """Limits of the parts around the cam, which only a trial with its cycles tells of."""
 
 

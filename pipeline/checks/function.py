@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.arrays import FULL_TURN
+from geometry.arrays import FULL_TURN, Array
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, worst_case
 
@@ -113,6 +113,7 @@ def friction_balance(evidence: TrialEvidence) -> Check:
         source=evidence.source("friction_balance", "conservation of energy over one turn"),
         method="cam work less that of spring and inertia, against friction times way, relative",
         evidence=True,
+        note=_loss_in_words(evidence),
         **worst.place,
     )
 
@@ -133,15 +134,36 @@ def _imbalance(evidence: TrialEvidence, cycle: Cycle) -> float:
     return _relative(work, _stored(evidence, cycle))
 
 
-def _heat_mismatch(evidence: TrialEvidence, cycle: Cycle) -> float:
-    loads = cycle.loads
-    slope = np.where(loads.normal_force > 0, loads.lift_slope, 0.0)  # apart, nothing rubs
+def _touching_slope(cycle: Cycle) -> Array:
+    """Slope of the lift (n,), nothing where cam and follower are apart: there nothing rubs."""
+    return np.where(cycle.loads.normal_force > 0, cycle.loads.lift_slope, 0.0)
+
+
+def _heat(cycle: Cycle) -> float:
+    """Heat of all that rubs over a turn, J."""
+    loads, slope = cycle.loads, _touching_slope(cycle)
     friction = np.abs(loads.friction_force_a) + np.abs(loads.friction_force_b)
     friction = friction + np.abs(loads.viscous_force)
-    spent = loads.cam_torque - (loads.spring_force + loads.inertia_force) * slope
     step = FULL_TURN / len(slope)
-    loss = step * float(np.sum(spent))
-    heat = step * float(np.sum(friction * np.abs(slope) + loads.sliding_torque))
+    return step * float(np.sum(friction * np.abs(slope) + loads.sliding_torque))
+
+
+def _loss_in_words(evidence: TrialEvidence) -> str:
+    """What friction costs in each load case: power, and share of the energy stored."""
+    found = []
+    for cycle in evidence.cycles:
+        heat, stored = _heat(cycle), _stored(evidence, cycle)
+        power = heat * evidence.cam_speed(cycle) / FULL_TURN
+        share = f" or {heat / stored:.1%} of the energy stored" if stored > 0 else ""
+        found.append(f"{cycle.load_case}: {power:.3g} W{share}")
+    return "; ".join(found)
+
+
+def _heat_mismatch(evidence: TrialEvidence, cycle: Cycle) -> float:
+    loads, slope = cycle.loads, _touching_slope(cycle)
+    spent = loads.cam_torque - (loads.spring_force + loads.inertia_force) * slope
+    loss = FULL_TURN / len(slope) * float(np.sum(spent))
+    heat = _heat(cycle)
     return _relative(loss - heat, max(heat, 1e-9 * _stored(evidence, cycle)))
 
 

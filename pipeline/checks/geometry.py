@@ -10,6 +10,8 @@ from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, rollers_only
 from pipeline.shop import largest_tool
 
+ACCELERATION_STEP = 0.2  # of the swing: a jump spreads over a few samples, a smooth law does not
+RESTING = 1e-9  # swing of s'' over the lift, 1/rad^2, of a cam that is round
 TOOL_ALLOWANCE = 1.1  # a hollow is ground by a wheel at least a tenth smaller
 SECOND_CONTACT_DEPTH = 1e-6  # m, the depth no cam is ground to
 HUB_RATIO = 1.75  # outside over inside radius of the ring about the bore
@@ -25,6 +27,29 @@ def closure(evidence: TrialEvidence) -> Check:
         unit="m",
         source=evidence.source("closure", "fundamental law of cam design, Norton (2009) ch. 2"),
         method="difference of the lift at the two ends of the turn, as its source gave it",
+    )
+
+
+def acceleration_step(evidence: TrialEvidence) -> Check:
+    """The acceleration has no step: what is left between samples shrinks with their distance."""
+    lift = evidence.contour.pitch.lift
+    bend = np.asarray(lift(lift.theta, 2), dtype=float)
+    steps = np.abs(np.diff(bend, append=bend[:1]))
+    worst, swing = int(np.argmax(steps)), float(np.ptp(bend))
+    return Check(
+        id="acceleration_step",
+        title="Step of the acceleration over its swing",
+        # Rest, and the round-off of it, has no step.
+        demand=float(steps[worst] / swing) if swing > RESTING * lift.highest.value else 0.0,
+        limit=evidence.limit("acceleration_step", ACCELERATION_STEP),
+        unit="-",
+        cam_angle_deg=_degrees(float(lift.theta[worst])),
+        source=evidence.source(
+            "acceleration_step", "finite jerk, fundamental law of cam design, Norton (2009) ch. 2"
+        ),
+        method=f"greatest difference of s'' between {len(lift.theta)} neighbouring samples of the"
+        " lift over all of its swing: a jump stays, a slope does not",
+        lift_can_help=True,
     )
 
 
@@ -207,6 +232,7 @@ def spring_travel(evidence: TrialEvidence) -> Check:
 
 CHECKS = (
     closure,
+    acceleration_step,
     pressure_angle,
     curvature_ratio,
     undercut,

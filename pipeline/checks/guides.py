@@ -78,13 +78,15 @@ def _explained(evidence: TrialEvidence, side: str, guide: Guide, worst: Worst) -
     return [f"{points:.3g} MPa on point supports, {shares}"]
 
 
-def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
-    def mean(cycle: Cycle) -> float:
-        guides = cycle.guides
-        load = guides.rubbing_load_a if side == "A" else guides.rubbing_load_b
-        return float(np.mean(demands.bush_pv(load, cycle.loads.velocity, _area(guide))))
+def mean_pv(cycle: Cycle, side: str, guide: Guide) -> float:
+    """Pressure times sliding speed in guide A or B, mean over the turn, Pa m/s."""
+    guides = cycle.guides
+    load = guides.rubbing_load_a if side == "A" else guides.rubbing_load_b
+    return float(np.mean(demands.bush_pv(load, cycle.loads.velocity, _area(guide))))
 
-    worst = worst_case(evidence, mean)
+
+def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
+    worst = worst_case(evidence, lambda cycle: mean_pv(cycle, side, guide))
     limit = pv_limit(guide)
     return Check(
         id=f"bush_pv_{side}",

@@ -26,13 +26,24 @@ def case(**changes):
     """A case that describes spring, pin, ring, key, shaft, gear and bushes."""
     base = fake.case()
     nylon = SimpleNamespace(
-        yield_strength=60e6, conductivity=0.25, temperature_limit=353.15, source="maker"
+        yield_strength=60e6,
+        conductivity=0.25,
+        temperature_limit=353.15,
+        expansion=8e-5,
+        swelling=0.01,
+        source="maker",
     )
     steel = fake.changed(
         base.materials["steel"], density=7850.0, fatigue_bending=400e6, tensile_strength=900e6
     )
     materials = base.materials | {"nylon": nylon, "steel": steel}
-    guide = fake.changed(base.guides.a, friction_max=0.2, thermal_resistance=None)
+    guide = fake.changed(
+        base.guides.a,
+        friction_max=0.2,
+        thermal_resistance=None,
+        clearance=1e-4,
+        wear_rate=1e-16,
+    )
     design = SimpleNamespace(
         wire_diameter=WIRE,
         mean_diameter=COIL,
@@ -57,7 +68,9 @@ def case(**changes):
         radius=fake.ROLLER,
         hub_radius=0.004,
         pin=SimpleNamespace(material="hard", mounting="straddled"),
-        bearing=fake.changed(base.roller.bearing, ring=ring),
+        bearing=fake.changed(
+            base.roller.bearing, ring=ring, viscosity=20e-6, pitch_diameter=0.0105
+        ),
     )
     shaft = SimpleNamespace(
         bearing_spacing=0.06,

@@ -31,6 +31,19 @@ PITCH_RADIUS = (RADIUS**2 + SLOPE**2) ** 1.5 / (RADIUS**2 + 2.0 * SLOPE**2 - RAD
 TORQUE = np.abs(full.cycle().loads.cam_torque)
 
 
+def roller_spin() -> np.ndarray:
+    """Of a roller that rolls on the contour, rad/s: the pitch curve's length less its turning."""
+    slope = 0.5 * fake.STROKE * np.sin(fake.THETA)
+    return fake.CAM_SPEED * (np.hypot(fake.BASE + S, slope) / fake.ROLLER - 1.0)
+
+
+def viscosity_ratio() -> float:
+    """20 mm2/s over 4500/sqrt(n D), D = 10.5 mm, above 1000 rpm: ISO 281."""
+    speed = RPM * float(roller_spin().mean())
+    assert speed > 1000.0
+    return 20.0 * np.sqrt(speed * 10.5) / 4500.0
+
+
 def mean_life() -> float:
     """(C/P)^3 1e6 turns at the speed of a roller that rolls on the pitch curve, hours."""
     force = full.cycle().loads.normal_force

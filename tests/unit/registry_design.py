@@ -77,6 +77,14 @@ by_limit(
     put=lambda given: replace(given, contour=on_contour(lift_closure=5e-10).contour),
 )
 by_limit(
+    "acceleration_step",
+    "acceleration_step",
+    1.0,
+    None,
+    float(np.max(np.abs(np.diff(np.cos(fake.THETA))))) / 2.0,
+    "a cosine's greatest step at 5 deg over its swing",
+)
+by_limit(
     "pressure_angle",
     "pressure_angle",
     np.pi / 180.0,

@@ -18,6 +18,7 @@ from trial_variants import (
     with_cycle,
     with_gear,
     with_guide,
+    with_guides,
     with_limits,
     with_loads,
     with_material,
@@ -273,4 +274,33 @@ by_limit(
     lambda: with_cycle(crank_speed=np.nan),
     414.7306657858135,
     "e w; e of an eccentric disc by hand in test_cam_body",
+)
+for _side, _load in (("a", 500.0), ("b", 200.0)):
+    _name = f"guide_wear_{_side.upper()}"
+    by_limit(
+        _name,
+        "wear_depth",
+        1e-3,
+        lambda s=_side: with_guides(**{f"rubbing_load_{s}": NAN}),
+        1e3 * 1e-16 * 1e6 * _load * 0.4 / 2.0 / 200.0 * 3.6e6,
+        "Archard: 1e-16 m2/N times PV times 1000 h",
+    )
+    _name = f"bush_growth_{_side.upper()}"
+    tried(
+        _name,
+        limited(_name, lambda mm, s=_side: with_guide(s, clearance=1e-3 * mm)),
+        None,
+        lambda s=_side: with_parts(
+            **{f"heat_{s}": SimpleNamespace(temperature=np.nan, mean_power=0.0)}
+        ),
+        2.0 * 0.25 * 10.0 * (8e-5 * (330.0 - 293.15) + 0.01),
+        "two walls of a quarter of 10 mm, warmer by 36.85 K and wet",
+    )
+by_limit(
+    "bearing_lubrication",
+    "viscosity_ratio",
+    1.0,
+    lambda: with_cycle(crank_speed=np.nan),
+    by_hand.viscosity_ratio(),
+    "kappa of ISO 281",
 )

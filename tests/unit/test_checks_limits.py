@@ -88,6 +88,7 @@ FUNCTIONS = {
 # id: how to set the limit, and what else the evidence needs for a demand that is not zero
 CASES: dict[str, tuple[Callable[[float | None], dict[str, Any]], dict[str, Any]]] = {
     "closure": (by_limit("closure"), {"contour": open_ended()}),
+    "acceleration_step": (by_limit("acceleration_step"), {}),
     "pressure_angle": (by_limit("pressure_angle", np.deg2rad(1.0)), {}),
     "curvature_ratio": (by_limit("curvature_ratio"), {}),
     "undercut": (by_limit("undercut_factor"), {}),

@@ -17,6 +17,7 @@ from pipeline.checks import parts as part_checks
 from pipeline.checks import shaft as shaft_checks
 from pipeline.checks import spring as spring_checks
 from pipeline.checks.everything import PARTS, all_checks
+from pipeline.checks.geometry import acceleration_step
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import closed_form_history
 from pipeline.cycle import closed_form_cycle, contact_pair, finished, turn
@@ -331,6 +332,38 @@ def test_ring_of_a_card():
 def test_a_shaft_that_cannot_be_is_refused(line, field):
     with pytest.raises(InputError, match=field):
         parse_case(text(SHAFT + line + "\n"))
+
+
+@pytest.mark.parametrize(
+    ("table", "line", "field"),
+    [
+        ("[roller.bearing]", "viscosity = 20", r"roller\.bearing\.viscosity"),
+        ("[roller.bearing]", 'viscosity = "0 mm^2/s"', r"roller\.bearing\.viscosity"),
+        ("[roller.bearing]", 'pitch_diameter = "-1 mm"', r"roller\.bearing\.pitch_diameter"),
+        ("[guides.a]", 'wear_rate = "1 mm/N"', r"guides\.a\.wear_rate"),
+        ("[guides.b]", 'wear_rate = "-1 mm^3/N/m"', r"guides\.b\.wear_rate"),
+        ("[materials.bronze]", "expansion = 1e-5", r"materials\.bronze\.expansion"),
+        ("[materials.bronze]", "swelling = 1.0", r"materials\.bronze\.swelling"),
+        ("[limits]", "acceleration_step = 0.0", r"limits\.acceleration_step"),
+    ],
+)
+def test_data_of_running_that_cannot_be_are_refused(table, line, field):
+    with pytest.raises(InputError, match=field):
+        parse_case(text().replace(f"{table}\n", f"{table}\n{line}\n").replace(
+            f"{table} ", f"{table}\n{line}\n# "))  # fmt: skip
+
+
+def test_a_lift_with_a_step_of_acceleration_fails():
+    """A parabola changes from one acceleration to its opposite at once, a sine does not."""
+    theta = uniform_turn(720)
+    turn = theta / (2.0 * np.pi)
+    tent = np.where(turn < 0.5, turn, 1.0 - turn) * 2.0
+    parabola = np.where(tent < 0.5, 2.0 * tent**2, 1.0 - 2.0 * (1.0 - tent) ** 2)
+    for values, status in ((parabola, "fail"), (0.5 * (1 - np.cos(theta)), "pass")):
+        contour = Contour(PitchCurve(Lift(theta, 0.01 * values), 0.05), 0.008)
+        found = acceleration_step(TrialEvidence(full_case(), contour, ()))
+        assert found.status == status
+        assert found.must_have
 
 
 def test_a_shaft_with_its_gear_is_judged():

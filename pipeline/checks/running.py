@@ -1,0 +1,159 @@
+"""Limits of what runs for long: grease of the bearing, growth and wear of the guides.
+
+Each is made where the case has its data, and left out (None) where it has none of them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pipeline.checks.check import Check
+from pipeline.checks.guides import mean_pv
+from pipeline.checks.trial import TrialEvidence, rollers_only, worst_case
+from pipeline.follower.guides import WALL_SHARE
+from pipeline.follower.roller import roller_motion
+
+if TYPE_CHECKING:
+    from pipeline.cycle import Cycle
+    from pipeline.part_fields import Guide
+
+ROOM = 293.15  # K, at which play is measured
+RPM = 30.0 / np.pi
+STANDS = 1.0  # rpm of the roller, below which nothing is greased by motion
+HOURS = 3600.0
+
+
+@rollers_only
+def bearing_lubrication(evidence: TrialEvidence) -> Check | None:
+    """Viscosity of the bearing's oil over that it needs; None where it is not given."""
+    bearing = evidence.case.roller.bearing
+    viscosity = getattr(bearing, "viscosity", None)
+    if viscosity is None:
+        return None
+    ring = getattr(bearing, "ring", None)
+    pitch = getattr(bearing, "pitch_diameter", None) or getattr(ring, "pitch_diameter", None)
+    contour = evidence.contour
+
+    def ratio(cycle: Cycle) -> float:
+        motion = roller_motion(
+            contour.pitch, contour.roller_radius, evidence.cam_speed(cycle), cycle.theta
+        )
+        speed = RPM * float(np.mean(np.abs(motion.spin)))
+        if pitch is None or np.isnan(speed):
+            return np.nan
+        return np.inf if speed < STANDS else viscosity / rated_viscosity(speed, pitch)
+
+    worst = worst_case(evidence, ratio, at_least=True)
+    return Check(
+        id="bearing_lubrication",
+        title="Viscosity ratio of the roller bearing",
+        demand=worst.value,
+        limit=evidence.limit("viscosity_ratio", 1.0),
+        unit="-",
+        sense="at_least",
+        source=evidence.source("viscosity_ratio", "kappa = v/v1 >= 1, ISO 281", bearing.source),
+        method="viscosity given over v1 at the mean speed of the roller, where it turns",
+        must_have=False,
+        note="" if pitch is not None else "no pitch diameter of the bearing is given",
+        **worst.place,
+    )
+
+
+def rated_viscosity(speed: float, pitch_diameter: float) -> float:
+    """Kinematic viscosity v1 (m2/s) that a bearing needs at a speed (rpm, > 0); diameter in m.
+
+    References
+    ----------
+    ISO 281:2007, 9.3.3.2: 45000 n^-0.83 D^-0.5 below 1000 rpm, 4500 n^-0.5 D^-0.5 above, in
+    mm2/s and mm; recalled: verify.
+    """
+    slow = 45_000.0 * speed**-0.83 if speed < 1000.0 else 4500.0 * speed**-0.5
+    return float(1e-6 * slow / np.sqrt(1e3 * pitch_diameter))
+
+
+def bush_growth_a(evidence: TrialEvidence) -> Check | None:
+    """Growth of bush A and stem over the play between them."""
+    return _growth(evidence, "A", evidence.case.guides.a)
+
+
+def bush_growth_b(evidence: TrialEvidence) -> Check | None:
+    """Growth of bush B and stem over the play between them."""
+    return _growth(evidence, "B", evidence.case.guides.b)
+
+
+def _growth(evidence: TrialEvidence, side: str, guide: Guide) -> Check | None:
+    case = evidence.case
+    bush = case.materials.get(guide.material)
+    stem = case.materials.get(getattr(case.follower, "stem_material", ""))
+    expansion = getattr(bush, "expansion", None)
+    if bush is None or expansion is None or any(_no_parts(c) for c in evidence.cycles):
+        return None
+    of_stem = getattr(stem, "expansion", None) or 0.0
+
+    def growth(cycle: Cycle) -> float:
+        parts = cycle.parts
+        heat = None if parts is None else (parts.heat_a if side == "A" else parts.heat_b)
+        warmer = np.nan if heat is None else heat.temperature - ROOM
+        wall = 2.0 * WALL_SHARE * guide.diameter * (expansion * warmer + bush.swelling)
+        return float(wall + guide.diameter * of_stem * warmer)
+
+    worst = worst_case(evidence, growth)
+    return Check(
+        id=f"bush_growth_{side}",
+        title=f"Growth of bush and stem in guide {side} over the play",
+        demand=1e3 * worst.value,
+        limit=1e3 * guide.clearance,
+        unit="mm",
+        source=evidence.source(
+            f"bush_growth_{side}", "no seizure when hot and wet, bush makers", bush.source
+        ),
+        method="wall of a quarter of the bore swells inwards, in a housing that does not give, at"
+        " the bush's running temperature",
+        must_have=False,
+        lift_can_help=True,
+        note="the bush's temperature is not known" if np.isnan(worst.value) else "",
+        **worst.place,
+    )
+
+
+def guide_wear_a(evidence: TrialEvidence) -> Check | None:
+    """Depth worn off guide A over the target life."""
+    return _wear(evidence, "A", evidence.case.guides.a)
+
+
+def guide_wear_b(evidence: TrialEvidence) -> Check | None:
+    """Depth worn off guide B over the target life."""
+    return _wear(evidence, "B", evidence.case.guides.b)
+
+
+def _wear(evidence: TrialEvidence, side: str, guide: Guide) -> Check | None:
+    rate = getattr(guide, "wear_rate", None)
+    if rate is None:
+        return None
+    life = evidence.limit("target_life")
+    worst = worst_case(evidence, lambda cycle: mean_pv(cycle, side, guide))
+    limit = evidence.limit("wear_depth", 5e-5)
+    return Check(
+        id=f"guide_wear_{side}",
+        title=f"Wear of guide {side} over the target life",
+        demand=None if life is None else 1e3 * rate * worst.value * life,
+        limit=None if limit is None else 1e3 * limit,
+        unit="mm",
+        source=evidence.source(
+            "wear_depth", "0.05 mm, shop practice: verify; Archard (1953)", guide.source
+        ),
+        method="wear rate times mean pressure times way, all the life in the worst load case",
+        must_have=False,
+        lift_can_help=True,
+        note="" if life is not None else "no target life is asked for",
+        **worst.place,
+    )
+
+
+def _no_parts(cycle: Cycle) -> bool:
+    return getattr(cycle, "parts", None) is None
+
+
+CHECKS = (bearing_lubrication, bush_growth_a, bush_growth_b, guide_wear_a, guide_wear_b)
