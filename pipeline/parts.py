@@ -237,12 +237,17 @@ def _surge(spring: HelicalSpring, loads: Loads, cam_speed: float) -> Array:
 
 
 def _pin(case: Case, loads: Loads) -> Array | None:
+    per_newton = pin_stress_per_newton(case)
+    return None if per_newton is None else per_newton * loads.normal_force
+
+
+def pin_stress_per_newton(case: Case) -> float | None:
+    """Bending of the roller's pin under a newton of contact force, Pa; None without a pin."""
     pin = None if case.roller_given is None else case.roller.pin
     if pin is None:
         return None
     overhung = pin.mounting == "overhung"
-    per_newton = pin_bending_stress(1.0, pin.diameter, case.roller.width, pin.span, overhung)
-    return per_newton * loads.normal_force
+    return float(pin_bending_stress(1.0, pin.diameter, case.roller.width, pin.span, overhung))
 
 
 def _spin(

@@ -14,6 +14,7 @@ from pipeline.contact.hertz import contact_modulus
 from pipeline.cycle import CREEP, contact_width
 from pipeline.follower.roller import HOUR
 from pipeline.part_fields import Guide
+from pipeline.parts import pin_stress_per_newton
 from pipeline.shop import largest_tool
 from pipeline.smoothing.scenario import LIFE_UNIT, Ratings
 
@@ -27,7 +28,7 @@ def ratings_of(case: Case) -> Ratings:
     if bearing.C is not None and limits.roller_life is not None:
         wear = bearing.C**3 * LIFE_UNIT / (limits.roller_life / HOUR)
     pressure, pressure_by = _least(pressure_limits(case))
-    normal_force, normal_force_by = _least(_force_limits(case))
+    normal_force, normal_force_by = _least(force_limits(case))
     fastest = max(state.speed for state in case.load_cases)
     over = max(limits.overspeed or fastest, fastest, CREEP) / case.mechanism.gear_ratio
     return Ratings(
@@ -85,7 +86,7 @@ def pressure_limits(case: Case) -> dict[str, float]:
     return found
 
 
-def _force_limits(case: Case) -> dict[str, float]:
+def force_limits(case: Case) -> dict[str, float]:
     """What each check allows as the greatest normal force, N, by its id."""
     bearing = case.roller.bearing
     found = {}
@@ -93,6 +94,10 @@ def _force_limits(case: Case) -> dict[str, float]:
         found["roller_static"] = bearing.C0 / case.limits.roller_static_safety
     if bearing.radial_limit is not None:
         found["roller_radial"] = bearing.radial_limit
+    per_newton, pin = pin_stress_per_newton(case), case.roller.pin
+    if per_newton is not None and pin is not None:
+        strength = case.limits.pin_share * case.material(pin.material).yield_strength
+        found["roller_pin"] = strength / per_newton
     return found
 
 

@@ -20,7 +20,7 @@ from pipeline.cycle import contact_pair, finished
 from pipeline.smoothing.constraints import Jet, Mean, load_utilisations, shape_utilisations
 from pipeline.smoothing.design import Problem
 from pipeline.smoothing.problem import problem_of
-from pipeline.smoothing.ratings import pressure_limits, ratings_of
+from pipeline.smoothing.ratings import force_limits, pressure_limits, ratings_of
 from pipeline.smoothing.scenario import Correction, Machine, Ratings, Scenario
 from pipeline.smoothing.search import INITIAL_ENERGY, LEAST_ENERGY, Search
 
@@ -29,7 +29,8 @@ POSITIONS = 120
 SHAPE = ("spring_travel", "pressure_angle", "curvature_ratio", "undercut", "concave_radius",
          "curvature_rate", "cam_envelope")  # fmt: skip
 LOAD = ("contact_force_margin", "contact_at_overspeed", "jump", "jump_speed", "jam_index",
-        "jam_at_worst_friction", "roller_static", "roller_radial", "roller_life", "roller_speed",
+        "jam_at_worst_friction", "roller_static", "roller_radial", "roller_pin", "roller_life",
+        "roller_speed",
         "bush_pressure_A", "bush_pressure_B", "bush_pv_A", "bush_pv_B")  # fmt: skip
 
 
@@ -156,14 +157,12 @@ def test_hollow_is_that_of_its_check(asking):
 
 @pytest.mark.parametrize("name", LOAD)
 def test_load_limit_is_that_of_its_check(asking, judged, name):
-    ratings = ratings_of(asking)
-    if name.startswith("roller_s") or name == "roller_radial":
-        radial = asking.roller.bearing.radial_limit
-        static = asking.roller.bearing.C0 / asking.limits.roller_static_safety
-        assert ratings.normal_force == min(radial, static) == radial
-        ratings = replace(ratings, normal_force=static if name == "roller_static" else radial)
+    ratings, forces = ratings_of(asking), force_limits(asking)
+    assert ratings.normal_force == min(forces.values())
+    assert forces[ratings.normal_force_by] == ratings.normal_force
+    ratings = replace(ratings, normal_force=forces.get(name, ratings.normal_force))
     worst = worst_loads(asking, judged, ratings)
-    own = "roller_static" if name == "roller_radial" else name
+    own = "roller_static" if name in forces else name
     assert worst[own] == pytest.approx(strain(judged[2][name], ratings.roller_radius), rel=1e-9)
 
 
@@ -193,9 +192,8 @@ def test_no_constraint_goes_without_its_check(asking, judged):
     ratings = ratings_of(asking)
     shape = shape_utilisations(jet(judged[0], np.zeros(1)), machine_of(asking), ratings)
     assert set(shape) == set(SHAPE)
-    assert set(worst_loads(asking, judged, ratings)) == {*LOAD, "contact_pressure"} - {
-        "roller_radial"
-    }
+    others = {"roller_radial", "roller_pin"}  # of the same force
+    assert set(worst_loads(asking, judged, ratings)) == {*LOAD, "contact_pressure"} - others
 
 
 RANGES = {
@@ -247,7 +245,7 @@ def test_gradients_match_differences(free):
         assert smooth.mean() > 0.95, limit.name
         seen.add(limit.name)
     shape = set(SHAPE) | {LEAST_ENERGY, INITIAL_ENERGY, "contact_pressure"}
-    assert seen == shape | set(LOAD) - {"roller_radial"}
+    assert seen == shape | set(LOAD) - {"roller_radial", "roller_pin"}
 
 
 @pytest.mark.parametrize("free", [(), tuple(RANGES)])
