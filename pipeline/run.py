@@ -30,6 +30,7 @@ from pipeline.given_lift import lift_origin
 from pipeline.measured import measurement_record
 from pipeline.progress import Progress
 from pipeline.records import contour_columns, headline, lift_columns, pressure_arrays, trial_record
+from pipeline.redesign.rollers import roller_problems
 from pipeline.rolling import envelope_arrays, rolling_history, rolling_record
 from pipeline.run_folder import RunFolder
 from pipeline.shop import write_shop
@@ -184,7 +185,7 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
         found = binding(done.checks)
         if not design.feasible:
             journey.progress.stage("which limits conflict")
-            report = infeasibility(problem)
+            report = infeasibility(problem, roller_problems(given, journey.torques, problem))
             record = {**(trials[-1].synthesis or {}), "infeasible": report.as_record()}
             trials[-1] = replace(trials[-1], synthesis=record)
             return journey, trials, Stop(report.sentence, found, len(trials))

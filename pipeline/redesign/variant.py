@@ -104,6 +104,22 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
     return case_of(data, folder)
 
 
+def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -> Case:
+    """The case with another roller alone; the cam keeps the base circle of its surface.
+
+    Raises
+    ------
+    InputError
+        If the roller does not fit into the case.
+    """
+    data = tomllib.loads(case.to_toml())
+    _put_roller(data, case, card, name)
+    data["follower"]["mass"] = units.format(case.follower.mass + _heavier(case, card), "g")
+    base = case.cam.pitch_base_radius + 0.5 * card.outer_diameter - case.roller.radius
+    data["cam"]["pitch_base_radius"] = _mm(base)
+    return case_of(data, folder)
+
+
 def _put_roller(data: dict[str, Any], case: Case, card: BearingCard, name: str) -> None:
     given, radius = case.roller, 0.5 * card.outer_diameter
     roller = data["roller"]
@@ -153,13 +169,17 @@ def _put_spring(data: dict[str, Any], case: Case, spring: HelicalSpring) -> None
 def _put_mass(
     data: dict[str, Any], case: Case, card: BearingCard, spring: HelicalSpring, parts: Catalogue
 ) -> None:
-    """The follower with the new roller, solid to its pin's middle, and half the new spring."""
-    roller = case.roller
-    density = case.material(roller.material).density
-    disc = 0.25 * card.outer_diameter**2 * card.width - roller.radius**2 * roller.width
+    """The follower with the new roller and half the new spring."""
     old = case_spring(case) or nearest_spring(list(parts.springs.values()), case.spring.rate)
-    mass = case.follower.mass + math.pi * density * disc + 0.5 * (spring.mass - old.mass)
+    mass = case.follower.mass + _heavier(case, card) + 0.5 * (spring.mass - old.mass)
     data["follower"]["mass"] = units.format(mass, "g")
+
+
+def _heavier(case: Case, card: BearingCard) -> float:
+    """What a roller weighs more than the case's, kg; each solid with its pin."""
+    roller = case.roller
+    disc = 0.25 * card.outer_diameter**2 * card.width - roller.radius**2 * roller.width
+    return math.pi * case.material(roller.material).density * disc
 
 
 def _put_bushes(data: dict[str, Any], name: str) -> None:

@@ -52,6 +52,8 @@ def ratings_of(case: Case) -> Ratings:
         jump_speed=limits.jump_speed * over,
         normal_force=normal_force,
         normal_force_by=normal_force_by or "roller_static",
+        force_safety=limits.roller_static_safety if normal_force_by == "roller_static" else 1.0,
+        dynamic_rating=bearing.C,
         life_force_cubed=wear,
         roller_spin=None
         if bearing.speed_limit is None

@@ -32,7 +32,8 @@ class Ratings:
 
     curvature_rate is of the contour, 1/(m rad). pressure is the least of the limits on p0 and
     pressure_by the check it comes from, likewise normal_force; overspeed and jump_speed are the
-    cam speeds, rad/s, at which a force must be left and none may be missing.
+    cam speeds, rad/s, at which a force must be left and none may be missing. force_safety is what
+    the roller's rating was divided by to give normal_force, dynamic_rating that of its life, N.
     """
 
     roller_radius: float
@@ -55,6 +56,8 @@ class Ratings:
     jump_speed: float | None = None
     normal_force: float | None = None
     normal_force_by: str = "roller_static"
+    force_safety: float = 1.0
+    dynamic_rating: float | None = None
     life_force_cubed: float | None = None
     roller_spin: float | None = None
     bush_pressure: tuple[float | None, float | None] = (None, None)

@@ -1,5 +1,7 @@
 """What limits cost: the envelope of the cam as a limit, and prices against designs solved again."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,11 @@ from geometry.arrays import uniform_turn
 from geometry.contour import Contour
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
-from pipeline.smoothing.constraints import Jet, Machine, Ratings, shape_utilisations
+from pipeline.smoothing.constrained import synthesise
+from pipeline.smoothing.constraints import Jet, shape_utilisations
+from pipeline.smoothing.design import Problem
+from pipeline.smoothing.prices import named_limits, prices
+from pipeline.smoothing.scenario import Machine, Ratings, Scenario
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.004])
@@ -18,3 +24,73 @@ def test_room_for_the_cam_is_that_of_its_contour(offset):
     ratings = Ratings(roller_radius=0.008, offset=offset, cam_radius=0.06)
     found = shape_utilisations(Jet(*lift.derivatives(theta, 2)), Machine(1e4, 1e2, 0.05), ratings)
     np.testing.assert_allclose(0.06 * found["cam_envelope"], radius, rtol=1e-12)
+
+
+TURN = uniform_turn(240)
+TORQUE = 8.0 * np.sin(2 * TURN) + 5.0 * np.cos(3 * TURN) + 2.0 * np.sin(5 * TURN + 0.5)
+RATINGS = Ratings(
+    roller_radius=0.016, travel=0.05, pressure_angle=np.radians(40.0), jam_index=0.8,
+    curvature_ratio=1.2, undercut_factor=0.1, contact_width=0.014, contact_modulus=115e9,
+    bush_area=(4e-4, 4e-4),
+)  # fmt: skip
+LIFE = 8e10  # N^3 rad/s
+
+
+def asked(**ratings):
+    running = Scenario("idle", 78.5, TORQUE, 0.2, 0.08, 0.038, 0.06, 0.06)
+    return Problem(
+        (running,), replace(RATINGS, **ratings), Machine(24.2e3, 242.0, 0.056),
+        coefficients=36, points=240,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("limit", "given", "unit"),
+    [
+        ("roller_static", {"normal_force": 700.0, "force_safety": 1.5}, 1.0 / 1.5),
+        ("pressure_angle", {"pressure_angle": np.radians(20.0), "travel": 0.03}, np.radians(1.0)),
+        ("contact_pressure", {"pressure": 400e6}, 1e6),
+        ("spring_travel", {"travel": 0.018}, 1e-3),
+        ("concave_radius", {"hollow_radius": 0.15, "travel": 0.03}, 1.1e-3),
+        ("cam_envelope", {"cam_radius": 0.058}, 1e-3),
+        ("curvature_ratio", {"curvature_ratio": 3.2, "travel": 0.03}, 1.0),
+        ("roller_life", {"life_force_cubed": LIFE, "dynamic_rating": 5000.0}, None),
+        ("bush_pv_A", {"bush_pv": (0.35e6, None)}, 1e6),
+        ("bush_pressure_A", {"bush_pressure": (0.7e6, None)}, 1e6),
+    ],
+)
+def test_price_is_the_difference_of_designs_solved_again(limit, given, unit):
+    """A thousandth more and less of each limit, everything designed anew."""
+    problem = asked(**given)
+    design = synthesise(problem)
+    assert design.feasible
+    record = next(r for r in prices(design, problem) if r["limit"] == limit)
+    name = next(iter(given))
+    share = 2e-3
+
+    def ripple(factor):
+        value = given[name]
+        changed = (value[0] * factor, None) if isinstance(value, tuple) else value * factor
+        other = replace(problem, ratings=replace(problem.ratings, **{name: changed}))
+        return synthesise(replace(other, seed=design.coefficients)).ripple * np.std(TORQUE)
+
+    gained = ripple(1.0 - share) - ripple(1.0 + share)
+    if unit is None:  # the life's limit grows with the cube of the rating
+        step = 2.0 * share * given["dynamic_rating"] / 3.0
+    else:
+        whole = given[name][0] if isinstance(given[name], tuple) else given[name]
+        step = 2.0 * share * whole / unit
+    # second order in the step, and the designs are solved to 2e-6 of the ripple
+    assert record["ripple_per_unit_Nm"] == pytest.approx(gained / step, rel=0.06)
+    assert record["sentence"].endswith("N m off the ripple")
+
+
+def test_what_is_said_of_a_limit_has_its_size_and_unit():
+    ratings = replace(RATINGS, normal_force=700.0, force_safety=1.5, hollow_radius=0.066,
+                      life_force_cubed=LIFE, dynamic_rating=9e3)  # fmt: skip
+    found = named_limits(ratings)
+    assert found["roller_static"].limit == pytest.approx(1050.0)  # the rating, its safety inside
+    assert found["concave_radius"].limit == pytest.approx(60.0)  # the tool's, a tenth left off
+    assert found["concave_radius"].slope < 0 < found["roller_static"].slope
+    assert (found["roller_life"].limit, found["roller_life"].unit) == (9e3, "N")
+    assert found["pressure_angle"].limit == pytest.approx(40.0)

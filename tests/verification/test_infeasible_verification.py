@@ -1,0 +1,105 @@
+"""When no cam keeps all limits: what is named really conflicts, what is offered really helps."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry.arrays import uniform_turn
+from pipeline import trial as road
+from pipeline.case import load_case_file
+from pipeline.redesign.rollers import roller_problems
+from pipeline.smoothing.constrained import synthesise
+from pipeline.smoothing.design import Problem
+from pipeline.smoothing.infeasible import infeasibility
+from pipeline.smoothing.problem import problem_of
+from pipeline.smoothing.scenario import Machine, Ratings, Scenario
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def small(**ratings):
+    """A torque of two waves on a coarse turn, half of it to be taken away."""
+    theta = uniform_turn(120)
+    torque = 8.0 * np.sin(2 * theta) + 4.0 * np.cos(3 * theta)
+    running = Scenario("idle", 78.5, torque, 0.2, 0.08, 0.038, 0.06, 0.06)
+    limits = Ratings(roller_radius=0.008, pressure_angle=np.pi / 6, **ratings)
+    return Problem(
+        (running,), limits, Machine(24.2e3, 242.0, 0.05), coefficients=24, points=120,
+        torque_reduction=0.5,
+    )  # fmt: skip
+
+
+def kept(problem):
+    return synthesise(problem).feasible
+
+
+def test_smallest_conflict_and_every_way_out():
+    given = small(normal_force=330.0, travel=0.05)
+    larger = replace(given, ratings=replace(given.ratings, normal_force=2000.0))
+    tiny = replace(given, ratings=replace(given.ratings, normal_force=340.0))
+    report = infeasibility(given, [("tiny", tiny), ("large", larger)])
+    assert set(report.conflict) == {"roller_static", "torque_reduction"}
+    for name in report.conflict:  # without any one of them there is a cam
+        assert kept(replace(given, left_out=frozenset({name})))
+    assert not kept(given)
+    offered = {item.what: item for item in report.relaxations}
+    assert "the catalogue's roller large, which bears a normal force of" in offered
+    assert "a torque reduction of" in offered
+    for item in report.relaxations:
+        assert kept(item.applied(given)), item.sentence
+    costs = [item.factor for item in report.relaxations]
+    assert costs == sorted(costs)
+    force = offered["a roller that bears a normal force of"]
+    nearer = force.change(given, 0.9 * force.factor)  # a tenth less is no way out any more
+    assert not kept(nearer)
+
+
+@pytest.mark.parametrize(
+    ("limit", "ratings", "what"),
+    [
+        ("spring_travel", {"travel": 0.008}, "a spring travel of"),
+        ("cam_envelope", {"cam_radius": 0.0465, "travel": 0.05}, "room for a cam of radius"),
+        pytest.param(
+            "bush_pv_A", {"bush_pv": (5e4, None), "bush_area": (4e-4, 4e-4)},
+            "a PV of guide A up to", marks=pytest.mark.slow,
+        ),
+        ("roller_life", {"life_force_cubed": 5e9, "dynamic_rating": 2e3},
+         "a dynamic rating of the roller of"),
+    ],
+)  # fmt: skip
+def test_the_limit_in_the_way_is_offered_to_be_moved(limit, ratings, what):
+    given = small(**ratings)
+    report = infeasibility(given)
+    assert limit in report.conflict
+    item = next(item for item in report.relaxations if item.what == what)
+    assert kept(item.applied(given)), item.sentence
+
+
+@pytest.mark.slow
+def test_published_engine_behind_the_published_roller():
+    """380 N, 242 N of preload, half of the ripple: not together, and a catalogue's roller does."""
+    text = CASES / "gx120.toml"
+    case = load_case_file(text)
+    case = case.model_copy(
+        update={
+            "limits": case.limits.model_copy(update={"torque_reduction": 0.5}),
+            "smoothing": case.smoothing.model_copy(update={"kind": "constrained"}),
+        }
+    )
+    torques = road.engine_torques(case)
+    given = replace(
+        problem_of(case, torques), left_out=frozenset({"contact_pressure", "bush_pv_A"})
+    )
+    assert given.ratings.normal_force == 380.0
+    assert given.machine.preload == 242.0
+    rollers = (
+        (name, replace(other, left_out=given.left_out))
+        for name, other in roller_problems(case, torques, given)
+    )
+    report = infeasibility(given, rollers)
+    assert set(report.conflict) == {"roller_static", "torque_reduction"}
+    assert any(item.what.startswith("the catalogue's roller track") for item in report.relaxations)
+    for item in report.relaxations:
+        assert kept(item.applied(given)), item.sentence
