@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from pipeline.checks.check import Check, not_described
 from pipeline.checks.trial import TrialEvidence, worst_case
 from pipeline.follower.spring import HelicalSpring, case_spring, surge_harmonics
+
+if TYPE_CHECKING:
+    from pipeline.case import Case
 
 NOT_WOUND = "no wire, diameter and coils of the spring are given"
 
@@ -148,10 +151,8 @@ def _check(
     if spring is None:
         return not_described(id, title, "-", NOT_WOUND, must_have=True)
     travel = evidence.contour.pitch.lift.highest.value
-    greatest = max(evidence.preload(cycle) for cycle in evidence.cycles)
-    preload = greatest * (1.0 + case.spring.preload_tolerance)
-    rate = spring.rate * (1.0 + case.spring.rate_tolerance)
-    demand = measure(spring, Work(preload, preload + rate * travel, travel))
+    preload = max(evidence.preload(cycle) for cycle in evidence.cycles)
+    demand = measure(spring, hardest_work(case, spring, preload, travel))
     toleranced = case.spring.preload_tolerance > 0 or case.spring.rate_tolerance > 0
     return Check(
         id=id,
@@ -166,6 +167,13 @@ def _check(
         corner_demand=demand if toleranced else None,
         lift_can_help=lift_can_help,
     )
+
+
+def hardest_work(case: Case, spring: HelicalSpring, preload: float, travel: float) -> Work:
+    """What the hardest spring within its tolerances does over a travel, m, from a preload, N."""
+    hard = preload * (1.0 + case.spring.preload_tolerance)
+    rate = spring.rate * (1.0 + case.spring.rate_tolerance)
+    return Work(hard, hard + rate * travel, travel)
 
 
 def _ahead(evidence: TrialEvidence) -> bool:

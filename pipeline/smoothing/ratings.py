@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
+from scipy.optimize import brentq
 
 from geometry.arrays import FULL_TURN
 from pipeline.case import Case
@@ -10,13 +13,17 @@ from pipeline.checks.contact import SHAKEDOWN
 from pipeline.checks.geometry import TOOL_ALLOWANCE
 from pipeline.checks.guides import pv_limit
 from pipeline.checks.signed import pressure_at_life, shakedown_factor
+from pipeline.checks.spring import Work, hardest_work
 from pipeline.contact.hertz import contact_modulus
 from pipeline.cycle import CREEP, contact_width
 from pipeline.follower.roller import HOUR
+from pipeline.follower.spring import case_spring
 from pipeline.part_fields import Guide
 from pipeline.parts import pin_stress_per_newton
 from pipeline.shop import largest_tool
 from pipeline.smoothing.scenario import LIFE_UNIT, Ratings
+
+_TRAVEL_LEAST, _TRAVEL_MOST = 1e-6, 1.0  # m, of any spring
 
 
 def ratings_of(case: Case) -> Ratings:
@@ -34,7 +41,7 @@ def ratings_of(case: Case) -> Ratings:
     return Ratings(
         roller_radius=roller.radius,
         offset=case.cam.offset,
-        travel=case.spring.travel_max,
+        travel=_least(travel_limits(case))[0],
         pressure_angle=limits.pressure_angle,
         jam_index=limits.jam_index,
         curvature_ratio=limits.curvature_ratio,
@@ -85,6 +92,37 @@ def pressure_limits(case: Case) -> dict[str, float]:
         modulus = contact_modulus(cam.E, cam.nu, ring.E, ring.nu)
         allowed = pressure_at_life(turns, slope, intercept, modulus)
         found["contact_pressure_at_life"] = allowed / limits.contact_safety
+    return found
+
+
+def travel_limits(case: Case) -> dict[str, float]:
+    """What each check of the spring allows as the greatest lift, m, by its id.
+
+    A spring that is to be found anew, as its rate or preload is freed, allows what is said of it.
+    """
+    found = {}
+    if case.spring.travel_max is not None:
+        found["spring_travel"] = case.spring.travel_max
+    spring = case_spring(case)
+    if spring is None or {"spring_rate", "preload"} & set(case.smoothing.free):
+        return found
+    own = [case.spring.preload if s.preload is None else s.preload for s in case.load_cases]
+    over: dict[str, Callable[[Work], float]] = {
+        "spring_stress": lambda work: spring.static_use(work.greatest) - 1.0,
+        "spring_fatigue": lambda work: (
+            case.limits.spring_fatigue - spring.fatigue_safety(work.preload, work.greatest)
+        ),
+        "spring_solid": lambda work: (
+            case.limits.spring_solid - spring.solid_clearance(work.preload, work.travel)
+        ),
+    }
+    for name, excess in over.items():
+
+        def at(travel: float, excess: Callable[[Work], float] = excess) -> float:
+            return excess(hardest_work(case, spring, max(own), travel))
+
+        if at(_TRAVEL_LEAST) < 0.0 < at(_TRAVEL_MOST):
+            found[name] = float(brentq(at, _TRAVEL_LEAST, _TRAVEL_MOST, xtol=1e-12))
     return found
 
 

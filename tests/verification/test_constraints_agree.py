@@ -13,14 +13,15 @@ from geometry.pitch_curve import PitchCurve
 from pipeline import trial as road
 from pipeline.case import load_case_file
 from pipeline.checks.everything import DESIGN, PARTS, SIGNED, checked_by
-from pipeline.checks.geometry import concave_radius
+from pipeline.checks import spring
+from pipeline.checks.geometry import concave_radius, spring_travel
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import closed_form_history
 from pipeline.cycle import contact_pair, finished
 from pipeline.smoothing.constraints import Jet, Mean, load_utilisations, shape_utilisations
 from pipeline.smoothing.design import Problem
 from pipeline.smoothing.problem import problem_of
-from pipeline.smoothing.ratings import force_limits, pressure_limits, ratings_of
+from pipeline.smoothing.ratings import force_limits, pressure_limits, ratings_of, travel_limits
 from pipeline.smoothing.scenario import Correction, Machine, Ratings, Scenario
 from pipeline.smoothing.search import INITIAL_ENERGY, LEAST_ENERGY, Search
 
@@ -143,6 +144,20 @@ def test_shape_limit_is_that_of_its_check(asking, judged, name):
     place = np.array([np.radians(check.cam_angle_deg)])
     found = shape_utilisations(jet(contour, place), machine_of(asking), ratings_of(asking))
     assert found[name][0] == pytest.approx(strain(check, contour.roller_radius), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["spring_travel", "spring_stress", "spring_fatigue",
+                                  "spring_solid"])  # fmt: skip
+def test_travel_of_each_check_of_the_spring_brings_it_to_its_limit(asking, judged, name):
+    contour, cycles = judged[0], judged[1]
+    limits = travel_limits(asking)
+    lift = contour.pitch.lift
+    stretched = replace(lift, values=lift.values * (limits[name] / lift.highest.value))
+    wider = replace(contour, pitch=replace(contour.pitch, lift=stretched))
+    found = checked_by(TrialEvidence(asking, wider, cycles), (spring_travel, *spring.CHECKS))
+    check = next(each for each in found if each.id == name)
+    assert check.utilisation == pytest.approx(1.0, rel=1e-9)
+    assert ratings_of(asking).travel == min(limits.values())
 
 
 def test_hollow_is_that_of_its_check(asking):
