@@ -69,10 +69,11 @@ class Panel:
 
 
 def vertical_span(panel: Panel, strokes: bool) -> tuple[float, float]:
-    """Vertical limits that hold the curves, near limits, and air for the names of the strokes."""
+    """Vertical limits that hold curves, ribbons, near limits, and air for names of strokes."""
     if panel.span is not None:
         return panel.span
-    values = np.concatenate([c.values for c in panel.curves] or [np.zeros(1)])
+    held = [part for curve in panel.curves for part in (curve.values, *(curve.band or ()))]
+    values = np.concatenate(held or [np.zeros(1)])
     values = values[np.isfinite(values)]
     low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
     if low > 0 and low < 0.5 * high:
@@ -100,17 +101,18 @@ class PlacedLimits:
 def placed_limits(panel: Panel, low: float, high: float) -> PlacedLimits:
     """Where the limits of a panel and their words go on axes from `low` to `high`."""
     beyond = [line for line in panel.limits if not low <= line.value <= high]
-    inside = sorted((p for p in panel.limits if p not in beyond), key=lambda line: -line.value)
-    placed: list[tuple[LimitLine, bool]] = []
+    inside = [line for line in panel.limits if line not in beyond]
+    heights = [(line.value - low) / (high - low) for line in inside]
+    slots = [{True: height, False: height - WORDS_HEIGHT} for height in heights]
     taken: list[float] = []
-    for line in inside:
-        height = (line.value - low) / (high - low)
-        above = height < 0.12 or (line.value >= 0 and height < 0.78)
-        slots = {True: height, False: height - WORDS_HEIGHT}
-        if not _free(slots[above], taken) and _free(slots[not above], taken):
-            above = not above
-        taken.append(slots[above])
-        placed.append((line, above))
+    above: dict[int, bool] = {}
+    # those first that have no choice
+    for k in sorted(range(len(inside)), key=lambda k: sum(_free(s, ()) for s in slots[k].values())):
+        wanted = heights[k] < 0.12 or (inside[k].value >= 0 and heights[k] < 0.78)
+        swap = not _free(slots[k][wanted], taken) and _free(slots[k][not wanted], taken)
+        above[k] = wanted != swap
+        taken.append(slots[k][above[k]])
+    placed = [(line, above[k]) for k, line in enumerate(inside)]
     upwards = bool(beyond) and beyond[0].value > high
     words = "; ".join(line.words(panel.unit) for line in beyond)
     if words:

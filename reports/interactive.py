@@ -106,7 +106,8 @@ def _angles(figure: AngleFigure) -> dict[str, Any]:
         }  # fmt: skip
         named = panel.legend_entries > 1 and (number == 0 or not figure.one_legend)
         if named and number:
-            layout[legend] = {"orientation": "h", "x": 0, "y": top, "yanchor": "bottom"}
+            layout[legend] = {"orientation": "h", "x": 0, "y": top, "yanchor": "bottom",
+                              "traceorder": "normal"}  # fmt: skip
         for curve in panel.curves:
             traces += _band(curve, crank, axis)
             trace = _curve(curve, panel, crank, cam, axis)

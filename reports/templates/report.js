@@ -22,7 +22,8 @@
       hovermode: "x unified", hoversubplots: "axis", margin: { l: 64, r: 14, t: 40, b: 46 },
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", dragmode: false,
       font: { color: ink, size: 11, family: "system-ui, sans-serif" },
-      legend: { orientation: "h", x: 0, y: 1, yref: "container", yanchor: "top" },
+      legend: { orientation: "h", x: 0, y: 1, yref: "container", yanchor: "top",
+        traceorder: "normal" },
       hoverlabel: { bgcolor: colour("card"), font: { color: ink } }, ...spec.layout };
     for (const key of Object.keys(layout).filter((k) => /^[xy]axis/.test(k)))
       layout[key] = { gridcolor: grid, linecolor: muted, zerolinecolor: muted, tickcolor: muted,

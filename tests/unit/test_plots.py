@@ -10,7 +10,16 @@ import numpy as np
 import pytest
 
 from reports import plots
-from reports.figures import AngleFigure, Curve, LimitLine, OutlineFigure, Panel
+from reports.figures import (
+    WORDS_HEIGHT,
+    AngleFigure,
+    Curve,
+    LimitLine,
+    OutlineFigure,
+    Panel,
+    placed_limits,
+    vertical_span,
+)
 from reports.sheet import broken
 
 CRANK = np.arange(0.0, 720.0, 10.0)
@@ -102,6 +111,25 @@ def test_the_svg_is_well_formed_themed_and_free_of_clashing_ids():
     assert len(ids[0]) == len(set(ids[0]))
     used = set(re.findall(r'(?:url\(#|href="#)([^")]+)', svg))
     assert used <= set(ids[0])
+
+
+def test_the_axis_holds_the_ribbon_of_all_load_cases():
+    ribbon = (WAVE - 2.0, WAVE + 3.0)
+    low, high = vertical_span(Panel("p", "N", (Curve("a", WAVE, band=ribbon),)), strokes=True)
+    assert low < WAVE.min() - 2.0 and high > WAVE.max() + 3.0
+
+
+def test_words_of_near_limits_stand_clear_of_each_other():
+    lines = tuple(LimitLine(value, "limit") for value in (30.0, -30.0, 45.0, -45.0))
+    placed = placed_limits(Panel("angle", "deg", (), lines), -50.0, 60.0)
+    bottoms = sorted(
+        (line.value + 50.0) / 110.0 - (0.0 if above else WORDS_HEIGHT)
+        for line, above in placed.inside
+    )
+    assert len(bottoms) == 4 and placed.beyond == ""
+    assert min(np.diff(bottoms)) >= WORDS_HEIGHT - 1e-9
+    far = placed_limits(Panel("angle", "deg", (), lines), -40.0, 40.0)
+    assert far.beyond.startswith("limit 45 deg; limit \N{MINUS SIGN}45 deg") and far.above
 
 
 def test_trimming_coordinates_leaves_numbers_to_read_alone():
