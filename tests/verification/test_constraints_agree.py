@@ -12,8 +12,8 @@ from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from pipeline import trial as road
 from pipeline.case import load_case_file
-from pipeline.checks.everything import DESIGN, PARTS, SIGNED, checked_by
 from pipeline.checks import spring
+from pipeline.checks.everything import DESIGN, PARTS, SIGNED, checked_by
 from pipeline.checks.geometry import concave_radius, spring_travel
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import closed_form_history
@@ -142,7 +142,8 @@ def test_shape_limit_is_that_of_its_check(asking, judged, name):
     contour, _, checks, _ = judged
     check = checks[name]
     place = np.array([np.radians(check.cam_angle_deg)])
-    found = shape_utilisations(jet(contour, place), machine_of(asking), ratings_of(asking))
+    ratings = replace(ratings_of(asking), travel=travel_limits(asking)["spring_travel"])
+    found = shape_utilisations(jet(contour, place), machine_of(asking), ratings)
     assert found[name][0] == pytest.approx(strain(check, contour.roller_radius), rel=1e-9)
 
 
