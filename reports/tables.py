@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isclose, isfinite, isnan, log10, pi
@@ -395,4 +396,6 @@ def _is_section(value: Any) -> bool:
 def _value(value: Any) -> str:
     if isinstance(value, list):
         return ", ".join(_value(item) for item in value) or DASH
+    if isinstance(value, str):
+        return re.sub(r"^-?\d+\.\d{12,}(?=\s)", lambda n: f"{float(n.group()):.12g}", value)
     return number(value, 12) if isinstance(value, float) else number(value)

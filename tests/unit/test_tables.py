@@ -186,3 +186,9 @@ def test_headlines_that_do_not_apply_are_left_out():
 def test_the_removed_ripple_is_a_share_of_the_ripple_before():
     tile = tables.tiles({"torque_std_before_Nm": 6.0, "torque_std_after_Nm": 3.0})[0]
     assert tile.value == "50\xa0%"
+
+
+def test_inputs_show_a_value_without_the_noise_of_its_last_bits():
+    case = {"smoothing": {"width": "59.99999999999999 deg", "points": 12, "note": "1.5 mm each"}}
+    table = tables.input_tables(case)[0]
+    assert [value for _, value, _ in table.rows] == ["60 deg", "12", "1.5 mm each"]
