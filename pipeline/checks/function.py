@@ -111,7 +111,8 @@ def friction_balance(evidence: TrialEvidence) -> Check:
         limit=evidence.limit("friction_balance", 1e-6),
         unit="-",
         source=evidence.source("friction_balance", "conservation of energy over one turn"),
-        method="cam work less that of spring and inertia, against friction times way, relative",
+        method="cam work less that of spring and inertia, against friction times way of what rubs"
+        " in the bores, relative",
         evidence=True,
         note=_loss_in_words(evidence),
         **worst.place,
@@ -139,20 +140,24 @@ def _touching_slope(cycle: Cycle) -> Array:
     return np.where(cycle.loads.normal_force > 0, cycle.loads.lift_slope, 0.0)
 
 
-def _heat(cycle: Cycle) -> float:
-    """Heat of all that rubs over a turn, J."""
+def _heat(evidence: TrialEvidence, cycle: Cycle) -> float:
+    """Heat of all that rubs over a turn, J; of the guides, from the pushes in their bores."""
     loads, slope = cycle.loads, _touching_slope(cycle)
-    friction = np.abs(loads.friction_force_a) + np.abs(loads.friction_force_b)
-    friction = friction + np.abs(loads.viscous_force)
-    step = FULL_TURN / len(slope)
-    return step * float(np.sum(friction * np.abs(slope) + loads.sliding_torque))
+    parts = getattr(cycle, "parts", None)
+    if parts is None:
+        friction = np.abs(loads.friction_force_a) + np.abs(loads.friction_force_b)
+        rubbed = friction * np.abs(slope)
+    else:
+        rubbed = (parts.heat_a.power + parts.heat_b.power) / evidence.cam_speed(cycle)
+    dragged = np.abs(loads.viscous_force * slope) + loads.sliding_torque
+    return FULL_TURN / len(slope) * float(np.sum(rubbed + dragged))
 
 
 def _loss_in_words(evidence: TrialEvidence) -> str:
     """What friction costs in each load case: power, and share of the energy stored."""
     found = []
     for cycle in evidence.cycles:
-        heat, stored = _heat(cycle), _stored(evidence, cycle)
+        heat, stored = _heat(evidence, cycle), _stored(evidence, cycle)
         power = heat * evidence.cam_speed(cycle) / FULL_TURN
         share = f" or {heat / stored:.1%} of the energy stored" if stored > 0 else ""
         found.append(f"{cycle.load_case}: {power:.3g} W{share}")
@@ -163,7 +168,7 @@ def _heat_mismatch(evidence: TrialEvidence, cycle: Cycle) -> float:
     loads, slope = cycle.loads, _touching_slope(cycle)
     spent = loads.cam_torque - (loads.spring_force + loads.inertia_force) * slope
     loss = FULL_TURN / len(slope) * float(np.sum(spent))
-    heat = _heat(cycle)
+    heat = _heat(evidence, cycle)
     return _relative(loss - heat, max(heat, 1e-9 * _stored(evidence, cycle)))
 
 

@@ -17,10 +17,12 @@ from pipeline.checks import parts as part_checks
 from pipeline.checks import shaft as shaft_checks
 from pipeline.checks import spring as spring_checks
 from pipeline.checks.everything import PARTS, all_checks
+from pipeline.checks.function import friction_balance
 from pipeline.checks.geometry import acceleration_step
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import closed_form_history
 from pipeline.cycle import closed_form_cycle, contact_pair, finished, turn
+from pipeline.follower.forces import FollowerSystem, follower_loads
 from pipeline.follower.guides import GuidePair, guide_reactions
 from pipeline.follower.stem import Stem
 
@@ -242,6 +244,18 @@ def test_a_card_fills_in_what_the_case_leaves_out():
     assert again.roller.bearing.C0 == 670.0
     with pytest.raises(InputError, match="maker_2_625"):
         case('card = "nobody"')
+
+
+def test_friction_that_the_guides_do_not_have_is_found_out(bare):
+    """Loads with the friction of point supports do not close with the heat in the bores."""
+    assert friction_balance(bare).demand <= 1e-9
+    cycle = bare.cycles[0]
+    system = FollowerSystem.from_case(bare.case)
+    speed, theta = bare.cam_speed(cycle), cycle.theta
+    loads = follower_loads(bare.contour.pitch, system, speed, theta)
+    wrong = replace(bare, cycles=(replace(cycle, loads=loads),))
+    assert friction_balance(wrong).status == "fail"
+    assert friction_balance(wrong).demand > 0.01
 
 
 def test_columns_of_a_turn_close(bare):
