@@ -81,6 +81,11 @@ def _taking_room(ratings: Ratings) -> dict[str, Unit]:
         found["curvature_ratio"] = Unit("pitch radius over roller radius", ratio, "-", -1.0 / ratio)
     if factor is not None:
         found["undercut"] = Unit("undercut factor", factor, "-", -1.0 / (1.0 - factor))
+    if ratings.jump_speed is not None:
+        # m w^2 s'' over the spring force: it grows with the square of the speed
+        speed = ratings.jump_speed * _RPM
+        words = "cam speed without a jump"
+        found["jump_speed"] = Unit(words, speed, "rpm", -2.0 / speed)
     margin = ratings.contact_force_margin
     if margin is not None:
         words = "least contact force over preload"

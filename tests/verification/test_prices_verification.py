@@ -54,6 +54,7 @@ def asked(**ratings):
         ("concave_radius", {"hollow_radius": 0.15, "travel": 0.03}, 1.1e-3),
         ("cam_envelope", {"cam_radius": 0.058}, 1e-3),
         ("curvature_ratio", {"curvature_ratio": 3.2, "travel": 0.03}, 1.0),
+        ("jump_speed", {"jump_speed": 420.0}, np.pi / 30.0),
         ("roller_life", {"life_force_cubed": LIFE, "dynamic_rating": 5000.0}, None),
         ("bush_pv_A", {"bush_pv": (0.35e6, None)}, 1e6),
         ("bush_pressure_A", {"bush_pressure": (0.7e6, None)}, 1e6),
