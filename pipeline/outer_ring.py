@@ -74,8 +74,8 @@ def roller_in_words(case: Case) -> str:
 def outer_ring(case: Case, width: float) -> OuterRing | None:
     """The ring under a contact of a width (m); None where the roller is solid: `why_solid`.
 
-    Balls give way as under the static rating, where the case has one, else as under the spring
-    at its greatest: what they carry goes with the root of the root of their stiffness.
+    Balls give way as under the static rating, where the case has one, else as under the preload.
+    Four times that load makes them 1.6 times as stiff and moves p0 over a ball by 0.4 % at most.
     """
     given = None if why_solid(case) else case.roller.bearing.ring
     if given is None:
