@@ -20,24 +20,18 @@ from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from pipeline.ahead import foreseen_cycle
 from pipeline.case import Case
-from pipeline.checks import contact as contact_checks
 from pipeline.checks import (
-    forces,
+    face,
     function,
     geometry,
     guides,
     manufacture,
     parts,
-    roller,
     rolling,
-    running,
-    shaft,
-    signed,
     spring,
-    surface,
 )
 from pipeline.checks.check import Check
-from pipeline.checks.everything import CheckFunction, checked_by
+from pipeline.checks.everything import DESIGN, PARTS, SIGNED, CheckFunction, checked_by
 from pipeline.checks.trial import TrialEvidence
 from pipeline.cycle import Turn, turn
 from pipeline.engine.torque import Torque
@@ -49,18 +43,14 @@ UNMOVED: tuple[CheckFunction, ...] = (
     *(function.energy_closure, function.friction_balance),
     *(geometry.closure, geometry.acceleration_step),
     *(geometry.self_intersection, geometry.second_contact),
-    *(geometry.spring_travel, signed.guide_length, parts.cam_unbalance),
+    *(geometry.spring_travel, guides.guide_length, parts.cam_unbalance),
     *spring.CHECKS,
     *(manufacture.chord_error, manufacture.phase_tolerance),
 )
 """Checks whose demand no tolerance moves, or which stand at the end of their own already."""
 TRIED: tuple[CheckFunction, ...] = tuple(
     check
-    for group in (
-        *(function, geometry, forces, contact_checks, roller, guides, rolling),
-        *(signed, surface, shaft, manufacture, parts, running),
-    )
-    for check in group.CHECKS
+    for check in (*DESIGN, *rolling.CHECKS, *face.CHECKS, *SIGNED, *PARTS)
     if check not in UNMOVED
 )
 

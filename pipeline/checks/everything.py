@@ -20,9 +20,9 @@ from pipeline.checks import (
     proof,
     roller,
     rolling,
+    room,
     running,
     shaft,
-    signed,
     spring,
     surface,
 )
@@ -53,7 +53,11 @@ ALL: tuple[CheckFunction, ...] = (*DESIGN, *rolling.CHECKS, *face.CHECKS, *evide
 
 
 SIGNED: tuple[CheckFunction, ...] = (
-    *signed.CHECKS,
+    *forces.SIGNED,
+    *contact.SIGNED,
+    *room.CHECKS,
+    *roller.SIGNED,
+    *guides.SIGNED,
     *surface.CHECKS,
     *shaft.CHECKS,
     *manufacture.CHECKS,

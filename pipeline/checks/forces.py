@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 
+from geometry.arrays import Array
 from pipeline.checks import demands
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest, least
+
+RPM = 30.0 / math.pi
 
 
 def contact_force_margin(evidence: TrialEvidence) -> Check:
@@ -81,4 +87,85 @@ def _on_points(evidence: TrialEvidence) -> str:
     return f"{worst.value:.3g} on point supports"
 
 
+def jump_speed(evidence: TrialEvidence) -> Check:
+    """Crank speed at which the follower leaves the cam, against the over-speed."""
+    worst = least(evidence, _jump_speed)
+    factor = evidence.limit("jump_speed", 1.3)
+    over, note = _overspeed(evidence)
+    return Check(
+        id="jump_speed",
+        title="Crank speed of the first jump",
+        demand=RPM * worst.value,
+        limit=None if factor is None else RPM * factor * over,
+        unit="rpm",
+        sense="at_least",
+        source=evidence.source(
+            "jump_speed", f"{factor} times the over-speed, Norton (2009), Rothbart (2004): verify"
+        ),
+        method="least w sqrt(F_s / (-m w^2 s'')) where the follower slows, friction-free",
+        lift_can_help=True,
+        note=note,
+        load_case="",
+        cam_angle_deg=worst.cam_angle_deg,
+        error_share=worst.error_share,
+    )
+
+
+def contact_at_overspeed(evidence: TrialEvidence) -> Check:
+    """Least contact force at the over-speed beside the preload."""
+    over, note = _overspeed(evidence)
+
+    def force(cycle: Any) -> Array:
+        scale = (over / cycle.crank_speed) ** 2
+        loads = cycle.loads
+        return np.asarray(
+            demands.force_left(
+                loads.spring_force, scale * loads.inertia_force, evidence.preload(cycle)
+            )
+        )
+
+    worst = least(evidence, force)
+    return Check(
+        id="contact_at_overspeed",
+        title="Least contact force over preload at the over-speed",
+        demand=worst.value,
+        limit=evidence.limit("contact_force_margin", 0.2),
+        unit="-",
+        sense="at_least",
+        source=evidence.source(
+            "contact_force_margin", "0.2 to 0.3 of the preload at the highest speed, Norton (2009)"
+        ),
+        method="least spring force plus m w^2 s'' at the over-speed, friction-free",
+        lift_can_help=True,
+        note=note,
+        load_case="",
+        cam_angle_deg=worst.cam_angle_deg,
+        error_share=worst.error_share,
+    )
+
+
+def _jump_speed(cycle: Any) -> Array:
+    """Crank speed (n,), rad/s, at which each place of the turn lets go; a NaN stays."""
+    pull = -np.asarray(cycle.loads.inertia_force, dtype=float)
+    spring = np.asarray(cycle.loads.spring_force, dtype=float)
+    slows = pull > 0
+    ratio = np.sqrt(spring / np.where(slows, pull, 1.0))
+    free = np.where(np.isnan(pull), np.nan, np.inf)
+    return np.where(slows, cycle.crank_speed * ratio, free)
+
+
+def _overspeed(evidence: TrialEvidence) -> tuple[float, str]:
+    """Over-speed of the crank, rad/s, and what to say of it."""
+    given = evidence.limit("overspeed")
+    fastest = max((float(c.crank_speed) for c in evidence.cycles), default=math.nan)
+    if given is not None and given >= fastest:
+        return given, ""
+    return fastest, "no over-speed is given: that of the fastest load case"
+
+
 CHECKS = (contact_force_margin, jump, jam_index)
+SIGNED = (
+    jump_speed,
+    contact_at_overspeed,
+)
+"""What a sign-off asks for besides; a look ahead does without."""

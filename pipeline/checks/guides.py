@@ -141,4 +141,27 @@ def _area(guide: Guide) -> float:
     return guide.diameter * guide.length
 
 
+def guide_length(evidence: TrialEvidence) -> Check:
+    """Distance of the guides beside the greatest overhang."""
+    case = evidence.case
+    overhang = case.follower.overhang_at_max_lift + evidence.contour.pitch.lift.highest.value
+    spread = case.guides.spacing + 0.5 * (case.guides.a.length + case.guides.b.length)
+    return Check(
+        id="guide_length",
+        title="Guided length over the greatest overhang",
+        demand=spread / overhang,
+        limit=evidence.limit("guide_length", 2.0),
+        unit="-",
+        sense="at_least",
+        source=evidence.source(
+            "guide_length", "bearing length at least twice the overhang, Rothbart (2004) ch. 6"
+        ),
+        method="outer ends of the two guides over the overhang at the least lift",
+        must_have=False,
+        lift_can_help=True,
+    )
+
+
 CHECKS = (bush_pressure_a, bush_pressure_b, bush_pv_a, bush_pv_b)
+SIGNED = (guide_length,)
+"""What a sign-off asks for besides; a look ahead does without."""

@@ -108,4 +108,30 @@ def roller_speed(evidence: TrialEvidence) -> Check:
     )
 
 
+@rollers_only
+def roller_radial(evidence: TrialEvidence) -> Check:
+    """Greatest force on the roller against what its outer ring bears unsupported."""
+    bearing = evidence.case.roller.bearing
+    limit = getattr(bearing, "radial_limit", None)
+    worst = greatest(evidence, lambda cycle: cycle.loads.normal_force)
+    return Check(
+        id="roller_radial",
+        title="Force on the roller against the rating of its outer ring",
+        demand=worst.value,
+        limit=limit,
+        unit="N",
+        source=evidence.source(
+            "radial_limit", "F_r,max of a track roller", f"{bearing.name}: {bearing.source}"
+        ),
+        method="greatest normal force over the turn",
+        lift_can_help=True,
+        note=""
+        if limit is not None
+        else f"{bearing.name} has no rating for an outer ring without a housing",
+        **worst.place,
+    )
+
+
 CHECKS = (roller_static, roller_life, roller_speed)
+SIGNED = (roller_radial,)
+"""What a sign-off asks for besides; a look ahead does without."""

@@ -9,10 +9,9 @@ from scipy.optimize import brentq
 
 from geometry.arrays import FULL_TURN
 from pipeline.case import Case
-from pipeline.checks.contact import SHAKEDOWN
+from pipeline.checks.contact import SHAKEDOWN, pressure_at_life, shakedown_factor
 from pipeline.checks.geometry import TOOL_ALLOWANCE
 from pipeline.checks.guides import pv_limit
-from pipeline.checks.signed import pressure_at_life, shakedown_factor
 from pipeline.checks.spring import Work, hardest_work
 from pipeline.contact.hertz import contact_modulus
 from pipeline.cycle import CREEP, contact_width

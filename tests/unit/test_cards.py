@@ -34,7 +34,7 @@ def test_what_the_issue_asks_for_is_shipped():
 
 def test_endurance_lines_give_the_endurance_pressure_at_1e8():
     """A and B against the pressures beside them: K is rounded to 2 %, iron has a softer modulus."""
-    from pipeline.checks.signed import pressure_at_life
+    from pipeline.checks.contact import pressure_at_life
     from pipeline.contact.hertz import contact_modulus
 
     for name, card in known_cards(None)["materials"].items():

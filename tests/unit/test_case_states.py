@@ -9,7 +9,7 @@ import pytest
 from geometry.errors import InputError
 from pipeline import trial as road
 from pipeline.case import parse_case
-from pipeline.checks import forces, guides, roller, signed
+from pipeline.checks import forces, guides, roller
 from pipeline.checks.forces import contact_force_margin
 from pipeline.checks.trial import TrialEvidence
 from pipeline.corners import Corner, applied
@@ -141,7 +141,7 @@ def test_at_rest_alone_no_speed_dependent_check_is_missing(loads):
     assert guides.bush_pv_a(trial).demand == pytest.approx(0.0, abs=1e-3)
     assert roller.roller_speed(trial).demand == pytest.approx(0.0, abs=1e-1)
     assert roller.roller_life(trial).demand > 1e3
-    assert signed.jump_speed(trial).demand == pytest.approx(3318.0, rel=0.01)
+    assert forces.jump_speed(trial).demand == pytest.approx(3318.0, rel=0.01)
 
 
 @pytest.mark.parametrize(

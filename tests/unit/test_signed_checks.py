@@ -7,12 +7,20 @@ import fake_trial as fake
 import numpy as np
 import pytest
 
-from pipeline.checks import manufacture, signed
+from pipeline.checks import contact, forces, guides, manufacture, roller, room
+from pipeline.checks.contact import pressure_at_life, shakedown_factor
 from pipeline.checks.everything import all_checks
-from pipeline.checks.signed import pressure_at_life, shakedown_factor
 
 FUNCTIONS = {
-    function(fake.evidence()).id: function for function in (*signed.CHECKS, *manufacture.CHECKS)
+    function(fake.evidence()).id: function
+    for function in (
+        *forces.SIGNED,
+        *contact.SIGNED,
+        *room.CHECKS,
+        *roller.SIGNED,
+        *guides.SIGNED,
+        *manufacture.CHECKS,
+    )
 }
 RPM = 30.0 / np.pi
 MODULUS = 210e9 / (2.0 * (1.0 - 0.3**2))
@@ -134,7 +142,7 @@ def test_a_nan_is_a_missing_number(name, part, field):
 
 def test_jump_speed_by_hand():
     """F_s = P + k s against m w^2 s'': on 5 mm (1 - cos) the slowing half holds both extremes."""
-    check = signed.jump_speed(fake.evidence())
+    check = forces.jump_speed(fake.evidence())
     s, bend = 0.005 * (1.0 - np.cos(fake.THETA)), 0.005 * np.cos(fake.THETA)
     slows = bend < 0
     force = fake.PRELOAD + fake.RATE * s[slows]
@@ -143,13 +151,13 @@ def test_jump_speed_by_hand():
     assert check.demand == pytest.approx(RPM * speed, rel=1e-3)
     assert check.limit == pytest.approx(1.3 * RPM * 2.0 * fake.CAM_SPEED)
     assert "no over-speed is given" in check.note
-    over = signed.jump_speed(fake.evidence(case=fake.limits(overspeed=400.0)))
+    over = forces.jump_speed(fake.evidence(case=fake.limits(overspeed=400.0)))
     assert over.limit == pytest.approx(1.3 * RPM * 400.0)
 
 
 def test_contact_at_overspeed_takes_more_than_the_load_case():
-    slow = signed.contact_at_overspeed(fake.evidence())
-    fast = signed.contact_at_overspeed(fake.evidence(case=fake.limits(overspeed=1600.0)))
+    slow = forces.contact_at_overspeed(fake.evidence())
+    fast = forces.contact_at_overspeed(fake.evidence(case=fake.limits(overspeed=1600.0)))
     s, bend = 0.005 * (1.0 - np.cos(fake.THETA)), 0.005 * np.cos(fake.THETA)
     force = fake.PRELOAD + fake.RATE * s + fake.MASS * 800.0**2 * bend
     assert fast.demand == pytest.approx(force.min() / fake.PRELOAD, rel=1e-3)
@@ -164,7 +172,7 @@ def test_pressure_at_life_reproduces_the_table_at_1e8():
 
 
 def test_life_asked_for_sets_the_cycles():
-    check = signed.contact_pressure_at_life(fake.evidence(case=life_case(1e4)))
+    check = contact.contact_pressure_at_life(fake.evidence(case=life_case(1e4)))
     cycles = 1e4 * 3600.0 * fake.CAM_SPEED / (2.0 * np.pi)
     assert check.limit == pytest.approx(1e-6 * pressure_at_life(cycles, 14.15, 66.22, MODULUS))
     assert check.must_have
@@ -173,9 +181,9 @@ def test_life_asked_for_sets_the_cycles():
 def test_edges_raise_the_pressure_of_a_roller_without_a_crown():
     base = fake.case()
     plain = fake.changed(base, roller=fake.changed(base.roller, crowned=False))
-    crowned = signed.edge_pressure(fake.evidence())
+    crowned = contact.edge_pressure(fake.evidence())
     assert crowned.demand == pytest.approx(900.0)
-    assert signed.edge_pressure(fake.evidence(case=plain)).demand == pytest.approx(1.3 * 900.0)
+    assert contact.edge_pressure(fake.evidence(case=plain)).demand == pytest.approx(1.3 * 900.0)
 
 
 def test_shakedown_factor_is_johnsons():
@@ -187,16 +195,16 @@ def test_shakedown_factor_is_johnsons():
 
 def test_clearance_by_hand():
     """Roller of 8 mm, guide of 20 mm whose middle is 30 mm off: 12 mm stay."""
-    assert signed.guide_clearance(fake.evidence()).demand == pytest.approx(12.0, abs=1e-6)
+    assert room.guide_clearance(fake.evidence()).demand == pytest.approx(12.0, abs=1e-6)
 
 
 def test_guide_length_by_hand():
     """80 mm apart, 20 mm long, 30 mm over at full lift and 40 mm at none."""
-    assert signed.guide_length(fake.evidence()).demand == pytest.approx(100.0 / 40.0)
+    assert guides.guide_length(fake.evidence()).demand == pytest.approx(100.0 / 40.0)
 
 
 def test_force_on_the_roller_by_hand():
-    assert signed.roller_radial(fake.evidence()).demand == pytest.approx(400.0)
+    assert roller.roller_radial(fake.evidence()).demand == pytest.approx(400.0)
 
 
 def test_waviness_by_hand():
