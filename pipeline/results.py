@@ -68,9 +68,11 @@ def _columns(text: str) -> tuple[Column, ...]:
 
 
 CRANK = (Column("crank_angle", "deg"),)
+CAM = (Column("cam_angle", "deg"),)
 SPEED = _columns(
     "crank_angle [deg]; speed_before [rad/s]; speed_inertia_alone [rad/s]; speed_after [rad/s]"
 )
+LIMITS_FILE = "2_limits.csv"
 LIFT = _columns(
     "cam_angle [deg]; crank_angle [deg]; lift [mm]; lift_d1 [mm/rad]; lift_d2 [mm/rad^2];"
     "lift_d3 [mm/rad^3]"
@@ -197,6 +199,7 @@ class TrialRecord:
     cycle: Table
     checks: tuple[Mapping[str, Any], ...]
     record: Mapping[str, Any]
+    limits: Table | None = None
 
     @property
     def verdict(self) -> str:
@@ -377,6 +380,7 @@ def _read_trial(run: Path, number: int) -> TrialRecord:
     record = read_json(path / "trial.json")
     if not isinstance(record, dict):
         raise ResultError(f"{path / 'trial.json'}: must be an object")
+    limits = path / LIMITS_FILE
     return TrialRecord(
         number=number,
         path=path,
@@ -385,6 +389,7 @@ def _read_trial(run: Path, number: int) -> TrialRecord:
         cycle=read_table(path / "5_cycle.csv"),
         checks=tuple(_read_checks(path / "6_checks.json")),
         record=MappingProxyType(record),
+        limits=read_table(limits) if limits.is_file() else None,
     )
 
 

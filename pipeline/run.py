@@ -39,6 +39,7 @@ from pipeline.smoothing.constrained import synthesise
 from pipeline.smoothing.gentler import Next, Stop, next_smoother
 from pipeline.smoothing.infeasible import infeasibility
 from pipeline.smoothing.outlook import Attempt
+from pipeline.smoothing.prices import limits_in_use
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 from pipeline.smoothing.starts import Starts, explored
@@ -182,6 +183,7 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
         done = _trial(journey, len(trials) + 1, None, why, design.lift())
         drawn_from = None if trials else starts
         trials.append(replace(done, synthesis=loop.design_record(design, problem, drawn_from)))
+        journey.folder.write_limits(len(trials), *limits_in_use(design))
         found = binding(done.checks)
         if not design.feasible:
             journey.progress.stage("which limits conflict")

@@ -128,6 +128,12 @@ class RunFolder:
         """``2_lift.csv`` from SI values by the names of `results.LIFT`."""
         self._write_table(f"trial_{trial}/2_lift.csv", results.LIFT, values)
 
+    def write_limits(self, trial: int, cam_angle: ArrayLike, uses: Mapping[str, ArrayLike]) -> None:
+        """``2_limits.csv``: cam angle (rad) and the share in use of each limit by its name."""
+        columns = (*results.CAM, *(results.Column(name, "") for name in uses))
+        name = f"trial_{trial}/{results.LIMITS_FILE}"
+        self._write_table(name, columns, {"cam_angle": cam_angle, **uses})
+
     def write_contour(self, trial: int, values: Mapping[str, ArrayLike]) -> None:
         """``3_contour.csv`` from SI values by the names of `results.CONTOUR`."""
         self._write_table(f"trial_{trial}/3_contour.csv", results.CONTOUR, values)

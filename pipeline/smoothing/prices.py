@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Array
+from geometry.arrays import FULL_TURN, Array
 from geometry.pitch_curve import PitchCurve
 from pipeline.checks.geometry import TOOL_ALLOWANCE
 from pipeline.smoothing.design import RESERVE, Design, Problem
@@ -134,6 +134,19 @@ def prices(design: Design, problem: Problem) -> list[dict[str, Any]]:
             }
         )
     return sorted(found, key=lambda record: -record["ripple_per_percent_Nm"])
+
+
+def limits_in_use(design: Design) -> tuple[Array, dict[str, Array]]:
+    """Cam angles (n,), rad, rising, and the share in use of each limit at them, by its name.
+
+    The most used first. A limit on a mean of the turn has the same share at every angle.
+    """
+    theta = next(iter(design.strip.values()))[0]
+    angles = np.mod(theta + float(design.machine.phase), FULL_TURN)
+    order = np.argsort(angles, kind="stable")
+    names = sorted(design.strip, key=lambda name: -float(np.max(design.strip[name][1])))
+    uses = {name: np.asarray(design.strip[name][1])[order] for name in names}
+    return angles[order], uses
 
 
 def _load_share(design: Design, problem: Problem) -> float:

@@ -7,6 +7,7 @@ import pytest
 
 from pipeline.case import load_case_file
 from pipeline.progress import Silent
+from pipeline.results import load_run
 from pipeline.run import run_case
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -26,3 +27,8 @@ def test_signed_case_passes(tmp_path):
     starts = trial["synthesis"]["starts"]
     assert starts["agree"] and starts["sentence"] in summary["statement"]
     assert set(trial["synthesis"]["corrections"]) == {"idle", "overspeed"}
+    limits = load_run(tmp_path / "run").final.limits
+    assert limits is not None
+    dearest = summary["prices"][0]["limit"]
+    assert limits[dearest].max() == pytest.approx(1.0, abs=3e-3)  # it binds, a reserve in hand
+    assert case.roller.bearing.ring is not None  # from a card of the catalogue

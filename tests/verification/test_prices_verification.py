@@ -12,7 +12,7 @@ from geometry.pitch_curve import PitchCurve
 from pipeline.smoothing.constrained import synthesise
 from pipeline.smoothing.constraints import Jet, shape_utilisations
 from pipeline.smoothing.design import Problem
-from pipeline.smoothing.prices import named_limits, prices
+from pipeline.smoothing.prices import limits_in_use, named_limits, prices
 from pipeline.smoothing.scenario import Machine, Ratings, Scenario
 
 
@@ -95,3 +95,17 @@ def test_what_is_said_of_a_limit_has_its_size_and_unit():
     assert found["concave_radius"].slope < 0 < found["roller_static"].slope
     assert (found["roller_life"].limit, found["roller_life"].unit) == (9e3, "N")
     assert found["pressure_angle"].limit == pytest.approx(40.0)
+
+
+def test_limits_in_use_stand_at_the_cam_angles_of_the_lift():
+    """The spring travel is all in use where the lift is greatest, the phase of the cam inside."""
+    problem = asked(travel=0.018)
+    design = synthesise(problem)
+    turned = replace(design, machine=replace(design.machine, phase=0.3))
+    for each in (design, turned):
+        angles, uses = limits_in_use(each)
+        assert np.all(np.diff(angles) > 0)
+        lift = each.lift(1440)(angles)
+        # the lift is sampled at 1440 angles and interpolated
+        np.testing.assert_allclose(uses["spring_travel"], lift / 0.018, atol=1e-4)
+    assert next(iter(uses)) == "spring_travel"  # the most used is named first
