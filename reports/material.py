@@ -10,7 +10,7 @@ from typing import Any
 
 from geometry.errors import ResultError
 from pipeline.results import Run, load_run
-from reports.sheet import Turn
+from reports.turn import Turn
 from reports.verdict import governing_load_case
 
 Tell = Callable[[int, int], None]

@@ -17,7 +17,7 @@ from reports.drawings import drawn_groups
 from reports.material import Material
 from reports.output import write_whole
 from reports.pictures import PICTURES
-from reports.sheet import Turn
+from reports.turn import Turn
 from reports.verdict import verdict
 
 PAGE = "8_report.html"

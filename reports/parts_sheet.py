@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from reports.figures import Figure, LimitLine, Panel
-from reports.sheet import Turn, angle_figure, curves_of
+from reports.turn import Turn, angle_figure, curves_of
 
 
 def part_figures(turn: Turn) -> tuple[Figure, ...]:

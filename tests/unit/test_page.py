@@ -113,8 +113,9 @@ def test_the_verdict_comes_first_and_names_what_binds(html):
 
 
 def test_the_outline_tells_of_the_counter_hole(html):
-    assert "Its unbalance is 900 g mm at 40 deg; a hole of 14 mm at (26, 21.8) mm, drilled," in html
-    assert "leaves 0 g mm" in html
+    said = html.replace("\u00a0", " ")
+    assert "Its unbalance is 900 g mm at 40 deg; a hole of 14 mm at (26, 21.8) mm, drilled," in said
+    assert "leaves 0 g mm" in said
 
 
 def test_every_figure_of_the_sheet_is_there_with_words_for_it(built, html):
