@@ -147,6 +147,8 @@ class Case(Section):
             If it has none.
         """
         if self.roller_given is None:
+            if self.follower.kind == "flat":
+                raise InputError("follower.kind", "flat", '"roller" for what only a roller has')
             raise InputError("roller", "missing", 'given with follower.kind = "roller"')
         return self.roller_given
 

@@ -146,6 +146,8 @@ def test_flat_face_takes_the_place_of_the_roller():
     found = parse_case(flat(with_lift(ECCENTRIC)))
     assert found.facing is found.follower.face
     assert found.follower.face_friction == 0.08
+    with pytest.raises(InputError, match=r"follower\.kind = flat, must be .roller. for what only"):
+        _ = found.roller
     assert parse_case(found.to_toml()) == found
     lift = given_lift(found)
     theta = np.linspace(0, 2 * np.pi, 50)
