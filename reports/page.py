@@ -28,11 +28,12 @@ ASSUMPTIONS = (
     "same load. Edge stress at its ends, tilt and crowning are not in the numbers.",
     "Both bodies are linear elastic. Where the shakedown or yield check fails, the true stresses "
     "differ from those shown.",
-    "Surfaces are smooth, dry and free of traction where the contact is solved. Film, mixed friction "
-    "and the stress of traction are closed forms beside it, where the case gives oil, roughness and "
-    "friction; they do not feed back. A flat face drags on the follower by the friction given.",
-    "The roller is solid on its hub, unless the case tells of its outer ring and balls. The ratings "
-    "of its bearing are taken as the maker states them.",
+    "Surfaces are smooth, dry and free of traction where the contact is solved. Film, mixed "
+    "friction and the stress of traction are closed forms beside it, where the case gives oil, "
+    "roughness and friction; they do not feed back. A flat face drags on the follower by the "
+    "friction given.",
+    "The roller is solid on its hub, unless the case tells of its outer ring and balls. The "
+    "ratings of its bearing are taken as the maker states them.",
     "Loads are those of a constant cam speed; the ripple of the engine's speed acts on the elastic "
     "stem alone, where the case gives the crankshaft's inertia.",
     "The camshaft, its bearings and the drive between crank and cam are rigid and without play.",
