@@ -122,7 +122,8 @@ def case(**changes):
 
 def parts(**changes):
     """What the parts of `cycle` carry, in round figures."""
-    heat = SimpleNamespace(temperature=330.0, mean_power=0.0)
+    rubbed = 10.0 * np.abs(fake.cycle().loads.velocity)  # by the guides' 10 N each
+    heat = SimpleNamespace(temperature=330.0, mean_power=0.0, power=rubbed)
     still = np.zeros(fake.POSITIONS)
     greatest = SimpleNamespace(friction_force_a=still, friction_force_b=still, velocity=still)
     plain = {
