@@ -142,6 +142,19 @@ def test_fields_of_the_bodies_read_back_to_the_last_bit(series, body_series) -> 
         np.testing.assert_allclose(data["von_mises_MPa"][count:], mises, rtol=1e-9, atol=1e-9)
 
 
+def test_paraviews_own_reader_finds_every_step_and_its_names(series, body_series) -> None:
+    import pyvista
+
+    for index, count in ((body_series[1], body_series[0].size), (series[1], POSITIONS)):
+        reader = pyvista.PVDReader(index)
+        assert len(reader.time_values) == count
+        reader.set_active_time_value(reader.time_values[-1])
+        grid = reader.read()[0]
+        assert set(grid.celltypes) == {pyvista.CellType.QUADRATIC_TRIANGLE}
+        assert grid.field_data["cam_angle_deg"][0] == reader.time_values[-1]
+        assert UNITS in grid.field_data and "von_mises_MPa" in grid.point_data
+
+
 def test_the_roller_touches_the_cam_and_is_pressed_there(series, body_series) -> None:
     folder, _, _, bodies, cycle = series
     indices, index = body_series
