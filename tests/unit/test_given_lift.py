@@ -173,3 +173,9 @@ def test_flat_face_takes_the_place_of_the_roller():
 def test_bad_face_is_refused(change, message):
     with pytest.raises(InputError, match=message):
         parse_case(change(with_lift(ECCENTRIC)))
+
+
+def test_synthesis_within_limits_knows_rollers_only():
+    text = flat(template("flat")).replace('kind = "moving_average"', 'kind = "constrained"')
+    with pytest.raises(InputError, match=r"smoothing\.kind = constrained, must be another than"):
+        parse_case(text)
