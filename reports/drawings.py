@@ -15,10 +15,12 @@ from reports.output import FIGURES, write_whole
 from reports.parts_sheet import part_figures
 from reports.plots import svg_and_png
 from reports.sheet import figures
+from reports.strip import strip_figures
 
 GROUPS = (
     ("Torque", ("torque", "torque-components", "crank-speed")),
     ("Shape", ("outline", "pressure-angle", "face", "lift", "radii")),
+    ("Limits", ("limits",)),
     ("Contact", ("pressure", "half-width", "stress")),
     ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
     ("Parts", ("bushes", "elastic", "roller", "film", "parts")),
@@ -37,7 +39,16 @@ class Drawn:
 @lru_cache(maxsize=1)
 def drawn_groups(material: Material) -> Sequence[tuple[str, Sequence[Drawn]]]:
     """The figures that a run has columns for, by group, in reading order."""
-    made = (*figures(material.turn), *part_figures(material.turn))
+    turn, limits = material.turn, material.run.final.limits
+    made = (
+        *figures(turn),
+        *strip_figures(
+            None if limits is None else limits.columns,
+            turn.gear_ratio,
+            strokes=turn.gear_ratio == 2.0 and turn.torque is not None,
+        ),
+        *part_figures(turn),
+    )
     by_id = {figure.id: figure for figure in made}
     groups = (
         (title, tuple(_drawn(by_id[name]) for name in names if name in by_id))

@@ -1,0 +1,43 @@
+"""The strip chart of the limits, from the columns of a run."""
+
+import numpy as np
+
+from reports.interactive import specification
+from reports.plots import svg_and_png
+from reports.strip import BINDS, strip_figures
+
+
+def columns():
+    theta = np.arange(360.0)
+    return {
+        "cam_angle_deg": theta,
+        "pressure_angle": 0.999 * np.abs(np.sin(np.radians(theta))),
+        "roller_life": np.full(360, 0.999),
+        "undercut": np.full(360, 0.2),
+    }
+
+
+def test_strips_show_what_is_used_and_mark_where_it_binds():
+    (figure,) = strip_figures(columns(), 2.0, strokes=True)
+    assert [panel.quantity for panel in figure.panels] == ["pressure angle", "roller life"]
+    use, tight = (curve.values for curve in figure.panels[0].curves)
+    marked = np.flatnonzero(np.isfinite(tight))
+    # 0.999 |sin| is above 0.997 within 3.6 deg of 90 and 270
+    assert set(marked) == {*range(87, 94), *range(267, 274)}
+    assert np.all(use[marked] >= BINDS)
+    assert np.isfinite(figure.panels[1].curves[1].values).all()
+    assert figure.crank[-1] == 718.0
+
+
+def test_strips_are_drawn_still_and_live():
+    (figure,) = strip_figures(columns(), 2.0, strokes=True)
+    svg, png = svg_and_png(figure)
+    assert "roller life" in svg and png.startswith(b"\x89PNG")
+    live = specification(figure)
+    assert "pressure angle" in str(live["layout"])
+
+
+def test_runs_without_a_record_have_no_strips():
+    assert strip_figures(None, 2.0, strokes=True) == ()
+    unused = {"cam_angle_deg": np.arange(4.0), "undercut": np.full(4, 0.1)}
+    assert strip_figures(unused, 2.0, strokes=True) == ()
