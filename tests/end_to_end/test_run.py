@@ -143,8 +143,9 @@ def test_columns_agree_with_one_another(finished: tuple[Case, Path, dict[str, An
     radius = 1 / (1 / 8.0 + 1 / cycle["contour_radius_of_curvature_mm"])
     p0 = np.sqrt(cycle["line_load_N_per_mm"] * modulus / (np.pi * radius))
     np.testing.assert_allclose(cycle["p0_hertz_MPa"], p0, rtol=1e-9)
-    # The finite elements are their own; on so large a relative radius they differ little.
-    np.testing.assert_allclose(cycle["p0_fe_MPa"], p0, rtol=2e-3)
+    # The finite elements are their own; on so large a relative radius they differ little, and
+    # the bearing's outer ring, which bends between its balls, adds two in a thousand.
+    np.testing.assert_allclose(cycle["p0_fe_MPa"], p0, rtol=4e-3)
     assert np.abs(cycle["p0_fe_MPa"] / p0 - 1).max() > 0
     after = cycle["torque_before_Nm"] - cycle["cam_torque_Nm"] / case.mechanism.gear_ratio
     np.testing.assert_allclose(cycle["torque_after_Nm"], after, atol=1e-9)

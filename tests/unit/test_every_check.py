@@ -16,9 +16,30 @@ from trial_variants import meshed, with_loads
 
 from geometry.errors import CamError
 from pipeline.case import load_case_file
-from pipeline.checks import proof
+from pipeline.checks import proof, verdict
 from pipeline.preview import closed_form_checks
 
+MUST_HAVE = {
+    # shape, room and function
+    *("closure", "acceleration_step", "pressure_angle", "curvature_ratio", "undercut"),
+    *("self_intersection", "second_contact", "concave_radius", "minimum_wall", "spring_travel"),
+    *("guide_clearance", "cam_envelope", "torque_reduction", "energy_closure"),
+    # forces and contact
+    *("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed", "friction_balance"),
+    *("jam_index", "jam_at_worst_friction", "contact_pressure", "contact_pressure_at_life"),
+    *("shakedown", "shakedown_traction", "edge_pressure"),
+    # parts
+    *("roller_static", "roller_life", "roller_radial", "roller_speed", "roller_pin"),
+    *("bush_pressure_A", "bush_pressure_B", "bush_pv_A", "bush_pv_B"),
+    *("spring_stress", "spring_fatigue", "spring_solid", "spring_buckling"),
+    # manufacture
+    *("profile_waviness", "chord_error"),
+    # evidence
+    *("guide_equilibrium_force", "guide_equilibrium_moment", "contact_equilibrium"),
+    *("contact_complementarity", "certificate_spread", "certificate_gci", "mesh_angle"),
+    *("mesh_jacobian", "mesh_edges", "mesh_p0", "mesh_half_width", "mesh_von_mises"),
+    *("benchmark_nafems", "benchmark_hertz", "edge_derating", "clear_of_holds", "excluded_zone"),
+}
 SIGNED_CASE = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
 
 
@@ -88,6 +109,18 @@ def test_mesh_uncertainty_of_the_reaction_by_hand(monkeypatch):
     found = proof.mesh_reaction(with_loads(overhang=np.full(fake.POSITIONS, 0.03)))
     assert found.demand == pytest.approx(100.0 * 1.25 * 0.0075 / 1.0025 / 3.0, rel=1e-9)
     assert "observed order 2.00" in found.method
+
+
+@pytest.mark.parametrize("name", sorted(MUST_HAVE))
+def test_a_must_have_is_one_with_and_without_its_data(name):
+    """What a sign-off must have fails the verdict when its input is missing."""
+    tried = TRIED[name]
+    assert check(name, tried.base()).must_have
+    if tried.missing:
+        found = check(name, tried.missing())
+        assert found.must_have
+        assert found.blocks
+        assert verdict([found]) == "fail"
 
 
 def test_every_check_is_tried():
