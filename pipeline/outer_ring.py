@@ -88,7 +88,8 @@ def outer_ring(case: Case, width: float) -> OuterRing | None:
         width=case.roller.width,
         modulus=steel.E,
         balls=given.balls,
-        ball_stiffness=ball_stiffness(load, given.ball_diameter, steel.E, steel.nu),
+        ball_stiffness=given.rows
+        * ball_stiffness(load / given.rows, given.ball_diameter, steel.E, steel.nu),
     )
     bending = ring_bending(ring, poisson=steel.nu)
 

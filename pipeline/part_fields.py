@@ -135,14 +135,15 @@ class ValveTrain(Section):
 class OuterRing(Section):
     """A bearing's outer ring where it is itself the roller: carried by its balls alone.
 
-    The thickness is that under the groove, the pitch diameter that of the balls' middles; the
-    strengths are those of the ring's steel.
+    The thickness is that under the groove, the pitch diameter that of the balls' middles, their
+    number that of one row; the strengths are those of the ring's steel.
     """
 
     outer_diameter: Length
     thickness: Length
     pitch_diameter: Length
     balls: Annotated[int, Field(ge=3, le=100)]
+    rows: Annotated[int, Field(ge=1, le=4)] = 1
     fatigue_bending: Pressure | None = None
     tensile_strength: Pressure | None = None
     source: Text = ""

@@ -30,7 +30,7 @@ _UNITS = {
 }
 _RING = {"balls", "pitch_diameter", "ring_thickness"}
 _STRENGTHS = {"ring_fatigue_bending", "ring_tensile_strength"}
-_OPTIONAL = {"fatigue_load_limit", "radial_limit", *_RING, *_STRENGTHS}
+_OPTIONAL = {"fatigue_load_limit", "radial_limit", "rows", *_RING, *_STRENGTHS}
 
 
 @dataclass(frozen=True)
@@ -45,11 +45,12 @@ class BearingCard:
     source : str              where the numbers come from; "verify" marks recalled ones
     fatigue_load_limit : float   P_u, N; None when not given
     radial_limit : float      N that the outer ring bears without a housing; None when not given
-    balls : int               >= 3; None with the next two where the outer ring is not known
+    balls : int               of a row, >= 3; None with the next two where the ring is not known
     pitch_diameter : float    of the balls' middles, m
     ring_thickness : float    of the outer ring under the groove, m
     ring_fatigue_bending, ring_tensile_strength : float   of the ring's steel, Pa; None when not
                                                           given
+    rows : int                of balls, >= 1
     """
 
     name: str
@@ -67,6 +68,7 @@ class BearingCard:
     ring_thickness: float | None = None
     ring_fatigue_bending: float | None = None
     ring_tensile_strength: float | None = None
+    rows: int = 1
 
     def __post_init__(self) -> None:
         for name in _UNITS:
@@ -75,6 +77,8 @@ class BearingCard:
                 raise InputError(f"bearing.{name}", value, "> 0")
         if self.balls is not None and self.balls < 3:
             raise InputError("bearing.balls", self.balls, ">= 3")
+        if self.rows < 1:
+            raise InputError("bearing.rows", self.rows, ">= 1")
         pitch, thickness = self.pitch_diameter, self.ring_thickness
         if pitch is not None and not self.bore < pitch < self.outer_diameter:
             raise InputError("bearing.pitch_diameter", pitch, "between bore and outside")
@@ -116,7 +120,7 @@ def read_card(name: str, entry: Any) -> BearingCard:
     """
     if not isinstance(entry, dict):
         raise InputError(f"cards.{name}", entry, "a table")
-    known = {*_UNITS, "name", "balls", "source"}
+    known = {*_UNITS, "name", "balls", "rows", "source"}
     for key in sorted(set(entry) - known):
         raise InputError(
             f"cards.{name}.{key}", "unknown key", f"one of: {', '.join(sorted(known))}"
@@ -129,10 +133,12 @@ def read_card(name: str, entry: Any) -> BearingCard:
         for key, unit in _UNITS.items()
         if key in entry
     }
-    balls = entry.get("balls")
-    if balls is not None and (isinstance(balls, bool) or not isinstance(balls, int)):
-        raise InputError(f"cards.{name}.balls", balls, "a whole number")
-    return BearingCard(name=str(entry["name"]), balls=balls, source=str(entry["source"]), **values)
+    counts = {key: entry[key] for key in ("balls", "rows") if key in entry}
+    for key, count in counts.items():
+        if isinstance(count, bool) or not isinstance(count, int):
+            raise InputError(f"cards.{name}.{key}", count, "a whole number")
+    told: dict[str, Any] = {**counts, **values}
+    return BearingCard(name=str(entry["name"]), source=str(entry["source"]), **told)
 
 
 def as_case_table(card: BearingCard) -> dict[str, Any]:
@@ -144,7 +150,8 @@ def as_case_table(card: BearingCard) -> dict[str, Any]:
         strengths = dict.fromkeys(sorted(_STRENGTHS), "MPa")
         written = _written(card, lengths | strengths)
         ring = {key.removeprefix("ring_"): text for key, text in written.items()}
-        table["ring"] = {"balls": card.balls, **ring, "source": card.source}
+        counts = {"balls": card.balls, "rows": card.rows}
+        table["ring"] = {**counts, **ring, "source": card.source}
     return table
 
 

@@ -16,6 +16,7 @@ from pipeline.contact.follower_body import RollerBody
 from pipeline.contact.pair import CycleBodies, pair_history
 from pipeline.contact.ring_body import BallRing, RingBody
 from pipeline.cycle import contact_pair, contact_width
+from pipeline.follower.bearing_cards import as_case_table, read_cards
 from pipeline.outer_ring import outer_ring, roller_in_words, why_solid
 
 RING = {
@@ -84,11 +85,20 @@ def test_stiffer_balls_take_more_of_the_load_alone():
     assert share[0] > share[1]
 
 
+def test_two_rows_share_the_load():
+    """Each ball then carries half, and two of them give way less than one under all of it."""
+    one, two = (outer_ring(case(rows=rows), 0.01).ring.ball_stiffness for rows in ("1", "2"))
+    assert two / one == pytest.approx(2.0 ** (2.0 / 3.0), rel=1e-12)  # way goes with F^(2/3)
+    card = read_cards()["track_roller_32x14"]
+    assert as_case_table(card)["ring"]["rows"] == 2
+
+
 @pytest.mark.parametrize(
     ("changes", "match"),
     [
         ({"balls": "2"}, r"ring\.balls = 2, must be >= 3"),
         ({"balls": "7.5"}, "a whole number"),
+        ({"rows": "0"}, r"ring\.rows = 0, must be >= 1"),
         ({"balls": "20"}, "do not overlap"),
         ({"thickness": '"0 mm"'}, r"ring\.thickness = 0 mm, must be > 0"),
         ({"thickness": "3.2"}, "a number with a unit"),
