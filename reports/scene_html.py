@@ -123,7 +123,10 @@ def _roller(view: TurnView, width: float) -> dict[str, Any]:
     away = np.hypot(*view.follower)
     outer, inner = away.max() * unit, away.min() * unit
     walls = [ring(outer, width), ring(inner, width)]
-    solid = joined([*walls, *(tube(outer, inner, side * width / 2) for side in (-1, 1))])
+    faces = [tube(outer, inner, side * width / 2) for side in (-1, 1)]
+    # Between a bearing's outer ring and the pin: the balls' cover, a little inside.
+    cover = [tube(inner, _pin_radius(view) * unit, 0.4 * side * width) for side in (-1, 1)]
+    solid = joined([*walls, *faces, *cover])
     spoke = np.array([away.min(), 0.9 * away.max()])
     return solid.as_record(_DIGITS) | {"spoke": _rounded(spoke)}
 
@@ -146,8 +149,14 @@ def _follower(material: Material, view: TurnView, width: float, stem: float) -> 
         for side in (-1.0, 1.0)
     ]  # fmt: skip
     yoke = box((-half, bridge, -outside), (half, bridge + plate, outside))
-    pin = _across(0.95 * float(np.hypot(*view.follower).min()), 1.1 * outside)
+    pin = _across(_pin_radius(view), 1.1 * outside)
     return joined([*plates, yoke, pin, _rod(stem, bridge + plate, top)])
+
+
+def _pin_radius(view: TurnView) -> float:
+    """Of the pin a roller turns on, mm: its hole's, but of an outer ring half the ring's."""
+    away = np.hypot(*view.follower)
+    return float(min(0.98 * away.min(), 0.52 * away.max()))
 
 
 def _rod(stem: float, start: float, end: float) -> Solid:
