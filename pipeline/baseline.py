@@ -14,7 +14,8 @@ UNKNOWN_ERROR = 1e-6
 def changes(before: Iterable[Record], now: Iterable[Record]) -> list[dict[str, Any]]:
     """One entry per check that differs: by status, by demand beyond both error bars, by limit.
 
-    A check on one side only is `new` or `gone`.
+    A check on one side only is `new` or `gone`. Of the evidence, shares such as residuals and
+    mesh uncertainties are errors themselves: they differ where their status does.
     """
     old, new = ({record["id"]: record for record in side} for side in (before, now))
     found = [_change(old.get(name), new.get(name)) for name in dict.fromkeys([*new, *old])]
@@ -39,7 +40,7 @@ def _change(old: Record | None, new: Record | None) -> dict[str, Any]:
     else:
         if old["status"] != new["status"]:
             kinds.append("status")
-        if _apart(old["demand"], new["demand"], bars):
+        if not _is_error(new) and _apart(old["demand"], new["demand"], bars):
             kinds.append("demand")
         if _apart(old["limit"], new["limit"], UNKNOWN_ERROR * abs(new["limit"] or 0.0)):
             kinds.append("limit")
@@ -54,6 +55,11 @@ def _change(old: Record | None, new: Record | None) -> dict[str, Any]:
         "status_before": None if old is None else old["status"],
         "status": None if new is None else new["status"],
     }
+
+
+def _is_error(record: Record) -> bool:
+    """Whether a demand is itself the error of a number: told where its verdict changes."""
+    return bool(record.get("evidence")) and record["unit"] in ("-", "%")
 
 
 def _error(record: Record | None) -> float:

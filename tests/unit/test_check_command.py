@@ -116,6 +116,15 @@ def test_baseline_tells_changes_beyond_the_error_bars_only() -> None:
     assert changes(old, old) == []
 
 
+def test_residuals_differ_where_their_status_does() -> None:
+    """5e-15 instead of 4e-15 is no news; a residual that fails is."""
+    old = [check(id="r", demand=4e-15, unit="-", evidence=True), check(id="m", unit="deg")]
+    same = [check(id="r", demand=5e-15, unit="-", evidence=True), check(id="m", unit="deg")]
+    worse = [check("fail", id="r", demand=1.0, unit="-", evidence=True), check(id="m", unit="deg")]
+    assert changes(old, same) == []
+    assert [entry["kinds"] for entry in changes(old, worse)] == [["status"]]
+
+
 def test_exit_codes_and_files(run: Path, command: Command, tmp_path: Path) -> None:
     assert command("check", run)[0] == 1
     assert command("check", run, "--fail-on", "never")[0] == 0
