@@ -113,12 +113,11 @@ def _prepare(search: Search) -> None:
         if not out.is_dir() or strangers:
             raise ResultError(f"{out}: holds something other than a redesign")
         record = out / RECORD
-        if record.is_file() and read_json(record).get("case") != case.name:
+        held = read_json(record) if record.is_file() else {"case": case.name}
+        if not isinstance(held, dict) or held.get("case") != case.name:
             raise ResultError(f"{out}: holds the redesign of another case")
     for name, content in case.included.items():
         write_atomic(out / name, content)
-    for old in out.glob("point_*.toml"):
-        old.unlink()
 
 
 def _searched(
@@ -202,7 +201,9 @@ def _why(record: Record) -> str:
 
 
 def _written(search: Search, kept: Sequence[Tried]) -> list[Record]:
-    """The points as case files, and their records."""
+    """The points as case files, in place of those of an earlier search, and their records."""
+    for old in search.out.glob("point_*.toml"):
+        old.unlink()
     found = []
     for number, (choice, record) in enumerate(kept, start=1):
         name, text = f"point_{number:02d}.toml", search.text(choice)

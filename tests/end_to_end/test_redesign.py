@@ -3,19 +3,23 @@
 import json
 import subprocess
 import sys
+import tomllib
 from concurrent.futures import Future
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from geometry.errors import InputError, ResultError
-from pipeline.case import load_case_file
+from pipeline.case import case_of, load_case_file, parse_case
+from pipeline.case_text import to_toml
 from pipeline.preview import closed_form_checks
 from pipeline.progress import Silent
 from pipeline.redesign import search, study
 from pipeline.redesign.catalogue import Catalogue, catalogue_of
+from pipeline.redesign.variant import Choice
 from reports import redesign as page
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -121,6 +125,27 @@ def test_leaves_other_folders_alone(small, case_file, tmp_path):
     (tmp_path / "redesign.json").write_text('{"case": "another"}')
     with pytest.raises(ResultError, match="another case"):
         study.redesign(case_file, tmp_path, "size", 1, Silent())
+    (tmp_path / "redesign.json").write_text("[]")
+    with pytest.raises(ResultError, match="another case"):
+        study.redesign(case_file, tmp_path, "size", 1, Silent())
+
+
+def test_files_a_case_includes_go_with_its_points(tmp_path):
+    """The engine's torque from a table: a point stands by itself in its folder."""
+    angle = np.arange(0.0, 720.0, 5.0)
+    rows = "".join(f"{a},{8 * np.sin(np.radians(a))}\n" for a in angle)
+    (tmp_path / "torque.csv").write_text("crank_angle_deg,torque_Nm\n" + rows, encoding="utf-8")
+    given = tomllib.loads(load_case_file(CASES / "gx120.toml").to_toml())
+    given["engine"] = {"kind": "table", "file": "torque.csv"}
+    case = case_of(given, tmp_path)
+    path = tmp_path / "own.toml"
+    path.write_text(to_toml(case, {"torque.csv": "torque.csv"}), encoding="utf-8")
+    parts, out = catalogue_of(None), tmp_path / "out"
+    asked = study.Search(load_case_file(path), tmp_path, parts, out, "v")
+    study._prepare(asked)
+    text = asked.text(Choice(ROLLER, "60 x 42", "bronze"))
+    point = parse_case(text, out)
+    assert point.included["inputs/torque.csv"] == (tmp_path / "torque.csv").read_bytes()
 
 
 def test_refuses_what_cannot_be_redesigned(case_file, tmp_path):
