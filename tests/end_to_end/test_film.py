@@ -24,11 +24,14 @@ from reports.turn_view import read_turn_view
 
 POSITIONS = 36
 BYTES_MAX = 20 << 20
+HOSTILE = "<b>$x^{ \\frac</b> \u202eעברית\U0001f600 \x00" + 10_000 * "long "
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    made = report_fixture.write_run(tmp_path_factory.mktemp("film"), POSITIONS, field=False)
+    made = report_fixture.write_run(
+        tmp_path_factory.mktemp("film"), POSITIONS, title=HOSTILE, field=False
+    )
     (made / "figures").mkdir()
     return turn_fixture.add_turn(made, POSITIONS)
 
