@@ -26,6 +26,7 @@ COLUMNS = (
     ("residual_p2p_Nm", "ripple left, p-p N m"),
     ("verdict", "verdict"),
     ("binding", "what fails"),
+    ("why", "why there is no cam"),
 )
 
 
@@ -43,7 +44,7 @@ def write(
     with (folder / "smoothers.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow([name for name, _ in COLUMNS])
-        writer.writerows([[row.get(name, "") for name, _ in COLUMNS] for row in rows])
+        writer.writerows([[_written(row.get(name, "")) for name, _ in COLUMNS] for row in rows])
     picture = drawn(lifts)
     (folder / "smoothers.png").write_bytes(picture)
     page = folder / "smoothers.html"
@@ -83,9 +84,14 @@ def _page(title: str, rows: Sequence[Mapping[str, Any]], picture: bytes) -> str:
     )
 
 
+def _written(value: Any) -> Any:
+    """A value of the table; a list of names as one text."""
+    return "; ".join(map(str, value)) if isinstance(value, (list, tuple)) else value
+
+
 def _shown(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.4g}"
     if isinstance(value, (list, tuple)):
-        return html.escape(", ".join(str(item).replace("_", " ") for item in value)) or "-"
+        return html.escape(", ".join(map(str, value)).replace("_", " ")) or "-"
     return "-" if value is None else html.escape(str(value))

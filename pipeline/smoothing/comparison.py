@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from geometry.contour import Contour
-from geometry.errors import CamError
+from geometry.errors import CamError, InputError
 from geometry.lift import Lift
 from pipeline import cycle as cycles
 from pipeline import trial as road
@@ -19,7 +19,6 @@ from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import binding, verdict
 from pipeline.engine.torque import Torque
 from pipeline.preview import look_ahead
-from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 
 _SMOOTHERS = (
@@ -52,7 +51,8 @@ def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
     InputError
         If the case has no engine.
     """
-    problem_of(case, torques)  # refuses a case that has nothing to smooth
+    if not torques:
+        raise InputError("engine", "missing", "given: smoothers work on its torque")
     case = case.with_positions(_POSITIONS)
     for smoother in _SMOOTHERS:
         words = smoother.width_in_words
@@ -60,8 +60,15 @@ def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
             lift = road.designed_lift(case, torques, smoother)
             yield _judged(case, torques, smoother.kind, words, lift)
         except CamError as error:
-            yield Compared(smoother.kind, words, None, {"verdict": "fail", "why": str(error)})
-    yield _constrained(case)
+            yield _without(smoother.kind, words, error)
+    try:
+        yield _constrained(case)
+    except CamError as error:
+        yield _without("constrained", "least ripple within all limits", error)
+
+
+def _without(kind: str, words: str, error: CamError) -> Compared:
+    return Compared(kind, words, None, {"verdict": "fail", "binding": [], "why": str(error)})
 
 
 def _constrained(case: Case) -> Compared:
