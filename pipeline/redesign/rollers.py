@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
 
 from geometry.errors import InputError
 from pipeline.case import Case
@@ -28,7 +29,7 @@ def roller_problems(
     InputError
         For cards beside the case that cannot be read.
     """
-    folder = case.path("")
+    folder = _folder(case)
     rollers = catalogue_of(folder).rollers
     corrections = {item.name: item.correction for item in asked.scenarios}
     for name in sorted(rollers, key=lambda name: (rollers[name].outer_diameter, rollers[name].C0)):
@@ -40,3 +41,11 @@ def roller_problems(
             replace(item, correction=corrections[item.name]) for item in problem.scenarios
         )
         yield name, replace(problem, scenarios=scenarios)
+
+
+def _folder(case: Case) -> Path | None:
+    """Where the case lies, with the cards beside it; None for a case that is no file."""
+    try:
+        return case.path("")
+    except InputError:
+        return None

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from geometry.errors import InputError
+from pipeline import trial as road
 from pipeline.case import load_case_file, parse_case
 from pipeline.follower.spring import case_spring
 from pipeline.follower.spring_catalogue import SpringDemand
@@ -21,9 +22,11 @@ from pipeline.redesign.catalogue import (
 )
 from pipeline.redesign.front import front, thinned
 from pipeline.redesign.point import Rough
+from pipeline.redesign.rollers import roller_problems
 from pipeline.redesign.search import RUNG, RUNGS, branch
 from pipeline.redesign.variant import AS_GIVEN, Choice, travel_of, variant
 from pipeline.results import json_text
+from pipeline.smoothing.problem import problem_of
 
 CASES = Path(__file__).parents[2] / "cases"
 CHOICE = Choice("track_roller_35x16", "60 x 42", "ptfe_lined", 0.08)
@@ -169,6 +172,22 @@ def test_travel_is_the_most_that_keeps_the_springs_limits(case, parts, name):
 def test_a_spring_that_cannot_be_is_of_no_use(case, parts):
     hard = case.spring.model_copy(update={"preload": 5000.0})
     assert travel_of(parts.springs["40 x 25"], case.model_copy(update={"spring": hard})) == 0.0
+
+
+def test_rollers_for_a_case_without_an_answer(case):
+    """The smallest first, the cam's base circle kept, and no file needed for it."""
+    torques = road.engine_torques(case)
+    loose = parse_case(case.to_toml())  # lies in no folder
+    found = list(roller_problems(loose, torques, problem_of(case, torques)))
+    assert len(found) >= 5
+    radii = [problem.ratings.roller_radius for _, problem in found]
+    assert radii == sorted(radii)
+    circle = case.cam.pitch_base_radius - case.roller.radius
+    for _, problem in found:
+        base = problem.machine.base_radius - problem.ratings.roller_radius
+        assert base == pytest.approx(circle, rel=1e-9)
+    forces = {name: problem.ratings.normal_force for name, problem in found}
+    assert forces["track_roller_35x16"] == 3600.0  # of its ring; its balls bear 5.1 kN
 
 
 # --- the user's own
