@@ -12,7 +12,7 @@ class Shop(Section):
     """What the files of ``shop/`` are written for.
 
     table_step : rad        between the rows of its tables
-    tool_radius : m         of the cutter or grinding wheel; the roller's where none is given
+    tool_radius : m         of the cutter or grinding wheel; the roller's, or base circle's, if none
     chord_error : m         of the drawing's polyline; by default its area is true to a millionth
     """
 

@@ -164,6 +164,15 @@ def test_flat_face_takes_the_place_of_the_roller():
             r"follower\.face = a table",
         ),
         (lambda t: flat(t).replace("thickness", "thikness"), r"follower\.face\.thikness = unknown"),
+        (
+            lambda t: flat(t).replace("friction = 0.08", 'pv_limit = "-1 MPa m/s"'),
+            "pv_limit = -1 MPa",
+        ),
+        (
+            lambda t: flat(t).replace("friction = 0.08", 'roughness = "0 um"'),
+            "roughness = 0 um, must",
+        ),
+        (lambda t: flat(t).replace('"5 mm"', "5"), r"follower\.face\.thickness = 5, must be"),
         (lambda t: flat(t).replace("= 0.08", "= 2.0"), r"follower\.face\.friction = 2\.0, must be"),
         (lambda t: flat(t) + t[t.index("[roller]") : t.index("[follower]")], "roller = a table"),
         (lambda t: t.replace("[follower]", '[follower]\nkind = "flat"'), "follower.face = missing"),
