@@ -33,7 +33,8 @@ from reports.figures import (
 _HERE = Path(__file__).parent
 _SCRIPTS = (_HERE / "vendor" / "plotly-basic.min.js", _HERE / "templates" / "report.js")
 _PANEL_PIXELS, _TOP_PIXELS, _LEGEND_PIXELS, _BOTTOM_PIXELS, _GAP_PIXELS = 165, 54, 24, 46, 14
-_DIGITS = 6
+_DIGITS, _STROKE_PIXELS = 6, 14
+_HOVER_TITLE, _HOVER_CAM = "crank %{x:.1f}°", " · cam %{customdata:.1f}°"
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,8 @@ def _angles(figure: AngleFigure) -> dict[str, Any]:
         "height": lines.height,
         "margin": {"l": 64, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS},
         "xaxis": {"range": [0, turn], "dtick": 90, "title": {"text": "crank angle, deg"},
-                  "fixedrange": True, "anchor": _axis("y", len(figure.panels) - 1)},
+                  "unifiedhovertitle": {"text": _HOVER_TITLE}, "fixedrange": True,
+                  "anchor": _axis("y", len(figure.panels) - 1)},
         "xaxis2": {"range": [0, 360], "dtick": 45, "title": {"text": "cam angle, deg"},
                    "fixedrange": True, "overlaying": "x", "side": "top", "anchor": "y"},
         "shapes": _shades(figure, turn), "annotations": _stroke_names(figure),
@@ -115,6 +117,9 @@ def _angles(figure: AngleFigure) -> dict[str, Any]:
         shapes, notes = _limits(panel, axis, low, high)
         layout["shapes"] += shapes
         layout["annotations"] += notes
+    told = next((trace for trace in traces if "hovertemplate" in trace), None)
+    if told is not None:  # once is enough for all curves
+        told["hovertemplate"] = told["hovertemplate"].replace("<extra>", f"{_HOVER_CAM}<extra>")
     traces.append({"x": [0], "y": [None], "xaxis": "x2", "yaxis": "y", "type": "scatter",
                    "showlegend": False, "hoverinfo": "skip"})  # fmt: skip
     return {"data": traces, "layout": layout, "words": figure.title}
@@ -162,6 +167,8 @@ def _limits(
         common | {"y": value, "yanchor": "bottom" if above else "top", "text": html.escape(words)}
         for words, value, above in told
     ]
+    if placed.beyond and placed.above:
+        notes[-1]["yshift"] = -_STROKE_PIXELS  # below the names of the strokes
     return shapes, notes
 
 
@@ -186,7 +193,7 @@ def _curve(
         "x": _numbers(crank), "y": _numbers(np.append(curve.values, curve.values[0])),
         "customdata": cam,
         "line": {"color": curve.colour, "width": 1.8, "dash": "dash" if curve.dashed else "solid"},
-        "hovertemplate": f"%{{y:.5g}} {unit} (cam %{{customdata:.1f}}°)",
+        "hovertemplate": f"%{{y:.5g}} {unit}<extra>{name}</extra>",
         "meta": unit,
     }  # fmt: skip
 
