@@ -1,0 +1,26 @@
+"""Fresh processes: as many as are of use, one BLAS thread each, gone when work is dropped."""
+
+import os
+
+import pytest
+
+from pipeline.processes import pool, workers_for
+
+
+@pytest.mark.parametrize(
+    ("jobs", "tasks", "expected"), [(3, 8, 3), (8, 3, 3), (None, 1, 1), (2, 0, 1)]
+)
+def test_as_many_as_are_of_use(jobs, tasks, expected):
+    assert workers_for(jobs, tasks) == expected
+
+
+def test_workers_have_one_thread_and_the_parent_keeps_its_own(monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
+    with pytest.raises(ValueError, match="stop"), pool(1) as fresh:
+        assert fresh.submit(os.getenv, "OMP_NUM_THREADS").result() == "1"
+        waiting = [fresh.submit(os.getpid) for _ in range(50)]
+        raise ValueError("stop")
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "MKL_NUM_THREADS" not in os.environ
+    assert all(future.done() for future in waiting)  # worked out or cancelled, none left behind
