@@ -5,17 +5,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 
-def front(figures: Sequence[tuple[float, float]]) -> list[int]:
+def front(
+    figures: Sequence[tuple[float, float]], alike: float = 0.0, gain: float = 0.0
+) -> list[int]:
     """Indices of the points none of the others is as good as, by the first figure.
 
     Parameters
     ----------
     figures : sequence of (float, float)   both the better the smaller; of equal ones the first
+    alike : float   share by which first figures may differ and still be one; the better stays
+    gain : float    what the second figure must fall by for a point to be worth telling
     """
     found: list[int] = []
     for k in sorted(range(len(figures)), key=lambda k: (*figures[k], k)):
-        if not found or figures[k][1] < figures[found[-1]][1]:
-            found.append(k)
+        size, left = figures[k]
+        if found and not left < figures[found[-1]][1] - gain:
+            continue
+        if found and size <= figures[found[-1]][0] * (1.0 + alike):
+            found.pop()
+        found.append(k)
     return found
 
 

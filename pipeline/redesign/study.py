@@ -27,6 +27,7 @@ from pipeline.trial import engine_torques
 AGAINST = {"size": "cam_radius_mm", "mass": "mass_g"}
 RECORD = "redesign.json"
 MOST_POINTS = 12  # of a front that are solved whole
+ALIKE = 1e-3  # share of size or of the whole ripple below which two points are one
 _BUSY = 64  # more processes than this have nothing to do
 _OF_A_BRANCH = 16  # choices it asks for, about
 _OURS = re.compile(rf"redesign\.(json|html|png)|point_\d+\.toml|inputs|{SOLVED}")
@@ -166,7 +167,8 @@ def _chosen(tried: Sequence[Tried], against: str) -> list[Choice]:
     feasible = [(choice, record) for choice, record in tried if record["feasible"]]
     size = "cam_radius" if against == "size" else "mass"
     figures = [(record[size], record["ripple"]) for _, record in feasible]
-    return [feasible[k][0] for k in thinned(front(figures), figures, MOST_POINTS)]
+    places = front(figures, ALIKE, ALIKE)  # the ripple is a share of that without a cam
+    return [feasible[k][0] for k in thinned(places, figures, MOST_POINTS)]
 
 
 def _solved_whole(
@@ -187,7 +189,8 @@ def _split(points: Sequence[Tried], against: str) -> tuple[list[Tried], list[Tri
     """The front of what keeps every limit, smallest first, and the points that are not on it."""
     good = [pair for pair in points if pair[1]["feasible"] and not pair[1]["failing"]]
     figures = [(record[AGAINST[against]], record["ripple_left_Nm"]) for _, record in good]
-    kept = [good[k] for k in front(figures)]
+    least = min((record["ripple_before_Nm"] for _, record in good), default=0.0)
+    kept = [good[k] for k in front(figures, ALIKE, ALIKE * least)]
     return kept, [pair for pair in points if pair not in kept]
 
 

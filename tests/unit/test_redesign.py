@@ -111,6 +111,9 @@ def test_front_against_every_pair():
         beaten = any(a <= x and b <= y and j != k for j, (a, b) in enumerate(figures))
         assert (k in found) == (not beaten)
     assert found == sorted(found, key=lambda k: figures[k])
+    near = [(1.0, 0.5), (1.0004, 0.4), (2.0, 0.1), (3.0, 0.0999)]
+    assert front(near) == [0, 1, 2, 3]
+    assert front(near, 1e-3, 1e-3) == [1, 2]  # as good as one size; a gain not worth a third more
     few = thinned(found, figures, 3)
     assert len(few) == 3
     assert (few[0], few[-1]) == (found[0], found[-1])
