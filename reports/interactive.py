@@ -90,7 +90,7 @@ def _angles(figure: AngleFigure) -> dict[str, Any]:
     traces: list[dict[str, Any]] = []
     layout: dict[str, Any] = {
         "height": lines.height,
-        "margin": {"l": 64, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS},
+        "margin": {"l": 68, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS},
         "xaxis": {"range": [0, turn], "dtick": 90, "title": {"text": "crank angle, deg"},
                   "unifiedhovertitle": {"text": _HOVER_TITLE}, "fixedrange": True,
                   "anchor": _axis("y", len(figure.panels) - 1)},
@@ -103,8 +103,8 @@ def _angles(figure: AngleFigure) -> dict[str, Any]:
         low, high = vertical_span(panel, figure.strokes)
         axis, legend = _axis("y", number), "legend" if number == 0 else f"legend{number + 1}"
         layout["yaxis" if number == 0 else f"yaxis{number + 1}"] = {
-            "domain": [bottom, top], "fixedrange": True, "title": {"text": _title(panel)},
-            "range": [low, high],
+            "domain": [bottom, top], "fixedrange": True, "range": [low, high],
+            "title": {"text": _title(panel), "standoff": 8},
         }  # fmt: skip
         named = panel.legend_entries > 1 and (number == 0 or not figure.one_legend)
         if named and number:

@@ -125,8 +125,13 @@ def _facts(material: Material) -> list[tuple[str, str]]:
 
 
 def _grouped(rows: Sequence[tables.CheckRow]) -> list[tuple[str, list[tables.CheckRow]]]:
-    """Required checks, then optional ones; of these, what could not be evaluated comes last."""
+    """Required checks, then optional ones: what fails first, what could not be evaluated.
+
+    Of the optional ones, what could not be evaluated comes last.
+    """
     required = [row for row in rows if row.must_have]
+    pressing = {"fail": 0, "not_evaluated": 1}
+    required.sort(key=lambda row: pressing.get(row.status, 2))
     optional = [row for row in rows if not row.must_have]
     optional.sort(key=lambda row: row.status == "not_evaluated")
     return [
@@ -161,9 +166,7 @@ def residuals(turn: Turn) -> list[tuple[str, str]]:
 def _trial(trial: TrialRecord) -> dict[str, Any]:
     """One row of the trials table."""
     record = trial.record
-    failing = [
-        row for row in tables.check_rows(trial.checks) if row.id in trial.binding
-    ]  # fmt: skip
+    rows = [row for row in tables.check_rows(trial.checks) if row.id in trial.binding]
     width = record.get("angular_width_deg")
     return {
         "number": trial.number,
@@ -172,7 +175,8 @@ def _trial(trial: TrialRecord) -> dict[str, Any]:
         "strength": tables.number(record.get("strength"), 3),
         "why": str(record.get("why") or ""),
         "passed": trial.verdict == "pass",
-        "failing": [(row.title, row.utilisation) for row in failing],
+        "failing": [(row.title, row.utilisation) for row in rows if row.status == "fail"],
+        "unknown": sum(row.status == "not_evaluated" for row in rows),
     }  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,8 +16,8 @@ class Verdict:
     """What the run decided.
 
     `sentence` counts the checks, `governing` describes the one nearest to or farthest beyond
-    its limit, `binding` are titles of required checks that do not hold, `stopped` says why the
-    trials ended, clause by clause.
+    its limit, `binding` are titles of required checks that do not hold, `missing` of those that
+    could not be evaluated, `stopped` says why the trials ended, clause by clause.
     """
 
     passed: bool
@@ -25,6 +25,7 @@ class Verdict:
     governing: str
     binding: tuple[str, ...]
     stopped: tuple[str, ...]
+    missing: tuple[str, ...] = ()
 
     @property
     def word(self) -> str:
@@ -49,13 +50,21 @@ def verdict(said: str, checks: Sequence[Check], binding: Sequence[str], stopped:
     missing = [c for c in required if c["status"] == "not_evaluated"]
     passed = said == "pass" and bool(checks) and not failed and not missing
     titles = {str(c["id"]): str(c["title"]) for c in checks}
+    unknown = {str(c["id"]): str(c["title"]) for c in missing}
+    clauses = (clause for clause in stopped.split("; ") if clause)
     return Verdict(
         passed,
         _sentence(checks, required, failed, missing),
         governing(checks),
-        tuple(titles.get(name, words(name)) for name in map(str, binding)),
-        tuple(filter(None, stopped.split("; "))),
+        tuple(titles.get(n, words(n)) for n in map(str, binding) if n not in unknown),
+        tuple(clause for clause in clauses if not _names_all(clause, unknown.values())),
+        tuple(unknown.values()),
     )
+
+
+def _names_all(clause: str, titles: Collection[str]) -> bool:
+    """Whether a clause only lists what is listed already."""
+    return len(titles) > 1 and all(title in clause for title in titles)
 
 
 def _sentence(

@@ -106,8 +106,16 @@ def test_the_sentence_counts_what_holds_fails_and_is_missing():
         "1 of 4 required checks holds, 1 fails, 1 could not be evaluated, which counts as failing,"
         " 1 is waived. Of 1 optional check: 1 not evaluated."
     )
-    assert words.binding == ("B", "C")
+    assert (words.binding, words.missing) == (("B",), ("C",))
     assert words.stopped == ("no more room",)
+
+
+def test_a_clause_that_only_lists_what_is_not_evaluated_is_not_said_twice():
+    checks = [check("a", "fail", 2.0), check("b", "not_evaluated", None),
+              check("c", "not_evaluated", None)]  # fmt: skip
+    stopped = "A at 2 of its limit; not judged, as the case leaves a number out: B, C"
+    assert verdict("fail", checks, ("a", "b", "c"), stopped).stopped == ("A at 2 of its limit",)
+    assert len(verdict("fail", checks[:2], ("a", "b"), stopped).stopped) == 2
 
 
 def test_the_governing_check_is_required_and_not_waived():
