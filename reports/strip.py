@@ -11,7 +11,7 @@ from reports.figures import AngleFigure, Curve, Figure, LimitLine, Panel
 from reports.tables import words
 
 BINDS = 0.997  # share in use from which a limit binds: the synthesis keeps a little in hand
-_SHOWN, _MOST = 0.5, 8  # share from which a limit is shown, and how many of them
+_SHOWN, _MOST = 0.5, 6  # share from which a limit is shown, and how many of them
 
 
 def strip_figures(
@@ -46,4 +46,4 @@ def _strip(name: str, use: Array) -> Panel:
     tight = np.where(use >= BINDS, use, np.nan)
     curves = (Curve("share in use", np.clip(use, 0.0, None), "blue"),
               Curve("binds", tight, "vermillion"))  # fmt: skip
-    return Panel(words(name), "", curves, (LimitLine(1.0, ""),), height=0.46, span=(0.0, 1.15))
+    return Panel(words(name), "", curves, (LimitLine(1.0, ""),), height=0.62, span=(0.0, 1.3))
