@@ -321,9 +321,9 @@ def _crank_speed(
             if number == 0:
                 folder.write_speed(study.columns)
         asked = None
-        if final.smoother is not None:
+        if number == 0 and final.smoother is not None and case.smoothing.kind != "constrained":
             asked = road.asked_torque(case, torque, final.smoother)
-        found = consistency(case.at(state.name), torque, state.speed, pitch, study, asked, rubbing)
+        found = consistency(case, state, torque, pitch, study, asked, rubbing)
         findings += [{"load_case": state.name, **one.as_record()} for one in found]
     measured = measurement_record(case)
     return {"speed": ripple or None, "consistency": findings, "measurement": measured}

@@ -15,6 +15,7 @@ from geometry.periodic import periodic_quintic
 from geometry.pitch_curve import PitchCurve
 from pipeline.case import Case
 from pipeline.cylinder_fields import Cylinder
+from pipeline.design_fields import LoadCase
 from pipeline.engine.consistency import (
     Finding,
     energy_finding,
@@ -257,36 +258,36 @@ def speed_ripple(
 
 def consistency(
     case: Case,
+    state: LoadCase,
     torque: Torque,
-    speed: float,
     pitch: PitchCurve,
     study: SpeedStudy | None,
     asked: Array | None = None,
     rubbing: Rubbing | None = None,
 ) -> tuple[Finding, ...]:
-    """What the inputs of a case say of one another.
+    """What the inputs of a case say of one another in one of its states.
 
-    `asked` (n,) is the crank torque the cam was drawn for, N m about its mean; without it, the
-    share of the engine's own that the case asks for.
+    `asked` (n,) is the crank torque the cam was drawn to take there, N m about its mean; without
+    it, as where limits shape the lift, power and energy have nothing to agree with. What was
+    measured of the speed belongs to the first state.
     """
+    case = case.at(state.name)
     ratio = case.mechanism.gear_ratio
     system = replace(FollowerSystem.from_case(case), rubbing=rubbing)
     theta = uniform_turn(torque.theta_crank.size)
-    loads = follower_loads(pitch, system, speed / ratio, theta)
-    balanced = torque.without_mean().total
-    if asked is None:
-        asked = np.asarray(case.mechanism.compensation * balanced)
-    spring_torque = loads.spring_force * loads.lift_slope
-    stroke = pitch.lift.stroke
-    stored = stroke * (system.preload + 0.5 * system.spring_rate * stroke)
-    found = [
-        ratio_finding(asked, spring_torque, ratio),
-        energy_finding(asked, stored),
-    ]
+    loads = follower_loads(pitch, system, state.speed / ratio, theta)
+    found = []
+    if asked is not None:
+        stroke = pitch.lift.stroke
+        stored = stroke * (system.preload + 0.5 * system.spring_rate * stroke)
+        found.append(ratio_finding(asked, loads.spring_force * loads.lift_slope, ratio))
+        found.append(energy_finding(asked, stored))
     if study is not None:
         taken = -4.0 * pi * float(study.after.mechanism_torque.mean())
         found.append(work_finding(loads.friction_loss, taken))
     shaft = case.crankshaft
-    if shaft is not None and shaft.measured_speed_std is not None:
-        found.append(inertia_finding(shaft.inertia, balanced, speed, shaft.measured_speed_std))
+    measured = None if shaft is None else shaft.measured_speed_std
+    if shaft is not None and measured is not None and state.name == case.load_cases[0].name:
+        balanced = torque.without_mean().total
+        found.append(inertia_finding(shaft.inertia, balanced, state.speed, measured))
     return tuple(found)

@@ -134,7 +134,10 @@ def test_speed_of_the_published_case(gx120):
     assert set(study.columns) == {
         "crank_angle", "speed_before", "speed_inertia_alone", "speed_after"
     }  # fmt: skip
-    found = {one.id: one for one in consistency(case, torque, 157.08, contour.pitch, study)}
+    all_of_it, (idle,) = torque.without_mean().total, case.load_cases
+    found = {
+        one.id: one for one in consistency(case, idle, torque, contour.pitch, study, all_of_it)
+    }
     assert set(found) == {"power", "energy", "work", "inertia"}
     assert not found["work"].flagged
     assert not found["inertia"].flagged
@@ -145,8 +148,19 @@ def test_no_crankshaft_no_speed(gx120):
     case, torque, contour = gx120
     bare = case.model_copy(update={"crankshaft": None})
     assert study_of(bare, torque, 157.08, contour.pitch) is None
-    found = {one.id for one in consistency(bare, torque, 157.08, contour.pitch, None)}
+    all_of_it, (idle,) = torque.without_mean().total, case.load_cases
+    found = {one.id for one in consistency(bare, idle, torque, contour.pitch, None, all_of_it)}
     assert found == {"power", "energy"}
+
+
+def test_nothing_asked_of_the_cam_and_nothing_measured_there_is_nothing_to_agree_with(gx120):
+    case, torque, contour = gx120
+    (idle,) = case.load_cases
+    rated = idle.model_copy(update={"name": "rated"})
+    both = case.model_copy(update={"load_cases": (idle, rated)})
+    found = [one.id for one in consistency(both, idle, torque, contour.pitch, None)]
+    assert found == ["inertia"]
+    assert consistency(both, rated, torque, contour.pitch, None) == ()
 
 
 def test_firing_order_and_lift_tables_of_a_cylinder():
