@@ -173,7 +173,7 @@ def _trial(trial: TrialRecord) -> dict[str, Any]:
         "smoothing": str(record.get("smoothing") or record.get("smoother") or tables.DASH),
         "width": tables.quantity(width, "deg") if width is not None else tables.DASH,
         "strength": tables.number(record.get("strength"), 3),
-        "why": str(record.get("why") or ""),
+        "why": titled(str(record.get("why") or ""), trial.checks),
         "passed": trial.verdict == "pass",
         "failing": [(row.title, row.utilisation) for row in rows if row.status == "fail"],
         "unknown": sum(row.status == "not_evaluated" for row in rows),

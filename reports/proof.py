@@ -11,7 +11,7 @@ from reports.tables import DASH, number, quantity, words, worst_corner
 Rows = list[list[str]]
 
 PRICES_HEAD = (
-    "limit", "stands at", "ripple for one unit more", "ripple for one per cent more",
+    "limit", "stands at", "ripple for one unit more", "ripple where it gives way by 1 %",
     "binds at cam angle",
 )  # fmt: skip
 CONSISTENCY_HEAD = ("quantity", "load case", "how", "given", "implied", "difference")
@@ -47,7 +47,7 @@ def prices(records: Any) -> Table:
         [
             words(str(record["limit"])), quantity(record["value"], _unit(record)),
             _change(record["ripple_per_unit_Nm"], f"per {_unit(record) or 'unit'}"),
-            _change(record["ripple_per_percent_Nm"], "per %"), _ranges(record["binds_at_deg"]),
+            _change(record["ripple_per_percent_Nm"]), _ranges(record["binds_at_deg"]),
         ]
         for record in _records(records)
     ]  # fmt: skip
@@ -126,11 +126,11 @@ def _unit(record: Mapping[str, Any]) -> str:
     return "" if unit == "-" else unit
 
 
-def _change(price: Any, per: str) -> str:
+def _change(price: Any, per: str = "") -> str:
     """A price as the change of the ripple: a limit that gives way takes ripple off."""
     if not isinstance(price, (int, float)):
         return DASH
-    return f"{quantity(-float(price), 'N m', 3)} {per}"
+    return f"{quantity(-float(price), 'N m', 3)} {per}".rstrip()
 
 
 def _ranges(ranges: Any) -> str:

@@ -132,7 +132,7 @@ def test_every_figure_of_the_sheet_is_there_with_words_for_it(built, html):
 
 def test_trials_and_certificate_are_printed(html):
     assert "moving average of 24 values 5 deg apart" in html
-    assert "pressure_angle fails" in html
+    assert "\u201cPressure angle\u201d fails" in html
     evidence = html[html.index('id="evidence"') :]
     assert evidence.count("18233, 43120, 120411") == 8
     assert evidence.count("half-width a, mm") == 8

@@ -46,10 +46,10 @@ def test_a_price_is_the_ripple_that_goes_when_a_limit_gives_way() -> None:
     bare = {"limit": "roller_life", "unit": "-", "ripple_per_unit_Nm": None, "binds_at_deg": []}
     table = proof.prices([record, record | bare])
     assert table.rows[0] == [
-        "pressure angle", "30\u00a0deg", "−0.25\u00a0N\u00a0m per deg", "−0.03\u00a0N\u00a0m per %",
+        "pressure angle", "30\u00a0deg", "−0.25\u00a0N\u00a0m per deg", "−0.03\u00a0N\u00a0m",
         "10–12.5, 80 deg",
     ]  # fmt: skip
-    assert table.rows[1][2:] == ["–", "−0.03\u00a0N\u00a0m per %", "–"]
+    assert table.rows[1][2:] == ["–", "−0.03\u00a0N\u00a0m", "–"]
     assert all(len(row) == len(table.head) for row in table.rows)
     assert proof.prices(None).rows == []
 
