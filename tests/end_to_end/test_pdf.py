@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 import io
 import re
@@ -38,7 +39,10 @@ def by_chromium(material: Material) -> bytes:
 
 
 def by_weasyprint(material: Material) -> bytes:
-    pytest.importorskip("weasyprint", exc_type=ImportError)
+    try:
+        importlib.import_module("weasyprint")
+    except (ImportError, OSError) as error:
+        pytest.skip(f"no WeasyPrint here, or no Pango for it: {error}")
     text = page.text(material, live=False).decode()
     return printing.by_weasyprint(text, "Camwright · gx120")
 
