@@ -168,7 +168,9 @@ def _missed_between_samples(values: Array, worst: int) -> float:
     is what it is good for.
     """
     before, here, after = values[worst - 1], values[worst], values[(worst + 1) % values.size]
+    if not np.isfinite([before, here, after]).all():
+        return 0.0
     bend = before - 2.0 * here + after
-    if not (np.isfinite(bend) and bend != 0.0 and here != 0.0):
+    if bend == 0.0 or here == 0.0:
         return 0.0
     return float(abs((after - before) ** 2 / (8.0 * bend) / here))
