@@ -31,6 +31,8 @@ def text(friction="0.08", guides="0.05"):
     start, end = given.index("[lift]"), given.index("[mechanism]")
     lift = f'[lift]\nkind = "eccentric"\neccentricity = "{1e3 * E} mm"\n\n'
     changed = given[:start] + lift + given[end:]
+    train = changed.index("[valve_train]")  # of a motion law, not of a circle
+    changed = changed[:train] + changed[changed.index("[follower]") :]
     changed = changed.replace('"13 mm"', f'"{1e3 * (RADIUS - E)} mm"', 1)
     if friction == "":
         changed = changed.replace("friction = 0.08", "#", 1)
