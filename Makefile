@@ -37,7 +37,7 @@ run: .venv/installed
 	@$(BIN)/camwright run $(CASE) --out $(OUT) --replace
 
 test: .venv/developing
-	$(BIN)/python -m pytest -q -m "not slow"
+	$(BIN)/python -m pytest -q -m "not slow" -n 2 --dist loadfile
 
 verify: .venv/developing
 	$(BIN)/python -m pytest -q -m slow

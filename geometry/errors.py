@@ -26,7 +26,7 @@ class InputError(CamError):
     def __str__(self) -> str:
         shown = self.value if isinstance(self.value, (str, int, float)) else repr(self.value)
         text = " ".join(str(shown).split())
-        shortened = text if len(text) <= 80 else text[:77] + "..."
+        shortened = text if len(text) <= 80 else f"{text[:30]}...{text[-47:]}"  # paths end in names
         return f"{self.field} = {shortened}, must be {self.limit}"
 
 
