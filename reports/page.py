@@ -125,12 +125,12 @@ def _facts(material: Material) -> list[tuple[str, str]]:
 
 
 def _grouped(rows: Sequence[tables.CheckRow]) -> list[tuple[str, list[tables.CheckRow]]]:
-    """Required checks, then optional ones: what fails first, what could not be evaluated.
+    """Required checks, then optional ones: first what could not be evaluated, then what fails.
 
     Of the optional ones, what could not be evaluated comes last.
     """
     required = [row for row in rows if row.must_have]
-    pressing = {"fail": 0, "not_evaluated": 1}
+    pressing = {"not_evaluated": 0, "fail": 1}  # nobody knows how bad an unknown is
     required.sort(key=lambda row: pressing.get(row.status, 2))
     optional = [row for row in rows if not row.must_have]
     optional.sort(key=lambda row: row.status == "not_evaluated")

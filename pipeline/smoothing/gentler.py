@@ -189,7 +189,8 @@ def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
         remark = "" if check.lift_can_help else ", not a matter of a gentler lift"
         parts.append(f"{name} at {history}{check.utilisation:.3g} of its limit now{remark}")
     if unknown:
-        parts.append(f"not judged, as the case leaves a number out: {', '.join(unknown)}")
+        limits = "one limit" if len(unknown) == 1 else f"{len(unknown)} limits"
+        parts.append(f"{limits} not judged, as the case leaves a number out")
     return "; ".join(parts)
 
 
