@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from geometry.arrays import Array, readonly
-from geometry.errors import ResultError
+from geometry.errors import CamError, ResultError
 from pipeline import results, signoff
 from pipeline.case import Case
 
@@ -73,8 +73,8 @@ def write_atomic(path: Path, content: bytes | str) -> None:
 class RunFolder:
     """The folder of a run while it grows; a context manager.
 
-    Left without an error before `finish`, or by Ctrl-C, it keeps what there is for ``resume``.
-    Any other error takes it away.
+    Left before `finish` by Ctrl-C, by a kill or by what nobody expected, it keeps what there is
+    for ``resume``. An error of ours takes it away.
 
     Parameters
     ----------
@@ -109,7 +109,11 @@ class RunFolder:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if kind is not None and issubclass(kind, Exception):
+        # What is told to the user would end so again; what nobody expected need not, and the
+        # solved part of a trial is worth keeping for then.
+        ours = kind is not None and issubclass(kind, CamError)
+        bare = not any(self.path.glob("trial_*"))
+        if ours or (bare and kind is not None and issubclass(kind, Exception)):
             self.discard()
         self._unlock()
 

@@ -52,6 +52,17 @@ def test_failed_rerun_keeps_the_first(tmp_path: Path) -> None:
     assert results.load_run(out).verdict == "pass"
 
 
+def test_what_nobody_expected_leaves_solved_trials_to_resume(tmp_path: Path) -> None:
+    """A failure of the drawing after an hour of contact must not take the contact with it."""
+    case = small_case()
+    with pytest.raises(ZeroDivisionError), RunFolder(tmp_path / "run", case) as folder:
+        write_trial(folder, [check()])
+        raise ZeroDivisionError
+    with RunFolder(tmp_path / "run", case, resume=True) as folder:
+        assert folder.resumed
+        assert (folder.path / "trial_1" / "5_cycle.csv").is_file()
+
+
 def test_an_empty_folder_will_do(tmp_path: Path) -> None:
     (tmp_path / "run").mkdir()
     write_run(tmp_path / "run")
