@@ -38,10 +38,13 @@ def valleys(function: Function, count: int) -> tuple[Array, Array]:
 
     Returns
     -------
-    values, theta : array (m,)    m >= 1; of more than 256 minima the 256 of lowest sample
+    values, theta : array (m,)    m >= 1; of more than 256 minima the 256 of lowest sample;
+        of a function that is NaN somewhere one NaN, since nobody knows how low it gets
     """
     theta = uniform_turn(count)
     values = function(theta)
+    if (unknown := np.isnan(values)).any():
+        return values[unknown][:1], theta[unknown][:1]
     low = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
     # a flat function brackets everywhere; its lowest samples say all there is to say
     low = low[np.argsort(values[low], kind="stable")[:_VALLEYS_MAX]]

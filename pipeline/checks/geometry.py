@@ -40,7 +40,7 @@ def acceleration_step(evidence: TrialEvidence) -> Check:
         id="acceleration_step",
         title="Step of the acceleration over its swing",
         # Rest, and the round-off of it, has no step.
-        demand=float(steps[worst] / swing) if swing > RESTING * lift.highest.value else 0.0,
+        demand=0.0 if swing <= RESTING * lift.highest.value else float(steps[worst] / swing),
         limit=evidence.limit("acceleration_step", ACCELERATION_STEP),
         unit="-",
         cam_angle_deg=_degrees(float(lift.theta[worst])),

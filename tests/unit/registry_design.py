@@ -30,6 +30,16 @@ from trial_variants import (
     with_rolling,
 )
 
+
+class UnknownLift:
+    """A lift of which nothing is known."""
+
+    theta, highest, search_count = fake.THETA, NOWHERE, 72
+
+    def __call__(self, theta, order=0):
+        return np.full(np.shape(theta), np.nan)
+
+
 # function
 by_limit(
     "torque_reduction",
@@ -80,7 +90,7 @@ by_limit(
     "acceleration_step",
     "acceleration_step",
     1.0,
-    None,
+    lambda: on_contour(pitch_lift=UnknownLift()),
     float(np.max(np.abs(np.diff(np.cos(fake.THETA))))) / 2.0,
     "a cosine's greatest step at 5 deg over its swing",
 )
@@ -139,8 +149,8 @@ by_limit(
 tried(
     "curvature_rate",
     limited("curvature_rate", limit_of("curvature_rate")),
-    None,
-    None,
+    None,  # a case that gives no bound asks for none
+    lambda: on_contour(curvature_slope=lambda theta: np.full(np.shape(theta), np.nan)),
     0.3804935696445838,
     "held against differences in test_contour",
 )

@@ -36,7 +36,7 @@ tried(
         ),
     ),
     lambda: with_part("spring", design=None),
-    None,
+    lambda: with_design(strength_at_1mm=np.nan),
     float(by_hand.SHEAR * by_hand.HARDEST / (0.56 * by_hand.TENSILE)),
     "Wahl; 0.56 R_m, EN 13906-1",
 )
@@ -44,7 +44,7 @@ by_limit(
     "spring_fatigue",
     "spring_fatigue",
     1.0,
-    None,
+    lambda: with_design(strength_at_1mm=np.nan),
     1.0 / float(by_hand.SWING / by_hand.ZIMMERLI + by_hand.MIDDLE / (0.67 * by_hand.TENSILE)),
     "Goodman through Zimmerli, Shigley ch. 10",
 )
@@ -60,7 +60,7 @@ tried(
     "spring_buckling",
     loaded("spring_buckling", lambda u: with_design(free_length=u * 2.63 * full.COIL / 0.5)),
     lambda: with_part("spring", design=None),
-    None,
+    lambda: with_design(free_length=np.nan),
     full.FREE * 0.5 / (2.63 * full.COIL),
     "L0 < 2.63 D/alpha, Shigley ch. 10",
 )
@@ -68,12 +68,17 @@ tried(
     "spring_rate",
     limited("spring_rate", lambda t: with_part("spring", rate_tolerance=t)),
     lambda: with_part("spring", design=None),
-    None,
+    lambda: with_design(shear_modulus=np.nan),
     abs(by_hand.RATE / fake.RATE - 1.0),
     "G d^4/(8 D^3 n)",
 )
 by_limit(
-    "spring_surge", "spring_surge", 1.0, None, float(by_hand.SURGE), "sqrt(k/m)/2 over w/(2 pi)"
+    "spring_surge",
+    "spring_surge",
+    1.0,
+    lambda: with_design(density=np.nan),
+    float(by_hand.SURGE),
+    "sqrt(k/m)/2 over w/(2 pi)",
 )
 # a flat face
 tried(

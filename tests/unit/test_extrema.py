@@ -44,3 +44,13 @@ def test_sharp_minimum_is_bracketed_to_its_edge(place):
 
 def test_constant_has_its_value():
     assert least(np.ones_like, 5000).value == 1.0
+
+
+def test_of_a_function_that_is_not_known_everywhere_nothing_is_known():
+    def known_but_for_a_gap(theta):
+        return np.where(np.abs(theta - 2.0) < 0.1, np.nan, np.cos(theta))
+
+    for extreme in (least, greatest):
+        found = extreme(known_but_for_a_gap, 720)
+        assert np.isnan(found.value)
+        assert abs(found.theta - 2.0) < 0.11
