@@ -85,9 +85,16 @@ def mean_pv(cycle: Cycle, side: str, guide: Guide) -> float:
     return float(np.mean(demands.bush_pv(load, cycle.loads.velocity, _area(guide))))
 
 
+def _pv_of_reaction(cycle: Cycle, side: str, guide: Guide) -> float:
+    """The same by the reaction, in which pushes of opposite sides cancel though both rub."""
+    pv = demands.bush_pv(np.abs(_reaction(cycle, side)), cycle.loads.velocity, _area(guide))
+    return float(np.mean(pv))
+
+
 def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
     worst = worst_case(evidence, lambda cycle: mean_pv(cycle, side, guide))
     limit = pv_limit(guide)
+    alone = worst_case(evidence, lambda cycle: _pv_of_reaction(cycle, side, guide))
     return Check(
         id=f"bush_pv_{side}",
         title=f"Pressure times speed in guide {side}",
@@ -101,6 +108,7 @@ def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
         note="; ".join(
             ([] if limit is not None else [f"no PV limit is given for guide {side}"])
             + _lubrication_asked(guide, worst.value)
+            + [f"{1e-6 * alone.value:.3g} by what is left of both sides, the reaction"]
         ),
         **worst.place,
     )
