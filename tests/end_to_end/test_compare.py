@@ -23,7 +23,7 @@ def test_compare_tabulates_and_draws(tmp_path):
     ours = rows[-1]
     assert (ours["smoother"], ours["verdict"]) == ("constrained", "pass")
     others = [float(row["residual_std_Nm"]) for row in rows[:-1] if row["residual_std_Nm"]]
-    assert 1.5 * float(ours["residual_std_Nm"]) < min(others)
+    assert 2.0 * float(ours["residual_std_Nm"]) < min(others)
     kinds = {"none", "moving_average", "savitzky_golay", "harmonic", "smoothing_spline"}
     assert kinds <= {row["smoother"] for row in rows}
     assert all(row["verdict"] in ("pass", "fail") for row in rows)
