@@ -15,6 +15,29 @@ from pipeline.checks.trial import TrialEvidence, greatest, least
 RPM = 30.0 / math.pi
 
 
+def contact_margin(evidence: TrialEvidence) -> dict[str, Any]:
+    """What every check of the least contact force over the preload is held against."""
+    return {
+        "limit": evidence.limit("contact_force_margin", 0.2),
+        "unit": "-",
+        "sense": "at_least",
+        "source": evidence.source(
+            "contact_force_margin", "0.2 to 0.3 of the preload at the highest speed, Norton (2009)"
+        ),
+    }
+
+
+def jam_limit(evidence: TrialEvidence) -> dict[str, Any]:
+    """What every jam index is held against."""
+    return {
+        "limit": evidence.limit("jam_index", 0.5),
+        "unit": "-",
+        "source": evidence.source(
+            "jam_index", "locks at 1, Rothbart (2004) eq. 6.8; half of it held"
+        ),
+    }
+
+
 def contact_force_margin(evidence: TrialEvidence) -> Check:
     """Least contact force beside the preload."""
     worst = least(evidence, lambda cycle: cycle.loads.normal_force / evidence.preload(cycle))
@@ -22,12 +45,7 @@ def contact_force_margin(evidence: TrialEvidence) -> Check:
         id="contact_force_margin",
         title="Least contact force over preload",
         demand=worst.value,
-        limit=evidence.limit("contact_force_margin", 0.2),
-        unit="-",
-        sense="at_least",
-        source=evidence.source(
-            "contact_force_margin", "0.2 to 0.3 of the preload at the highest speed, Norton (2009)"
-        ),
+        **contact_margin(evidence),
         method="least normal force over the turn, guide friction and inertia included",
         lift_can_help=True,
         **worst.place,
@@ -67,9 +85,7 @@ def jam_index(evidence: TrialEvidence) -> Check:
         id="jam_index",
         title="Jam index",
         demand=worst.value,
-        limit=evidence.limit("jam_index", 0.5),
-        unit="-",
-        source=evidence.source("jam_index", "locks at 1, Rothbart (2004) eq. 6.8; half of it held"),
+        **jam_limit(evidence),
         method="greatest friction of both guides over the cam's axial push on the way out, the"
         " guides with their length and clearance",
         lift_can_help=True,
@@ -129,12 +145,7 @@ def contact_at_overspeed(evidence: TrialEvidence) -> Check:
         id="contact_at_overspeed",
         title="Least contact force over preload at the over-speed",
         demand=worst.value,
-        limit=evidence.limit("contact_force_margin", 0.2),
-        unit="-",
-        sense="at_least",
-        source=evidence.source(
-            "contact_force_margin", "0.2 to 0.3 of the preload at the highest speed, Norton (2009)"
-        ),
+        **contact_margin(evidence),
         method="least spring force plus m w^2 s'' at the over-speed, friction-free",
         lift_can_help=True,
         note=note,

@@ -14,6 +14,7 @@ import numpy as np
 from geometry.arrays import Array
 from pipeline.balance import Balance, balance
 from pipeline.checks.check import Check, not_described
+from pipeline.checks.forces import contact_margin, jam_limit
 from pipeline.checks.trial import TrialEvidence, greatest, least, rollers_only, worst_case
 from pipeline.follower.ring import goodman
 from pipeline.outer_ring import why_solid
@@ -48,9 +49,7 @@ def jam_at_worst_friction(evidence: TrialEvidence) -> Check | None:
         id="jam_at_worst_friction",
         title="Jam index at the greatest friction",
         demand=worst.value if bounded else None,
-        limit=evidence.limit("jam_index", 0.5),
-        unit="-",
-        source=evidence.source("jam_index", "locks at 1, Rothbart (2004) eq. 6.8; half of it held"),
+        **jam_limit(evidence),
         method="greatest c |tan alpha| on the way out at friction_max of both guides",
         lift_can_help=True,
         note="" if bounded else "no greatest friction is given for both guides",
@@ -72,12 +71,7 @@ def elastic_contact(evidence: TrialEvidence) -> Check | None:
         id="elastic_contact",
         title="Least contact force over preload, elastic stem",
         demand=worst.value,
-        limit=evidence.limit("contact_force_margin", 0.2),
-        unit="-",
-        sense="at_least",
-        source=evidence.source(
-            "contact_force_margin", "0.2 to 0.3 of the preload at the highest speed, Norton (2009)"
-        ),
+        **contact_margin(evidence),
         method=f"one mass on the stem's stiffness, free of friction: {methods}",
         must_have=False,
         lift_can_help=True,
