@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from geometry.arrays import Array
 from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence, greatest, least, rollers_only, worst_case
+from pipeline.checks.trial import (
+    TrialEvidence,
+    cam_card,
+    greatest,
+    least,
+    rollers_only,
+    worst_case,
+)
 
 if TYPE_CHECKING:
     from pipeline.contact.envelope import Envelope
@@ -75,31 +82,36 @@ def film_ratio(evidence: TrialEvidence) -> Check:
 
 def surface_fatigue(evidence: TrialEvidence) -> Check:
     """Crossland's stress as the follower passes against the limit in torsion."""
-    name, card = _cam_material(evidence)
-    torsion, safety = card.fatigue_torsion, evidence.limit("fatigue_safety", 1.0)
-    known = torsion is not None and card.fatigue_bending is not None and safety is not None
     worst = worst_case(evidence, lambda cycle: _of_map(cycle, _crossland))
     return Check(
         id="surface_fatigue",
         title="Fatigue below the surface of the cam",
         demand=1e-6 * worst.value,
-        limit=1e-6 * torsion / safety if known and torsion and safety else None,
-        unit="MPa",
-        source=evidence.source(
-            "fatigue_safety", f"Crossland (1956); limits of {name}", card.source
-        ),
+        **torsion_limit(evidence, "Crossland (1956)"),
         method="root of J2's amplitude plus weighted hydrostatic stress, the load swept along "
         "the contour",
         must_have=False,
         lift_can_help=True,
-        note="" if known else f"the card of {name} gives no fatigue limits",
         **worst.place,
     )
 
 
+def torsion_limit(evidence: TrialEvidence, author: str) -> dict[str, Any]:
+    """The limit in torsion of the cam's material, against which an author's stress is held."""
+    name, card = cam_card(evidence)
+    torsion, safety = card.fatigue_torsion, evidence.limit("fatigue_safety", 1.0)
+    known = torsion is not None and card.fatigue_bending is not None and safety is not None
+    return {
+        "limit": 1e-6 * torsion / safety if known and torsion and safety else None,
+        "unit": "MPa",
+        "source": evidence.source("fatigue_safety", f"{author}; limits of {name}", card.source),
+        "note": "" if known else f"the card of {name} gives no fatigue limits",
+    }
+
+
 def hardened_case(evidence: TrialEvidence) -> Check:
     """Von Mises stress over the yield strength there is at its depth."""
-    name, card = _cam_material(evidence)
+    name, card = cam_card(evidence)
     known = card.case_depth is not None and card.core_yield_strength is not None
     worst = worst_case(
         evidence, lambda cycle: _of_map(cycle, lambda map_: _use_of_strength(map_, card))
@@ -153,11 +165,6 @@ def _use_of_strength(found: Envelope, card: Material) -> float:
     inward = np.clip(found.depth / depth, 0.0, 1.0)
     strength = card.yield_strength + (core - card.yield_strength) * inward
     return float((found.von_mises / strength).max())
-
-
-def _cam_material(evidence: TrialEvidence) -> tuple[str, Material]:
-    name = evidence.case.cam.material
-    return name, evidence.case.materials[name]
 
 
 CHECKS = (roller_grip, film_ratio, surface_fatigue, hardened_case)

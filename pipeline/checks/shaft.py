@@ -5,7 +5,7 @@ A shaft that the case does not describe is not evaluated; a gear is asked for by
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -152,29 +152,21 @@ def gear_bending(evidence: TrialEvidence) -> Check | None:
         return None
     shaft, gear = driven
     module = 2.0 * shaft.gear_radius / gear.teeth
+    clause = f"Lewis (1892); {REVERSED} for a reversed load, ISO 6336-3: verify"
 
     def stress(cycle: Cycle) -> Array:
         force = _tooth_force(shaft, gear, cycle)
         return tooth_root_stress(force, gear.width, module, gear.teeth)
 
     worst = greatest(evidence, stress)
-    safety, limit = evidence.limit("gear_bending_safety", 1.4), gear.bending_limit
-    known = safety is not None and limit is not None
     return Check(
         id="gear_bending",
         title="Bending stress of the driving gear's teeth",
         demand=1e-6 * worst.value,
-        limit=1e-6 * REVERSED * limit / safety if known and limit and safety else None,
-        unit="MPa",
-        source=evidence.source(
-            "gear_bending_safety",
-            f"Lewis (1892); {REVERSED} for a reversed load, ISO 6336-3: verify",
-            f"{gear.material}: {gear.source}".rstrip(": "),
-        ),
+        **_tooth_limit(evidence, gear, "bending", 1.4, clause, REVERSED),
         method="F K/(b m pi y) at the greatest torque, one tooth bearing all of it at its tip",
         must_have=False,
         lift_can_help=True,
-        note="" if limit is not None else "no bending limit of the gear is given",
         **worst.place,
     )
 
@@ -196,25 +188,36 @@ def gear_contact(evidence: TrialEvidence) -> Check | None:
         return tooth_contact_stress(force, gear.width, pinion, ratio, angle, modulus)
 
     worst = greatest(evidence, stress)
-    safety, limit = evidence.limit("gear_contact_safety", 1.0), gear.contact_limit
-    known = safety is not None and limit is not None
     return Check(
         id="gear_contact",
         title="Contact pressure of the driving gear's teeth",
         demand=1e-6 * worst.value,
-        limit=1e-6 * limit / safety if known and limit and safety else None,
-        unit="MPa",
-        source=evidence.source(
-            "gear_contact_safety",
-            "ISO 6336-2: verify",
-            f"{gear.material}: {gear.source}".rstrip(": "),
-        ),
+        **_tooth_limit(evidence, gear, "contact", 1.0, "ISO 6336-2: verify"),
         method="Z_H Z_E sqrt(F K (u + 1)/(b d u)) at the pitch point, at the greatest torque",
         must_have=False,
         lift_can_help=True,
-        note="" if limit is not None else "no contact limit of the gear is given",
         **worst.place,
     )
+
+
+def _tooth_limit(
+    evidence: TrialEvidence,
+    gear: CamshaftGear,
+    kind: Literal["bending", "contact"],
+    usual_safety: float,
+    clause: str,
+    share: float = 1.0,
+) -> dict[str, Any]:
+    """A share of what the gear's teeth bear, over the safety asked for, and who says so."""
+    name = f"gear_{kind}_safety"
+    safety = evidence.limit(name, usual_safety)
+    limit = gear.bending_limit if kind == "bending" else gear.contact_limit
+    return {
+        "limit": 1e-6 * share * limit / safety if limit and safety else None,
+        "unit": "MPa",
+        "source": evidence.source(name, clause, f"{gear.material}: {gear.source}".rstrip(": ")),
+        "note": "" if limit is not None else f"no {kind} limit of the gear is given",
+    }
 
 
 def _driven(evidence: TrialEvidence) -> tuple[CaseShaft, CamshaftGear] | None:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence, greatest, worst_case
+from pipeline.checks.rolling import torsion_limit
+from pipeline.checks.trial import TrialEvidence, cam_card, greatest, worst_case
 
 if TYPE_CHECKING:
     from pipeline.cycle import Cycle
@@ -18,29 +19,23 @@ CASE_CARBURISED = 1500.0  # MPa, quality MQ
 
 def dang_van(evidence: TrialEvidence) -> Check:
     """Dang Van's stress as the follower passes against the limit in torsion."""
-    name, card = _cam_card(evidence)
-    torsion, safety = card.fatigue_torsion, evidence.limit("fatigue_safety", 1.0)
-    known = torsion is not None and card.fatigue_bending is not None and safety is not None
     worst = worst_case(evidence, _dang_van)
     return Check(
         id="dang_van",
         title="Fatigue below the surface of the cam by Dang Van",
         demand=1e-6 * worst.value,
-        limit=1e-6 * torsion / safety if known and torsion and safety else None,
-        unit="MPa",
-        source=evidence.source("fatigue_safety", f"Dang Van (1993); limits of {name}", card.source),
+        **torsion_limit(evidence, "Dang Van (1993)"),
         method="shear amplitude plus weighted hydrostatic stress, no credit for compression"
         " (Desimone 2006), the load swept along the contour",
         must_have=False,
         lift_can_help=True,
-        note="" if known else f"the card of {name} gives no fatigue limits",
         **worst.place,
     )
 
 
 def case_depth(evidence: TrialEvidence) -> Check:
     """Depth of the hardened case over that of the greatest shear."""
-    name, card = _cam_card(evidence)
+    name, card = cam_card(evidence)
     depth = card.case_depth
     worst = greatest(evidence, lambda cycle: cycle.contact.tau_depth)
     loaded = worst.value > 0 or np.isnan(worst.value)
@@ -64,7 +59,7 @@ def case_depth(evidence: TrialEvidence) -> Check:
 
 def pressure_by_hardness(evidence: TrialEvidence) -> Check | None:
     """Contact pressure against Buckingham's estimate; None for a hardened surface."""
-    name, card = _cam_card(evidence)
+    name, card = cam_card(evidence)
     if card.case_depth is not None or card.treatment not in (None, "through_hardened"):
         return None
     worst = greatest(evidence, lambda cycle: cycle.contact.p0)
@@ -87,7 +82,7 @@ def pressure_by_hardness(evidence: TrialEvidence) -> Check | None:
 
 def pressure_by_gear_limits(evidence: TrialEvidence) -> Check:
     """Contact pressure beside what gears of such steel bear, for comparison."""
-    name, card = _cam_card(evidence)
+    name, card = cam_card(evidence)
     worst = greatest(evidence, lambda cycle: cycle.contact.p0)
     limit = gear_limit(card)
     return Check(
@@ -135,11 +130,6 @@ def gear_limit(card: Material) -> float | None:
 def _dang_van(cycle: Cycle) -> float:
     found = None if cycle.rolling is None else cycle.rolling.envelope.dang_van
     return np.nan if found is None else float(found.max())
-
-
-def _cam_card(evidence: TrialEvidence) -> tuple[str, Material]:
-    name = evidence.case.cam.material
-    return name, evidence.case.materials[name]
 
 
 CHECKS = (dang_van, case_depth, pressure_by_hardness, pressure_by_gear_limits)

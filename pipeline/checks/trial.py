@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pipeline.checks.check import Check
     from pipeline.contact.history import CertificatePoint
     from pipeline.cycle import Cycle
-    from pipeline.part_fields import Face, Roller
+    from pipeline.part_fields import Face, Material, Roller
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +101,12 @@ def rollers_only(
         return check(evidence) if evidence.rolls else None
 
     return asked
+
+
+def cam_card(evidence: TrialEvidence) -> tuple[str, Material]:
+    """Name and card of the cam's material."""
+    name = evidence.case.cam.material
+    return name, evidence.case.materials[name]
 
 
 class Worst(NamedTuple):
