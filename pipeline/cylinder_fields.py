@@ -44,10 +44,18 @@ class TorqueTable(Section):
     file: FileName
 
 
-class Cylinder(Section):
-    """Lumped single-cylinder model; crank angle 0 is the top dead centre where intake starts."""
+class EngineKind(Section):
+    """What an engine section starts with, as a case is written back and hashed.
 
-    kind: Literal["cylinder"] = "cylinder"
+    Fields come in the order of the bases from the last to the first: this one is named last.
+    """
+
+    kind: str
+
+
+class CrankDrive(Section):
+    """Piston, rod and crank of each cylinder, and when the cylinders fire."""
+
     bore: Length
     crank_radius: Length
     rod_length: Length
@@ -58,6 +66,11 @@ class Cylinder(Section):
     rod_big_end_share: Share = 2.0 / 3.0
     firing_offsets: Annotated[tuple[Angle, ...], Field(strict=False, min_length=1)] = (0.0,)
 
+
+class Cylinder(CrankDrive, EngineKind):
+    """Lumped single-cylinder model; crank angle 0 is the top dead centre where intake starts."""
+
+    kind: Literal["cylinder"] = "cylinder"
     intake_valve_open: Angle = 0.0
     intake_valve_close: Angle = radians(220.0)
     exhaust_valve_open: Angle = radians(470.0)

@@ -14,13 +14,11 @@ from pipeline.case_fields import (
     FileName,
     GasPressure,
     In,
-    Length,
-    Mass,
     Section,
     Share,
     Text,
 )
-from pipeline.cylinder_fields import Cylinder, TorqueTable
+from pipeline.cylinder_fields import CrankDrive, Cylinder, EngineKind, TorqueTable
 
 if TYPE_CHECKING:
     from pipeline.engine.cylinder import CylinderEngine
@@ -31,14 +29,9 @@ Prefix = Annotated[str, Field(max_length=80)]
 Harmonics = Annotated[int, Field(ge=1, le=180)]
 
 
-class PressureTable(Section):
-    """Cylinder pressure against crank angle, from a file: one column a cycle, or cycles in a row.
+class _PressureFile(EngineKind):
+    """The file of a measured cylinder pressure, and how it is read."""
 
-    `angle_unit` and `pressure_unit` together say that the file has no header. With an
-    `intake_pressure` each cycle is pegged to it; without, the file is taken as absolute.
-    """
-
-    kind: Literal["pressure"] = "pressure"
     file: FileName
     column: Prefix = ""
     angle_unit: Prefix = ""
@@ -49,15 +42,15 @@ class PressureTable(Section):
     motored_file: FileName | None = None
     loss_angle: Annotated[float, In("deg", at_least=0, at_most=5)] = radians(0.6)
 
-    bore: Length
-    crank_radius: Length
-    rod_length: Length
-    compression_ratio: Annotated[float, In(above=1, at_most=40)]
-    piston_mass: Mass
-    rod_mass: Mass
-    pin_offset: Annotated[float, In("mm", above=-1000, below=1000)] = 0.0
-    rod_big_end_share: Share = 2.0 / 3.0
-    firing_offsets: Annotated[tuple[Angle, ...], Field(strict=False, min_length=1)] = (0.0,)
+
+class PressureTable(CrankDrive, _PressureFile):
+    """Cylinder pressure against crank angle, from a file: one column a cycle, or cycles in a row.
+
+    `angle_unit` and `pressure_unit` together say that the file has no header. With an
+    `intake_pressure` each cycle is pegged to it; without, the file is taken as absolute.
+    """
+
+    kind: Literal["pressure"] = "pressure"
     intake_pressure: GasPressure | None = None
     crankcase_pressure: GasPressure = 101.3e3
     friction_pressure: Annotated[float, In("kPa", at_least=0, at_most=1e4)] | None = None
@@ -78,11 +71,7 @@ class PressureTable(Section):
         """The running gear as the cycle model has it; its gas and valves are not used."""
         from pipeline.engine.cylinder import CylinderEngine
 
-        names = (
-            *("bore", "crank_radius", "rod_length", "compression_ratio", "piston_mass"),
-            *("rod_mass", "pin_offset", "rod_big_end_share", "firing_offsets"),
-            "crankcase_pressure",
-        )
+        names = (*CrankDrive.model_fields, "crankcase_pressure")
         given = {name: getattr(self, name) for name in names}
         if self.intake_pressure is not None:
             given["intake_pressure"] = self.intake_pressure
