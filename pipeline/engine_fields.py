@@ -120,7 +120,6 @@ class VoltageTable(_WheelTable):
     threshold: Annotated[float, In(above=0, below=1)] = 0.25
 
 
-Measured = PressureTable | SpeedTable | VoltageTable
 Engine = Annotated[
     TorqueTable | Cylinder | PressureTable | SpeedTable | VoltageTable, Field(discriminator="kind")
 ]

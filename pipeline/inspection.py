@@ -14,7 +14,7 @@ import numpy as np
 
 from geometry.arrays import Array, uniform_turn
 from geometry.contour import Contour
-from geometry.errors import InputError, ResultError
+from geometry.errors import InputError
 from geometry.inspection import Inspection, inspected, real_contour
 from geometry.lift import Lift
 from pipeline import results
@@ -249,17 +249,3 @@ def lines(record: Mapping[str, Any]) -> list[str]:
     if record["binding"]:
         text.append(f"binding: {', '.join(record['binding'])}")
     return text
-
-
-def read_inspection(run: Path) -> dict[str, Any]:
-    """What `write_inspection` recorded.
-
-    Raises
-    ------
-    ResultError
-        If the run was not inspected.
-    """
-    record = results.read_json(run / FOLDER / "inspection.json")
-    if not isinstance(record, dict) or "phase_deg" not in record:
-        raise ResultError(f"{run / FOLDER}: holds no inspection")
-    return record

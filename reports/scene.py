@@ -186,11 +186,6 @@ def contact_picture(vtu: Path, half_width_mm: float, contact_point: Array, norma
     return frame_contact(render(vtu, [view])[0], half_width_mm)
 
 
-def body_picture(vtu: Path) -> bytes:
-    """PNG of the von Mises field in the whole cam and follower."""
-    return frame_body(render(vtu, [body_view(read_field(vtu))])[0])
-
-
 def frame_contact(
     raster: Raster, half_width_mm: float, name: str = "roller", above: rasters.Above | None = None
 ) -> bytes:

@@ -347,11 +347,6 @@ class InputTable:
     rows: tuple[tuple[str, str, str], ...]
     source: str = ""
 
-    @property
-    def sourced(self) -> bool:
-        """Whether a row names its own source."""
-        return any(row[2] for row in self.rows)
-
 
 def input_tables(case: Mapping[str, Any]) -> list[InputTable]:
     """The resolved case as tables, each value with its source where the file gives one."""

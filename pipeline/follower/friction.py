@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,8 +12,6 @@ from geometry.arrays import Array, finite, freeze
 from geometry.errors import InputError
 from pipeline.follower.forces import FollowerSystem, Loads
 from pipeline.follower.guides import WALL_SHARE
-
-Lubrication = Literal["dry", "greased_once", "regularly_greased", "flooded"]
 
 # Nylon: Mott, Machine Elements in Mechanical Design, table 16-1 (0.105 MPa m/s dry) and the
 # graded limits of a bush maker, of which the dry one is the lower.
