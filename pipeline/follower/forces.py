@@ -143,6 +143,12 @@ class FollowerSystem:
         factor_a, factor_b = self.guide_factors(overhang)
         return self.friction_a * factor_a + self.friction_b * factor_b
 
+    def rubs(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:
+        """What guides A and B rub with over the push's lean, as given or on points."""
+        if self.rubbing is None:
+            return self.rubbing_on_points(push, overhang)
+        return self.rubbing.at(theta)
+
     def rubbing_on_points(self, push: Push, overhang: Array) -> tuple[Array, Array]:
         """What guides A and B that support the stem at points rub with, over the push's lean."""
         factors = self.guide_factors(overhang)
@@ -345,9 +351,7 @@ def follower_loads(
     cam (2024), eq. 40 for c3.
     """
     theta = finite("theta", theta)
-    speed = np.broadcast_to(finite("cam_speed", cam_speed), theta.shape)
-    if (speed < 0.0).any():
-        raise InputError("cam_speed", float(speed.min()), ">= 0 rad/s")
+    speed = _forward(cam_speed, theta)
     lift, slope, bend = pitch.lift.derivatives(theta, 2)
     slope = np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0)
     acceleration = bend * speed**2 + slope * finite("cam_acceleration", cam_acceleration)
@@ -361,11 +365,7 @@ def follower_loads(
     overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
     push = Push.of(pitch, system, theta)
     on_points = push.on_points(*system.guide_factors(overhang))
-    rubbing_a, rubbing_b = (
-        system.rubbing_on_points(push, overhang)
-        if system.rubbing is None
-        else system.rubbing.at(theta)
-    )
+    rubbing_a, rubbing_b = system.rubs(push, overhang, theta)
     jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.lean
     axial_force = np.maximum(demand, 0.0) / share_left(slope, jam_index)
     leaning = axial_force * push.lean
@@ -401,3 +401,11 @@ def follower_loads(
         end_moment=axial_force * push.arm,
         sliding_torque=sliding,
     )
+
+
+def _forward(cam_speed: ArrayLike, theta: Array) -> Array:
+    """Cam speed at each angle, refused where the cam turns backwards."""
+    speed = np.broadcast_to(finite("cam_speed", cam_speed), theta.shape)
+    if (speed < 0.0).any():
+        raise InputError("cam_speed", float(speed.min()), ">= 0 rad/s")
+    return speed

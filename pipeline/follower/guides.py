@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import Legendre
@@ -195,6 +195,26 @@ def bush_foundation_modulus(
     return 0.25 * np.pi * confined * bore / wall
 
 
+class _Carried(NamedTuple):
+    """Reactions and couples of both guides on the stem, (n,), signed as in `GuideReactions`."""
+
+    reaction_a: Array
+    reaction_b: Array
+    couple_a: Array
+    couple_b: Array
+
+    def force_residual(self, force: Array, moment: Array, spacing: float) -> Array:
+        """What the reactions miss the side force by, over the load."""
+        miss = self.reaction_a - self.reaction_b - force
+        return _relative(miss, np.abs(force) + np.abs(moment) / spacing)
+
+    def moment_residual(self, force: Array, moment: Array, reach: Array, spacing: float) -> Array:
+        """What all moments about the roller miss the end moment by, over the load."""
+        far = reach + spacing
+        turned = self.couple_a + self.couple_b + self.reaction_a * reach - self.reaction_b * far
+        return _relative(turned - moment, np.abs(force) * far + np.abs(moment))
+
+
 def guide_reactions(
     tangential_force: ArrayLike,
     overhang: ArrayLike,
@@ -248,19 +268,18 @@ def guide_reactions(
     from_a = line.positions[:knots] - half_a
     from_b = line.positions[knots:] - half_a - guides.spacing
     in_a, in_b = push[:knots], push[knots:]
-    couple_a, couple_b = from_a @ in_a, from_b @ in_b
-    reaction_a, reaction_b = in_a.sum(axis=0), -in_b.sum(axis=0)
+    carried = _Carried(in_a.sum(axis=0), -in_b.sum(axis=0), from_a @ in_a, from_b @ in_b)
     tilt = rigid[1] - slopes @ push
     over = end_flexibility(arm, stem)
     result = GuideReactions(
         tangential_force=force,
         overhang=reach,
-        reaction_a=reaction_a,
-        reaction_b=reaction_b,
+        reaction_a=carried.reaction_a,
+        reaction_b=carried.reaction_b,
         statics_a=force + (force * reach - moment) / guides.spacing,
         statics_b=(force * reach - moment) / guides.spacing,
-        moment_a=couple_a,
-        moment_b=couple_b,
+        moment_a=carried.couple_a,
+        moment_b=carried.couple_b,
         slope_a=tilt[knots // 2],
         slope_b=tilt[knots + knots // 2],
         roller_deflection=rigid[0]
@@ -274,17 +293,8 @@ def guide_reactions(
         rubbing_load_a=np.abs(in_a).sum(axis=0),
         rubbing_load_b=np.abs(in_b).sum(axis=0),
         stem_diameter=stem.diameter,
-        force_residual=_relative(
-            reaction_a - reaction_b - force, np.abs(force) + np.abs(moment) / guides.spacing
-        ),
-        moment_residual=_relative(
-            couple_a
-            + couple_b
-            + reaction_a * reach
-            - reaction_b * (reach + guides.spacing)
-            - moment,
-            np.abs(force) * (reach + guides.spacing) + np.abs(moment),
-        ),
+        force_residual=carried.force_residual(force, moment, guides.spacing),
+        moment_residual=carried.moment_residual(force, moment, reach, guides.spacing),
         complementarity_residual=line.law_residual(push, rigid),
     )
     _certify(result)
