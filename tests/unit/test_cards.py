@@ -33,7 +33,7 @@ def test_what_the_issue_asks_for_is_shipped():
 
 
 def test_endurance_lines_give_the_endurance_pressure_at_1e8():
-    """A and B against the pressures beside them: K is rounded to 2 %, iron has a softer modulus."""
+    """A and B against the pressures beside them: 2 % as K is rounded, 5 % for the softer iron."""
     from pipeline.checks.contact import pressure_at_life
     from pipeline.contact.hertz import contact_modulus
 
@@ -44,7 +44,8 @@ def test_endurance_lines_give_the_endurance_pressure_at_1e8():
                 1e8, card["endurance_slope"], card["endurance_intercept"], modulus
             )
             printed = 1e6 * float(card["endurance_pressure"].split()[0])
-            assert found == pytest.approx(printed, rel=0.05), name
+            width = 0.05 if name == "nodular_iron" else 0.02
+            assert found == pytest.approx(printed, rel=width), name
 
 
 def test_what_the_case_gives_stands():

@@ -60,7 +60,8 @@ def test_tooth_times(tmp_path):
     record = measurement_record(case)
     assert record is not None
     assert record["cycles"] == 3
-    assert record["tooth_noise_rad_per_s"] == pytest.approx(0.2, rel=0.2)
+    # two standard errors: 3 runs of 144 edges, neighbours sharing a time, 1.2 / sqrt(2 * 288)
+    assert record["tooth_noise_rad_per_s"] == pytest.approx(0.2, rel=0.1)
     assert record["torque_noise_floor_Nm"] > 0.0
 
 
@@ -70,7 +71,7 @@ def test_sensor_voltage(tmp_path):
     case = measured(tmp_path, engine, "v.csv", [time, volts], "time_s,u [V]")
     record = measurement_record(case)
     assert record is not None
-    assert record["p2p_rad_per_s"] == pytest.approx(np.ptp(SPEED), rel=0.1)
+    assert record["p2p_rad_per_s"] == pytest.approx(np.ptp(SPEED), rel=1e-3)
     assert engine_torque(case, case.load_cases[0]).std > 1.0
 
 
@@ -127,9 +128,8 @@ def test_speed_of_the_published_case(gx120):
     stds = [record[name]["std_rad_per_s"] for name in ("before", "inertia_alone", "after")]
     assert stds == pytest.approx([3.59, 3.44, 0.40], rel=0.02)
     assert max(record[name]["closure"] for name in ("before", "after")) < 1e-10
-    assert record["flywheel_for_the_same_std"]["added_inertia_kg_m2"] == pytest.approx(
-        0.11, rel=0.05
-    )
+    flywheel = record["flywheel_for_the_same_std"]["added_inertia_kg_m2"]
+    assert flywheel == pytest.approx(0.11, abs=0.005)  # two digits are published
     json.dumps(record)
     assert set(study.columns) == {
         "crank_angle", "speed_before", "speed_inertia_alone", "speed_after"

@@ -75,7 +75,7 @@ def test_edges_count_the_longest_facet_in_the_contact():
 def test_edges_of_a_contact_smaller_than_a_facet_are_below_one():
     mesh = block_mesh(0.2, 0.2, Sizing(far_size=0.02))
     found = quality(mesh, (0.001, 0), 1e-4).edges_across_half_width
-    assert found == pytest.approx(1e-4 / 0.02, rel=0.1)  # ten facets along the top, within rounding
+    assert found == pytest.approx(1e-4 / 0.02, rel=1e-9)  # ten equal facets along the top
 
 
 def test_half_width_must_be_positive():
