@@ -161,6 +161,6 @@ def test_price_of_the_roller_foresees_a_larger_one(idle, limited):
     record = next(r for r in prices(limited, given) if r["limit"] == "roller_static")
     more = synthesise(problem(idle, normal_force=1105.0))
     gained = (limited.ripple - more.ripple) * np.std(idle.torque)
-    # first order over 5 N of 1100
-    assert 5.0 * record["ripple_per_unit_Nm"] == pytest.approx(gained, rel=0.05)
+    # first order over 5 N of 1100: 1e-3 is found
+    assert 5.0 * record["ripple_per_unit_Nm"] == pytest.approx(gained, rel=5e-3)
     assert record["binds_at_deg"]

@@ -95,7 +95,8 @@ def test_triangles_of_the_patch_fill_it_once() -> None:
     areas = 0.5 * ((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
     assert areas.min() > 0
     half_disc = 0.5 * np.pi * 1.6**2
-    assert areas.sum() == pytest.approx(half_disc, rel=0.1)  # whole elements reach past 1.6
+    # whole elements reach past 1.6 by half of their 0.07 on average
+    assert half_disc < areas.sum() < 1.05 * half_disc
 
 
 def sets_of(index) -> list[tuple[float, str]]:

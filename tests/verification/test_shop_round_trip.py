@@ -188,8 +188,9 @@ def test_stated_chord_error_is_kept_at_any_size() -> None:
         found = chords(wavy(), error)
         assert found.error == error
         close = chords(wavy(), 0.25 * error)
-        # a quarter of the error takes twice the chords
-        assert close.theta.size == pytest.approx(2 * found.theta.size, rel=0.05)
+        # a quarter of the error takes twice the chords; three more are cut at any size, and one
+        # may be owed to rounding up
+        assert 2 * found.theta.size - close.theta.size in (3, 4)
 
 
 def test_tables_hold_the_contour_to_the_last_digit() -> None:
