@@ -60,28 +60,31 @@ def slow_idle():
 
 
 def test_measured_torque_of_the_gx120(idle):
-    """Published: peak 25, amplitude 29.79, standard deviation 6.25 N m; 10 % for a tuned model."""
+    """Published: peak 25, amplitude 29.79, standard deviation 6.25 N m.
+
+    10 % is asked of a tuned model; the peak needs half of it, the rest is nearer.
+    """
     torque = torque_from_cycle(idle)
     assert torque.peak == pytest.approx(25.0, rel=0.10)
-    assert torque.peak_to_peak == pytest.approx(29.79, rel=0.10)
-    assert torque.std == pytest.approx(6.25, rel=0.10)
+    assert torque.peak_to_peak == pytest.approx(29.79, rel=0.06)
+    assert torque.std == pytest.approx(6.25, rel=0.03)
     assert abs(int(torque.total.argmax()) - 399) <= 5
 
 
 def test_cylinder_pressure_and_friction_of_the_gx120_are_ordinary(idle):
     """Against an independent single-zone model of the same engine: 7.7, 2.38 and 1.65 bar."""
-    assert idle.pressure_max == pytest.approx(7.7e5, rel=0.10)
-    assert idle.indicated_pressure_gross == pytest.approx(2.38e5, rel=0.10)
-    assert idle.friction_pressure == pytest.approx(1.65e5, rel=0.10)
+    assert idle.pressure_max == pytest.approx(7.7e5, rel=0.04)
+    assert idle.indicated_pressure_gross == pytest.approx(2.38e5, rel=0.04)
+    assert idle.friction_pressure == pytest.approx(1.65e5, rel=0.03)
 
 
 def test_measured_speed_of_the_gx120(idle):
     """Published: standard deviation 3.74, amplitude 11.57 rad/s about 151 rad/s."""
     energy = swing(torque_from_cycle(idle).total)
-    assert np.ptp(energy) == pytest.approx(23.8, rel=0.10)
+    assert np.ptp(energy) == pytest.approx(23.8, rel=0.04)
     speed = np.sqrt(151.0**2 + 2.0 / INERTIA * (energy - energy.mean()))
-    assert speed.std() == pytest.approx(3.74, rel=0.10)
-    assert np.ptp(speed) == pytest.approx(11.57, rel=0.10)
+    assert speed.std() == pytest.approx(3.74, rel=0.01)
+    assert np.ptp(speed) == pytest.approx(11.57, rel=0.01)
     # 145 to 155 rad/s are printed, the least at firing top dead centre
     assert speed.min() == pytest.approx(145.0, rel=0.01)
     assert abs(int(speed.argmin()) - 363) <= 5
@@ -94,16 +97,20 @@ def test_printed_inertia_contradicts_the_printed_speeds(idle):
 
 
 def test_torques_of_the_800_rpm_idle(slow_idle):
-    """Against the independent model: peak 22, least -6.5, std 5.65 N m, 6.3 bar, 1507 N."""
+    """Against the independent model: peak 22, least -6.5, std 5.65 N m, 6.3 bar, 1507 N.
+
+    The least torque, at the end of the compression, is 9 % apart: within the 10 % asked of a tuned
+    model.
+    """
     torque = torque_from_cycle(slow_idle)
-    assert torque.peak == pytest.approx(22.0, rel=0.10)
+    assert torque.peak == pytest.approx(22.0, rel=0.04)
     assert torque.total.min() == pytest.approx(-6.5, rel=0.10)
-    assert torque.std == pytest.approx(5.65, rel=0.10)
-    assert np.ptp(swing(torque.total)) == pytest.approx(20.0, rel=0.10)
-    assert slow_idle.pressure_max == pytest.approx(6.3e5, rel=0.10)
-    assert slow_idle.friction_pressure == pytest.approx(1.2e5, rel=0.10)
+    assert torque.std == pytest.approx(5.65, rel=0.04)
+    assert np.ptp(swing(torque.total)) == pytest.approx(20.0, rel=0.04)
+    assert slow_idle.pressure_max == pytest.approx(6.3e5, rel=0.045)
+    assert slow_idle.friction_pressure == pytest.approx(1.2e5, rel=0.02)
     force = (slow_idle.pressure_max - 101.3e3) * IDLE_800.piston_area
-    assert force == pytest.approx(1507.0, rel=0.10)
+    assert force == pytest.approx(1507.0, rel=0.045)
 
 
 def test_valve_inertia_and_pumping_torque_are_of_one_magnitude(slow_idle):
@@ -113,8 +120,8 @@ def test_valve_inertia_and_pumping_torque_are_of_one_magnitude(slow_idle):
     blows back, which is not published: 15 %.
     """
     torque = torque_from_cycle(slow_idle)
-    assert np.abs(torque.components["valve_train"]).max() == pytest.approx(0.29, rel=0.05)
-    assert np.abs(torque.components["inertia"]).max() == pytest.approx(0.41, rel=0.05)
+    assert np.abs(torque.components["valve_train"]).max() == pytest.approx(0.29, rel=0.025)
+    assert np.abs(torque.components["inertia"]).max() == pytest.approx(0.41, rel=0.035)
     assert stroke_means(torque.total)[0] == pytest.approx(-3.6, rel=0.15)
 
 
@@ -132,10 +139,10 @@ def test_expansion_carries_fifteen_times_the_other_strokes_at_full_load():
         friction=0.0,
     )
     means = stroke_means(torque_from_cycle(working_cycle(full, 83.8)).total)
-    assert means[1] == pytest.approx(-9.5, rel=0.05)
-    assert means[2] == pytest.approx(51.24, rel=0.05)
+    assert means[1] == pytest.approx(-9.5, rel=0.02)
+    assert means[2] == pytest.approx(51.24, rel=0.01)
     others = np.abs(np.delete(means, 2)).mean()
-    assert means[2] / others == pytest.approx(15.0, rel=0.10)
+    assert means[2] / others == pytest.approx(15.0, rel=0.10)  # "about" is all that is printed
 
 
 def test_displacement_is_the_makers():

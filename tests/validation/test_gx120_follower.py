@@ -150,7 +150,8 @@ def test_jam_index_and_liftoff_speed(design):
 def test_design_scaled_to_the_printed_inertia():
     """The torque that the inertia printed in the paper (2.603e-3 kg m2) would leave of the trace's.
 
-    Asked for is 5 %; expected figures carry at least two digits, the jam index 0.054.
+    Asked for is 5 %; expected figures carry at least two digits, half of the last one in the jam
+    index 0.054 is 1 %.
     """
     samples = resample(crank_torque(), 144)
     weights = np.r_[0.5, np.ones(11), 0.5] / 12.0
@@ -162,19 +163,19 @@ def test_design_scaled_to_the_printed_inertia():
     force = free.normal_force
     np.testing.assert_allclose([force.min(), force.max()], [249.0, 502.0], rtol=0.01)
     assert np.abs(free.reaction_a).max() == pytest.approx(185.0, rel=0.02)
-    assert rubbing.jam_index.max() == pytest.approx(0.054, rel=0.05)
+    assert rubbing.jam_index.max() == pytest.approx(0.054, rel=0.01)
     liftoff = 2 * jump_speed(pitch, SYSTEM, THETA)[0] * 60 / (2 * np.pi)
     assert liftoff == pytest.approx(4760.0, rel=0.01)
 
 
 def test_elastic_stem_lifts_off_like_the_rigid_one(design):
-    """The stem's own stiffness (1.5e8 N/m) takes less than 2 % off the speed of the first jump."""
+    """The stem's own stiffness (1.5e8 N/m) takes less than 0.5 % off the speed of the jump."""
     pitch, _, _, expected = design
     follower = ElasticFollower.with_damping_ratio(0.175, 1.5e8, 24.2e3, 242.0, 0.05)
     found = elastic_jump_speed(
         pitch.lift(THETA), follower, 1.2 * np.pi / 60 * expected["liftoff_rpm"]
     )
-    assert 2 * found * 60 / (2 * np.pi) == pytest.approx(expected["liftoff_rpm"], rel=0.05)
+    assert 2 * found * 60 / (2 * np.pi) == pytest.approx(expected["liftoff_rpm"], rel=5e-3)
 
 
 def test_residual_crank_torque_with_friction_and_inertia(design):

@@ -75,6 +75,7 @@ def test_swapping_master_and_slave():
 
 def test_subsurface_shear_is_that_of_the_half_plane_and_a_little_more():
     # The block is flat: only its finite depth and the roller's far load act on its stress.
+    # Meshes of 8, 12 and 16 edges settle at 5.0 % more, so this is the body and not the mesh.
     found = nafems(12)
     assert found.tau_max > hertz.SHEAR_MAX * P0
-    np.testing.assert_allclose(found.tau_max, hertz.SHEAR_MAX * P0, rtol=6e-2)
+    np.testing.assert_allclose(found.tau_max, hertz.SHEAR_MAX * P0, rtol=5.3e-2)

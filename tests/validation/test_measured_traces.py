@@ -28,7 +28,7 @@ def phase(values, order=1):
 
 @pytest.mark.parametrize("edges", [1, 2])
 def test_ten_noisy_runs_give_the_torque_back(edges):
-    """Standard deviation 5 %, amplitude 10 %, phase 2 deg asked for; found 1 %, 4 %, 0.2 deg."""
+    """Standard deviation 5 %, amplitude 10 %, phase 2 deg asked for; 1 %, 4 %, 0.2 deg kept."""
     torque = torque_from_cylinder(GX120, 157.08).without_mean()
     speed = crank_motion(torque.total, Inertia.constant_only(INERTIA), 151.0).speed
     wheel, angles = TriggerWheel(36, 0), tooth_angles(36, 0, edges, 1)
@@ -37,9 +37,10 @@ def test_ten_noisy_runs_give_the_torque_back(edges):
     found = speed_from_edges("runs", runs, wheel, Filter()).with_firing()
     back = found.torque(INERTIA)
     assert found.count == 10
-    assert found.noise == pytest.approx(NOISE, rel=0.1)
-    assert back.std == pytest.approx(torque.std, rel=0.05)
-    assert back.peak_to_peak == pytest.approx(torque.peak_to_peak, rel=0.10)
+    # two standard errors: at least 9 * 72 degrees of freedom, neighbours sharing a time
+    assert found.noise == pytest.approx(NOISE, rel=0.07)
+    assert back.std == pytest.approx(torque.std, rel=0.01)
+    assert back.peak_to_peak == pytest.approx(torque.peak_to_peak, rel=0.04)
     for order in (1, 2, 3):  # of the cycle: in crank degrees 2/order times the phase
         off = np.degrees(
             np.angle(np.exp(1j * (phase(back.total, order) - phase(torque.total, order))))
@@ -52,17 +53,18 @@ def test_ten_noisy_runs_give_the_torque_back(edges):
 
 def test_the_reconstructed_gx120_trace(shared_data):
     """Ten noisy runs built from the published statistics: speed std 3.74 rad/s, torque std
-    6.25 N m with 0.0133 kg m2; 5 % for the filter and the noise."""
+    6.25 N m with 0.0133 kg m2. Over sixteen harmonics the torque's std is 2 % and its amplitude
+    4 % above the published ones; over ten 1 % above and 3 % below."""
     path = shared_data / "dossier" / "reference-speed-trace.csv"
     if not path.is_file():
         pytest.skip(f"{path.name} is not there")
     found = speed_from_csv(path, TriggerWheel(), Filter(16), column="test", unit="rad/s")
     assert found.count == 10
-    assert found.noise == pytest.approx(0.22, rel=0.1)
-    assert found.statistics.std == pytest.approx(3.74, rel=0.05)
+    assert found.noise == pytest.approx(0.22, rel=0.02)
+    assert found.statistics.std == pytest.approx(3.74, rel=5e-3)
     torque = found.torque(0.0133)
-    assert torque.std == pytest.approx(6.25, rel=0.05)
-    assert torque.peak_to_peak == pytest.approx(29.79, rel=0.10)
+    assert torque.std == pytest.approx(6.25, rel=0.03)
+    assert torque.peak_to_peak == pytest.approx(29.79, rel=0.06)
     implied = implied_inertia(torque.total, found.statistics.mean, found.statistics.std)
     assert implied == pytest.approx(0.0133, rel=0.01)
 
