@@ -8,7 +8,6 @@ is with ``spring.catalogue``.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
@@ -18,6 +17,7 @@ from geometry.errors import InputError
 from pipeline import units
 from pipeline.cards.springs import put_spring
 from pipeline.follower import bearing_cards
+from pipeline.toml_file import read_toml
 
 KINDS = ("materials", "bushes", "oils", "wires", "bearings")
 USER_FILE = "cards.toml"
@@ -70,7 +70,7 @@ def known_cards(folder: Path | None) -> Cards:
     path = None if folder is None else folder / USER_FILE
     if path is None or not path.is_file():
         return cards
-    for kind, own in _read(path).items():
+    for kind, own in read_toml(path, path.name, USER_BYTES).items():
         if kind not in KINDS or not isinstance(own, dict):
             raise InputError(f"{USER_FILE}: {kind}", "unknown", f"one of: {', '.join(KINDS)}")
         for name, card in own.items():
@@ -93,24 +93,15 @@ def viscosity(at_40: float, at_100: float, temperature: float) -> float:
 
 @cache
 def _shipped() -> Cards:
-    here, files = Path(__file__).parent, {"bearings": bearing_cards.CARDS}
+    here = Path(__file__).parent
+    files = {kind: here / f"{kind}.toml" for kind in KINDS} | {"bearings": bearing_cards.CARDS}
     return {
         kind: {
             name: _sourced(card, f"{kind}.{name}")
-            for name, card in _read(files.get(kind, here / f"{kind}.toml")).items()
+            for name, card in read_toml(path, path.name, USER_BYTES).items()
         }
-        for kind in KINDS
+        for kind, path in files.items()
     }
-
-
-def _read(path: Path) -> dict[str, Any]:
-    try:
-        if path.stat().st_size > USER_BYTES:
-            raise InputError(path.name, "larger", f"at most {USER_BYTES // 1024} KiB")
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(path.name, reason, "a readable TOML file") from None
 
 
 def _sourced(card: Any, field: str) -> Mapping[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from geometry.errors import InputError
 from pipeline import units
 from pipeline.follower.spring import HelicalSpring, Wire
+from pipeline.toml_file import read_toml
 
 CATALOGUE = Path(__file__).parent / "cards" / "springs.toml"
 _BYTES = 256 * 1024
@@ -77,17 +77,7 @@ def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
     InputError
         For a file that is not TOML, an unknown or missing key, or a spring that cannot be.
     """
-    path = Path(path)
-    try:
-        if path.stat().st_size > _BYTES:
-            raise InputError("catalogue", "larger", f"at most {_BYTES // 1024} KiB")
-        given = tomllib.loads(path.read_text(encoding="utf-8"))
-    except RecursionError:
-        raise InputError("catalogue", "nested too deeply", "a few tables deep") from None
-    except (OSError, ValueError) as error:  # UnicodeDecodeError and TOMLDecodeError alike
-        raise InputError(
-            "catalogue", " ".join(str(error).split()), "a readable TOML file"
-        ) from None
+    given = read_toml(Path(path), "catalogue", _BYTES)
     _known("catalogue", given, {"wires", "spring"}, set())
     wires, springs = given.get("wires", {}), given.get("spring", [])
     if not isinstance(wires, dict):
