@@ -10,11 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from geometry.arrays import uniform_turn
 from geometry.errors import ResultError
 from pipeline import results
+from pipeline import trial as road
 from pipeline.case import Case, load_case_file
+from pipeline.contact.pair import CycleBodies, pair_history
+from pipeline.cycle import contact_pair
 from pipeline.progress import Silent
 from pipeline.run import run_case
+from pipeline.smoothing.smoothers import Smoother
 
 ROOT = Path(__file__).resolve().parents[2]
 POSITIONS = 180  # two pieces of the contact per trial
@@ -143,13 +148,29 @@ def test_columns_agree_with_one_another(finished: tuple[Case, Path, dict[str, An
     radius = 1 / (1 / 8.0 + 1 / cycle["contour_radius_of_curvature_mm"])
     p0 = np.sqrt(cycle["line_load_N_per_mm"] * modulus / (np.pi * radius))
     np.testing.assert_allclose(cycle["p0_hertz_MPa"], p0, rtol=1e-9)
-    # The finite elements are their own; on so large a relative radius they differ little, and
-    # the bearing's outer ring, which bends between its balls, adds two in a thousand.
-    np.testing.assert_allclose(cycle["p0_fe_MPa"], p0, rtol=4e-3)
-    assert np.abs(cycle["p0_fe_MPa"] / p0 - 1).max() > 0
+    # The finite elements are their own. The bearing's outer ring yields on its balls, and so is
+    # pressed less than the solid roller of the next test, by at most a quarter of a per cent.
+    share = cycle["p0_fe_MPa"] / p0
+    assert (share > 1 - 2.5e-3).all()
+    assert (share < 1).all()
     after = cycle["torque_before_Nm"] - cycle["cam_torque_Nm"] / case.mechanism.gear_ratio
     np.testing.assert_allclose(cycle["torque_after_Nm"], after, atol=1e-9)
     assert summary["headline"]["torque_std_after_Nm"] == pytest.approx(after.std(), rel=1e-9)
+
+
+def test_a_solid_roller_is_pressed_as_hertz_says(
+    finished: tuple[Case, Path, dict[str, Any]],
+) -> None:
+    """The same cam under the same forces: on so large a relative radius bodies add little."""
+    case, _, _ = finished
+    bearing = case.roller.bearing.model_copy(update={"ring": None})
+    roller = case.roller.model_copy(update={"bearing": bearing})
+    solid = case.model_copy(update={"roller_given": roller})
+    lift = road.designed_lift(case, road.engine_torques(case), Smoother.from_case(case.smoothing))
+    pair = contact_pair(solid, road.cam_contour(solid, lift))
+    theta = uniform_turn(24)
+    found = pair_history(pair, CycleBodies.meshed(pair), theta, np.full(theta.size, 900.0))
+    np.testing.assert_allclose(found.p0, found.p0_hertz, rtol=2e-3)
 
 
 def test_pressure_of_every_position_carries_the_load(
