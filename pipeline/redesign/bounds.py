@@ -13,6 +13,7 @@ from pipeline.case import Case
 from pipeline.follower.bearing_cards import BearingCard
 from pipeline.smoothing.constraints import Scenario
 from pipeline.smoothing.convex import Norm, Rows, solved
+from pipeline.smoothing.design import thinned
 from pipeline.smoothing.spline_energy import basis_matrix
 
 IN_HAND = 0.05  # of the ripple, for friction and inertia, which the bound does not know
@@ -41,8 +42,7 @@ class RippleBound:
         if not energy > 0.0:
             return 1.0
         theta = uniform_turn(_POINTS)
-        spectrum = np.fft.rfft(self.torque)[: _POINTS // 2]
-        engine = np.fft.irfft(spectrum, n=_POINTS) * (_POINTS / self.torque.size)
+        engine = thinned(self.torque, _POINTS)
         engine = engine - engine.mean()
         scale = float(np.linalg.norm(engine))
         level = basis_matrix(theta, _COEFFICIENTS)
