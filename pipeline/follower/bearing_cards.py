@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -88,26 +87,6 @@ class BearingCard:
             and not thickness < 0.5 * (self.outer_diameter - pitch)
         ):
             raise InputError("bearing.ring_thickness", thickness, "outside the pitch circle")
-
-    @property
-    def to_verify(self) -> bool:
-        """Whether the source admits that numbers are recalled."""
-        return "verify" in self.source
-
-
-def read_cards(path: str | Path = CARDS) -> dict[str, BearingCard]:
-    """Cards of a file, by the name of their table.
-
-    Raises
-    ------
-    InputError
-        For a file that is not TOML, a card without C0 or another value, an unknown key.
-    """
-    try:
-        given = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError("cards", " ".join(str(error).split()), "a readable TOML file") from None
-    return {name: read_card(name, entry) for name, entry in given.items()}
 
 
 def read_card(name: str, entry: Any) -> BearingCard:

@@ -37,7 +37,6 @@ PRELOADS = (121.0, 242.0, 363.0)
 MULTIPLIERS = {"full": 2.0, "half": 1.0}
 MOUNTED = 3.74 / 3.58 - 1.0  # share of inertia the mounted mechanism adds, by the speeds printed
 SPRING_RATE = 24_200.0
-PRINTED_INERTIA = (1.254e-3, 1.349e-3)  # engine and flywheel
 TUNED_ROW = "of the cylinder model, which is tuned to this idle"
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
@@ -44,7 +44,6 @@ class PaperResult:
 
 
 # A paper's module gives one of these: from its targets by id to what was obtained.
-PaperStudy = Callable[[Mapping[str, Target]], PaperResult]
 
 
 def within(obtained: float, published: float, tolerance: float, reason: str) -> Outcome:

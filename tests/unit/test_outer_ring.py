@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bearing_files import read_cards
 
 from geometry.arrays import uniform_turn
 from geometry.contour import Contour
@@ -16,7 +17,7 @@ from pipeline.contact.follower_body import RollerBody
 from pipeline.contact.pair import CycleBodies, pair_history
 from pipeline.contact.ring_body import BallRing, RingBody
 from pipeline.cycle import contact_pair, contact_width
-from pipeline.follower.bearing_cards import as_case_table, read_cards
+from pipeline.follower.bearing_cards import as_case_table
 from pipeline.outer_ring import outer_ring, roller_in_words, why_solid
 
 RING = {
