@@ -16,9 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from pipeline import trial as road
-from pipeline.case import load_case_file
-from pipeline.cycle import finished, turn
+from pipeline.case_file import load_case_file
+from pipeline.cycle import finished
 from pipeline.smoothing.smoothers import Smoother
+from pipeline.turn import turn
 
 ROOT = Path(__file__).resolve().parent.parent
 POSITIONS = 720

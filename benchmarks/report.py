@@ -18,11 +18,12 @@ import tempfile
 import time
 from pathlib import Path
 
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.progress import Silent
 from pipeline.run import run_case
 from reports import browser
 from reports.page import PAGE
+from reports.parts import build
 
 ROOT = Path(__file__).resolve().parent.parent
 SECONDS, MEBIBYTES, MEGABYTES, OPEN_SECONDS = 40.0, 3072.0, 8.0, 2.0
@@ -47,7 +48,7 @@ def main() -> None:
             shutil.copytree(run, copy)
         else:
             case = load_case_file(ROOT / "cases" / "gx120.toml")
-            run_case(case, copy, positions=72, progress=Silent())
+            run_case(case, copy, positions=72, progress=Silent(), present=build)
         start = time.perf_counter()
         subprocess.run([sys.executable, "-m", "pipeline.cli", "report", str(copy)], check=True)
         told("report, by the clock", time.perf_counter() - start, "s", SECONDS)

@@ -6,9 +6,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.progress import Silent
 from pipeline.run import run_case
+from reports.parts import build
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -18,7 +19,7 @@ def main() -> None:
     case = load_case_file(ROOT / "cases" / "gx120.toml")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "gx120"
-        summary = run_case(case, out, positions=positions, progress=Silent())
+        summary = run_case(case, out, positions=positions, progress=Silent(), present=build)
     print(f"{case.name}, {positions} positions, {summary['trials']} trials")
     for stage, seconds in summary["timings_s"].items():
         print(f"{stage:>12} {seconds:8.2f} s")

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from pipeline import trial as road
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.progress import Silent
 from pipeline.run import run_case
 from pipeline.smoothing.constrained import synthesise

@@ -7,8 +7,10 @@ from dataclasses import replace
 from geometry.contour import Contour
 from pipeline.case import Case
 from pipeline.contact.pair import closed_form_history
-from pipeline.cycle import Cycle, Turn, contact_pair, finished
+from pipeline.contact_setup import contact_pair
+from pipeline.cycle import Cycle, finished
 from pipeline.rolling import rolling_history
+from pipeline.turn import Turn
 
 
 def foreseen_cycle(case: Case, contour: Contour, given: Turn) -> Cycle:

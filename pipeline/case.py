@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import MappingProxyType
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, ValidationError
 
 from geometry.errors import InputError
-from pipeline.cards.fill import filled
-from pipeline.case_checks import check_sections
-from pipeline.case_fields import Name, Section, Text
-from pipeline.case_folder import inside
 from pipeline.case_text import to_toml
 from pipeline.design_fields import (
     Limits,
@@ -26,13 +20,13 @@ from pipeline.design_fields import (
     Waiver,
 )
 from pipeline.engine_fields import (
-    KINDS,
     Crankshaft,
     Engine,
     engine_files,
 )
-from pipeline.given_lift import contour_of, given_lift
-from pipeline.lift_fields import LIFT_KINDS, GivenLift, LiftTable
+from pipeline.error_text import first_error
+from pipeline.files import hash_inputs
+from pipeline.lift_fields import GivenLift, LiftTable
 from pipeline.part_fields import (
     Cam,
     Camshaft,
@@ -45,13 +39,10 @@ from pipeline.part_fields import (
     Spring,
     ValveTrain,
 )
-from pipeline.results import hash_inputs
-from pipeline.shop_fields import Shop
+from pipeline.section import Name, Section, Text
+from pipeline.shop_fields import FORM_TOLERANCE, Shop, ShopOrder
 
-CASE_BYTES = 256 * 1024
-INCLUDE_BYTES = 16 * 1024 * 1024
 INPUTS = "inputs"
-SCHEMA_VERSION = 1
 
 
 class Case(Section):
@@ -87,11 +78,6 @@ class Case(Section):
     _included: Mapping[str, bytes] = PrivateAttr(default_factory=dict)
     _folder: Path | None = PrivateAttr(default=None)
 
-    @model_validator(mode="after")
-    def _fits_together(self) -> Self:
-        check_sections(self)
-        return self
-
     def to_toml(self) -> str:
         """The case with every default written out; reads back bit for bit.
 
@@ -115,7 +101,7 @@ class Case(Section):
         try:
             solver = Solver.model_validate(given)
         except ValidationError as error:
-            raise _first_error(error, "solver") from None
+            raise first_error(error, "solver") from None
         return self.model_copy(update={"solver": solver})
 
     def at(self, load_case: str) -> Case:
@@ -167,43 +153,24 @@ class Case(Section):
         """Radius that stands for the contact, m: the roller's, under a face the base circle's."""
         return self.base_circle if self.roller_given is None else self.roller_given.radius
 
+    @property
+    def largest_tool(self) -> float | None:
+        """Radius of the tool that must fit concave flanks, m: the limit's, else the workshop's."""
+        limit = self.limits.tool_radius
+        return self.shop.tool_radius if limit is None else limit
+
+    @property
+    def workshop(self) -> ShopOrder:
+        """Tables, tool, tolerance band and chord error of the workshop files."""
+        shop = self.shop
+        tool = self.largest_tool if shop.tool_radius is None else shop.tool_radius
+        given = self.cam.profile_tolerance
+        band = FORM_TOLERANCE if given is None else given
+        return ShopOrder(shop.table_step, tool, band, shop.chord_error)
+
     def material(self, name: str) -> Material:
         """The card of a material that the case names."""
         return self.materials[name]
-
-
-def load_case_file(path: str | Path) -> Case:
-    """Read and check a case file.
-
-    Raises
-    ------
-    InputError
-        For the first thing that is wrong, by its dotted name.
-    """
-    path = Path(path)
-    return parse_case(_read(path, "case", CASE_BYTES), path.resolve().parent)
-
-
-def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
-    """A case from its text; included files are looked for in `folder`."""
-    data = _parse_toml(content)
-    version = data.get("schema_version")
-    if version is not None and version != SCHEMA_VERSION:
-        raise InputError("schema_version", version, f"{SCHEMA_VERSION}, the one known here")
-    case = case_of(data, folder)
-    case._folder = folder
-    case._included = MappingProxyType(_read_includes(case, folder))
-    if case.lift is not None and case.follower.face is not None:
-        contour_of(case, given_lift(case))  # refuses a face that the contact runs off
-    return case
-
-
-def case_of(data: Mapping[str, Any], folder: Path | None = None) -> Case:
-    """A case from its tables, cards of `folder` filled in; files it includes are not read."""
-    try:
-        return Case.model_validate(filled(data, folder))
-    except ValidationError as error:
-        raise _first_error(error) from None
 
 
 def includes(case: Case) -> Iterator[tuple[str, str]]:
@@ -219,97 +186,3 @@ def includes(case: Case) -> Iterator[tuple[str, str]]:
 def kept_as(name: str) -> str:
     """Where a run folder keeps an included file."""
     return f"{INPUTS}/{Path(name).name}"
-
-
-def _parse_toml(content: str | bytes) -> dict[str, Any]:
-    try:
-        text = content if isinstance(content, str) else content.decode("utf-8-sig")
-        return tomllib.loads(text)
-    except RecursionError:
-        raise InputError("case", "nested too deeply", "at most a few tables deep") from None
-    except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError alike
-        raise InputError("case", " ".join(str(error).split()), "UTF-8 text in TOML") from None
-
-
-def _read(path: Path, field: str, limit: int) -> bytes:
-    try:
-        if not path.is_file():
-            raise InputError(field, str(path), "an existing file")
-        with path.open("rb") as file:
-            content = file.read(limit + 1)
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(field, f"{path} ({reason})", "a readable file") from None
-    if len(content) > limit:
-        raise InputError(field, f"{path} is larger", f"at most {limit // 1024} KiB")
-    return content
-
-
-def _read_includes(case: Case, folder: Path | None) -> dict[str, bytes]:
-    read: dict[str, bytes] = {}
-    origin: dict[str, str] = {}
-    for field, name in includes(case):
-        if folder is None:
-            raise InputError(field, name, "left out where a case has no folder")
-        content = _read(inside(folder, name, field), field, INCLUDE_BYTES)
-        kept = kept_as(name)
-        if origin.setdefault(kept, name) != name:
-            raise InputError(field, name, f"another file name than that of {origin[kept]}")
-        read[kept] = content
-    return read
-
-
-_WORDS = {
-    "missing": "given",
-    "string_type": "text in quotes",
-    "int_type": "a whole number",
-    "bool_type": "true or false",
-    "model_type": "a table",
-    "dict_type": "a table",
-    "model_attributes_type": "a table",
-    "tuple_type": "an array of tables",
-    "date_type": "a date such as 2025-06-30",
-    "union_tag_not_found": "a table with kind = " + " or ".join(f'"{kind}"' for kind in KINDS),
-    "too_short": "at least {min_length} long",
-    "too_long": "at most {max_length} long",
-    "string_too_short": "at least {min_length} characters",
-    "string_too_long": "at most {max_length} characters",
-    "greater_than_equal": ">= {ge}",
-    "less_than_equal": "<= {le}",
-    "literal_error": "{expected}",
-    "union_tag_invalid": "{expected_tags}",
-    "limit": "{limit}",
-}
-
-
-def _first_error(error: ValidationError, section: str = "") -> InputError:
-    """The first refusal as one line; unknown keys go before what is missing for them."""
-    found = error.errors(include_url=False)
-    found.sort(key=lambda entry: "unknown_key" not in entry.get("ctx", {}))
-    first, others = found[0], len(found) - 1
-    context = dict(first.get("ctx", {}))
-    field, value = f"{section}.{_dotted(first['loc'])}".strip("."), first["input"]
-    if "unknown_key" in context:
-        field = f"{field}.{context['unknown_key']}".lstrip(".")
-        value = "unknown key"
-    elif first["type"] == "missing":
-        value = "missing"
-    elif first["type"] == "union_tag_invalid":
-        field, value = f"{field}.kind", context["tag"]
-    elif isinstance(value, (dict, list)):
-        value = "a table" if isinstance(value, dict) else "an array"
-    limit = _WORDS.get(first["type"], first["msg"]).format_map(context)
-    more = f" (and {others} more)" if others else ""
-    return InputError(field or "case", value, f"{limit}{more}")
-
-
-def _dotted(location: tuple[int | str, ...]) -> str:
-    """``("load_case", 0, "speed")`` as ``load_case[0].speed``; the tag of a union is left out."""
-    text = ""
-    for position, part in enumerate(location):
-        if position == 1 and part in {"engine": KINDS, "lift": LIFT_KINDS}.get(
-            str(location[0]), ()
-        ):
-            continue
-        text += f"[{part}]" if isinstance(part, int) else f".{part}"
-    return text.lstrip(".")

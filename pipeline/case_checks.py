@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from geometry.errors import InputError
 from pipeline.cylinder_fields import Cylinder
 from pipeline.engine_fields import PressureTable, SpeedTable, VoltageTable
-from pipeline.given_lift import motion_of
-from pipeline.lift_fields import LiftSegments
+from pipeline.lift_fields import LiftSegments, motion_of
 from pipeline.part_fields import Cam, Roller
 
 if TYPE_CHECKING:

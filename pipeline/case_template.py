@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from geometry.errors import InputError
-from pipeline.case_fields import SAFE_NAME
+from pipeline.section import SAFE_NAME
 
 
 def template(name: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import as_completed
 
 import numpy as np
@@ -11,30 +11,28 @@ from geometry.arrays import Array
 from pipeline.contact.history import CertificatePoint, ContactHistory
 from pipeline.contact.pair import ContactPair
 from pipeline.contact.pair_certificate import certificate_point
+from pipeline.cycle import Cycle
 from pipeline.processes import pool, workers_for
-from pipeline.trial import Trial
 
 
-def positions_to_certify(trial: Trial, count: int) -> tuple[tuple[int, int], ...]:
+def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int, int], ...]:
     """Load case and position of the `count` angles to certify, the worst first.
 
     The extremes of pressure, load, curvature and its change over all load cases, then equal
     steps over the turn of the first. Angles closer than four positions count as one.
     """
-    if trial.mesh is None:
-        return ()
     wanted: list[tuple[int, int]] = []
 
     def take(case: int, index: int) -> None:
-        loaded = trial.cycles[case].contact.p0[index] > 0
+        loaded = cycles[case].contact.p0[index] > 0
         near = any(c == case and abs(i - index) < 4 for c, i in wanted)
         if loaded and not near and len(wanted) < count:
             wanted.append((case, index))
 
     for extreme in _EXTREMES:
-        for case, cycle in enumerate(trial.cycles):
+        for case, cycle in enumerate(cycles):
             take(case, int(np.argmax(extreme(cycle.contact))))
-    size = trial.cycles[0].theta.size
+    size = cycles[0].theta.size
     for index in np.linspace(0, size, 4 * count, endpoint=False).astype(int):
         take(0, int(index))
     return tuple(wanted)
@@ -58,14 +56,14 @@ _EXTREMES: tuple[Callable[[ContactHistory], Array], ...] = (
 
 def certified(
     pair: ContactPair,
-    trial: Trial,
+    cycles: Sequence[Cycle],
     chosen: Iterable[tuple[int, int]],
     jobs: int | None,
     tell: Callable[[int, int], None],
 ) -> tuple[CertificatePoint, ...]:
     """Certificate points at chosen (load case, position), worked out in `jobs` processes."""
     tasks = [
-        (pair, trial.cycles[case].contact, index, float(trial.cycles[case].theta[index]))
+        (pair, cycles[case].contact, index, float(cycles[case].theta[index]))
         for case, index in chosen
     ]
     workers = workers_for(jobs, len(tasks))

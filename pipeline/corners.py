@@ -33,9 +33,9 @@ from pipeline.checks import (
 from pipeline.checks.check import Check
 from pipeline.checks.everything import DESIGN, PARTS, SIGNED, CheckFunction, checked_by
 from pipeline.checks.trial import TrialEvidence
-from pipeline.cycle import Turn, turn
 from pipeline.engine.torque import Torque
 from pipeline.speed import rubbing_of, speed_ripple
+from pipeline.turn import Turn, turn
 
 POSITIONS = 90
 """Angles a turn: a corner asks for the ratio of two demands, not for either."""

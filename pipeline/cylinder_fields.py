@@ -10,7 +10,6 @@ from pydantic import Field
 from pipeline.case_fields import (
     Angle,
     Duration,
-    FileName,
     Force,
     Fraction,
     GasPressure,
@@ -18,10 +17,10 @@ from pipeline.case_fields import (
     Length,
     Mass,
     Positive,
-    Section,
     Share,
     Temperature,
 )
+from pipeline.section import FileName, Section
 
 if TYPE_CHECKING:
     from pipeline.engine.cylinder import CylinderEngine

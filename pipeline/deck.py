@@ -13,11 +13,12 @@ from pipeline import results
 from pipeline.contact.elastic_body import ElasticBody
 from pipeline.contact.pair import ContactPair
 from pipeline.contact.pair_certificate import SolvedPair, solve_pair
-from pipeline.cycle import contact_pair
-from pipeline.inspection import nominal
+from pipeline.contact_setup import contact_pair
+from pipeline.run_folder import drawn_cam
+from pipeline.tables import Table
 
 
-def force_at(cycle: results.Table, load_case: str, theta: float) -> float:
+def force_at(cycle: Table, load_case: str, theta: float) -> float:
     """Normal force (N) of a load case at any cam angle (rad), by straight lines in its table.
 
     Raises
@@ -101,7 +102,7 @@ def deck(run: Path, theta: float, path: Path, load_case: str | None = None) -> S
         If the angle carries no load.
     """
     cycle = results.load_run(run).final.cycle
-    case, contour = nominal(run)
+    case, contour = drawn_cam(run)
     name = case.load_cases[0].name if load_case is None else load_case
     force = force_at(cycle, name, theta)
     pair = contact_pair(case, contour)

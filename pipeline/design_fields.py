@@ -11,23 +11,17 @@ from pydantic import AfterValidator, Field, field_validator, model_validator
 from geometry.errors import InputError
 from pipeline.case_fields import (
     Duration,
-    FileName,
     Fraction,
     GasPressure,
     In,
     Length,
-    Name,
     Preload,
     Pressure,
     Rate,
     Residual,
     Safety,
-    Section,
-    Text,
-    printable,
-    refusal,
-    suggestion,
 )
+from pipeline.section import FileName, Name, Section, Text, printable, refusal, suggestion
 
 
 class Mechanism(Section):

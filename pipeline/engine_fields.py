@@ -9,16 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from geometry.errors import InputError
-from pipeline.case_fields import (
-    Angle,
-    FileName,
-    GasPressure,
-    In,
-    Section,
-    Share,
-    Text,
-)
+from pipeline.case_fields import Angle, GasPressure, In, Share
 from pipeline.cylinder_fields import CrankDrive, Cylinder, EngineKind, TorqueTable
+from pipeline.section import FileName, Section, Text
 
 if TYPE_CHECKING:
     from pipeline.engine.cylinder import CylinderEngine

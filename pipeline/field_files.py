@@ -13,11 +13,12 @@ from pipeline.certify import positions_to_certify
 from pipeline.contact.envelope import Envelope
 from pipeline.contact.pair import ContactPair, CycleBodies
 from pipeline.contact.pair_certificate import solve_pair
-from pipeline.cycle import Cycle, contact_pair
+from pipeline.contact_setup import contact_pair
+from pipeline.cycle import Cycle
 from pipeline.fields import IntArray, write_bodies, write_contact
 from pipeline.patch_series import write_patches
 from pipeline.rolling import MAPS
-from pipeline.trial import Trial
+from pipeline.trial_value import Trial
 from pipeline.turn_view import turn_view
 
 BODIES_STEP = np.radians(5.0)
@@ -43,7 +44,7 @@ def write_fields(
     )
     chosen = hardest(final.cycles)
     cycle = final.cycles[chosen]
-    certified = positions_to_certify(final, case.solver.certificate_positions)
+    certified = positions_to_certify(final.cycles, case.solver.certificate_positions)
     indices = shown_positions(cycle, [k for number, k in certified if number == chosen])
     bodies = CycleBodies.meshed(pair)
     write_bodies(folder, pair, bodies, cycle, indices, chosen + 1, tell)

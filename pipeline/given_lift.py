@@ -11,25 +11,12 @@ from geometry.errors import InputError
 from geometry.flat_face import FacePath, FlatFaceContour
 from geometry.lift import Lift
 from geometry.lift_fit import FittedLift, fitted_lift, lift_through
-from geometry.motion import Motion, Segment
 from geometry.pitch_curve import PitchCurve
 from pipeline.engine.trace import read_trace
-from pipeline.lift_fields import LiftEccentric, LiftPoints, LiftSegments, LiftTable
+from pipeline.lift_fields import LiftEccentric, LiftPoints, LiftSegments, LiftTable, motion_of
 
 if TYPE_CHECKING:
     from pipeline.case import Case
-
-
-def motion_of(given: LiftSegments) -> Motion:
-    """The segments of a case.
-
-    Raises
-    ------
-    InputError
-        If they do not add up to a turn or do not close.
-    """
-    segments = tuple(Segment(part.law, part.angle, part.stroke) for part in given.segments)
-    return Motion(segments, given.repeat)
 
 
 def eccentric_of(case: Case, given: LiftEccentric) -> Eccentric:

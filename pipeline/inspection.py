@@ -12,22 +12,24 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Array, uniform_turn
+from geometry.arrays import Array
 from geometry.contour import Contour
 from geometry.errors import InputError
 from geometry.inspection import Inspection, inspected, real_contour
-from geometry.lift import Lift
 from pipeline import results
 from pipeline import trial as road
 from pipeline.benchmarks import benchmarks
-from pipeline.case import Case, load_case_file
+from pipeline.case import Case
 from pipeline.certify import certified, positions_to_certify
 from pipeline.checks.verdict import binding, verdict
 from pipeline.contact.pair import CycleBodies
-from pipeline.cycle import Cycle, Turn, contact_pair, finished
+from pipeline.contact_setup import contact_pair
+from pipeline.cycle import Cycle, finished
+from pipeline.files import json_text, write_atomic
 from pipeline.rolling import rolling_history
-from pipeline.run_folder import write_atomic
-from pipeline.trial import Trial
+from pipeline.tables import Column, Table, read_table, table
+from pipeline.trial_value import Trial
+from pipeline.turn import Turn
 
 FOLDER = "inspection"
 BYTES_MAX = 64 << 20
@@ -36,9 +38,9 @@ _WAVES_LISTED = 12
 _PLACES = (("measured_x_mm", "measured_y_mm"), ("x_mm", "y_mm"))
 _POLAR = (("polar_angle_deg", "measured_radius_mm"), ("angle_deg", "radius_mm"))
 _DEVIATION = (
-    results.Column("cam_angle", "deg"),
-    results.Column("deviation", "um"),
-    results.Column("form", "um"),
+    Column("cam_angle", "deg"),
+    Column("deviation", "um"),
+    Column("form", "um"),
 )
 
 
@@ -98,14 +100,6 @@ def _numbers(rows: list[dict[str, str]], pair: tuple[str, str]) -> tuple[list[fl
     return columns
 
 
-def nominal(run: Path) -> tuple[Case, Contour]:
-    """The case of a run and the contour of its last trial."""
-    found = results.load_run(run)
-    case = load_case_file(run / "case.toml")
-    values = 1e-3 * np.asarray(found.final.lift["lift_mm"], dtype=float)
-    return case, road.cam_contour(case, Lift(uniform_turn(values.size), values))
-
-
 def inspect_part(
     case: Case,
     contour: Contour,
@@ -143,10 +137,10 @@ def inspect_part(
     bodies = CycleBodies.meshed(pair)
     cycles = tuple(_cycle(case, real, bodies, given) for given in turns)
     trial = Trial(1, None, why, real.pitch.lift, real, cycles, mesh, ())
-    chosen = positions_to_certify(trial, case.solver.certificate_positions)
+    chosen = positions_to_certify(cycles, case.solver.certificate_positions)
     if chosen:
         tell(f"certificate at {len(chosen)} angles")
-        points = certified(pair, trial, chosen, jobs, lambda *_: None)
+        points = certified(pair, cycles, chosen, jobs, lambda *_: None)
         trial = replace(trial, certificate=points)
     solved = benchmarks(case.contact_radius)
     return RealPart(fit, real, road.checked(case, trial, torques, solved))
@@ -175,10 +169,10 @@ def write_inspection(run: Path, case: Case, part: RealPart, tolerance: float) ->
         "deviation": fit.deviation[order],
         "form": fit.form(fit.theta[order]),
     }
-    write_atomic(folder / "deviation.csv", results.table(_DEVIATION, deviation).to_csv())
+    write_atomic(folder / "deviation.csv", table(_DEVIATION, deviation).to_csv())
     write_atomic(folder / "cycle.csv", _cycle_table(case, part.trial.cycles))
     records = [check.as_record() for check in part.trial.checks]
-    write_atomic(folder / "checks.json", results.json_text(records) + "\n")
+    write_atomic(folder / "checks.json", json_text(records) + "\n")
     record = {
         "phase_deg": float(np.degrees(fit.phase)),
         "size_um": 1e6 * fit.size,
@@ -190,11 +184,11 @@ def write_inspection(run: Path, case: Case, part: RealPart, tolerance: float) ->
         "within_tolerance": bool(np.abs(fit.deviation).max() <= 0.5 * tolerance),
         "waves_um": _waves(fit),
         "nominal": _figures_of(results.load_run(run).final.cycle),
-        "measured": _figures_of(results.read_table(folder / "cycle.csv")),
+        "measured": _figures_of(read_table(folder / "cycle.csv", results.CYCLE)),
         "verdict": verdict(part.trial.checks),
         "binding": list(binding(part.trial.checks)),
     }
-    write_atomic(folder / "inspection.json", results.json_text(record) + "\n")
+    write_atomic(folder / "inspection.json", json_text(record) + "\n")
     return record
 
 
@@ -203,7 +197,7 @@ def _cycle_table(case: Case, cycles: tuple[Cycle, ...]) -> str:
     names = dict.fromkeys(name for made in tables for name in made)
     unknown = np.full(cycles[0].theta.size, np.nan)
     values = {name: np.concatenate([t.get(name, unknown) for t in tables]) for name in names}
-    return results.table(results.CYCLE, values).to_csv()
+    return table(results.CYCLE, values).to_csv()
 
 
 def _waves(fit: Inspection) -> dict[str, float]:
@@ -213,7 +207,7 @@ def _waves(fit: Inspection) -> dict[str, float]:
     return {str(k): sizes[k] for k in sorted(largest)}
 
 
-def _figures_of(cycle: results.Table) -> Mapping[str, float | None]:
+def _figures_of(cycle: Table) -> Mapping[str, float | None]:
     """Extremes over all load cases, nominal and real alike."""
     wanted: dict[str, tuple[str, Callable[[Any], Any]]] = {
         "normal_force_max_N": ("normal_force_N", np.max),

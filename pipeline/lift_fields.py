@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from pipeline.case_fields import FileName, In, Length, Section
+from geometry.motion import Motion, Segment
+from pipeline.case_fields import In, Length
 from pipeline.cylinder_fields import LiftPoint
+from pipeline.section import FileName, Section
+
+if TYPE_CHECKING:
+    pass
 
 Stroke = Annotated[float, In("mm", above=-10_000, below=10_000)]
 LawName = Literal[
@@ -82,3 +87,15 @@ GivenLift = Annotated[
     Discriminator(_kind),
 ]
 LIFT_KINDS = ("table", "segments", "points", "eccentric")
+
+
+def motion_of(given: LiftSegments) -> Motion:
+    """The segments of a case.
+
+    Raises
+    ------
+    InputError
+        If they do not add up to a turn or do not close.
+    """
+    segments = tuple(Segment(part.law, part.angle, part.stroke) for part in given.segments)
+    return Motion(segments, given.repeat)

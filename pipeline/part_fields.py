@@ -14,15 +14,12 @@ from pipeline.case_fields import (
     In,
     Length,
     Mass,
-    Name,
     Preload,
     Pressure,
     Rate,
-    Section,
     Temperature,
-    Text,
-    refusal,
 )
+from pipeline.section import Name, Section, Text, refusal
 
 
 class SpringDesign(Section):

@@ -35,7 +35,7 @@ from pipeline.outer_ring import OuterRing
 from pipeline.part_fields import Guide
 
 if TYPE_CHECKING:
-    from pipeline.cycle import Turn
+    from pipeline.turn import Turn
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ from pipeline.checks.check import Check
 from pipeline.checks.everything import DESIGN, PARTS, SIGNED, checked_by
 from pipeline.checks.trial import TrialEvidence
 from pipeline.checks.verdict import in_order
-from pipeline.cycle import Cycle, Turn, finished
+from pipeline.cycle import Cycle, finished
 from pipeline.engine.torque import Torque
 from pipeline.smoothing import loop
 from pipeline.smoothing.constrained import synthesise
@@ -25,6 +25,7 @@ from pipeline.smoothing.design import Design, Problem
 from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 from pipeline.speed import rubbing_of, speed_ripple
+from pipeline.turn import Turn
 
 MARK = "closed forms only: "
 _ROUNDS = 4  # of synthesis and correction

@@ -15,10 +15,11 @@ from pipeline.balance import balance
 from pipeline.case import Case
 from pipeline.contact.convergence import Convergence
 from pipeline.contact.history import CertificatePoint
-from pipeline.cycle import Cycle, contact_width
+from pipeline.contact_setup import contact_width
+from pipeline.cycle import Cycle
 from pipeline.engine.torque import Torque
 from pipeline.outer_ring import roller_in_words
-from pipeline.trial import Trial
+from pipeline.trial_value import Trial
 
 _MM, _MPA = 1e3, 1e-6
 

@@ -5,11 +5,6 @@ Reading needs no solver and no case parser, so that a run of long ago can be rep
 
 from __future__ import annotations
 
-import csv
-import hashlib
-import io
-import json
-import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -17,11 +12,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from geometry.errors import ResultError
-from pipeline import units
+from pipeline.files import hash_inputs, read_json, read_text, sha256_of
+from pipeline.tables import Column, Table, read_table
 
 SCHEMA = 1
 HEADLINE = (
@@ -37,20 +30,6 @@ _REQUIRED = ("schema", "case", "input_sha256", "versions", "timings_s", "trials"
              "binding", "headline")  # fmt: skip
 _CHECK_KEYS = ("id", "title", "demand", "limit", "unit", "utilisation", "status", "load_case",
                "cam_angle_deg", "source", "method")  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Column:
-    """A table column: its name without unit, the unit it is written in."""
-
-    name: str
-    unit: str = ""
-    optional: bool = False
-    may_be_unknown: bool = False
-
-    @property
-    def header(self) -> str:
-        return units.column(self.name, self.unit)
 
 
 def _columns(text: str) -> tuple[Column, ...]:
@@ -111,81 +90,6 @@ CYCLE = _columns(
     "ring_correction?~ [percent]; tau_any_plane?~ [MPa];"
     "place_on_face? [mm]; sliding_speed? [m/s]; face_pv?~ [MPa m/s]; face_friction_power? [W]"
 )
-
-
-_MAY_BE_UNKNOWN = {column.header for column in CYCLE if column.may_be_unknown}
-
-
-@dataclass(frozen=True, eq=False)
-class Table:
-    """Columns of one length by header; numbers as written, in the unit their name carries."""
-
-    columns: Mapping[str, NDArray[Any]]
-
-    def __getitem__(self, header: str) -> Any:
-        if header not in self.columns:
-            raise ResultError(f"column {header} is missing; there is {', '.join(self.columns)}")
-        return self.columns[header]
-
-    def __contains__(self, header: object) -> bool:
-        return header in self.columns
-
-    def __len__(self) -> int:
-        return len(next(iter(self.columns.values()), ()))
-
-    def where(self, header: str, value: object) -> Table:
-        """The rows in which a column has a value."""
-        rows = self[header] == value
-        return Table(MappingProxyType({name: _fixed(c[rows]) for name, c in self.columns.items()}))
-
-    def to_csv(self) -> str:
-        """CSV text; every float reads back bit for bit."""
-        buffer = io.StringIO()
-        writer = csv.writer(buffer, lineterminator="\n")
-        writer.writerow(self.columns)
-        writer.writerows(zip(*(_texts(column) for column in self.columns.values()), strict=True))
-        return buffer.getvalue()
-
-
-def table(columns: Iterable[Column], values: Mapping[str, ArrayLike]) -> Table:
-    """A table from SI values by bare column name, turned into the unit of each column.
-
-    Raises
-    ------
-    ResultError
-        If a column is not given, unknown, of another length, or holds a NaN it may not hold.
-    """
-    columns = tuple(columns)
-    unknown = set(values) - {column.name for column in columns}
-    if unknown:
-        raise ResultError(f"no such column: {', '.join(sorted(unknown))}")
-    made: dict[str, NDArray[Any]] = {}
-    for column in columns:
-        if column.name not in values:
-            if column.optional:
-                continue
-            raise ResultError(f"column {column.header} was not given")
-        made[column.header] = _in_unit(column, np.asarray(values[column.name]))
-    if len({len(given) for given in made.values()}) > 1:
-        lengths = ", ".join(f"{name} {len(given)}" for name, given in made.items())
-        raise ResultError(f"columns of different length: {lengths}")
-    return Table(MappingProxyType(made))
-
-
-def read_table(path: Path) -> Table:
-    """A CSV table; a column is of floats unless it is ``load_case``."""
-    rows = list(csv.reader(io.StringIO(read_text(path))))
-    if not rows or len(set(rows[0])) != len(rows[0]):
-        raise ResultError(f"{path}: no header, or a column twice")
-    for line, row in enumerate(rows, start=1):
-        if len(row) != len(rows[0]):
-            raise ResultError(f"{path}, line {line}: {len(row)} cells, must be {len(rows[0])}")
-    cells = list(zip(*rows[1:], strict=True)) or [()] * len(rows[0])
-    return Table(
-        MappingProxyType(
-            {name: _parsed(path, name, cells[k]) for k, name in enumerate(rows[0])},
-        )
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,7 +196,7 @@ def verify_run(path: Path) -> None:
         raise ResultError(f"{path}: case.toml or inputs/ are not those of the run")
     for name, digest in summary.get("files", {}).items():
         file = path / name
-        if not file.is_file() or _sha256(file) != digest:
+        if not file.is_file() or sha256_of(file) != digest:
             state = "was changed" if file.is_file() else "is missing"
             raise ResultError(f"{file}: {state} since the run")
 
@@ -325,46 +229,14 @@ def input_sha256(path: Path) -> str:
     return hash_inputs(read_text(path / "case.toml"), kept)
 
 
-def hash_inputs(case_text: str, included: Mapping[str, bytes]) -> str:
-    """Hash of the resolved case text and the bytes of its included files."""
-    digest = hashlib.sha256(case_text.encode())
-    for name, content in sorted(included.items()):
-        digest.update(f"\0{name}\0{len(content)}\0".encode())
-        digest.update(content)
-    return digest.hexdigest()
-
-
 def file_hashes(path: Path) -> dict[str, str]:
     """SHA-256 of the tables, checks and meshes of a run; pictures and pages can be redrawn."""
     kept, later = (".csv", ".json", ".msh", ".npz"), ("run.json", "signoff.json")
     return {
-        file.relative_to(path).as_posix(): _sha256(file)
+        file.relative_to(path).as_posix(): sha256_of(file)
         for file in sorted(path.rglob("*"))
         if file.suffix in kept and file.name not in later and not _hidden(file, path)
     }
-
-
-def read_text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
-        raise ResultError(f"{path}: {reason}") from None
-
-
-def read_json(path: Path) -> Any:
-    try:
-        return json.loads(read_text(path), parse_constant=_no_constant)
-    except (ValueError, RecursionError) as error:
-        raise ResultError(f"{path}: not JSON ({' '.join(str(error).split())})") from None
-
-
-def json_text(value: object) -> str:
-    """JSON with numpy numbers taken in; NaN and infinity are refused, null says missing."""
-    try:
-        return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=_plain)
-    except (TypeError, ValueError) as error:
-        raise ResultError(f"a record cannot be written: {error}") from None
 
 
 def _binding(checks: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
@@ -386,7 +258,7 @@ def _read_trial(run: Path, number: int) -> TrialRecord:
         path=path,
         lift=read_table(path / "2_lift.csv"),
         contour=read_table(path / "3_contour.csv"),
-        cycle=read_table(path / "5_cycle.csv"),
+        cycle=read_table(path / "5_cycle.csv", CYCLE),
         checks=tuple(_read_checks(path / "6_checks.json")),
         record=MappingProxyType(record),
         limits=read_table(limits) if limits.is_file() else None,
@@ -414,65 +286,6 @@ def _holds(record: Mapping[str, Any]) -> bool:
     if not all(isinstance(number, (int, float)) for number in (demand, limit)):
         return False
     return bool(demand >= limit if record.get("sense") == "at_least" else demand <= limit)
-
-
-def _in_unit(column: Column, given: NDArray[Any]) -> NDArray[Any]:
-    if given.dtype.kind in "US":
-        return _fixed(given.astype(str))
-    values = given.astype(float)
-    if values.ndim != 1 or (np.isnan(values).any() and not column.may_be_unknown):
-        what = "NaN" if values.ndim == 1 else f"{values.ndim} dimensions"
-        raise ResultError(f"column {column.header} holds {what}")
-    if column.unit:
-        values = values / units.factor(column.unit)
-    if column.name in ("cam_angle", "crank_angle"):
-        values = np.round(values, 10)  # 0.5, not 0.49999999999999994
-    return _fixed(values)
-
-
-def _parsed(path: Path, name: str, cells: Iterable[str]) -> NDArray[Any]:
-    if name == "load_case":
-        return _fixed(np.array(list(cells), dtype=str))
-    values: list[float] = []
-    for line, cell in enumerate(cells, start=2):
-        if cell == "" and name in _MAY_BE_UNKNOWN:
-            values.append(math.nan)
-            continue
-        try:
-            value = float(cell)
-        except ValueError:
-            value = math.nan
-        if math.isnan(value):
-            raise ResultError(f"{path}, line {line}: {name} = {cell[:40]!r}, must be a number")
-        values.append(value)
-    return _fixed(np.array(values))
-
-
-def _fixed(values: NDArray[Any]) -> NDArray[Any]:
-    values.setflags(write=False)
-    return values
-
-
-def _texts(column: NDArray[Any]) -> Iterable[str]:
-    if column.dtype.kind == "U":
-        return column.tolist()
-    return ("" if math.isnan(value) else repr(value) for value in column.tolist())
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, (np.generic, np.ndarray)):
-        return value.tolist()
-    if isinstance(value, Mapping):
-        return dict(value)
-    raise TypeError(f"{type(value).__name__} has no place in JSON")
-
-
-def _no_constant(name: str) -> float:
-    raise ValueError(f"{name} is not a number")
-
-
-def _sha256(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _hidden(file: Path, folder: Path) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache, partial
@@ -21,9 +21,10 @@ from pipeline.case import Case
 from pipeline.certify import certified, positions_to_certify
 from pipeline.checks.verdict import binding, in_order, verdict
 from pipeline.contact.pair import ContactPair, CycleBodies
+from pipeline.contact_setup import contact_pair
 from pipeline.corners import governed, outcomes
 from pipeline.corners import record as corners_record
-from pipeline.cycle import Cycle, Turn, contact_pair, finished
+from pipeline.cycle import Cycle, finished
 from pipeline.engine.torque import Torque
 from pipeline.field_files import write_fields
 from pipeline.given_lift import lift_origin
@@ -44,7 +45,8 @@ from pipeline.smoothing.problem import problem_of
 from pipeline.smoothing.smoothers import Smoother
 from pipeline.smoothing.starts import Starts, explored
 from pipeline.speed import consistency, rubbing_of, speed_record, study_of
-from pipeline.trial import Trial
+from pipeline.trial_value import Trial
+from pipeline.turn import Turn
 from pipeline.valve_train import valve_record
 
 
@@ -85,6 +87,7 @@ def run_case(
     jobs: int | None = None,
     resume: bool = False,
     progress: Progress,
+    present: Callable[[Path], object] = lambda _: None,
 ) -> dict[str, Any]:
     """Walk a case down the road until it passes or the limit that binds is named.
 
@@ -93,6 +96,7 @@ def run_case(
     positions : int   per cam turn, instead of the case's
     jobs : int        processes for the certificate; default: the processors there are, at most 4
     resume : bool     go on with what an interrupted run left
+    present : callable   draws page and pictures into the folder, from its files alone
 
     Returns
     -------
@@ -138,7 +142,7 @@ def run_case(
         with watch.stage("report"):
             progress.stage("report")
             folder.write_summary(summary)
-            _write_report(folder.path)
+            present(folder.path)
         return folder.finish(summary | {"timings_s": watch.read()})
 
 
@@ -271,12 +275,16 @@ def _cycle(
 def _certified(journey: Journey, final: Trial, jobs: int | None) -> Trial:
     """The final trial with its certificate, checked again."""
     case, progress = journey.case, journey.progress
-    chosen = positions_to_certify(final, case.solver.certificate_positions)
+    if final.mesh is None:
+        return road.checked(case, final, journey.torques)
+    chosen = positions_to_certify(final.cycles, case.solver.certificate_positions)
     if not chosen:
         return road.checked(case, final, journey.torques)
     progress.stage(f"certificate at {len(chosen)} angles")
     with journey.watch.stage("certificate"):
-        points = certified(contact_pair(case, final.contour), final, chosen, jobs, progress.advance)
+        points = certified(
+            contact_pair(case, final.contour), final.cycles, chosen, jobs, progress.advance
+        )
     progress.stage("benchmarks")
     with journey.watch.stage("benchmarks"):
         solved = benchmarks(case.contact_radius)
@@ -357,10 +365,3 @@ def _write_shop(journey: Journey, final: Trial) -> None:
     journey.progress.stage("shop")
     note = journey.progress.note
     write_shop(journey.folder.path / "shop", journey.case, final.contour, note=note)
-
-
-def _write_report(path: Path) -> None:
-    # The page is drawn from the files alone, as `camwright report` does it later.
-    from reports.parts import build
-
-    build(path)

@@ -13,7 +13,6 @@ import os
 import platform
 import re
 import shutil
-import tempfile
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -24,10 +23,16 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, readonly
+from geometry.arrays import Array, readonly, uniform_turn
+from geometry.contour import Contour
 from geometry.errors import CamError, ResultError
+from geometry.lift import Lift
 from pipeline import results, signoff
 from pipeline.case import Case
+from pipeline.case_file import load_case_file
+from pipeline.files import json_text, read_json, write_atomic
+from pipeline.given_lift import contour_of
+from pipeline.tables import Column, table
 
 _STATE, _CHUNKS, _LOCK = ".state.json", ".chunks", ".lock"
 _OURS = re.compile(
@@ -42,32 +47,6 @@ def versions() -> dict[str, str]:
     found = {"camwright": _version("camwright"), "source": _source_sha256()}
     found["python"] = platform.python_version()
     return found | {name: _version(name) for name in _LIBRARIES}
-
-
-def write_atomic(path: Path, content: bytes | str) -> None:
-    """Write a file so that it is there whole or not at all.
-
-    Raises
-    ------
-    ResultError
-        If it cannot be written, such as on a full disk.
-    """
-    data = content.encode() if isinstance(content, str) else content
-    temporary = None
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(prefix=".", suffix=".tmp", dir=path.parent)
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
-    except OSError as error:
-        raise ResultError(f"{path}: {error.strerror or error}") from None
-    finally:
-        if temporary is not None:
-            Path(temporary).unlink(missing_ok=True)
 
 
 class RunFolder:
@@ -121,7 +100,7 @@ class RunFolder:
 
     def write_torque(self, crank_angle: ArrayLike, torques: Mapping[str, ArrayLike]) -> None:
         """``1_torque.csv``: crank angle (rad) and torques (N m) by name, ``total`` first."""
-        columns = (*results.CRANK, *(results.Column(name, "N m") for name in torques))
+        columns = (*results.CRANK, *(Column(name, "N m") for name in torques))
         self._write_table("1_torque.csv", columns, {"crank_angle": crank_angle, **torques})
 
     def write_speed(self, values: Mapping[str, ArrayLike]) -> None:
@@ -134,7 +113,7 @@ class RunFolder:
 
     def write_limits(self, trial: int, cam_angle: ArrayLike, uses: Mapping[str, ArrayLike]) -> None:
         """``2_limits.csv``: cam angle (rad) and the share in use of each limit by its name."""
-        columns = (*results.CAM, *(results.Column(name, "") for name in uses))
+        columns = (*results.CAM, *(Column(name, "") for name in uses))
         name = f"trial_{trial}/{results.LIMITS_FILE}"
         self._write_table(name, columns, {"cam_angle": cam_angle, **uses})
 
@@ -164,17 +143,17 @@ class RunFolder:
 
     def write_checks(self, trial: int, records: Iterable[Mapping[str, Any]]) -> None:
         """``6_checks.json``"""
-        text = results.json_text([dict(record) for record in records])
+        text = json_text([dict(record) for record in records])
         write_atomic(self._file(f"trial_{trial}/6_checks.json"), text + "\n")
 
     def write_trial(self, trial: int, record: Mapping[str, Any]) -> None:
         """``trial.json``: smoother, what was changed and why, certificate, mesh quality."""
-        text = results.json_text(dict(record))
+        text = json_text(dict(record))
         write_atomic(self._file(f"trial_{trial}/trial.json"), text + "\n")
 
     def write_corners(self, record: Mapping[str, Any]) -> None:
         """``corners.json``: demands at every corner of the tolerances."""
-        write_atomic(self._file("corners.json"), results.json_text(dict(record)) + "\n")
+        write_atomic(self._file("corners.json"), json_text(dict(record)) + "\n")
 
     @property
     def fields(self) -> Path:
@@ -203,7 +182,7 @@ class RunFolder:
             **summary,
             "files": results.file_hashes(self.path),
         }
-        write_atomic(self.path / "run.json", results.json_text(whole) + "\n")
+        write_atomic(self.path / "run.json", json_text(whole) + "\n")
         return whole
 
     def finish(self, summary: Mapping[str, Any]) -> dict[str, Any]:
@@ -293,7 +272,7 @@ class RunFolder:
             raise ResultError(f"{self.path}: in the way, and not the start of a run")
         self._take_lock()
         if resume and state.is_file():
-            differ = _differing(results.read_json(state), self._identity())
+            differ = _differing(read_json(state), self._identity())
             if differ:
                 raise ResultError(
                     f"{self.path}: cannot be resumed: {differ} differ; run without --resume"
@@ -343,9 +322,9 @@ class RunFolder:
         return path
 
     def _write_table(
-        self, name: str, columns: Iterable[results.Column], values: Mapping[str, ArrayLike]
+        self, name: str, columns: Iterable[Column], values: Mapping[str, ArrayLike]
     ) -> None:
-        write_atomic(self._file(name), results.table(columns, values).to_csv())
+        write_atomic(self._file(name), table(columns, values).to_csv())
 
 
 def _differing(found: Any, wanted: Mapping[str, Any]) -> str:
@@ -357,6 +336,14 @@ def _differing(found: Any, wanted: Mapping[str, Any]) -> str:
     then = then if isinstance(then, dict) else {}
     names = [name for name in {**then, **now} if then.get(name) != now.get(name)]
     return f"its versions ({', '.join(names)})" if names else ""
+
+
+def drawn_cam(run: Path) -> tuple[Case, Contour]:
+    """The case of a run and the contour of its last trial."""
+    found = results.load_run(run)
+    case = load_case_file(run / "case.toml")
+    values = 1e-3 * np.asarray(found.final.lift["lift_mm"], dtype=float)
+    return case, contour_of(case, Lift(uniform_turn(values.size), values))
 
 
 @contextmanager

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Array, uniform_turn
+from geometry.arrays import Array
 from geometry.contour import Contour
 from geometry.cutter import cutter_path
 from geometry.drawing import Outline, write_dxf
-from geometry.errors import CamError, InputError
+from geometry.errors import CamError
 from meshes.solid import write_step
 from pipeline.balance import drilled_hole
 from pipeline.case import Case
-from pipeline.results import Column, table
-from pipeline.run_folder import write_atomic
-
-STEP_MIN, STEP_MAX = np.radians(0.1), np.radians(1.0)
+from pipeline.files import write_atomic
+from pipeline.tables import Column, table
 
 _CONTOUR = (
     Column("cam_angle", "deg"), Column("polar_angle", "deg"), Column("radius", "mm"),
@@ -36,50 +33,6 @@ _INSPECTION = (
     "normal_x", "normal_y", "deviation_min_mm", "deviation_max_mm",
     "measured_x_mm", "measured_y_mm", "deviation_mm",
 )  # fmt: skip
-
-
-FORM_TOLERANCE = 20e-6
-"""m: band of the inspection sheet where the case states no profile tolerance."""
-
-
-@dataclass(frozen=True)
-class ShopOrder:
-    """Step of the tables, rad; tool, tolerance band of the form, chord error, m.
-
-    A tool of the roller's radius, or the base circle's, is taken where none is given: it fits
-    wherever the follower does.
-    """
-
-    step: float = float(np.radians(0.5))
-    tool_radius: float | None = None
-    tolerance: float = FORM_TOLERANCE
-    chord_error: float | None = None
-
-    def __post_init__(self) -> None:
-        if not STEP_MIN - 1e-12 <= self.step <= STEP_MAX + 1e-12:
-            raise InputError("step", f"{np.degrees(self.step):g} deg", "0.1 to 1 deg")
-        if not self.tolerance > 0:
-            raise InputError("tolerance", self.tolerance, "> 0 m")
-
-    @property
-    def theta(self) -> Array:
-        """Angles of the tables, the nearest equal division of the turn."""
-        count = round(2 * np.pi / self.step)
-        return uniform_turn(count)
-
-
-def largest_tool(case: Case) -> float | None:
-    """Radius of the tool that the hollows have to let in, m: the limit's, else the shop's own."""
-    limit = case.limits.tool_radius
-    return case.shop.tool_radius if limit is None else limit
-
-
-def order_of(case: Case) -> ShopOrder:
-    """What a case orders of the shop."""
-    shop = case.shop
-    tool = largest_tool(case) if shop.tool_radius is None else shop.tool_radius
-    band = FORM_TOLERANCE if case.cam.profile_tolerance is None else case.cam.profile_tolerance
-    return ShopOrder(shop.table_step, tool, band, shop.chord_error)
 
 
 def outline_of(case: Case, contour: Contour) -> Outline:
@@ -100,7 +53,7 @@ def write_shop(
     left out and `note` is told why; all others are written.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    outline, order = outline_of(case, contour), order_of(case)
+    outline, order = outline_of(case, contour), case.workshop
     tool = order.tool_radius or contour.fitting_tool
     jobs: dict[str, Callable[[Path], object]] = {
         "contour.csv": lambda path: write_atomic(path, contour_table(contour, order.theta)),

@@ -1,11 +1,17 @@
-"""The shop in a case file: its tool, how dense its tables are, how true its chords."""
+"""The workshop in a case file: its tool, the step of its tables, the error of its chords."""
 
 from __future__ import annotations
 
-from math import radians
+from dataclasses import dataclass
+from math import pi, radians
 from typing import Annotated
 
-from pipeline.case_fields import In, Length, Section
+from geometry.arrays import Array, uniform_turn
+from pipeline.case_fields import In, Length
+from pipeline.section import Section
+
+FORM_TOLERANCE = 20e-6
+"""m: band of the inspection sheet where the case states no profile tolerance."""
 
 
 class Shop(Section):
@@ -19,3 +25,22 @@ class Shop(Section):
     table_step: Annotated[float, In("deg", at_least=0.1, at_most=1)] = radians(0.5)
     tool_radius: Length | None = None
     chord_error: Annotated[float, In("um", at_least=0.001, at_most=1000)] | None = None
+
+
+@dataclass(frozen=True)
+class ShopOrder:
+    """Step of the tables, rad; tool, tolerance band of the form, chord error, m.
+
+    A tool of the roller's radius, or the base circle's, is taken where none is given: it fits
+    wherever the follower does.
+    """
+
+    step: float
+    tool_radius: float | None
+    tolerance: float
+    chord_error: float | None
+
+    @property
+    def theta(self) -> Array:
+        """Angles of the tables (n,), rad: the nearest equal division of the turn."""
+        return uniform_turn(round(2.0 * pi / self.step))

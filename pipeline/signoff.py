@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline import results
+from pipeline.files import json_text, read_json
 
 NAME = "signoff.json"
 SCHEMA = 1
@@ -55,8 +56,8 @@ def record(path: Path) -> dict[str, Any]:
     summary = results.read_summary(path)
     trial = path / f"trial_{summary['trials']}"
     made, checks = (
-        results.read_json(trial / "trial.json"),
-        results.read_json(trial / "6_checks.json"),
+        read_json(trial / "trial.json"),
+        read_json(trial / "6_checks.json"),
     )
     stops = [
         c["id"]
@@ -89,7 +90,7 @@ def record(path: Path) -> dict[str, Any]:
             "certificate": made.get("certificate", []),
             "contact_method": made.get("contact_method"),
             "benchmarks": summary.get("benchmarks"),
-            "corners": results.read_json(corners).get("tried") if corners.is_file() else None,
+            "corners": read_json(corners).get("tried") if corners.is_file() else None,
             "statements": _statements(checks),
         },
         "limitations": list(LIMITATIONS),
@@ -110,10 +111,10 @@ def _statements(checks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 def write(path: Path) -> dict[str, Any]:
     """Write the record into the folder of a run that is otherwise complete."""
-    from pipeline.run_folder import write_atomic
+    from pipeline.files import write_atomic
 
     whole = record(path)
-    write_atomic(path / NAME, results.json_text(whole) + "\n")
+    write_atomic(path / NAME, json_text(whole) + "\n")
     return whole
 
 
@@ -125,7 +126,7 @@ def changes(path: Path) -> list[str]:
     ResultError
         If there is no record, or it cannot be read.
     """
-    signed = results.read_json(path / NAME)
+    signed = read_json(path / NAME)
     known = signed.get("files") if isinstance(signed, dict) else None
     if not isinstance(known, Mapping):
         return [f"{NAME}: holds no hashes"]

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from geometry.contour import Contour
 from geometry.energy import lift_from_torque
 from geometry.errors import GeometryError, ResultError
 from geometry.lift import Lift
-from meshes.body import BodyMesh
 from meshes.files import write_msh
 from meshes.quality import Quality, gate, quality
 from pipeline import cycle as cycles
@@ -23,7 +21,7 @@ from pipeline.case import Case
 from pipeline.checks.check import Check
 from pipeline.checks.everything import all_checks, design_checks
 from pipeline.checks.trial import TrialEvidence
-from pipeline.contact.history import CertificatePoint, ContactHistory
+from pipeline.contact.history import ContactHistory
 from pipeline.contact.pair import (
     TWO_SCALE,
     ContactPair,
@@ -32,52 +30,18 @@ from pipeline.contact.pair import (
     pair_history,
 )
 from pipeline.contact.pair_certificate import EDGES, contact_meshes
-from pipeline.cycle import Cycle, Turn
 from pipeline.engine.torque import Torque
 from pipeline.given_lift import contour_of, given_lift
 from pipeline.measured import engine_torque, has_torque
 from pipeline.smoothing.smoothers import Smoother, smoothed
 from pipeline.speed import rubbing_of, speed_ripple
+from pipeline.trial_value import ContactMesh, Trial
+from pipeline.turn import Turn, turn
 
 # Positions solved together: what an interruption may cost, and the grain of the progress bar.
 CHUNK = 90
 # A look ahead needs no more angles than this.
 _OUTLOOK_POSITIONS = 360
-
-
-@dataclass(frozen=True, eq=False)
-class ContactMesh:
-    """Cam and follower meshed for the contact at their worst angle (rad).
-
-    `name` is that of the follower's body: roller or face.
-    """
-
-    theta: float
-    half_width: float
-    cam: BodyMesh
-    follower: BodyMesh
-    name: str
-    quality: Quality
-
-
-@dataclass(frozen=True, eq=False)
-class Trial:
-    """A lift and all that follows from it; `why` says what brought it about.
-
-    synthesis is the record of the constrained synthesis that drew the lift, if one did.
-    mesh is None, and the contact unknown (NaN), where the contour cannot exist as a body.
-    """
-
-    number: int
-    smoother: Smoother | None
-    why: str
-    lift: Lift
-    contour: Contour
-    cycles: tuple[Cycle, ...]
-    mesh: ContactMesh | None
-    checks: tuple[Check, ...]
-    certificate: tuple[CertificatePoint, ...] = ()
-    synthesis: Mapping[str, Any] | None = None
 
 
 def engine_torques(case: Case) -> dict[str, Torque]:
@@ -262,6 +226,6 @@ def turns_of(
 ) -> tuple[Turn, ...]:
     """Loads of every load case; a look ahead takes them less finely."""
     return tuple(
-        cycles.turn(case, contour, torques.get(state.name), state.name, positions, ahead)
+        turn(case, contour, torques.get(state.name), state.name, positions, ahead)
         for state in case.load_cases
     )

@@ -14,16 +14,15 @@ import numpy as np
 
 from geometry.arrays import FULL_TURN, Array
 from pipeline.case import Case
-from pipeline.cycle import Turn
 from pipeline.elastic_history import elastic_follower
-from pipeline.given_lift import motion_of
-from pipeline.lift_fields import LiftSegments
+from pipeline.lift_fields import LiftSegments, motion_of
 from pipeline.mechanism.valve_cam import (
     ElasticValve,
     ValveCam,
     follower_acceleration,
     rise_efficiency,
 )
+from pipeline.turn import Turn
 
 _ANGLES = 20_000
 RECONSTRUCTED = "reconstructed"

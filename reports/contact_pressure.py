@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.arrays import Array
-from pipeline.results import Table
+from pipeline.tables import Table
 from reports.rasters import Above
 
 FILE = "5_pressure.npz"

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from pipeline.files import write_atomic
 from reports.figures import Figure
-from reports.material import Material
-from reports.output import FIGURES, write_whole
+from reports.material import FIGURES, Material
 from reports.parts_sheet import part_figures
 from reports.plots import svg_and_png
 from reports.sheet import figures
@@ -60,7 +60,7 @@ def drawn_groups(material: Material) -> Sequence[tuple[str, Sequence[Drawn]]]:
 def write(material: Material) -> list[Path]:
     """Write ``figures/ID.png`` for every figure of the sheet."""
     return [
-        write_whole(material.folder / FIGURES / f"{one.figure.id}.png", one.png)
+        write_atomic(material.folder / FIGURES / f"{one.figure.id}.png", one.png)
         for _, drawn in drawn_groups(material)
         for one in drawn
     ]

@@ -18,8 +18,7 @@ from PIL import Image
 from geometry.errors import ResultError
 from reports.film_frames import Stage
 from reports.film_patch import colour_table
-from reports.material import Material
-from reports.output import FIGURES
+from reports.material import FIGURES, Material
 from reports.plots import COLOURS
 from reports.turn_view import read_turn_view
 

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.results import Table, load_run, read_table
+from pipeline.results import CYCLE, load_run
+from pipeline.tables import Table, read_table
 
 _EXAGGERATED = 0.12
 """Of the mean radius: how large the greatest deviation is drawn on the part."""
@@ -25,7 +26,7 @@ def draw(run: Path, tolerance_um: float) -> Path:
     from matplotlib.figure import Figure
 
     folder = run / "inspection"
-    deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv")
+    deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv", CYCLE)
     nominal = load_run(run).final
     figure = Figure(figsize=(10, 8), layout="constrained")
     over_turn = figure.add_subplot(2, 2, 1)

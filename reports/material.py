@@ -13,6 +13,8 @@ from pipeline.results import Run, load_run
 from reports.turn import Turn
 from reports.verdict import governing_load_case
 
+FIGURES = "figures"
+"""Folder of the pictures, in a run folder."""
 Tell = Callable[[int, int], None]
 
 

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from pipeline.files import write_atomic
 from pipeline.results import TrialRecord
 from reports import interactive, proof, tables
 from reports.drawings import drawn_groups
 from reports.material import Material
-from reports.output import write_whole
 from reports.pictures import PICTURES
 from reports.turn import Turn
 from reports.verdict import verdict
@@ -50,7 +50,7 @@ ASSUMPTIONS = (
 
 def write(material: Material) -> list[Path]:
     """Write ``8_report.html``."""
-    return [write_whole(material.folder / PAGE, text(material))]
+    return [write_atomic(material.folder / PAGE, text(material))]
 
 
 def text(material: Material, *, live: bool = True) -> bytes:

@@ -9,8 +9,7 @@ from pathlib import Path
 
 from geometry.errors import InputError, ResultError
 from reports import drawings, film, page, pictures, printing, scene_html
-from reports.material import Material, Tell, read_material, silent
-from reports.output import FIGURES
+from reports.material import FIGURES, Material, Tell, read_material, silent
 
 
 @dataclass(frozen=True)

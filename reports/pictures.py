@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from geometry.errors import ResultError
+from pipeline.files import write_atomic
 from reports import bushes, contact_pressure, envelope, scene, tables
 from reports.contact_pressure import over_the_contact
-from reports.material import Material
-from reports.output import FIGURES, write_whole
+from reports.material import FIGURES, Material
 
 FIELD = Path("fields") / "contact_worst.vtu"
 
@@ -161,7 +161,7 @@ PICTURES: tuple[Callable[[Material], Sequence[Picture]], ...] = (
 def write_pictures(draw: Callable[[Material], Sequence[Picture]], material: Material) -> list[Path]:
     """Write ``figures/NAME.png`` for each picture that could be drawn."""
     return [
-        write_whole(material.folder / FIGURES / f"{picture.name}.png", picture.png)
+        write_atomic(material.folder / FIGURES / f"{picture.name}.png", picture.png)
         for picture in draw(material)
         if picture.png
     ]

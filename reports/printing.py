@@ -9,9 +9,9 @@ import tempfile
 from pathlib import Path
 
 from geometry.errors import ResultError
+from pipeline.files import write_atomic
 from reports import browser, page
 from reports.material import Material
-from reports.output import write_whole
 from reports.plots import COLOURS
 
 PDF = "8_report.pdf"
@@ -35,7 +35,7 @@ def write(material: Material) -> list[Path]:
     if browser.executable() is not None:
         _by_chromium(text, pdf, footer)
     elif importlib.util.find_spec("weasyprint") is not None:
-        write_whole(pdf, by_weasyprint(text.decode(), footer))
+        write_atomic(pdf, by_weasyprint(text.decode(), footer))
     else:
         raise ResultError(
             "nothing to print with: install Chromium (Debian: chromium), name one in "

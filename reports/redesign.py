@@ -11,7 +11,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from reports.output import write_whole
+from pipeline.files import write_atomic
 from reports.plots import COLOURS
 from reports.tables import number
 
@@ -41,8 +41,8 @@ def write(folder: Path, document: Mapping[str, Any]) -> Path:
     document : mapping   the contents of ``redesign.json``
     """
     picture = drawn(document)
-    write_whole(folder / "redesign.png", picture)
-    return write_whole(folder / "redesign.html", _page(document, picture).encode())
+    write_atomic(folder / "redesign.png", picture)
+    return write_atomic(folder / "redesign.html", _page(document, picture).encode())
 
 
 def drawn(document: Mapping[str, Any]) -> bytes:

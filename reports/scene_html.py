@@ -11,10 +11,10 @@ from markupsafe import Markup
 
 from geometry.arrays import Array
 from geometry.errors import ResultError
+from pipeline.files import write_atomic
 from reports import envelope
 from reports.interactive import script_safe_json, scripts
 from reports.material import Material
-from reports.output import write_whole
 from reports.page import environment
 from reports.solids import Solid, box, joined, ring, tube
 from reports.turn_view import TurnView, read_turn_view
@@ -47,7 +47,7 @@ def write(material: Material) -> Sequence[Path]:
         hashes=hashes,
         data=Markup(script_safe_json(scene(material, view))),  # noqa: S704 - no "<" is left in it
     )  # fmt: skip
-    return [write_whole(material.folder / FILE, text.encode("utf-8", "replace"))]
+    return [write_atomic(material.folder / FILE, text.encode("utf-8", "replace"))]
 
 
 def scene(material: Material, view: TurnView) -> dict[str, Any]:

@@ -16,8 +16,8 @@ from typing import Any
 from geometry.errors import InputError
 from pipeline import units
 from pipeline.cards.springs import put_spring
+from pipeline.files import read_toml
 from pipeline.follower import bearing_cards
-from pipeline.toml_file import read_toml
 
 KINDS = ("materials", "bushes", "oils", "wires", "bearings")
 USER_FILE = "cards.toml"

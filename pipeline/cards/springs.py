@@ -11,7 +11,7 @@ from typing import Any
 
 from geometry.errors import InputError
 from pipeline import units
-from pipeline.case_folder import inside
+from pipeline.files import inside
 from pipeline.follower.spring import HelicalSpring
 from pipeline.follower.spring_catalogue import CATALOGUE, SpringDemand, lightest, read_catalogue
 

@@ -8,7 +8,6 @@ from geometry.arrays import FULL_TURN
 from geometry.extrema import greatest
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, rollers_only
-from pipeline.shop import largest_tool
 
 ACCELERATION_STEP = 0.2  # of the swing: a jump spreads over a few samples, a smooth law does not
 RESTING = 1e-9  # swing of s'' over the lift, 1/rad^2, of a cam that is round
@@ -153,7 +152,7 @@ def concave_radius(evidence: TrialEvidence) -> Check | None:
     value, theta = evidence.contour.pitch.curvature_min()
     if value >= 0:
         return None
-    tool = largest_tool(evidence.case)
+    tool = evidence.case.largest_tool
     return Check(
         id="concave_radius",
         title="Least hollow radius of the contour",

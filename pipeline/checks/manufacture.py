@@ -10,7 +10,6 @@ from geometry.arrays import FULL_TURN, Array
 from pipeline.checks.check import Check
 from pipeline.checks.function import TORQUE_REDUCTION
 from pipeline.checks.trial import TrialEvidence, Worst, greatest, worst_case
-from pipeline.shop import order_of
 
 
 def profile_waviness(evidence: TrialEvidence) -> Check:
@@ -48,7 +47,7 @@ def chord_error(evidence: TrialEvidence) -> Check:
     """What straight lines between the points of the shop's contour table miss of it."""
     tolerance = getattr(evidence.case.cam, "profile_tolerance", None)
     share = evidence.limit("chord_share", 0.25)
-    theta = order_of(evidence.case).theta
+    theta = evidence.case.workshop.theta
     contour = evidence.contour
     points = contour.points(theta)
     step = np.hypot(*(np.roll(points, -1, axis=1) - points))

@@ -48,7 +48,7 @@ def check(
 
         document["changes"] = changes(_comparable(baseline, only or ()), document["checks"])
     if junit is not None:
-        from pipeline.run_folder import write_atomic
+        from pipeline.files import write_atomic
 
         write_atomic(junit, junit_text(document["checks"], document["case"], fail_on))
     if as_json:
@@ -86,7 +86,7 @@ def _checked_run(folder: Path) -> dict[str, Any]:
 
 
 def _checked_case(path: Path) -> dict[str, Any]:
-    from pipeline.case import load_case_file
+    from pipeline.case_file import load_case_file
     from pipeline.checks.verdict import binding
     from pipeline.preview import closed_form_checks
 

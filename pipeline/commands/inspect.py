@@ -35,15 +35,15 @@ def inspect(
 ) -> int:
     """Fit a measured cam to its drawing and judge the real part: exit 0 passed, 1 failed."""
     from pipeline import inspection, units
-    from pipeline.shop import order_of
+    from pipeline.run_folder import drawn_cam
     from reports.inspection import draw
 
     asked = None if tolerance is None else units.parse(tolerance, "um", "--tolerance")
     if asked is not None and not asked > 0:
         raise InputError("--tolerance", tolerance, "> 0 um")
     points = inspection.read_measured(measured)
-    case, contour = inspection.nominal(folder)
-    band = order_of(case).tolerance if asked is None else asked
+    case, contour = drawn_cam(folder)
+    band = case.workshop.tolerance if asked is None else asked
     with progress_shown() as progress:
         part = inspection.inspect_part(
             case, contour, points, keep_phase=keep_phase, jobs=jobs, tell=progress.stage

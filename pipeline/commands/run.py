@@ -38,7 +38,7 @@ def run(
     no_cache: NoCacheOption = False,
 ) -> int:
     """Run a case: torque, lift, contour, mesh, contact, checks, report."""
-    from pipeline.case import load_case_file
+    from pipeline.case_file import load_case_file
 
     use_cache(not no_cache)
     if jobs is not None and not 1 <= jobs <= 256:
@@ -49,10 +49,19 @@ def run(
     if not (resume and _finished(out, design.sha256)):
         from pipeline.run import run_case
         from pipeline.run_folder import set_aside
+        from reports.parts import build
 
         old = set_aside(out, design) if replace else nullcontext()
         with old, progress_shown() as progress:
-            run_case(design, out, positions=positions, jobs=jobs, resume=resume, progress=progress)
+            run_case(
+                design,
+                out,
+                positions=positions,
+                jobs=jobs,
+                resume=resume,
+                progress=progress,
+                present=build,
+            )
     from pipeline.results import read_verdict
 
     show(read_verdict(out), out)

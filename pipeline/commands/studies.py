@@ -25,7 +25,7 @@ def compare(
     ] = None,
 ) -> int:
     """Every smoother on the same case, by closed forms: ripple left, forces, verdict."""
-    from pipeline.case import load_case_file
+    from pipeline.case_file import load_case_file
     from pipeline.smoothing.comparison import compared
     from pipeline.trial import engine_torques
     from reports import smoothers
@@ -54,8 +54,7 @@ def validate(
     ] = Path(),
 ) -> int:
     """Run the papers' studies again; write validation.html and validation.json."""
-    from pipeline.results import json_text
-    from pipeline.run_folder import write_atomic
+    from pipeline.files import json_text, write_atomic
     from pipeline.validation import validate as studies
     from reports.validation_page import page
 

@@ -8,8 +8,8 @@ from typing import Any
 
 from geometry.errors import InputError
 from pipeline import units
+from pipeline.files import read_toml
 from pipeline.follower.spring import HelicalSpring, Wire
-from pipeline.toml_file import read_toml
 
 CATALOGUE = Path(__file__).parent / "cards" / "springs.toml"
 _BYTES = 256 * 1024

@@ -13,8 +13,8 @@ from pydantic import Field, ValidationError
 from geometry.arrays import uniform_turn
 from geometry.eccentric import Eccentric
 from geometry.errors import InputError
-from pipeline.case import CASE_BYTES
-from pipeline.case_fields import FileName, Force, In, Length, Mass, Name, Section, Text
+from pipeline.case_fields import Force, In, Length, Mass
+from pipeline.case_file import CASE_BYTES
 from pipeline.mechanism.drive import (
     POSITIONS,
     DryFriction,
@@ -29,6 +29,7 @@ from pipeline.mechanism.drive import (
 )
 from pipeline.mechanism.identify import Pendulum, from_pendulum, from_run_down, read_decay
 from pipeline.mechanism.workspace import OFFSET_SHARE, Workspace, workspace
+from pipeline.section import FileName, Name, Section, Text
 
 Viscous = Annotated[float, In("N m s/rad", at_least=0, at_most=1e6)]
 Inertia = Annotated[float, In("kg m^2", at_least=0, at_most=1e6)]

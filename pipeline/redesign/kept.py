@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import Any, Literal
 
 from geometry.errors import CamError
-from pipeline.case import parse_case
+from pipeline.case_file import parse_case
 from pipeline.engine.torque import Torque
+from pipeline.files import json_text, read_json, write_atomic
 from pipeline.redesign.point import point_of, rough_point
-from pipeline.results import json_text, read_json
-from pipeline.run_folder import write_atomic
 from pipeline.trial import engine_torques
 
 SOLVED = "solved"

@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Any, Literal
 
 from geometry.errors import InputError, ResultError
-from pipeline.case import Case, load_case_file
+from pipeline.case import Case
+from pipeline.case_file import load_case_file
+from pipeline.files import json_text, read_json, write_atomic
 from pipeline.processes import pool, workers_for
 from pipeline.progress import Progress
 from pipeline.redesign.catalogue import Catalogue, catalogue_of
@@ -19,8 +21,7 @@ from pipeline.redesign.kept import SOLVED, Task, solved
 from pipeline.redesign.point import Rough
 from pipeline.redesign.search import Branch, branches
 from pipeline.redesign.variant import Choice, variant
-from pipeline.results import json_text, read_json
-from pipeline.run_folder import versions, write_atomic
+from pipeline.run_folder import versions
 from pipeline.smoothing.problem import problem_of
 from pipeline.trial import engine_torques
 

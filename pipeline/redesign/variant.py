@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from pipeline import units
-from pipeline.case import Case, case_of
+from pipeline.case import Case
+from pipeline.case_file import case_of
 from pipeline.follower.bearing_cards import BearingCard
 from pipeline.follower.spring import HelicalSpring, case_spring
 from pipeline.follower.spring_catalogue import SpringDemand

@@ -10,12 +10,12 @@ import numpy as np
 
 from geometry.errors import InputError
 from pipeline.case import Case
-from pipeline.cycle import CREEP
 from pipeline.design_fields import LoadCase
 from pipeline.engine.torque import Torque
 from pipeline.smoothing.constrained import Problem
 from pipeline.smoothing.ratings import ratings_of
 from pipeline.smoothing.scenario import Correction, Machine, Scenario
+from pipeline.turn import CREEP
 
 POINTS = 720
 

@@ -14,13 +14,13 @@ from pipeline.checks.geometry import TOOL_ALLOWANCE
 from pipeline.checks.guides import pv_limit
 from pipeline.checks.spring import Work, hardest_work
 from pipeline.contact.hertz import contact_modulus
-from pipeline.cycle import CREEP, contact_width
+from pipeline.contact_setup import contact_width
 from pipeline.follower.roller import HOUR
 from pipeline.follower.spring import case_spring
 from pipeline.part_fields import Guide
 from pipeline.parts import pin_stress_per_newton
-from pipeline.shop import largest_tool
 from pipeline.smoothing.scenario import LIFE_UNIT, Ratings
+from pipeline.turn import CREEP
 
 _TRAVEL_LEAST, _TRAVEL_MOST = 1e-6, 1.0  # m, of any spring
 
@@ -29,7 +29,7 @@ def ratings_of(case: Case) -> Ratings:
     """Limits of a case as the checks apply them."""
     limits, roller, guides = case.limits, case.roller, case.guides
     cam, ring = case.material(case.cam.material), case.material(roller.material)
-    bearing, tool = roller.bearing, largest_tool(case)
+    bearing, tool = roller.bearing, case.largest_tool
     wear = None
     if bearing.C is not None and limits.roller_life is not None:
         wear = bearing.C**3 * LIFE_UNIT / (limits.roller_life / HOUR)

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from pipeline.cards.fill import filled
-from pipeline.case import Case, load_case_file
+from pipeline.case import Case
+from pipeline.case_file import load_case_file
 from pipeline.outer_ring import roller_in_words
 from pipeline.progress import Silent
 from pipeline.run import run_case

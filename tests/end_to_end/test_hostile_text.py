@@ -22,7 +22,8 @@ from geometry.errors import InputError
 from geometry.lift import Lift
 from pipeline import results, signoff
 from pipeline import trial as road
-from pipeline.case import Case, parse_case
+from pipeline.case import Case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 from pipeline.check_command import junit
 from pipeline.run_folder import RunFolder

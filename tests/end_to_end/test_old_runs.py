@@ -10,6 +10,7 @@ import pytest
 
 from pipeline import results
 from pipeline.check_command import failing
+from pipeline.files import read_json
 from pipeline.signoff import changes
 from reports import parts
 
@@ -26,7 +27,7 @@ def run(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 
 
 def test_every_schema_has_a_run() -> None:
-    found = {results.read_json(RUNS / name / "run.json")["schema"] for name in FOLDERS}
+    found = {read_json(RUNS / name / "run.json")["schema"] for name in FOLDERS}
     assert found == set(range(1, results.SCHEMA + 1))
 
 

@@ -8,11 +8,11 @@ import pytest
 from geometry.arrays import uniform_turn
 from geometry.eccentric import Eccentric
 from pipeline import trial as road
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.checks import geometry as checks
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import CycleBodies, closed_form_history, pair_history
-from pipeline.cycle import contact_pair
+from pipeline.contact_setup import contact_pair
 from pipeline.follower.roller import roller_motion
 from pipeline.mechanism.drive import (
     EccentricDrive,

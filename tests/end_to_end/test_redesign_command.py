@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from geometry.errors import InputError, ResultError
-from pipeline.case import case_of, load_case_file, parse_case
+from pipeline.case_file import case_of, load_case_file, parse_case
 from pipeline.case_text import to_toml
 from pipeline.preview import closed_form_checks
 from pipeline.progress import Silent

@@ -18,7 +18,7 @@ from reports import drawings, page, parts, printing
 
 ROOT = Path(__file__).parents[2]
 RUN = ROOT / "tests" / "data" / "runs" / "schema-1-signed"
-READ_ONLY = {"pipeline.results", "pipeline.units"}
+READ_ONLY = {"pipeline.files", "pipeline.results", "pipeline.tables", "pipeline.units"}
 NEEDED = READ_ONLY | {"pipeline", "pipeline.cli", "pipeline.progress"}
 SOLVERS = {"skfem", "gmsh", "clarabel", "cvxopt", "pypardiso", "meshes"}
 LISTING = """

@@ -14,12 +14,14 @@ from geometry.arrays import uniform_turn
 from geometry.errors import ResultError
 from pipeline import results
 from pipeline import trial as road
-from pipeline.case import Case, load_case_file
+from pipeline.case import Case
+from pipeline.case_file import load_case_file
 from pipeline.contact.pair import CycleBodies, pair_history
-from pipeline.cycle import contact_pair
+from pipeline.contact_setup import contact_pair
 from pipeline.progress import Silent
 from pipeline.run import run_case
 from pipeline.smoothing.smoothers import Smoother
+from reports.parts import build
 
 ROOT = Path(__file__).resolve().parents[2]
 POSITIONS = 180  # two pieces of the contact per trial
@@ -60,16 +62,16 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, Path, dict
     folder = tmp_path_factory.mktemp("run")
     case, out = small(folder), folder / "out"
     with pytest.raises(KeyboardInterrupt):
-        run_case(case, out, progress=Recorder(stop_after=3))
+        run_case(case, out, progress=Recorder(stop_after=3), present=build)
     assert not out.exists()
-    return case, out, run_case(case, out, resume=True, jobs=1, progress=Silent())
+    return case, out, run_case(case, out, resume=True, jobs=1, progress=Silent(), present=build)
 
 
 @pytest.fixture(scope="module")
 def straight(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same run without interruption."""
     folder = tmp_path_factory.mktemp("straight")
-    run_case(small(folder), folder / "out", jobs=1, progress=Silent())
+    run_case(small(folder), folder / "out", jobs=1, progress=Silent(), present=build)
     return folder / "out"
 
 
@@ -224,7 +226,7 @@ def test_folder_of_another_case_is_refused(
     _, out, summary = finished
     other = small(tmp_path, preload='"250 N"')
     with pytest.raises(ResultError, match="holds the run of"):
-        run_case(other, out, progress=Silent())
+        run_case(other, out, progress=Silent(), present=build)
     assert json.loads((out / "run.json").read_text()) == summary
 
 
@@ -233,7 +235,7 @@ def test_undercut_is_a_verdict(tmp_path: Path) -> None:
     text = (tmp_path / "case.toml").read_text().replace('kind = "moving_average"', 'kind = "none"')
     (tmp_path / "case.toml").write_text(text)
     case = load_case_file(tmp_path / "case.toml")
-    summary = run_case(case, tmp_path / "out", progress=Silent())
+    summary = run_case(case, tmp_path / "out", progress=Silent(), present=build)
     assert summary["verdict"] == "fail"
     assert "undercut" in summary["binding"]
     assert "contact_pressure" in summary["binding"], "an unknown contact must not pass"
@@ -260,7 +262,7 @@ def test_road_may_begin_at_the_lift(tmp_path: Path) -> None:
     text = text.replace(engine.group(), '[lift]\nfile = "lift.csv"\n\n[mechanism]')
     (tmp_path / "case.toml").write_text(text)
     case = load_case_file(tmp_path / "case.toml")
-    summary = run_case(case, tmp_path / "out", jobs=1, progress=Silent())
+    summary = run_case(case, tmp_path / "out", jobs=1, progress=Silent(), present=build)
     assert not (tmp_path / "out" / "1_torque.csv").exists()
     assert summary["headline"]["torque_std_before_Nm"] is None
     cycle = results.load_run(tmp_path / "out").final.cycle

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.progress import Silent
 from pipeline.results import load_run
 from pipeline.run import run_case

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from pipeline.files import read_toml
 from pipeline.follower.bearing_cards import CARDS, BearingCard, read_card
-from pipeline.toml_file import read_toml
 
 
 def read_cards(path: Path = CARDS) -> dict[str, BearingCard]:

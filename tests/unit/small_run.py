@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 
 from pipeline import results
-from pipeline.case import Case, parse_case
+from pipeline.case import Case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 from pipeline.run_folder import RunFolder
+from pipeline.tables import Column
 
 ROWS = 5
 
@@ -20,7 +22,7 @@ def small_case(name: str = "small") -> Case:
     return parse_case(template(name))
 
 
-def values(columns: tuple[results.Column, ...], rows: int = ROWS) -> dict[str, Any]:
+def values(columns: tuple[Column, ...], rows: int = ROWS) -> dict[str, Any]:
     """SI values for every column, none of them a round number."""
     made: dict[str, Any] = {}
     for k, column in enumerate(columns):

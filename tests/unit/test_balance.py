@@ -16,13 +16,13 @@ from geometry.pitch_curve import PitchCurve
 from meshes.body import cam_mesh
 from meshes.sizing import Sizing
 from pipeline.balance import WALL, balance, drilled_hole
-from pipeline.case import parse_case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 from pipeline.checks.parts import cam_unbalance
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import CycleBodies, pair_history
 from pipeline.contact.pair_certificate import solve_pair
-from pipeline.cycle import contact_pair
+from pipeline.contact_setup import contact_pair
 from pipeline.follower.cam_body import CounterHole, greatest_hole, unbalance
 from pipeline.shop import outline_of, write_shop
 

@@ -4,7 +4,7 @@ import pytest
 
 from geometry.errors import InputError
 from pipeline.cards.fill import known_cards, viscosity
-from pipeline.case import parse_case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 from pipeline.checks.contact import contact_pressure
 from pipeline.checks.trial import TrialEvidence

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from geometry.errors import InputError
-from pipeline.case import CASE_BYTES, Case, load_case_file, parse_case
+from pipeline.case import Case
+from pipeline.case_file import CASE_BYTES, load_case_file, parse_case
 from pipeline.case_template import template
 
 ROOT = Path(__file__).resolve().parents[2]

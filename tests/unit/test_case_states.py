@@ -8,14 +8,15 @@ import pytest
 
 from geometry.errors import InputError
 from pipeline import trial as road
-from pipeline.case import parse_case
+from pipeline.case_file import parse_case
 from pipeline.checks import forces, guides, roller
 from pipeline.checks.forces import contact_force_margin
 from pipeline.checks.trial import TrialEvidence
 from pipeline.corners import Corner, applied
-from pipeline.cycle import closed_form_cycle, finished, turn
+from pipeline.cycle import closed_form_cycle, finished
 from pipeline.preview import closed_form_checks
 from pipeline.smoothing.smoothers import Smoother
+from pipeline.turn import turn
 
 GX120_CASE = Path(__file__).resolve().parents[2] / "cases" / "gx120.toml"
 GX120 = GX120_CASE.read_text(encoding="utf-8")

@@ -3,7 +3,7 @@
 import pytest
 
 from geometry.errors import InputError
-from pipeline.case import load_case_file, parse_case
+from pipeline.case_file import load_case_file, parse_case
 from pipeline.case_template import template
 from pipeline.follower.spring import case_spring
 from pipeline.follower.spring_catalogue import CATALOGUE, SpringDemand, read_catalogue

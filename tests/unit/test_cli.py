@@ -61,7 +61,14 @@ def case_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command)
 
 
 def short_road(
-    case: Any, out: Path, *, positions: int | None, jobs: int | None, resume: bool, progress: Any
+    case: Any,
+    out: Path,
+    *,
+    positions: int | None,
+    jobs: int | None,
+    resume: bool,
+    progress: Any,
+    present: Callable[[Path], object],
 ) -> None:
     progress.stage("cycle")
     progress.advance(1, 2)

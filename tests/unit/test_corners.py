@@ -9,7 +9,7 @@ from geometry.contour import Contour
 from geometry.errors import InputError
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
-from pipeline.case import parse_case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 from pipeline.checks.check import Check
 from pipeline.corners import Corner, Outcome, applied, corners_of, governed, outcomes, record

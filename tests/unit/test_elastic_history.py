@@ -8,12 +8,13 @@ import pytest
 from geometry.arrays import uniform_turn
 from geometry.lift import Lift
 from pipeline import trial as road
-from pipeline.case import load_case_file
-from pipeline.cycle import finished, turn
+from pipeline.case_file import load_case_file
+from pipeline.cycle import finished
 from pipeline.elastic_history import elastic_follower, elastic_history
 from pipeline.follower.dynamics import harmonic_response
 from pipeline.follower.forces import FollowerSystem
 from pipeline.speed import study_of
+from pipeline.turn import turn
 
 CASES = Path(__file__).parents[2] / "cases"
 POSITIONS = 72

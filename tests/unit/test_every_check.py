@@ -15,7 +15,7 @@ from check_registry import BY_ID, BY_ITSELF, FUNCTIONS, MADE_LATER, TRIED, check
 from trial_variants import meshed, with_loads
 
 from geometry.errors import CamError
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.checks import proof, verdict
 from pipeline.preview import closed_form_checks
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from geometry.errors import InputError
-from pipeline.case import Case, load_case_file, parse_case
+from pipeline.case import Case
+from pipeline.case_file import load_case_file, parse_case
 from pipeline.case_template import template
 from pipeline.given_lift import given_lift, lift_origin
 

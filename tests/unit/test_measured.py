@@ -10,7 +10,7 @@ from crank_traces import CYCLE, noisy_times, tooth_angles, voltage
 
 from geometry.errors import InputError
 from pipeline import trial as road
-from pipeline.case import load_case_file, parse_case
+from pipeline.case_file import load_case_file, parse_case
 from pipeline.measured import engine_torque, measurement_record
 from pipeline.smoothing.smoothers import Smoother
 from pipeline.speed import consistency, speed_record, study_of

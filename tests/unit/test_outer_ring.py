@@ -11,12 +11,12 @@ from geometry.contour import Contour
 from geometry.errors import InputError
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
-from pipeline.case import parse_case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 from pipeline.contact.follower_body import RollerBody
 from pipeline.contact.pair import CycleBodies, pair_history
 from pipeline.contact.ring_body import BallRing, RingBody
-from pipeline.cycle import contact_pair, contact_width
+from pipeline.contact_setup import contact_pair, contact_width
 from pipeline.follower.bearing_cards import as_case_table
 from pipeline.outer_ring import outer_ring, roller_in_words, why_solid
 

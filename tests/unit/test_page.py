@@ -14,7 +14,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
 from geometry.errors import ResultError
-from reports import drawings, interactive, output, page
+from pipeline import files
+from reports import drawings, interactive, page
 
 HOSTILE = "<script>alert(1)</script>\"'&lt;../../x " + "אבג \u202e \U0001f527 "
 
@@ -236,7 +237,7 @@ def test_a_failed_write_leaves_the_old_page(built, html, undrawn, monkeypatch):
     def full(*_args, **_kwargs):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(output.os, "fdopen", full)
+    monkeypatch.setattr(files.os, "fdopen", full)
     with pytest.raises(ResultError, match="No space left on device"):
         report_fixture.page_of(built.parent)
     assert built.read_text(encoding="utf-8") == html

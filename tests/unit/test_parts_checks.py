@@ -11,7 +11,7 @@ from geometry.errors import InputError
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from pipeline import results
-from pipeline.case import parse_case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 from pipeline.checks import parts as part_checks
 from pipeline.checks import shaft as shaft_checks
@@ -21,10 +21,13 @@ from pipeline.checks.function import friction_balance
 from pipeline.checks.geometry import acceleration_step
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import closed_form_history
-from pipeline.cycle import closed_form_cycle, contact_pair, finished, turn
+from pipeline.contact_setup import contact_pair
+from pipeline.cycle import closed_form_cycle, finished
 from pipeline.follower.forces import FollowerSystem, follower_loads
 from pipeline.follower.guides import GuidePair, guide_reactions
 from pipeline.follower.stem import Stem
+from pipeline.tables import table
+from pipeline.turn import turn
 
 SPRING = """
 [spring.design]
@@ -261,7 +264,7 @@ def test_friction_that_the_guides_do_not_have_is_found_out(bare):
 def test_columns_of_a_turn_close(bare):
     """What one row says of friction, force, heat and shares adds up: 1e-9 of the greatest."""
     cycle, guides = bare.cycles[0], bare.case.guides
-    found = results.table(results.CYCLE, cycle.columns(bare.case.mechanism.gear_ratio))
+    found = table(results.CYCLE, cycle.columns(bare.case.mechanism.gear_ratio))
     v, rubs = found["velocity_m_per_s"], found["friction_A_N"] + found["friction_B_N"]
 
     def same(one, other):

@@ -8,7 +8,8 @@ import pytest
 
 from geometry.errors import InputError
 from pipeline import trial as road
-from pipeline.case import load_case_file, parse_case
+from pipeline.case_file import load_case_file, parse_case
+from pipeline.files import json_text
 from pipeline.follower.spring import case_spring
 from pipeline.follower.spring_catalogue import SpringDemand
 from pipeline.redesign import kept
@@ -25,7 +26,6 @@ from pipeline.redesign.point import Rough
 from pipeline.redesign.rollers import roller_problems
 from pipeline.redesign.search import RUNG, RUNGS, branch
 from pipeline.redesign.variant import AS_GIVEN, Choice, travel_of, variant
-from pipeline.results import json_text
 from pipeline.smoothing.problem import problem_of
 
 CASES = Path(__file__).parents[2] / "cases"

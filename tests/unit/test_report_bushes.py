@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from geometry.errors import ResultError
-from pipeline.results import Table
+from pipeline.tables import Table
 from reports import bushes
 from reports.contact_pressure import over_the_contact
 

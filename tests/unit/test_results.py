@@ -12,7 +12,9 @@ from small_run import ROWS, check, small_case, summary, values, write_run, write
 
 from geometry.errors import ResultError
 from pipeline import results
+from pipeline.files import json_text
 from pipeline.run_folder import RunFolder
+from pipeline.tables import read_table, table
 
 
 def test_cycle_columns_are_the_promised_ones() -> None:
@@ -44,7 +46,7 @@ def test_table_turns_si_into_the_unit_of_the_column() -> None:
     given = values(results.LIFT, 720)
     given["lift"] = np.full(720, 0.0335)
     given["cam_angle"] = np.arange(720) * (2.0 * np.pi / 720.0)
-    made = results.table(results.LIFT, given)
+    made = table(results.LIFT, given)
     assert made["lift_mm"].tolist() == [33.5] * 720
     assert made["cam_angle_deg"].tolist() == [0.5 * k for k in range(720)]  # no 0.49999999999999994
     with pytest.raises(ValueError, match="read-only"):
@@ -52,10 +54,10 @@ def test_table_turns_si_into_the_unit_of_the_column() -> None:
 
 
 def test_csv_reads_back_bit_for_bit(tmp_path: Path) -> None:
-    made = results.table(results.CYCLE, values(results.CYCLE, 300))
+    made = table(results.CYCLE, values(results.CYCLE, 300))
     path = tmp_path / "5_cycle.csv"
     path.write_text(made.to_csv())
-    again = results.read_table(path)
+    again = read_table(path)
     assert list(again.columns) == list(made.columns)
     for header, column in made.columns.items():
         assert column.tolist() == again[header].tolist()
@@ -65,17 +67,17 @@ def test_csv_reads_back_bit_for_bit(tmp_path: Path) -> None:
 def test_columns_that_do_not_apply_are_left_out() -> None:
     given = values(results.CYCLE)
     del given["torque_before"], given["torque_after"]
-    made = results.table(results.CYCLE, given)
+    made = table(results.CYCLE, given)
     assert "torque_before_Nm" not in made
     assert len(made) == ROWS
 
 
 def test_what_could_not_be_found_is_left_empty(tmp_path: Path) -> None:
-    made = results.table(results.CYCLE, values(results.CYCLE) | {"p0_fe": np.full(ROWS, np.nan)})
+    made = table(results.CYCLE, values(results.CYCLE) | {"p0_fe": np.full(ROWS, np.nan)})
     path = tmp_path / "table.csv"
     path.write_text(made.to_csv())
     assert "nan" not in path.read_text()
-    again = results.read_table(path)
+    again = read_table(path, results.CYCLE)
     assert np.isnan(again["p0_fe_MPa"]).all()
     assert again["p0_hertz_MPa"].tolist() == made["p0_hertz_MPa"].tolist()
 
@@ -92,7 +94,7 @@ def test_what_could_not_be_found_is_left_empty(tmp_path: Path) -> None:
 def test_table_refuses(change: dict[str, Any], message: str) -> None:
     given = {name: v for name, v in (values(results.LIFT) | change).items() if v is not None}
     with pytest.raises(ResultError, match=message):
-        results.table(results.LIFT, given)
+        table(results.LIFT, given)
 
 
 @pytest.mark.parametrize(
@@ -110,15 +112,15 @@ def test_broken_csv_is_refused(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "table.csv"
     path.write_text(text)
     with pytest.raises(ResultError, match=message):
-        results.read_table(path)
+        read_table(path)
 
 
 def test_rows_of_one_load_case(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
     path.write_text("load_case,lift_mm\nidle,1\nrated,2\nidle,3\n")
-    assert results.read_table(path).where("load_case", "idle")["lift_mm"].tolist() == [1.0, 3.0]
+    assert read_table(path).where("load_case", "idle")["lift_mm"].tolist() == [1.0, 3.0]
     with pytest.raises(ResultError, match="column force_N is missing"):
-        results.read_table(path)["force_N"]
+        read_table(path)["force_N"]
 
 
 @pytest.mark.parametrize(
@@ -217,8 +219,8 @@ def test_a_changed_file_is_found(tmp_path: Path, name: str) -> None:
 
 def test_json_holds_no_nan() -> None:
     with pytest.raises(ResultError, match="cannot be written"):
-        results.json_text({"a": float("nan")})
-    assert json.loads(results.json_text({"a": np.float64(1.5), "b": np.arange(2)})) == {
+        json_text({"a": float("nan")})
+    assert json.loads(json_text({"a": np.float64(1.5), "b": np.arange(2)})) == {
         "a": 1.5,
         "b": [0, 1],
     }

@@ -3,7 +3,7 @@
 import pytest
 
 from geometry.errors import InputError
-from pipeline.case import parse_case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 
 

@@ -13,9 +13,10 @@ from small_run import check, small_case, summary, write_run, write_trial
 
 from geometry.errors import ResultError
 from pipeline import results, run_folder
-from pipeline.case import parse_case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
-from pipeline.run_folder import RunFolder, set_aside, write_atomic
+from pipeline.files import write_atomic
+from pipeline.run_folder import RunFolder, set_aside
 
 
 def entries(folder: Path) -> list[str]:

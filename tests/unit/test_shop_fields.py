@@ -15,9 +15,10 @@ from geometry.cutter import cutter_path
 from geometry.errors import InputError
 from geometry.lift import Lift
 from pipeline import trial as road
-from pipeline.case import Case, parse_case
+from pipeline.case import Case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
-from pipeline.shop import largest_tool, order_of, write_shop
+from pipeline.shop import write_shop
 
 LIMITS = "[limits]\n"
 ORDER = '[shop]\ntable_step = "0.25 deg"\ntool_radius = "6 mm"\nchord_error = "2 um"\n'
@@ -60,23 +61,23 @@ def test_the_files_are_those_ordered(tmp_path: Path) -> None:
 
 
 def test_without_an_order_the_tables_are_half_a_degree_apart_and_the_roller_is_the_tool() -> None:
-    order = order_of(case(""))
+    order = case("").workshop
     assert np.degrees(order.step) == pytest.approx(0.5)
     assert (order.tool_radius, order.chord_error, order.tolerance) == (None, None, 20e-6)
 
 
 def test_the_tool_of_the_limits_is_the_shops_unless_it_has_its_own() -> None:
-    assert order_of(case("", 'tool_radius = "9 mm"\n')).tool_radius == pytest.approx(9e-3)
+    assert case("", 'tool_radius = "9 mm"\n').workshop.tool_radius == pytest.approx(9e-3)
     both = case(limits='tool_radius = "9 mm"\n')
-    assert order_of(both).tool_radius == pytest.approx(6e-3)
-    assert largest_tool(both) == pytest.approx(9e-3)  # which the hollows have to let in
-    assert largest_tool(case()) == pytest.approx(6e-3)
-    assert largest_tool(case("")) is None
+    assert both.workshop.tool_radius == pytest.approx(6e-3)
+    assert both.largest_tool == pytest.approx(9e-3)  # which the hollows have to let in
+    assert case().largest_tool == pytest.approx(6e-3)
+    assert case("").largest_tool is None
 
 
 def test_a_resolved_case_orders_the_same() -> None:
     of = case()
-    assert order_of(parse_case(of.to_toml())) == order_of(of)
+    assert parse_case(of.to_toml()).workshop == of.workshop
 
 
 def test_a_tool_too_large_for_a_hollow_leaves_its_file_out_and_says_so(tmp_path: Path) -> None:

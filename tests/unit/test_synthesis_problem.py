@@ -7,7 +7,7 @@ import pytest
 
 from geometry.errors import InputError
 from pipeline import trial as road
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.smoothing.problem import problem_of
 
 CASES = Path(__file__).parents[2] / "cases"

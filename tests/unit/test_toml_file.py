@@ -4,8 +4,8 @@ import pytest
 
 from geometry.errors import InputError
 from pipeline.cards.fill import known_cards
+from pipeline.files import read_toml
 from pipeline.follower.spring_catalogue import read_catalogue
-from pipeline.toml_file import read_toml
 
 DEEP = "a = " + "[" * 20_000
 

@@ -7,7 +7,7 @@ import pytest
 
 from geometry.errors import InputError
 from pipeline import trial as road
-from pipeline.case import load_case_file, parse_case
+from pipeline.case_file import load_case_file, parse_case
 from pipeline.valve_train import valve_cam, valve_record
 from reports.proof import valve_train
 

@@ -19,7 +19,6 @@ from meshes.body import roller_mesh
 from meshes.cam_outline import Keyway
 from meshes.deck import DeckBody, write_deck
 from meshes.sizing import Sizing
-from pipeline import results
 from pipeline.contact import stress
 from pipeline.contact.elastic_body import Elastic, StressRecovery
 from pipeline.contact.follower_body import RollerBody
@@ -27,6 +26,7 @@ from pipeline.contact.pair import ContactPair
 from pipeline.contact.pair_certificate import SolvedPair, solve_pair
 from pipeline.contact.ring_body import BallRing, RingBody
 from pipeline.deck import force_at, nodal_forces, write_contact_deck
+from pipeline.tables import Table
 
 FORCE, THETA = 900.0, 1.1
 WITHIN = 0.01  # of the greatest: the two codes carry stresses to the nodes by different rules
@@ -153,7 +153,7 @@ def test_what_no_deck_can_hold_is_refused(tmp_path: Path) -> None:
 
 
 def test_force_between_positions_and_where_there_is_none() -> None:
-    table = results.Table(
+    table = Table(
         {
             "load_case": np.array(["idle"] * 4),
             "cam_angle_deg": np.array([0.0, 90.0, 180.0, 270.0]),

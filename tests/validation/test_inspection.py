@@ -20,14 +20,16 @@ from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from pipeline import results
 from pipeline import trial as road
-from pipeline.case import Case, parse_case
+from pipeline.case import Case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 from pipeline.contact.pair import closed_form_history
-from pipeline.cycle import contact_pair
+from pipeline.contact_setup import contact_pair
 from pipeline.inspection import FOLDER, lines, read_measured
 from pipeline.records import contour_columns, lift_columns
 from pipeline.run_folder import RunFolder
 from pipeline.shop import inspection_sheet
+from pipeline.tables import read_table
 
 THETA = uniform_turn(360)
 RIPPLE, WAVES, PHASE = 20e-6, 12, np.radians(3.0)
@@ -171,7 +173,7 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     assert record["waves_um"]["12"] == pytest.approx(20.0, rel=1e-5)
     assert not record["within_tolerance"]
     assert (folder / FOLDER / "deviation.png").read_bytes()[:4] == b"\x89PNG"
-    cycle = results.read_table(folder / FOLDER / "cycle.csv")
+    cycle = read_table(folder / FOLDER / "cycle.csv")
     # twelve crests a turn press harder than the drawing: Hertz and the finite elements agree on it
     np.testing.assert_allclose(cycle["p0_fe_MPa"], cycle["p0_hertz_MPa"], rtol=0.02)
     theta = np.radians(cycle["cam_angle_deg"])

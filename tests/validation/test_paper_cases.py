@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from pipeline import trial as road
-from pipeline.case import Case, load_case_file
+from pipeline.case import Case
+from pipeline.case_file import load_case_file
 from pipeline.follower.forces import FollowerSystem
 from pipeline.smoothing.smoothers import Smoother
 from pipeline.validation import c24, c25

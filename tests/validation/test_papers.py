@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geometry.errors import ResultError
-from pipeline.results import json_text
+from pipeline.files import json_text
 from pipeline.validation import PAPERS, reconstruction, validate
 from pipeline.validation.balancing import FOLLOWER_2025, balanced
 from pipeline.validation.registry import (

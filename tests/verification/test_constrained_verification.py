@@ -11,7 +11,7 @@ from geometry.arrays import uniform_turn
 from geometry.energy import lift_from_torque, spring_deflection, stored_energy
 from geometry.pitch_curve import PitchCurve
 from pipeline import trial as road
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.follower.forces import FollowerSystem, follower_loads
 from pipeline.smoothing.constrained import RESERVE, Problem, synthesise
 from pipeline.smoothing.infeasible import infeasibility

@@ -11,13 +11,14 @@ from geometry.contour import Contour
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from pipeline import trial as road
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.checks import spring
 from pipeline.checks.everything import DESIGN, PARTS, SIGNED, checked_by
 from pipeline.checks.geometry import concave_radius, spring_travel
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import closed_form_history
-from pipeline.cycle import contact_pair, finished
+from pipeline.contact_setup import contact_pair
+from pipeline.cycle import finished
 from pipeline.smoothing.constraints import Jet, Mean, load_utilisations, shape_utilisations
 from pipeline.smoothing.design import Problem
 from pipeline.smoothing.problem import problem_of

@@ -12,12 +12,12 @@ import pytest
 from geometry.arrays import uniform_turn
 from geometry.contact_search import face_height
 from pipeline import trial as road
-from pipeline.case import load_case_file, parse_case
+from pipeline.case_file import load_case_file, parse_case
 from pipeline.contact.elastic_body import Elastic
 from pipeline.contact.follower_body import FaceBody
 from pipeline.contact.pair import ContactPair, CycleBodies, closed_form_history, pair_history
 from pipeline.contact.pair_certificate import certificate_point
-from pipeline.cycle import contact_pair
+from pipeline.contact_setup import contact_pair
 from pipeline.follower.forces import turn_integral
 
 PAPERS = Path(__file__).resolve().parents[2] / "cases" / "papers"

@@ -8,7 +8,7 @@ import pytest
 
 from geometry.arrays import uniform_turn
 from pipeline import trial as road
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.redesign.rollers import roller_problems
 from pipeline.smoothing.constrained import synthesise
 from pipeline.smoothing.design import Problem

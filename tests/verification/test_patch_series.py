@@ -13,13 +13,14 @@ from geometry.lift import Lift
 from meshes.files import UNITS
 from pipeline import trial as road
 from pipeline.bushes import bore_pressure, bush_arrays, loaded_length
-from pipeline.case import parse_case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 from pipeline.contact import stress
 from pipeline.contact.pair import CycleBodies, pair_history
 from pipeline.contact.patch import contact_patch
 from pipeline.contact.pin_in_hole import peak_pressure
-from pipeline.cycle import contact_pair, finished
+from pipeline.contact_setup import contact_pair
+from pipeline.cycle import finished
 from pipeline.field_files import shown_positions
 from pipeline.fields import facing, write_bodies
 from pipeline.follower.guides import lobatto

@@ -17,16 +17,19 @@ from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from pipeline import trial as road
 from pipeline.cards.fill import known_cards
-from pipeline.case import Case, load_case_file, parse_case
+from pipeline.case import Case
+from pipeline.case_file import load_case_file, parse_case
 from pipeline.case_template import template
 from pipeline.checks import all_checks, verdict
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import CycleBodies, pair_history
+from pipeline.contact_setup import contact_pair
 from pipeline.corners import Corner, applied
-from pipeline.cycle import Cycle, closed_form_cycle, contact_pair, finished, turn
+from pipeline.cycle import Cycle, closed_form_cycle, finished
 from pipeline.preview import closed_form_checks
 from pipeline.smoothing.smoothers import Smoother
+from pipeline.turn import turn
 
 GX120 = Path(__file__).parents[2] / "cases" / "gx120.toml"
 POSITIONS = 180

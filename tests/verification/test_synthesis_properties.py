@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from geometry.arrays import uniform_turn
 from geometry.energy import lift_from_torque
 from pipeline import trial as road
-from pipeline.case import load_case_file
+from pipeline.case_file import load_case_file
 from pipeline.smoothing.constrained import Problem, synthesise
 from pipeline.smoothing.design import coarsened
 from pipeline.smoothing.grid import Grid

@@ -11,14 +11,17 @@ from geometry.arrays import uniform_turn
 from geometry.contour import Contour
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
-from pipeline.case import Case, parse_case
+from pipeline.case import Case
+from pipeline.case_file import parse_case
 from pipeline.case_template import template
 from pipeline.checks import contact, forces, guides
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence
 from pipeline.contact.pair import CycleBodies, pair_history
+from pipeline.contact_setup import contact_pair
 from pipeline.corners import Corner, applied
-from pipeline.cycle import Cycle, contact_pair, finished, turn
+from pipeline.cycle import Cycle, finished
+from pipeline.turn import turn
 
 POSITIONS = 36
 # What elements and the real bodies' give add to Hertz changes with the load, by as much.
