@@ -1,17 +1,11 @@
 """How a check is tried, and every check by its id; see `test_every_check`."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import full_trial as full
-from trial_variants import (
-    faced,
-    hollow,
-    soft,
-    with_limits,
-)
+import made_trial as made
+from trial_variants import faced, hollow, soft, with_limits
 
-from pipeline.checks import proof
 from pipeline.checks.check import Check
 from pipeline.checks.everything import ALL, PARTS, PROOF, SIGNED
 from pipeline.checks.trial import TrialEvidence
@@ -29,20 +23,16 @@ class Tried:
     nan: Evidence | None
     hand: float
     how: str
-    base: Evidence = full.evidence
-
-
-def function_of(name: str):
-    return BY_ID[name]
+    base: Evidence = made.evidence
 
 
 def check(name: str, evidence: TrialEvidence) -> Check:
-    found = function_of(name)(evidence)
-    assert found is not None, name
-    return found
+    result = BY_ID[name](evidence)
+    assert result is not None, name
+    return result
 
 
-def limited(name: str, put: Callable[[float], TrialEvidence], base: Evidence = full.evidence):
+def limited(name: str, put: Callable[[float], TrialEvidence], base: Evidence = made.evidence):
     """`at`, for a check whose limit can be put where it is wanted (in the unit of the check)."""
 
     def at(share: float) -> TrialEvidence:
@@ -58,7 +48,7 @@ def loaded(name: str, put: Callable[[float], TrialEvidence]):
     """`at`, for a check whose limit is fixed: the demand is put where it is wanted."""
 
     def at(share: float) -> TrialEvidence:
-        plain = check(name, full.evidence())
+        plain = check(name, made.evidence())
         assert plain.limit is not None
         return put(plain.limit * share if plain.sense == "at_most" else plain.limit / share)
 
@@ -82,42 +72,28 @@ def tried(name: str, *args, **more) -> None:
     TRIED[name] = Tried(*args, **more)
 
 
-def by_limit(name, field, si, nan, hand, how, base=full.evidence, put=None) -> None:
-    """A check whose limit is one of the case's."""
-    wrap = put or (lambda given: given)
+def by_limit(name, field, si, nan, hand, how, base=made.evidence, missing=None) -> None:
+    """A check whose limit is one of the case's; `missing` where its data may be left out."""
 
     def set_limit(value):
-        return wrap(limit_of(field, si)(value))
+        return replace(base(), case=limit_of(field, si)(value).case)
 
-    tried(
-        name,
-        limited(name, set_limit, base),
-        lambda: wrap(with_limits(**{field: None})),
-        nan,
-        hand,
-        how,
-        base,
-    )
+    tried(name, limited(name, set_limit, base), missing, nan, hand, how, base)
+
+
+def unlimited(field: str) -> Evidence:
+    """A trial of a case that leaves out a limit which has no default."""
+    return lambda: with_limits(**{field: None})
 
 
 def _ids() -> dict[str, Callable[[TrialEvidence], Check | None]]:
-    """Every function by the id of its check, whichever of the trials makes it speak."""
-    found = {}
-    trials = (full.evidence, hollow, soft, faced)
-    for function in FUNCTIONS:
-        if function is proof.mesh_reaction:
-            continue
-        for trial in trials:
-            try:
-                made = function(trial())
-            except AttributeError:  # a face has no pitch curve of a roller
-                continue
-            if made is not None:
-                found[made.id] = function
-                break
-        else:
-            found[function.__name__] = function
-    return found
+    """Every function by the id of its check, whichever of the trials it applies to."""
+    trials = [each() for each in (made.evidence, hollow, soft, faced)]
+    results = {function: [function(trial) for trial in trials] for function in FUNCTIONS}
+    return {
+        next(each.id for each in applied if each is not None): function
+        for function, applied in results.items()
+    }
 
 
 BY_ID = _ids()

@@ -1,24 +1,22 @@
 """How the checks of shape, forces, contact, roller and guides are tried."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
-import fake_trial as fake
-import full_trial as full
 import hand_calculations as by_hand
+import made_trial as made
 import numpy as np
-from check_tools import by_limit, counted, limit_of, limited, tried
+from check_tools import by_limit, counted, limit_of, limited, tried, unlimited
 from trial_variants import (
     NAN,
-    NOWHERE,
-    crossings,
     hollow,
     lossy,
-    on_contour,
+    open_ended,
     soft,
+    unknown,
     with_bearing,
     with_contact,
     with_cycle,
+    with_gap,
     with_guide,
     with_guides,
     with_limits,
@@ -28,17 +26,8 @@ from trial_variants import (
     with_part,
     with_parts,
     with_rolling,
+    with_temperature,
 )
-
-
-class UnknownLift:
-    """A lift of which nothing is known."""
-
-    theta, highest, search_count = fake.THETA, NOWHERE, 72
-
-    def __call__(self, theta, order=0):
-        return np.full(np.shape(theta), np.nan)
-
 
 # function
 by_limit(
@@ -53,15 +42,16 @@ by_limit(
     "speed_reduction",
     "speed_reduction",
     1.0,
-    lambda: full.evidence(speed_ripple={"idle": (2.0, np.nan)}),
+    lambda: made.evidence(speed_ripple={"idle": (2.0, np.nan)}),
     0.5,
     "std 2 to 1 rad/s",
+    missing=unlimited("speed_reduction"),
 )
 by_limit(
     "energy_closure",
     "energy_closure",
     1.0,
-    lambda: with_part("spring", preload=np.nan),
+    unknown,
     0.0,
     "E(2 pi) = E(0)",
 )
@@ -73,32 +63,30 @@ by_limit(
     1e-7,
     "one part in ten million more torque than heat",
     base=lossy,
-    put=lambda given: replace(given, cycles=lossy().cycles),
 )
 # geometry
 by_limit(
     "closure",
     "closure",
     1.0,
-    on_contour,
+    unknown,
     5e-10,
     "as the lift's source says",
-    base=lambda: on_contour(lift_closure=5e-10),
-    put=lambda given: replace(given, contour=on_contour(lift_closure=5e-10).contour),
+    base=open_ended,
 )
 by_limit(
     "acceleration_step",
     "acceleration_step",
     1.0,
-    lambda: on_contour(pitch_lift=UnknownLift()),
-    float(np.max(np.abs(np.diff(np.cos(fake.THETA))))) / 2.0,
+    unknown,
+    float(np.max(np.abs(np.diff(np.cos(made.THETA))))) / 2.0,
     "a cosine's greatest step at 5 deg over its swing",
 )
 by_limit(
     "pressure_angle",
     "pressure_angle",
     np.pi / 180.0,
-    lambda: on_contour(pitch_pressure_angle_max=lambda: NOWHERE),
+    unknown,
     float(np.degrees(np.arctan(np.max(by_hand.SLOPE / by_hand.RADIUS)))),
     "tan alpha = s'/(r + s), Rothbart ch. 6",
 )
@@ -106,7 +94,7 @@ by_limit(
     "curvature_ratio",
     "curvature_ratio",
     1.0,
-    lambda: on_contour(pitch_least_convex_radius=lambda: NOWHERE),
+    unknown,
     float(by_hand.PITCH_RADIUS.min()) / 8e-3,
     "(r^2 + 2 r'^2 - r r'')/..., Rothbart 6.4.2",
 )
@@ -114,13 +102,13 @@ by_limit(
     "undercut",
     "undercut_factor",
     1.0,
-    lambda: on_contour(undercut=lambda: SimpleNamespace(factor=np.nan, theta=np.nan)),
+    unknown,
     1.0 - 8e-3 / float(by_hand.PITCH_RADIUS.min()),
     "1 - r kappa, Rothbart ch. 6",
 )
 tried(
     "self_intersection",
-    counted(lambda: crossings(0), lambda: crossings(1)),
+    counted(made.evidence, lambda: made.evidence(contour=made.undercut())),
     None,
     None,
     0.0,
@@ -130,27 +118,26 @@ by_limit(
     "second_contact",
     "second_contact_depth",
     1e-3,
-    lambda: on_contour(clearance=lambda: (np.nan, np.nan)),
+    lambda: with_gap(np.nan),
     2e-3,
     "2 um deep",
-    base=lambda: on_contour(clearance=lambda: (-2e-6, 1.0)),
-    put=lambda given: replace(given, contour=on_contour(clearance=lambda: (-2e-6, 1.0)).contour),
+    base=lambda: with_gap(-2e-6, 1.0),
 )
 by_limit(
     "concave_radius",
     "tool_radius",
     1e-3 / 1.1,
-    lambda: on_contour(pitch_curvature_min=lambda: NOWHERE),
+    unknown,
     8.0 + 30.0**2 / (45.0 - 30.0),
     "r + r^2/(r'' - r) in the dwellless valley",
     base=hollow,
-    put=hollow,
+    missing=lambda: replace(hollow(), case=made.limits(tool_radius=None)),
 )
 tried(
     "curvature_rate",
     limited("curvature_rate", limit_of("curvature_rate")),
     None,  # a case that gives no bound asks for none
-    lambda: on_contour(curvature_slope=lambda theta: np.full(np.shape(theta), np.nan)),
+    unknown,
     0.3804935696445838,
     "held against differences in test_contour",
 )
@@ -158,7 +145,7 @@ by_limit(
     "minimum_wall",
     "minimum_wall",
     1.0,
-    lambda: on_contour(radius_min=lambda: NOWHERE),
+    unknown,
     42.0 / 10.8,
     "least contour radius over bore and keyway",
 )
@@ -166,7 +153,7 @@ tried(
     "spring_travel",
     limited("spring_travel", lambda mm: with_part("spring", travel_max=1e-3 * mm)),
     lambda: with_part("spring", travel_max=None),
-    on_contour,
+    unknown,
     10.0,
     "the stroke",
 )
@@ -207,7 +194,7 @@ tried(
 tried(
     "first_yield",
     limited("first_yield", lambda p: with_material("steel", yield_strength=1e6 * p)),
-    lambda: with_limits(yield_safety=None),
+    None,
     lambda: with_contact(von_mises=NAN),
     500.0,
     "400 + 100 sin",
@@ -215,7 +202,7 @@ tried(
 tried(
     "shakedown",
     limited("shakedown", lambda p: with_material("steel", yield_strength=2.5e5 * 3**0.5 * p)),
-    lambda: with_limits(shakedown_safety=None),
+    None,
     lambda: with_contact(p0=NAN),
     900.0,
     "800 + 100 sin; limit 4 Y/sqrt(3), Johnson sec. 9.2",
@@ -228,6 +215,7 @@ by_limit(
     lambda: with_loads(normal_force=NAN),
     1.5,
     "C0/P0 = 600/400, ISO 76",
+    missing=lambda: with_bearing(C0=None),
 )
 by_limit(
     "roller_life",
@@ -236,13 +224,14 @@ by_limit(
     lambda: with_loads(normal_force=NAN),
     by_hand.mean_life(),
     "ISO 281 over the turn",
+    missing=unlimited("roller_life"),
 )
 tried(
     "roller_speed",
     limited("roller_speed", lambda n: with_bearing(speed_limit=n / by_hand.RPM / 0.7)),
     lambda: with_bearing(speed_limit=None),
     lambda: with_cycle(crank_speed=np.nan),
-    by_hand.RPM * fake.CAM_SPEED * (60.0 - 8.0) / 8.0,
+    by_hand.RPM * made.CAM_SPEED * (60.0 - 8.0) / 8.0,
     "w (R - r)/r at full lift",
 )
 # guides
@@ -279,17 +268,29 @@ for _side, _load in (("a", 500.0), ("b", 200.0)):
         _name,
         limited(_name, lambda t: with_material("nylon", temperature_limit=t + 273.15)),
         lambda: with_material("nylon", temperature_limit=None),
-        lambda s=_side: with_parts(
-            **{f"heat_{s}": SimpleNamespace(temperature=np.nan, mean_power=0.0)}
-        ),
+        lambda s=_side: with_temperature(s, np.nan),
         56.85,
         "330 K",
     )
 # rolling, surface
 by_limit(
-    "roller_grip", "skid", 10.0, lambda: with_rolling(traction_demand=None), 0.03, "0.02 + 0.01 sin"
+    "roller_grip",
+    "skid",
+    10.0,
+    lambda: with_rolling(traction_demand=None),
+    0.03,
+    "0.02 + 0.01 sin",
+    missing=lambda: with_part("roller", friction=None),
 )
-by_limit("film_ratio", "film_ratio", 1.0, lambda: with_rolling(film=None), 1.5, "2 + 0.5 sin")
+by_limit(
+    "film_ratio",
+    "film_ratio",
+    1.0,
+    lambda: with_rolling(film=None),
+    1.5,
+    "2 + 0.5 sin",
+    missing=lambda: with_cycle(rolling=None),
+)
 for _name, _field, _value in (
     ("surface_fatigue", "crossland", 200.0),
     ("dang_van", "dang_van", 240.0),
@@ -317,6 +318,7 @@ by_limit(
     lambda: with_contact(tau_depth=NAN),
     1.0 / 0.0786,
     "1 mm over 0.786 half-widths of 0.1 mm, Johnson sec. 4.2(c)",
+    missing=lambda: with_material("steel", case_depth=None),
 )
 tried(
     "pressure_by_hardness",

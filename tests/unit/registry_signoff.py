@@ -1,21 +1,17 @@
 """How the checks of over-speed, life, shaft, manufacture and parts are tried."""
 
-from dataclasses import replace
-from types import SimpleNamespace
-
-import fake_trial as fake
-import full_trial as full
 import hand_calculations as by_hand
+import made_trial as made
 import numpy as np
-from check_tools import by_limit, check, counted, limit_of, limited, tried
+from check_tools import by_limit, check, counted, limit_of, limited, tried, unlimited
 from trial_variants import (
     NAN,
-    NOWHERE,
-    on_contour,
     reversing,
+    unknown,
     with_bearing,
     with_contact,
     with_cycle,
+    with_elastic_force,
     with_gear,
     with_guide,
     with_guides,
@@ -25,20 +21,22 @@ from trial_variants import (
     with_part,
     with_parts,
     with_ring,
+    with_temperature,
+    with_worst_friction,
 )
 
 # signed
 by_limit(
     "jump_speed",
     "jump_speed",
-    1.0 / (by_hand.RPM * 2.0 * fake.CAM_SPEED),
+    1.0 / (by_hand.RPM * 2.0 * made.CAM_SPEED),
     lambda: with_loads(inertia_force=NAN),
     by_hand.RPM
     * 2.0
     * float(
         np.sqrt(
             np.min(
-                (by_hand.SPRING / np.where(by_hand.BEND < 0, -fake.MASS * by_hand.BEND, np.inf))[
+                (by_hand.SPRING / np.where(by_hand.BEND < 0, -made.MASS * by_hand.BEND, np.inf))[
                     by_hand.BEND < 0
                 ]
             )
@@ -51,7 +49,7 @@ by_limit(
     "contact_force_margin",
     1.0,
     lambda: with_loads(spring_force=NAN),
-    float((by_hand.SPRING + by_hand.INERTIA).min()) / fake.PRELOAD,
+    float((by_hand.SPRING + by_hand.INERTIA).min()) / made.PRELOAD,
     "F_s + m w^2 s''",
 )
 tried(
@@ -70,7 +68,7 @@ tried(
             / (1e6 * p)
         ),
     ),
-    lambda: with_limits(target_life=None),
+    unlimited("target_life"),
     lambda: with_contact(p0=NAN),
     900.0,
     "800 + 100 sin; limit by Rothbart eq. 9.15",
@@ -89,7 +87,7 @@ tried(
         "shakedown_traction",
         lambda p: with_material(
             "steel",
-            yield_strength=600e6 * p / (check("shakedown_traction", full.evidence()).limit or 1.0),
+            yield_strength=600e6 * p / (check("shakedown_traction", made.evidence()).limit or 1.0),
         ),
     ),
     lambda: with_part("roller", friction=None),
@@ -101,7 +99,7 @@ by_limit(
     "guide_clearance",
     "clearance",
     1e-3,
-    lambda: on_contour(radius_max=lambda: NOWHERE),
+    unknown,
     12.0,
     "30 mm less half of 20 and the roller's 8",
 )
@@ -109,9 +107,10 @@ by_limit(
     "cam_envelope",
     "cam_radius",
     1e-3,
-    lambda: on_contour(radius_max=lambda: NOWHERE),
+    unknown,
     52.0,
     "base 50 and stroke 10 less the roller's 8 mm",
+    missing=unlimited("cam_radius"),
 )
 tried(
     "roller_radial",
@@ -122,7 +121,7 @@ tried(
     "300 + 100 sin",
 )
 by_limit(
-    "guide_length", "guide_length", 1.0, on_contour, 2.5, "80 + 20 mm over 30 + 10, Rothbart ch. 6"
+    "guide_length", "guide_length", 1.0, unknown, 2.5, "80 + 20 mm over 30 + 10, Rothbart ch. 6"
 )
 # shaft
 by_limit(
@@ -132,6 +131,7 @@ by_limit(
     lambda: with_loads(cam_torque=NAN),
     1e-6 * 2.0 * float(by_hand.TORQUE.max()) / (17e-3 * 5e-3 * 0.01),
     "2 T/(d b l), DIN 6892",
+    missing=lambda: with_part("cam", keyway=None),
 )
 by_limit(
     "key_pressure",
@@ -140,6 +140,7 @@ by_limit(
     lambda: with_parts(key_pressure=NAN),
     100.0,
     "4 T/(d h l), test_cam_body",
+    missing=lambda: with_part("cam", keyway=None),
 )
 by_limit(
     "bore_pressure",
@@ -156,6 +157,7 @@ by_limit(
     lambda: with_loads(cam_torque=NAN),
     by_hand.shaft_safety(),
     "Shigley sec. 7-4",
+    missing=lambda: with_material("steel", tensile_strength=None),
 )
 by_limit(
     "shaft_bearing_life",
@@ -164,6 +166,7 @@ by_limit(
     lambda: with_loads(axial_force=NAN),
     by_hand.bearing_hours(),
     "ISO 281",
+    missing=unlimited("shaft_bearing_life"),
 )
 tried(
     "gear_bending",
@@ -200,19 +203,13 @@ by_limit(
     lambda: with_loads(normal_force=NAN),
     0.040568761048279486,
     "m delta (2 pi v/lambda)^2 by hand on a ring, test_signed_checks",
+    missing=lambda: with_part("cam", profile_tolerance=None),
 )
 tried(
     "chord_error",
     limited("chord_error", lambda um: with_part("cam", profile_tolerance=4e-6 * um)),
     lambda: with_part("cam", profile_tolerance=None),
-    lambda: replace(
-        full.evidence(),
-        contour=SimpleNamespace(
-            roller_radius=fake.ROLLER,
-            points=fake.contour().points,
-            radius_of_curvature=lambda theta: np.full_like(theta, np.nan),
-        ),
-    ),
+    unknown,
     0.5293739447429432,
     "step^2/(8 rho) by hand on a ring, test_signed_checks",
 )
@@ -223,23 +220,22 @@ by_limit(
     lambda: with_cycle(torque_before=NAN),
     1.0 - float(np.sqrt(1.25 - np.cos(0.02))),
     "sin against half of it, 0.02 rad off",
+    missing=lambda: with_part("tolerances", phase=0.0),
 )
 # parts
 tried(
     "jam_at_worst_friction",
     limited("jam_at_worst_friction", limit_of("jam_index")),
     lambda: with_guide("a", friction_max=None),
-    lambda: with_parts(friction=SimpleNamespace(jam_index_max=NAN)),
+    lambda: with_worst_friction(jam_index=NAN),
     0.4,
     "0.3 + 0.1 sin",
 )
 tried(
     "elastic_contact",
     limited("elastic_contact", limit_of("contact_force_margin")),
-    lambda: with_limits(contact_force_margin=None),
-    lambda: with_parts(
-        elastic=SimpleNamespace(response=SimpleNamespace(contact_force=NAN), flights=(), method="m")
-    ),
+    None,
+    lambda: with_elastic_force(NAN),
     200.0 / 242.0,
     "300 + 100 sin",
 )
@@ -250,6 +246,7 @@ by_limit(
     lambda: with_parts(pin_stress=NAN),
     300.0,
     "200 + 100 sin; 32 M/(pi d^3) in test_parts_checks",
+    missing=lambda: with_part("roller", pin=None),
 )
 tried(
     "roller_ring",
@@ -274,6 +271,7 @@ by_limit(
     lambda: with_cycle(crank_speed=np.nan),
     414.7306657858135,
     "e w; e of an eccentric disc by hand in test_cam_body",
+    missing=unlimited("unbalance"),
 )
 for _side, _load in (("a", 500.0), ("b", 200.0)):
     _name = f"guide_wear_{_side.upper()}"
@@ -284,15 +282,14 @@ for _side, _load in (("a", 500.0), ("b", 200.0)):
         lambda s=_side: with_guides(**{f"rubbing_load_{s}": NAN}),
         1e3 * 1e-16 * 1e6 * _load * 0.4 / 2.0 / 200.0 * 3.6e6,
         "Archard: 1e-16 m2/N times PV times 1000 h",
+        missing=unlimited("target_life"),
     )
     _name = f"bush_growth_{_side.upper()}"
     tried(
         _name,
         limited(_name, lambda mm, s=_side: with_guide(s, clearance=1e-3 * mm)),
         None,
-        lambda s=_side: with_parts(
-            **{f"heat_{s}": SimpleNamespace(temperature=np.nan, mean_power=0.0)}
-        ),
+        lambda s=_side: with_temperature(s, np.nan),
         2.0 * 0.25 * 10.0 * (8e-5 * (330.0 - 293.15) + 0.01),
         "two walls of a quarter of 10 mm, warmer by 36.85 K and wet",
     )
@@ -303,4 +300,5 @@ by_limit(
     lambda: with_cycle(crank_speed=np.nan),
     by_hand.viscosity_ratio(),
     "kappa of ISO 281",
+    missing=lambda: with_bearing(pitch_diameter=None, ring=None),
 )

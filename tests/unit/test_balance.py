@@ -2,9 +2,9 @@
 
 import json
 from dataclasses import replace
-from types import SimpleNamespace
 
 import ezdxf
+import made_trial as made
 import numpy as np
 import pytest
 
@@ -115,8 +115,7 @@ def test_no_room_for_any_hole():
 
 
 def evidence(case, contour):
-    cycle = SimpleNamespace(load_case="idle", crank_speed=157.0, parts=True)
-    return TrialEvidence(case=case, contour=contour, cycles=(cycle,))
+    return TrialEvidence(case=case, contour=contour, cycles=(made.cycle(crank_speed=157.0),))
 
 
 def test_the_check_judges_the_cam_as_it_is_made():

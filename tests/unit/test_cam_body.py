@@ -1,7 +1,5 @@
 """Key, gear, shaft bearings and unbalance against hand calculation."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -20,6 +18,7 @@ from pipeline.follower.cam_body import (
     torque_reversals,
     unbalance,
 )
+from pipeline.part_fields import Keyway
 
 THETA = uniform_turn(720)
 ECCENTRICITY, DISC, ROLLER = 2e-3, 40e-3, 8e-3
@@ -125,7 +124,7 @@ def test_unbalance_turns_with_the_cam():
 
 def test_keyway_is_taken_off_exactly():
     """Against a sum over a fine grid."""
-    key = SimpleNamespace(width=5e-3, depth=2.3e-3, angle=2.0)
+    key = Keyway(width="5 mm", depth="2.3 mm", angle="2 rad")
     with_key = unbalance(eccentric(), 8.5e-3, key, WIDTH, DENSITY)
     without = unbalance(eccentric(), 8.5e-3, None, WIDTH, DENSITY)
     y = (np.arange(4000) + 0.5) / 4000 * 5e-3 - 2.5e-3
@@ -180,7 +179,7 @@ def test_balanced_cam_needs_no_hole():
 
 def test_hole_stays_within_the_contour_of_a_valley():
     # the keyway lies under the lobe at 260 deg, so the valley at 80 deg is the heavy side
-    contour, found = tripled(notch=SimpleNamespace(width=5e-3, depth=2.3e-3, angle=13 * np.pi / 9))
+    contour, found = tripled(notch=Keyway(width="5 mm", depth="2.3 mm", angle="260 deg"))
     assert np.degrees(found.angle) == pytest.approx(80.0)
     hole = counter_hole(contour, found, 8.5e-3, 1e-3)
     away = np.hypot(*(contour.polygon(1440) - hole.centre[:, None])).min()

@@ -1,5 +1,6 @@
 """Cards: shipped and the user's own, filled in, with their sources, refused when unknown."""
 
+import made_trial as made
 import pytest
 
 from geometry.errors import InputError
@@ -120,9 +121,7 @@ def test_a_recalled_number_makes_the_check_say_so():
             "roller_given": case.roller.model_copy(update={"material": "extra"}),
         }
     )
-    import fake_trial as fake
-
-    found = contact_pressure(TrialEvidence(hard, fake.contour(), (fake.cycle(),)))
+    found = contact_pressure(TrialEvidence(hard, made.contour(), (made.cycle(),)))
     assert "verify" in found.source
 
 

@@ -1,11 +1,26 @@
 """Demands by hand, where they are worst, and what the whole set of checks does."""
 
+import datetime as dt
 from dataclasses import replace
-from types import SimpleNamespace
 
-import fake_trial as fake
+import made_trial as made
 import numpy as np
 import pytest
+from trial_variants import (
+    NAN,
+    cycle_with,
+    with_bearing,
+    with_case,
+    with_contact,
+    with_cycle,
+    with_gap,
+    with_guides,
+    with_limits,
+    with_loads,
+    with_material,
+    with_part,
+    with_rolling,
+)
 
 from geometry.arrays import uniform_turn
 from geometry.contour import Contour
@@ -25,28 +40,30 @@ from pipeline.checks import (
 from pipeline.checks import contact as contact_checks
 from pipeline.checks import evidence as evidence_checks
 from pipeline.checks.trial import greatest, least
+from pipeline.design_fields import Waiver
 
 ROUND_OFF = 1e-9
 
 
-def ring() -> Contour:
-    """A cam that lifts nothing."""
-    return Contour(PitchCurve(Lift(fake.THETA, np.zeros(fake.POSITIONS)), fake.BASE), fake.ROLLER)
+def waiver(name: str) -> Waiver:
+    return Waiver(check=name, name="A. Engineer", reason="proven", date=dt.date(2025, 1, 2))
 
 
-def waiver(name: str):
-    return SimpleNamespace(check=name, name="A. Engineer", reason="proven", date="2025-01-02")
-
-
-def test_the_fake_trial_passes():
-    checks = all_checks(fake.evidence())
+def test_the_made_up_trial_passes_and_leaves_nothing_open():
+    checks = all_checks(made.evidence())
     assert verdict(checks) == "pass"
     assert binding(checks) == ()
-    # Of the standard set a shaft and a key that nobody describes stay open, and say so first.
-    shaft = ["key_shear", "shaft_bearing_life", "shaft_fatigue"]
-    assert [c.id for c in checks[:3]] == shaft
-    assert not any(c.status == "not_evaluated" for c in checks[3:])
-    assert not any(c.must_have for c in checks[:3])
+    assert not any(c.status == "not_evaluated" for c in checks)
+
+
+def test_a_shaft_and_a_key_that_are_not_described_stay_open_and_come_first():
+    cam = made.changed(made.case().cam, keyway=None)
+    checks = all_checks(made.evidence(case=made.case(cam=cam, camshaft=None)))
+    unread = ["key_pressure", "key_shear", "shaft_bearing_life", "shaft_fatigue"]
+    assert [c.id for c in checks[:4]] == unread
+    assert not any(c.status == "not_evaluated" for c in checks[4:])
+    assert not any(c.must_have for c in checks[:4])
+    assert verdict(checks) == "pass"
 
 
 @pytest.mark.parametrize(
@@ -57,16 +74,16 @@ def test_the_fake_trial_passes():
         ("roller_life", "roller_life"),
     ],
 )
-def test_what_nobody_asks_for_is_listed_first_and_fails_the_verdict(limit, check):
+def test_a_must_have_without_its_limit_comes_first_and_fails_the_verdict(limit, check):
     """Must-haves of a sign-off stay so when an input is missing."""
-    checks = all_checks(fake.evidence(case=fake.limits(**{limit: None})))
+    checks = all_checks(with_limits(**{limit: None}))
     assert (checks[0].id, checks[0].status) == (check, "not_evaluated")
     assert binding(checks) == (check,)
     assert verdict(checks) == "fail"
 
 
 def test_ids_are_unique_and_records_complete():
-    checks = all_checks(fake.evidence())
+    checks = all_checks(made.evidence())
     assert len({check.id for check in checks}) == len(checks)
     for check in checks:
         record = check.as_record()
@@ -74,7 +91,7 @@ def test_ids_are_unique_and_records_complete():
 
 
 def test_what_a_gentler_lift_can_help():
-    helped = {check.id for check in all_checks(fake.evidence()) if check.lift_can_help}
+    helped = {check.id for check in all_checks(made.evidence()) if check.lift_can_help}
     assert {
         "pressure_angle",
         "curvature_ratio",
@@ -89,19 +106,16 @@ def test_what_a_gentler_lift_can_help():
 
 
 def test_design_checks_need_neither_mesh_nor_residuals():
-    plain = fake.cycle()
-    bare = fake.changed(
-        plain,
-        contact=SimpleNamespace(p0=plain.contact.p0, von_mises=plain.contact.von_mises),
-        guides=SimpleNamespace(
-            reaction_a=plain.guides.reaction_a,
-            reaction_b=plain.guides.reaction_b,
-            rubbing_load_a=plain.guides.rubbing_load_a,
-            rubbing_load_b=plain.guides.rubbing_load_b,
-        ),
+    """Nor the parts: as of a cycle by closed forms."""
+    plain = made.cycle()
+    contact = replace(
+        plain.contact, half_width=NAN, residual_equilibrium=NAN, residual_complementarity=NAN
     )
-    foreseen = {c.id: c.demand for c in design_checks(fake.evidence(cycles=(bare,)))}
-    full = {c.id: c.demand for c in all_checks(fake.evidence())}
+    guides = replace(plain.guides, force_residual=NAN, moment_residual=NAN)
+    bare = replace(plain, contact=contact, guides=guides, rolling=None, parts=None)
+    preview = made.evidence(cycles=(bare,), mesh_quality=None, certificate=(), benchmarks=None)
+    foreseen = {c.id: c.demand for c in design_checks(preview)}
+    full = {c.id: c.demand for c in all_checks(made.evidence())}
     assert foreseen == {name: full[name] for name in foreseen}
     assert {"torque_reduction", "pressure_angle", "roller_static", "bush_pv_A"} <= set(foreseen)
 
@@ -110,8 +124,9 @@ def test_design_checks_need_neither_mesh_nor_residuals():
 
 
 def test_the_worst_load_case_and_angle_are_named():
-    hard = fake.cycle(load_case="rated", scale=1.1)
-    trial = fake.evidence(cycles=(fake.cycle(), hard, fake.cycle(load_case="start", scale=0.5)))
+    hard = made.cycle(load_case="rated", scale=1.1)
+    light = made.cycle(load_case="start", scale=0.5)
+    trial = made.of_load_cases(made.cycle(), hard, light)
     check = contact_checks.contact_pressure(trial)
     assert (check.load_case, check.cam_angle_deg) == ("rated", pytest.approx(90.0))
     assert check.demand == pytest.approx(990.0)
@@ -121,27 +136,17 @@ def test_the_worst_load_case_and_angle_are_named():
 
 
 def test_equal_load_cases_name_the_first():
-    trial = fake.evidence(cycles=(fake.cycle(load_case="one"), fake.cycle(load_case="two")))
+    trial = made.of_load_cases(made.cycle(load_case="one"), made.cycle(load_case="two"))
     assert contact_checks.shakedown(trial).load_case == "one"
 
 
 def test_a_nan_wins_over_every_number():
-    values = {"a": [1.0, 2.0], "b": [np.nan, 9.0], "c": [99.0, -99.0]}
-    cycles = tuple(
-        SimpleNamespace(load_case=name, theta=np.array([0.0, np.pi]), values=np.array(v))
-        for name, v in values.items()
-    )
-    trial = fake.evidence(cycles=cycles)
+    jam = {"a": made.WAVE, "b": np.where(made.THETA == 0.0, np.nan, 9.0), "c": 99.0 * made.WAVE}
+    cycles = [replace(cycle_with("loads", jam_index=v), load_case=k) for k, v in jam.items()]
     for extreme in (greatest, least):
-        worst = extreme(trial, lambda cycle: cycle.values)
+        worst = extreme(made.of_load_cases(*cycles), lambda cycle: cycle.loads.jam_index)
         assert np.isnan(worst.value)
         assert (worst.load_case, worst.cam_angle_deg) == ("b", 0.0)
-
-
-def test_without_a_cycle_nothing_is_evaluated():
-    checks = {c.id: c for c in all_checks(fake.evidence(cycles=()))}
-    assert checks["contact_pressure"].status == "not_evaluated"
-    assert verdict(checks.values()) == "fail"
 
 
 # --- geometry --------------------------------------------------------------------------------
@@ -156,28 +161,25 @@ def test_pressure_angle_of_an_eccentric_disc():
     )
     base = radius - eccentricity
     lift = Lift(theta, np.maximum(distance - base, 0.0))
-    shape = Contour(PitchCurve(lift, base), fake.ROLLER)
-    trial = fake.evidence(contour=shape)
+    shape = Contour(PitchCurve(lift, base), made.ROLLER)
+    trial = made.evidence(contour=shape)
     # 360 quintic pieces follow the disc to 1e-9 of the lift; its derivatives less well.
     angle = geometry.pressure_angle(trial)
     assert angle.demand == pytest.approx(np.rad2deg(np.arcsin(eccentricity / radius)), rel=1e-6)
-    assert geometry.curvature_ratio(trial).demand == pytest.approx(radius / fake.ROLLER, rel=1e-4)
-    assert geometry.undercut(trial).demand == pytest.approx(1 - fake.ROLLER / radius, rel=1e-4)
+    assert geometry.curvature_ratio(trial).demand == pytest.approx(radius / made.ROLLER, rel=1e-4)
+    assert geometry.undercut(trial).demand == pytest.approx(1 - made.ROLLER / radius, rel=1e-4)
     assert geometry.spring_travel(trial).demand == pytest.approx(2e3 * eccentricity, rel=1e-6)
     assert geometry.concave_radius(trial) is None
 
 
 def test_limit_of_thirty_degrees_reads_thirty():
-    limit = geometry.pressure_angle(fake.evidence(case=fake.limits(pressure_angle=np.deg2rad(30))))
+    limit = geometry.pressure_angle(with_limits(pressure_angle=np.deg2rad(30)))
     assert limit.limit == 30.0
 
 
 def test_undercut_cam_is_a_verdict():
-    # A lobe of 12 mm with five cusps in the turn under a large roller.
-    lift = Lift(uniform_turn(360), 0.006 * (1.0 - np.cos(5.0 * uniform_turn(360))))
-    shape = Contour(PitchCurve(lift, 0.03), 0.02)
-    found = (f(fake.evidence(contour=shape)) for f in geometry.CHECKS)
-    checks = {c.id: c for c in found if c is not None}
+    results = (f(made.evidence(contour=made.undercut())) for f in geometry.CHECKS)
+    checks = {c.id: c for c in results if c is not None}
     assert checks["undercut"].demand < 0
     assert checks["undercut"].utilisation == np.inf
     assert checks["self_intersection"].demand > 0
@@ -186,25 +188,19 @@ def test_undercut_cam_is_a_verdict():
 
 
 def test_second_contact_counts_depth_only():
-    touching, clear, unknown = (
-        SimpleNamespace(clearance=lambda at=at: at, roller_radius=fake.ROLLER)
-        for at in ((-2e-6, 1.0), (np.inf, np.nan), (np.nan, np.nan))
-    )
-    found = [geometry.second_contact(fake.evidence(contour=c)) for c in (touching, clear, unknown)]
-    assert [check.status for check in found] == ["fail", "pass", "not_evaluated"]
-    assert found[0].demand == pytest.approx(2e-3)
-    assert found[0].cam_angle_deg == pytest.approx(np.rad2deg(1.0))
-    assert found[1].cam_angle_deg is None
+    trials = (with_gap(-2e-6, 1.0), with_gap(np.inf), with_gap(np.nan))
+    cut, clear, unknown = (geometry.second_contact(trial) for trial in trials)
+    assert [check.status for check in (cut, clear, unknown)] == ["fail", "pass", "not_evaluated"]
+    assert cut.demand == pytest.approx(2e-3)
+    assert cut.cam_angle_deg == pytest.approx(np.rad2deg(1.0))
+    assert clear.cam_angle_deg is None
 
 
 def test_the_wall_is_thinner_by_the_keyway():
-    plain = geometry.minimum_wall(fake.evidence())
-    assert plain.demand == pytest.approx((fake.BASE - fake.ROLLER) / 0.0085)
-    cam = SimpleNamespace(
-        bore_radius=0.0085, keyway=SimpleNamespace(depth=0.0023), material="steel"
-    )
-    keyed = geometry.minimum_wall(fake.evidence(case=fake.case(cam=cam)))
-    assert keyed.demand == pytest.approx((fake.BASE - fake.ROLLER) / 0.0108)
+    plain = geometry.minimum_wall(with_part("cam", keyway=None))
+    assert plain.demand == pytest.approx((made.BASE - made.ROLLER) / 0.0085)
+    keyed = geometry.minimum_wall(made.evidence())
+    assert keyed.demand == pytest.approx((made.BASE - made.ROLLER) / 0.0108)
 
 
 # --- forces ----------------------------------------------------------------------------------
@@ -212,34 +208,26 @@ def test_the_wall_is_thinner_by_the_keyway():
 
 def test_jump_is_where_inertia_eats_the_spring():
     # Harmonic lift: least s'' = -stroke/2 at full lift, F_s = P + k stroke there.
-    relief = fake.MASS * fake.CAM_SPEED**2 * 0.5 * fake.STROKE
-    expected = relief / (fake.PRELOAD + fake.RATE * fake.STROKE)
-    check = forces.jump(fake.evidence())
+    relief = made.MASS * made.CAM_SPEED**2 * 0.5 * made.STROKE
+    expected = relief / (made.PRELOAD + made.RATE * made.STROKE)
+    check = forces.jump(made.evidence())
     assert check.demand == pytest.approx(expected, rel=1e-6)
     assert check.cam_angle_deg == pytest.approx(180.0)
 
 
 def test_a_follower_pressed_on_all_the_turn_cannot_jump():
-    plain = fake.cycle()
-    pressed = fake.changed(plain.loads, inertia_force=np.full(fake.POSITIONS, 5.0))
-    check = forces.jump(fake.evidence(cycles=(fake.changed(plain, loads=pressed),)))
+    check = forces.jump(with_loads(inertia_force=np.full(made.POSITIONS, 5.0)))
     assert (check.demand, check.status) == (0.0, "pass")
 
 
 def test_contact_lost_is_worse_than_any_number():
-    plain = fake.cycle()
-    lost = fake.changed(plain.loads, normal_force=np.zeros(fake.POSITIONS))
-    check = forces.contact_force_margin(fake.evidence(cycles=(fake.changed(plain, loads=lost),)))
-    assert check.utilisation == np.inf
+    lost = with_loads(normal_force=np.zeros(made.POSITIONS))
+    assert forces.contact_force_margin(lost).utilisation == np.inf
 
 
 def test_the_return_cannot_jam():
-    plain = fake.cycle()
-    slope = plain.loads.lift_slope
-    index = np.where(slope > 0, 0.1, 0.9)
-    trial = fake.evidence(
-        cycles=(fake.changed(plain, loads=fake.changed(plain.loads, jam_index=index)),)
-    )
+    rising = made.cycle().loads.lift_slope > 0
+    trial = with_loads(jam_index=np.where(rising, 0.1, 0.9))
     assert forces.jam_index(trial).demand == pytest.approx(0.1)
 
 
@@ -247,7 +235,7 @@ def test_the_return_cannot_jam():
 
 
 def test_limits_are_those_of_the_softer_body():
-    trial = fake.evidence()
+    trial = made.evidence()
     assert contact_checks.softer(trial)[0] == "steel"
     # 4 Y / sqrt(3) = 2.309 Y for Y = 600 MPa.
     assert contact_checks.shakedown(trial).limit == pytest.approx(1385.64, abs=0.01)
@@ -256,32 +244,27 @@ def test_limits_are_those_of_the_softer_body():
 
 
 def test_structural_steel_shakes_down_to_about_820_mpa():
-    base = fake.case()
-    soft = fake.changed(base.materials["steel"], yield_strength=355e6)
-    case = fake.changed(base, materials=base.materials | {"steel": soft})
     # Published order for S355: shakes down to about 0.82 GPa (Johnson 1985, 4 k).
-    assert contact_checks.shakedown(fake.evidence(case=case)).limit == pytest.approx(820, rel=0.005)
+    soft = with_material("steel", yield_strength=355e6)
+    assert contact_checks.shakedown(soft).limit == pytest.approx(820, rel=0.005)
 
 
 def test_first_yield_does_not_decide():
-    assert not contact_checks.first_yield(fake.evidence()).must_have
+    assert not contact_checks.first_yield(made.evidence()).must_have
 
 
 # --- roller ----------------------------------------------------------------------------------
 
 
 def test_static_safety_by_hand():
-    check = roller.roller_static(fake.evidence())
+    check = roller.roller_static(made.evidence())
     assert check.demand == pytest.approx(600.0 / 400.0)
     assert check.cam_angle_deg == pytest.approx(90.0)
 
 
 def test_an_unrated_bearing_is_not_evaluated_and_fails():
-    bearing = SimpleNamespace(
-        name="plain", C=None, C0=None, radial_limit=None, speed_limit=None, source=""
-    )
-    case = fake.case(roller=fake.changed(fake.case().roller, bearing=bearing))
-    checks = all_checks(fake.evidence(case=case))
+    plain = with_bearing(name="plain", C=None, C0=None, radial_limit=None, speed_limit=None)
+    checks = all_checks(plain)
     missing = {"roller_static", "roller_speed", "roller_life", "roller_radial"}
     assert set(binding(checks)) == missing
     notes = {c.id: c.note for c in checks}
@@ -292,25 +275,23 @@ def test_an_unrated_bearing_is_not_evaluated_and_fails():
 
 def test_rating_life_of_a_constant_load_on_a_ring():
     # Constant load and speed: L10 = (C/P)^3 1e6 / n, n = w (R - r) / r.
-    plain = fake.cycle(ring())
-    steady = fake.changed(plain.loads, normal_force=np.full(fake.POSITIONS, 570.0))
-    trial = fake.evidence(contour=ring(), cycles=(fake.changed(plain, loads=steady),))
-    spin = fake.CAM_SPEED * (fake.BASE - fake.ROLLER) / fake.ROLLER
+    steady = cycle_with("loads", made.cycle(made.ring()), normal_force=np.full(72, 570.0))
+    trial = made.evidence(contour=made.ring(), cycles=(steady,))
+    spin = made.CAM_SPEED * (made.BASE - made.ROLLER) / made.ROLLER
     hours = 8e6 / (spin / (2.0 * np.pi)) / 3600.0
     assert roller.roller_life(trial).demand == pytest.approx(hours, rel=ROUND_OFF)
     assert roller.roller_speed(trial).demand == pytest.approx(spin * 30.0 / np.pi, rel=ROUND_OFF)
 
 
 def test_a_life_asked_for_is_a_must():
-    check = roller.roller_life(fake.evidence(case=fake.limits(roller_life=3600.0 * 1000.0)))
+    check = roller.roller_life(with_limits(roller_life=3600.0 * 1000.0))
     assert check.must_have
     assert check.limit == pytest.approx(1000.0)
     assert check.status == "fail"
 
 
 def test_a_roller_at_rest_lives_for_ever():
-    still = fake.cycle(crank_speed=0.0)
-    assert roller.roller_life(fake.evidence(cycles=(still,))).demand == np.inf
+    assert roller.roller_life(with_cycle(crank_speed=0.0)).demand == np.inf
 
 
 # --- guides ----------------------------------------------------------------------------------
@@ -318,24 +299,22 @@ def test_a_roller_at_rest_lives_for_ever():
 
 def test_bush_pressure_by_hand():
     # 500 N on 10 x 20 mm.
-    assert guides.bush_pressure_a(fake.evidence()).demand == pytest.approx(2.5)
-    assert guides.bush_pressure_b(fake.evidence()).demand == pytest.approx(1.0)
+    assert guides.bush_pressure_a(made.evidence()).demand == pytest.approx(2.5)
+    assert guides.bush_pressure_b(made.evidence()).demand == pytest.approx(1.0)
 
 
 def test_bush_pv_by_hand():
     # |R v| = 500 N x 0.4 m/s x sin^2, mean one half, on 200 mm^2: 0.5 MPa m/s.
-    check = guides.bush_pv_a(fake.evidence())
+    check = guides.bush_pv_a(made.evidence())
     assert check.demand == pytest.approx(0.5, rel=1e-6)
     assert check.cam_angle_deg is None
-    assert guides.bush_pv_b(fake.evidence()).demand == pytest.approx(0.2, rel=1e-6)
+    assert guides.bush_pv_b(made.evidence()).demand == pytest.approx(0.2, rel=1e-6)
 
 
 def test_bush_pv_takes_the_size_of_what_slides_either_way():
-    plain = fake.cycle()
-    reaction = fake.changed(plain.guides, rubbing_load_a=np.full(fake.POSITIONS, 500.0))
-    check = guides.bush_pv_a(fake.evidence(cycles=(fake.changed(plain, guides=reaction),)))
+    check = guides.bush_pv_a(with_guides(rubbing_load_a=np.full(made.POSITIONS, 500.0)))
     # Mean |sin| over 72 equal steps; 2/pi for many. The signed mean would vanish.
-    mean = np.abs(np.sin(fake.THETA)).mean()
+    mean = np.abs(np.sin(made.THETA)).mean()
     assert check.demand == pytest.approx(500.0 * 0.4 * mean / 200.0, rel=1e-6)
 
 
@@ -343,60 +322,56 @@ def test_bush_pv_takes_the_size_of_what_slides_either_way():
 
 
 def test_torque_reduction_by_hand():
-    trial = fake.evidence(cycles=(fake.cycle(scale=0.6),))  # std 10 to 3
+    trial = made.evidence(cycles=(made.cycle(scale=0.6),))  # std 10 to 3
     assert function.torque_reduction(trial).demand == pytest.approx(0.7)
 
 
 def test_speed_reduction_by_hand():
     """The load case with the least, of those whose ripple counts; a NaN is the least of all."""
     ripple = {"idle": (4.0, 1.0), "rated": (2.0, 1.5), "fast": (1.0, 2.0)}
-    fast = SimpleNamespace(name="fast", ripple_weight=0.0, preload=None)
-    given = fake.evidence(case=fake.case(load_cases=(fast,)), speed_ripple=ripple)
-    check = function.speed_reduction(given)
+    fast = made.load_case("fast", ripple_weight=0.0)
+    states = (made.load_case("idle"), made.load_case("rated"), fast)
+    check = function.speed_reduction(
+        made.evidence(case=made.case(load_cases=states), speed_ripple=ripple)
+    )
     assert (check.demand, check.load_case) == (pytest.approx(0.25), "rated")
-    stalled = fake.evidence(speed_ripple=ripple | {"idle": (np.nan, np.nan)})
+    stalled = made.evidence(speed_ripple=ripple | {"idle": (np.nan, np.nan)})
     assert function.speed_reduction(stalled).status == "not_evaluated"
-    assert function.speed_reduction(fake.evidence(speed_ripple={})) is None
-    unasked = fake.evidence(case=fake.limits(speed_reduction=None))
-    assert not function.speed_reduction(unasked).must_have
+    assert function.speed_reduction(made.evidence(speed_ripple={})) is None
+    assert not function.speed_reduction(with_limits(speed_reduction=None)).must_have
 
 
 def test_a_cam_that_adds_ripple_has_a_negative_reduction():
-    check = function.torque_reduction(fake.evidence(cycles=(fake.cycle(scale=3.0),)))
+    check = function.torque_reduction(made.evidence(cycles=(made.cycle(scale=3.0),)))
     assert check.demand == pytest.approx(-0.5)
     assert check.utilisation == np.inf
     assert check.status == "fail"
 
 
 def test_an_engine_without_ripple_leaves_the_reduction_unknown():
-    silent = fake.cycle(torque_before=np.zeros(fake.POSITIONS))
-    check = function.torque_reduction(fake.evidence(cycles=(silent,)))
+    check = function.torque_reduction(with_cycle(torque_before=np.zeros(made.POSITIONS)))
     assert check.status == "not_evaluated"
 
 
 def test_a_ring_takes_no_ripple_away_and_owes_no_energy():
-    plain = fake.cycle(ring())
-    trial = fake.evidence(
-        contour=ring(), cycles=(fake.changed(plain, residual_torque=plain.torque_before),)
-    )
+    plain = made.cycle(made.ring())
+    round_cam = replace(plain, residual_torque=plain.torque_before)
+    trial = made.evidence(contour=made.ring(), cycles=(round_cam,))
     assert function.torque_reduction(trial).status == "fail"
     assert function.energy_closure(trial).demand == 0.0
     assert function.friction_balance(trial).demand == 0.0
 
 
 def test_without_an_engine_there_is_no_torque_check():
-    given = fake.cycle(torque_before=None, residual_torque=None)
-    checks = all_checks(fake.evidence(cycles=(given,)))
+    checks = all_checks(with_cycle(torque_before=None, residual_torque=None))
     assert "torque_reduction" not in {check.id for check in checks}
     assert verdict(checks) == "pass"
 
 
 def test_friction_with_the_wrong_sign_on_the_return_is_seen():
-    plain = fake.cycle()
-    loads = plain.loads
+    loads = made.cycle().loads
     pushed = (loads.spring_force + loads.inertia_force + 20.0) * loads.lift_slope
-    wrong = fake.changed(plain, loads=fake.changed(loads, cam_torque=pushed))
-    check = function.friction_balance(fake.evidence(cycles=(wrong,)))
+    check = function.friction_balance(with_loads(cam_torque=pushed))
     assert check.demand == pytest.approx(1.0, rel=1e-6)  # no loss at all where heat is made
     assert check.status == "fail"
 
@@ -407,7 +382,7 @@ def test_friction_with_the_wrong_sign_on_the_return_is_seen():
 @pytest.mark.parametrize("searching", [True, False])
 def test_without_certificate_or_mesh_nothing_is_claimed(searching):
     """A trial of a search may go without; an answer without them does not pass."""
-    bare = fake.evidence(certificate=(), mesh_quality=None, benchmarks=None, searching=searching)
+    bare = made.evidence(certificate=(), mesh_quality=None, benchmarks=None, searching=searching)
     checks = {c.id: c for c in all_checks(bare)}
     for name in ("certificate_spread", "certificate_gci", "mesh_angle", "mesh_edges", "mesh_p0"):
         assert checks[name].status == "not_evaluated"
@@ -417,21 +392,20 @@ def test_without_certificate_or_mesh_nothing_is_claimed(searching):
 
 
 def test_the_worst_certified_angle_is_named():
-    check = evidence_checks.certificate_spread(fake.evidence())
-    assert check.demand == 0.4  # its size, whatever its sign
+    check = evidence_checks.certificate_spread(made.evidence())
+    assert check.demand == pytest.approx(0.4)  # its size, whatever its sign
     assert check.cam_angle_deg == pytest.approx(np.rad2deg(1.5))
     assert check.must_have
-    assert evidence_checks.certificate_gci(fake.evidence()).cam_angle_deg == pytest.approx(
+    assert evidence_checks.certificate_gci(made.evidence()).cam_angle_deg == pytest.approx(
         np.rad2deg(0.5)
     )
 
 
 def test_hertz_difference_skips_angles_without_load():
-    plain = fake.cycle()
-    hertz, p0 = np.array(plain.contact.p0_hertz), np.array(plain.contact.p0)
+    contact = made.cycle().contact
+    hertz, p0 = np.array(contact.p0_hertz), np.array(contact.p0)
     hertz[:3] = p0[:3] = 0.0
-    bare = fake.changed(plain, contact=fake.changed(plain.contact, p0=p0, p0_hertz=hertz))
-    check = evidence_checks.hertz_difference(fake.evidence(cycles=(bare,)))
+    check = evidence_checks.hertz_difference(with_contact(p0=p0, p0_hertz=hertz))
     assert check.demand == pytest.approx(1.0)
 
 
@@ -439,10 +413,10 @@ def test_hertz_difference_skips_angles_without_load():
 
 
 def test_a_waiver_is_applied_and_says_who_why_and_when():
-    travel = fake.changed(fake.case().spring, travel_max=0.005)
-    plain = fake.evidence(case=fake.case(spring=travel))
+    travel = made.changed(made.case().spring, travel_max=0.005)
+    plain = made.evidence(case=made.case(spring=travel))
     assert binding(all_checks(plain)) == ("spring_travel",)
-    waived = fake.evidence(case=fake.case(spring=travel, waivers=(waiver("spring_travel"),)))
+    waived = made.evidence(case=made.case(spring=travel, waivers=(waiver("spring_travel"),)))
     checks = {c.id: c for c in all_checks(waived)}
     assert checks["spring_travel"].status == "waived"
     assert checks["spring_travel"].waiver == "A. Engineer, 2025-01-02: proven"
@@ -452,70 +426,65 @@ def test_a_waiver_is_applied_and_says_who_why_and_when():
 @pytest.mark.parametrize("name", ["contact_equilibrium", "energy_closure", "benchmark_hertz"])
 def test_evidence_cannot_be_waived(name):
     """A person may accept a risk, not a wrong number."""
-    plain = fake.cycle()
-    wrong = fake.changed(plain.contact, residual_equilibrium=np.full(fake.POSITIONS, 1e-3))
-    given = fake.evidence(
-        case=fake.case(waivers=(waiver(name),)),
-        cycles=(fake.changed(plain, contact=wrong),),
-    )
-    checks = {c.id: c for c in all_checks(given)}
+    wrong = cycle_with("contact", residual_equilibrium=np.full(made.POSITIONS, 1e-3))
+    trial = made.evidence(case=made.case(waivers=(waiver(name),)), cycles=(wrong,))
+    checks = {c.id: c for c in all_checks(trial)}
     assert checks[name].waiver is None
     assert checks["contact_equilibrium"].status == "fail"
     assert checks["idle_waivers"].note == name
 
 
 def test_the_case_s_own_source_is_printed():
-    case = fake.case(limits=SimpleNamespace(sources={"pressure_angle": "house rule 7"}))
-    assert geometry.pressure_angle(fake.evidence(case=case)).source == "house rule 7"
+    trial = with_limits(sources={"pressure_angle": "house rule 7"})
+    assert geometry.pressure_angle(trial).source == "house rule 7"
 
 
 def test_evidence_is_frozen():
     with pytest.raises(AttributeError):
-        replace(fake.evidence()).case = None
+        made.evidence().case = None
 
 
-def rolling(name, **changes):
-    return next(c for c in all_checks(fake.evidence(**changes)) if c.id == name)
+# --- rolling ---------------------------------------------------------------------------------
 
 
-def without_rolling():
-    return {"cycles": (fake.cycle(rolling=None),)}
+def check_of(name, trial):
+    return next(c for c in all_checks(trial) if c.id == name)
+
+
+def only_at_one_angle(value):
+    return np.where(np.arange(made.POSITIONS) == 5, value, np.nan)
 
 
 def test_grip_is_half_of_friction():
-    check = rolling("roller_grip")
+    check = check_of("roller_grip", made.evidence())
     assert check.demand == pytest.approx(0.03)
     assert check.limit == pytest.approx(0.05)
     assert not check.must_have
 
 
 def test_grip_counts_where_the_roller_is_loaded():
-    demand = np.full(fake.POSITIONS, np.nan)
-    demand[5] = 0.04
-    parts = fake.changed(fake.cycle().rolling, traction_demand=demand)
-    assert rolling("roller_grip", cycles=(fake.cycle(rolling=parts),)).demand == 0.04
+    trial = with_rolling(traction_demand=only_at_one_angle(0.04))
+    assert check_of("roller_grip", trial).demand == 0.04
 
 
 def test_film_counts_where_the_roller_is_loaded():
-    ratio = np.full(fake.POSITIONS, np.nan)
-    ratio[5] = 1.3
-    parts = fake.changed(fake.cycle().rolling, film=SimpleNamespace(ratio=ratio))
-    assert rolling("film_ratio", cycles=(fake.cycle(rolling=parts),)).demand == 1.3
+    film = replace(made.cycle().rolling.film, ratio=only_at_one_angle(1.3))
+    assert check_of("film_ratio", with_rolling(film=film)).demand == 1.3
 
 
 def test_fatigue_takes_the_greatest_of_the_map():
-    check = rolling("surface_fatigue")
+    check = check_of("surface_fatigue", made.evidence())
     assert (check.demand, check.limit) == pytest.approx((200.0, 300.0))
 
 
 def test_case_is_used_most_where_strength_falls_faster_than_stress():
     """Half way down the case the yield strength is half way from 600 to 400 MPa."""
-    assert rolling("hardened_case").demand == pytest.approx(400 / 500)
+    assert check_of("hardened_case", made.evidence()).demand == pytest.approx(400 / 500)
 
 
 @pytest.mark.parametrize("name", ["roller_grip", "film_ratio", "surface_fatigue", "hardened_case"])
-def test_rolling_that_was_not_looked_at_is_not_evaluated(name):
-    check = rolling(name, **without_rolling())
+def test_without_the_rolling_of_a_cycle_nothing_is_evaluated(name):
+    check = check_of(name, with_cycle(rolling=None))
     assert check.status == "not_evaluated"
     assert not check.blocks
 
@@ -528,17 +497,17 @@ def test_rolling_that_was_not_looked_at_is_not_evaluated(name):
         ("film_ratio", "cam", "roughness", "no roughness of the cam"),
     ],
 )
-def test_what_rolling_misses_is_named(name, section, field, word):
-    base = fake.case()
-    part = fake.changed(getattr(base, section), **{field: None})
-    assert word in rolling(name, case=fake.changed(base, **{section: part})).note
+def test_a_missing_input_of_rolling_is_named(name, section, field, word):
+    assert word in check_of(name, with_part(section, **{field: None})).note
+
+
+def test_a_missing_lubricant_is_named():
+    assert "no lubricant" in check_of("film_ratio", with_case(lubricant=None)).note
 
 
 @pytest.mark.parametrize("field", ["fatigue_torsion", "fatigue_bending", "case_depth"])
-def test_what_the_card_misses_is_named(field):
-    base = fake.case()
-    steel = fake.changed(base.materials["steel"], **{field: None})
+def test_a_missing_strength_of_the_card_is_named(field):
     name = "surface_fatigue" if field.startswith("fatigue") else "hardened_case"
-    check = rolling(name, case=fake.changed(base, materials=base.materials | {"steel": steel}))
+    check = check_of(name, with_material("steel", **{field: None}))
     assert check.status == "not_evaluated"
     assert "the card of steel" in check.note

@@ -1,8 +1,8 @@
 """Guides and stem: values, refusals, small properties."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
+import made_trial as made
 import numpy as np
 import pytest
 
@@ -243,19 +243,8 @@ def test_a_residual_that_is_not_met_raises(monkeypatch, spoilt, name):
 
 
 def test_from_case_takes_the_bush_unless_a_stiffness_is_given():
-    table = {"length": 0.02, "diameter": 0.01, "clearance": 5e-5, "friction": 0.04}
-    case = SimpleNamespace(
-        materials={
-            "steel": SimpleNamespace(E=210e9, nu=0.3),
-            "nylon": SimpleNamespace(E=2.8e9, nu=0.4),
-        },
-        follower=SimpleNamespace(stem_diameter=0.01, stem_material="steel", stem_length=0.2),
-        guides=SimpleNamespace(
-            spacing=0.08,
-            a=SimpleNamespace(**table, material="nylon", stiffness=None),
-            b=SimpleNamespace(**table, material="steel", stiffness=6e8),
-        ),
-    )
+    stiff = made.changed(made.case().guides.b, stiffness=6e8)
+    case = made.case(guides=made.changed(made.case().guides, b=stiff))
     pair = GuidePair.from_case(case)
     assert pair.a.foundation_modulus == bush_foundation_modulus(0.01, WALL_SHARE * 0.01, 2.8e9, 0.4)
     assert pair.b.foundation_modulus == pytest.approx(3e10, rel=1e-15)

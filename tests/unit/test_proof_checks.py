@@ -1,8 +1,9 @@
 """Three meshes of every figure and the benchmarks: limits, NaN, missing, by hand."""
 
-import fake_trial as fake
+import made_trial as made
 import numpy as np
 import pytest
+from trial_variants import with_benchmark, with_certificate
 
 from pipeline import benchmarks
 from pipeline.checks import proof
@@ -10,7 +11,7 @@ from pipeline.checks.check import Check
 from pipeline.checks.contact import contact_pressure
 from pipeline.checks.errors import with_error_bars
 from pipeline.checks.evidence import certificate_spread
-from pipeline.contact.convergence import Convergence, converged
+from pipeline.contact.convergence import converged
 
 MESHED = {
     "p0": proof.mesh_p0,
@@ -20,28 +21,20 @@ MESHED = {
 }
 
 
-def with_gci(field, gci):
-    figure = Convergence((1.0, 1.0, 1.0), 1.0, 2.0, gci)
-    points = (fake.CERTIFICATE[0], fake.changed(fake.CERTIFICATE[1], **{field: figure}))
-    return fake.evidence(certificate=points)
-
-
 @pytest.mark.parametrize("field", MESHED)
 @pytest.mark.parametrize(
     ("gci", "status"), [(0.0297, "pass"), (0.0303, "fail"), (np.nan, "not_evaluated")]
 )
 def test_each_figure_has_its_own_error_bar(field, gci, status):
-    check = MESHED[field](with_gci(field, gci))
+    check = MESHED[field](with_certificate(**{field: made.converged(gci)}))
     assert check.status == status
     assert check.must_have
     assert check.cam_angle_deg == pytest.approx(np.rad2deg(1.5))
 
 
 @pytest.mark.parametrize("field", MESHED)
-def test_without_certificate_or_limit_nothing_is_claimed(field):
-    assert MESHED[field](fake.evidence(certificate=())).status == "not_evaluated"
-    given = fake.evidence(case=fake.limits(mesh_uncertainty=None))
-    assert MESHED[field](given).status == "not_evaluated"
+def test_without_a_certificate_nothing_is_claimed(field):
+    assert MESHED[field](made.evidence(certificate=())).status == "not_evaluated"
 
 
 @pytest.mark.parametrize("check", [proof.benchmark_nafems, proof.benchmark_hertz])
@@ -49,10 +42,9 @@ def test_without_certificate_or_limit_nothing_is_claimed(field):
     ("off", "status"), [(-0.0297, "pass"), (0.0303, "fail"), (np.nan, "not_evaluated")]
 )
 def test_benchmarks_at_their_limit(check, off, status):
-    name = check(fake.evidence()).id.removeprefix("benchmark_")
-    given = fake.evidence(benchmarks=fake.BENCHMARKS | {f"{name}_half_width": off})
-    assert check(given).status == status
-    missing = check(fake.evidence(benchmarks=None))
+    name = check(made.evidence()).id.removeprefix("benchmark_")
+    assert check(with_benchmark(name, off)).status == status
+    missing = check(made.evidence(benchmarks=None))
     assert (missing.status, missing.must_have) == ("not_evaluated", True)
 
 
@@ -64,11 +56,11 @@ def test_gci_by_hand():
 
 
 def test_error_bar_of_the_pressure_joins_tiers_and_meshes():
-    given = fake.evidence()
+    given = made.evidence()
     (check,) = with_error_bars(given, [contact_pressure(given)])
     # 0.4 % of the meshes and 0.4 % between the tiers at one angle.
     assert check.error == pytest.approx(0.008 * check.demand, rel=1e-3)
-    (bare,) = with_error_bars(fake.evidence(certificate=()), [contact_pressure(given)])
+    (bare,) = with_error_bars(made.evidence(certificate=()), [contact_pressure(given)])
     assert bare.error is None
     assert certificate_spread(given).demand == pytest.approx(0.4)
 
@@ -85,7 +77,7 @@ def test_benchmarks_are_solved_here(monkeypatch, tmp_path):
 
 
 def test_error_bar_of_a_guide_is_that_of_its_reaction():
-    given = fake.evidence()
+    given = made.evidence()
     guide = Check("bush_pv_A", "x", 2.0, 3.0)
     mesh = Check("mesh_reaction", "y", 0.5, 3.0)
     assert with_error_bars(given, [guide, mesh])[0].error == pytest.approx(0.01)

@@ -1,13 +1,12 @@
 """The smoothers: linear, zero phase, mean kept, nothing amplified."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from geometry.errors import InputError
+from pipeline.design_fields import Smoothing
 from pipeline.smoothing.smoothers import CYCLE, KINDS, Smoother, smoothed
 
 COUNT = 720
@@ -170,11 +169,16 @@ def test_result_is_read_only():
     assert not smoothed(torque(9), Smoother()).flags.writeable
 
 
-def test_from_case_takes_what_is_given():
-    section = SimpleNamespace(kind="gaussian", points=1, spacing=0.1, width=0.7, harmonics=None)
+def test_from_case_takes_every_field_of_the_section():
+    section = Smoothing(kind="gaussian", width="40 deg", harmonics=9.0, degree=3)
     smoother = Smoother.from_case(section)
-    assert (smoother.kind, smoother.width, smoother.harmonics) == ("gaussian", 0.7, 12.0)
-    assert Smoother.from_case(SimpleNamespace(kind="none", points=1)).angular_width == 0.0
+    assert (smoother.kind, smoother.width) == ("gaussian", np.radians(40.0))
+    assert (smoother.harmonics, smoother.degree) == (9.0, 3)
+    assert Smoother.from_case(Smoothing(kind="none")).angular_width == 0.0
+
+
+def test_a_smoother_has_the_defaults_of_its_section():
+    assert Smoother.from_case(Smoothing(kind=Smoother().kind)) == Smoother()
 
 
 @pytest.mark.parametrize(

@@ -1,148 +1,208 @@
-"""The trial of `full_trial` with one thing changed: a limit, a figure, a shape, a NaN."""
+"""The trial of `made_trial` with one thing changed: a limit, a figure, a shape, a NaN."""
 
-from collections import namedtuple
-from dataclasses import replace
-from types import SimpleNamespace
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
-import fake_trial as fake
-import full_trial as full
+import made_trial as made
 import numpy as np
 
+from geometry.arrays import freeze
+from geometry.contour import Contour
+from geometry.extrema import Extremum
+from geometry.lift import Lift
+from geometry.periodic import DEGREE, PeriodicPolynomial
+from geometry.pitch_curve import PitchCurve
 from pipeline.checks.trial import TrialEvidence
-from pipeline.contact.convergence import Convergence
+from pipeline.cycle import Cycle
+from pipeline.follower.cam_body import Reversal
+from pipeline.follower.friction import GuideHeat
 
-NAN = np.full(fake.POSITIONS, np.nan)
-Extreme = namedtuple("Extreme", "value theta")
-NOWHERE = Extreme(np.nan, np.nan)
-
-
-def with_case(**changes) -> TrialEvidence:
-    return full.evidence(case=full.case(**changes))
+NAN = np.full(made.POSITIONS, np.nan)
 
 
-def with_limits(**values) -> TrialEvidence:
-    limits = fake.changed(full.case().limits, **values)
-    return with_case(limits=limits)
+def with_case(**sections: Any) -> TrialEvidence:
+    return made.evidence(case=made.case(**sections))
 
 
-def with_part(section: str, **values) -> TrialEvidence:
-    """A section of the case changed; the roller under both its names."""
-    part = fake.changed(getattr(full.case(), section), **values)
-    return with_case(**{section: part}, **({"roller_given": part} if section == "roller" else {}))
+def with_limits(**values: Any) -> TrialEvidence:
+    return made.evidence(case=made.limits(**values))
 
 
-def with_material(name: str, **values) -> TrialEvidence:
-    materials = full.case().materials
-    return with_case(materials=materials | {name: fake.changed(materials[name], **values)})
+def with_part(section: str, **values: Any) -> TrialEvidence:
+    """The trial with a section of its case changed."""
+    return with_case(**{section: made.changed(getattr(made.case(), section), **values)})
 
 
-def with_bearing(**values) -> TrialEvidence:
-    return with_part("roller", bearing=fake.changed(full.case().roller.bearing, **values))
+def with_material(name: str, **values: Any) -> TrialEvidence:
+    cards = made.case().materials
+    return with_case(materials=cards | {name: made.changed(cards[name], **values)})
 
 
-def with_ring(**values) -> TrialEvidence:
-    return with_bearing(ring=fake.changed(full.case().roller.bearing.ring, **values))
+def with_bearing(**values: Any) -> TrialEvidence:
+    return with_part("roller", bearing=made.changed(made.case().roller.bearing, **values))
 
 
-def with_gear(**values) -> TrialEvidence:
-    return with_part("camshaft", gear=fake.changed(full.case().camshaft.gear, **values))
+def with_ring(**values: Any) -> TrialEvidence:
+    return with_bearing(ring=made.changed(made.case().roller.bearing.ring, **values))
 
 
-def with_guide(side: str, **values) -> TrialEvidence:
-    return with_part("guides", **{side: fake.changed(getattr(full.case().guides, side), **values)})
+def with_shaft(**values: Any) -> TrialEvidence:
+    return with_part("camshaft", **values)
 
 
-def with_design(**values) -> TrialEvidence:
-    return with_part("spring", design=fake.changed(full.case().spring.design, **values))
+def with_gear(**values: Any) -> TrialEvidence:
+    return with_shaft(gear=made.changed(made.case().camshaft.gear, **values))
 
 
-def with_cycle(**changes) -> TrialEvidence:
-    return full.evidence(cycles=(full.cycle(**changes),))
+def with_guide(side: str, **values: Any) -> TrialEvidence:
+    guide = made.changed(getattr(made.case().guides, side), **values)
+    return with_part("guides", **{side: guide})
 
 
-def with_loads(**values) -> TrialEvidence:
-    return with_cycle(loads=fake.changed(full.cycle().loads, **values))
+def with_design(**values: Any) -> TrialEvidence:
+    return with_part("spring", design=made.changed(made.case().spring.design, **values))
 
 
-def with_contact(**values) -> TrialEvidence:
-    return with_cycle(contact=fake.changed(full.cycle().contact, **values))
+def with_cycle(cycle: Cycle | None = None, **values: Any) -> TrialEvidence:
+    return made.evidence(cycles=(replace(cycle or made.cycle(), **values),))
 
 
-def with_guides(**values) -> TrialEvidence:
-    return with_cycle(guides=fake.changed(full.cycle().guides, **values))
+def cycle_with(part: str, base: Cycle | None = None, **values: Any) -> Cycle:
+    """The made-up cycle with some figures of its loads, contact, guides, rolling or parts."""
+    base = base or made.cycle()
+    return replace(base, **{part: replace(getattr(base, part), **values)})
 
 
-def with_rolling(**values) -> TrialEvidence:
-    return with_cycle(rolling=fake.changed(full.cycle().rolling, **values))
+def with_loads(**values: Any) -> TrialEvidence:
+    return with_cycle(cycle_with("loads", **values))
 
 
-def with_map(**values) -> TrialEvidence:
-    return with_rolling(envelope=fake.changed(full.cycle().rolling.envelope, **values))
+def with_contact(**values: Any) -> TrialEvidence:
+    return with_cycle(cycle_with("contact", **values))
 
 
-def with_parts(**values) -> TrialEvidence:
-    return with_cycle(parts=full.parts(**values))
+def with_guides(**values: Any) -> TrialEvidence:
+    return with_cycle(cycle_with("guides", **values))
 
 
-def with_certificate(**values) -> TrialEvidence:
-    points = (fake.CERTIFICATE[0], fake.changed(fake.CERTIFICATE[1], **values))
-    return full.evidence(certificate=points)
+def with_rolling(**values: Any) -> TrialEvidence:
+    return with_cycle(cycle_with("rolling", **values))
 
 
-def on_contour(**values) -> TrialEvidence:
-    """A contour that tells of itself just this; its pitch curve under `pitch_*`."""
-    lift = {"closure": np.nan, "highest": NOWHERE, "search_count": 72}
-    lift |= {k.removeprefix("lift_"): v for k, v in values.items() if k.startswith("lift_")}
-    pitch = {"lift": SimpleNamespace(**lift), "base_radius": fake.BASE, "offset": 0.0}
-    pitch["height_base"] = fake.BASE
-    pitch |= {k.removeprefix("pitch_"): v for k, v in values.items() if k.startswith("pitch_")}
-    own = {k: v for k, v in values.items() if not k.startswith(("lift_", "pitch_"))}
-    shape = SimpleNamespace(pitch=SimpleNamespace(**pitch), roller_radius=fake.ROLLER, **own)
-    return full.evidence(contour=shape)
+def with_bore(**values: Any) -> TrialEvidence:
+    return with_rolling(bore=replace(made.cycle().rolling.bore, **values))
 
 
-def hollow(evidence: TrialEvidence | None = None) -> TrialEvidence:
-    return replace(evidence or full.evidence(), contour=full.hollow())
+def with_map(**values: Any) -> TrialEvidence:
+    return with_rolling(envelope=replace(made.cycle().rolling.envelope, **values))
 
 
-def soft(**values) -> TrialEvidence:
+def with_parts(**values: Any) -> TrialEvidence:
+    return with_cycle(cycle_with("parts", **values))
+
+
+def with_temperature(side: str, temperature: float) -> TrialEvidence:
+    heat = getattr(made.cycle().parts, f"heat_{side}")
+    return with_parts(**{f"heat_{side}": GuideHeat(heat.power, temperature)})
+
+
+def with_worst_friction(**values: Any) -> TrialEvidence:
+    """The trial with other loads at the greatest friction of the guides."""
+    bounds = made.cycle().parts.friction
+    return with_parts(friction=replace(bounds, greatest=replace(bounds.greatest, **values)))
+
+
+def with_elastic_force(force: Any) -> TrialEvidence:
+    elastic = made.cycle().parts.elastic
+    return with_parts(
+        elastic=replace(elastic, response=replace(elastic.response, contact_force=force))
+    )
+
+
+def with_certificate(**values: Any) -> TrialEvidence:
+    """The trial with other figures at the second certified angle."""
+    first, second = made.CERTIFICATE
+    return made.evidence(certificate=(first, replace(second, **values)))
+
+
+def with_mesh(**values: Any) -> TrialEvidence:
+    return made.evidence(mesh_quality=replace(made.MESH, **values))
+
+
+def with_benchmark(name: str, off: float) -> TrialEvidence:
+    return made.evidence(benchmarks=made.BENCHMARKS | {f"{name}_half_width": off})
+
+
+class UnknownLift(Lift):
+    """A lift of NaN, which `Lift` itself refuses: no check may pass on it."""
+
+    def __post_init__(self) -> None:
+        freeze(self, theta=self.theta, values=self.values)
+
+    @cached_property
+    def spline(self) -> PeriodicPolynomial:
+        return PeriodicPolynomial(np.full((DEGREE + 1, self.theta.size), np.nan))
+
+
+def unknown() -> TrialEvidence:
+    """The trial on a contour of which no place is known."""
+    lift = UnknownLift(made.THETA, NAN, np.nan)
+    return made.evidence(contour=Contour(PitchCurve(lift, made.BASE), made.ROLLER))
+
+
+def open_ended() -> TrialEvidence:
+    """The trial on a lift whose source missed its start by half a nanometre."""
+    shape = made.contour()
+    lift = replace(shape.pitch.lift, closure=5e-10)
+    return made.evidence(contour=replace(shape, pitch=replace(shape.pitch, lift=lift)))
+
+
+@dataclass(frozen=True, eq=False)
+class SearchedContour(Contour):
+    """A contour whose search for a second contact has a made-up result."""
+
+    gap: Extremum
+
+    def clearance(self) -> Extremum:
+        return self.gap
+
+
+def with_gap(gap: float, theta: float = np.nan) -> TrialEvidence:
+    """The trial on a contour with a least gap, m, between roller and cam away from the contact."""
+    shape = made.contour()
+    return made.evidence(
+        contour=SearchedContour(shape.pitch, shape.roller_radius, Extremum(gap, theta))
+    )
+
+
+def hollow() -> TrialEvidence:
+    return made.evidence(contour=made.hollow())
+
+
+def soft(**values: Any) -> TrialEvidence:
     """A cam without a hardened case."""
     card = {"case_depth": None, "treatment": "through_hardened"}
     return with_material("steel", **(card | values))
 
 
-def faced(**values) -> TrialEvidence:
-    """A flat face of 20 mm instead of the roller, its contact 3 mm off the axis."""
-    face = {"width": 0.02, "pv_limit": 200e6, "source": "f", "material": "hard"}
-    base = full.case()
-    case = fake.changed(
-        base, follower=fake.changed(base.follower, face=SimpleNamespace(**(face | values)))
+def faced(cycle: Cycle | None = None, **values: Any) -> TrialEvidence:
+    """The trial with a flat face of 20 mm; the contact is 5 mm off the stem's axis at most."""
+    follower = made.face_case().follower
+    face = made.changed(follower.face, **values)
+    return made.evidence(
+        case=made.changed(made.face_case(), follower=made.changed(follower, face=face)),
+        contour=made.face_contour(),
+        cycles=(cycle or made.cycle(made.face_contour()),),
     )
-    push = {"push_arm": lambda theta: 0.003 + 0.0 * theta, "lift": fake.contour().pitch.lift}
-    shape = SimpleNamespace(roller_radius=np.inf, pitch=SimpleNamespace(**push))
-    sliding = SimpleNamespace(pv=100e6 + 50e6 * full.WAVE)
-    cycle = full.cycle(rolling=fake.changed(full.cycle().rolling, sliding=sliding))
-    return full.evidence(case=case, contour=shape, cycles=(cycle,))
-
-
-def crossings(count: int) -> TrialEvidence:
-    return on_contour(self_intersections=lambda: [(0.5, 0.0)] * count)
 
 
 def reversing(count: int) -> TrialEvidence:
-    return with_parts(reversals=(SimpleNamespace(slope=1.0),) * count)
+    return with_parts(reversals=(Reversal(1.0, 1.0),) * count)
 
 
 def lossy() -> TrialEvidence:
     """A cam whose torque pays one part in ten million more than the guides' heat."""
-    loads = full.cycle().loads
+    loads = made.cycle().loads
     spent = loads.cam_torque - (loads.spring_force + loads.inertia_force) * loads.lift_slope
     return with_loads(cam_torque=loads.cam_torque + 1e-7 * spent)
-
-
-def meshed(gci: float) -> Convergence:
-    return Convergence((1.0, 1.0, 1.0), 1.0, 2.0, gci)
-
-
-def benchmark(name: str):
-    return lambda off: full.evidence(benchmarks=fake.BENCHMARKS | {f"{name}_half_width": off})

@@ -1,0 +1,304 @@
+"""A trial of real objects whose demands are known by hand; every check has its data.
+
+Computed by the product: the case of `tests/data/every_part.toml`, the harmonic lift and its
+contour at 72 angles, and one cycle of it by closed forms. Made up, in round figures put into that
+cycle: contact and guide forces, pressures and stresses, friction of 10 N in each guide, torques,
+temperatures, the fatigue map, the stress at the bore, residuals; besides the cycle the quality of
+the mesh, certificate, benchmarks and speed ripple. The made-up figures do not agree with one
+another: each check is tried by itself.
+"""
+
+import tomllib
+from dataclasses import is_dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import uniform_turn
+from geometry.contour import Contour
+from geometry.flat_face import FacePath, FlatFaceContour
+from geometry.lift import Lift
+from geometry.pitch_curve import PitchCurve
+from meshes.quality import Quality
+from pipeline.ahead import foreseen_cycle
+from pipeline.case import Case
+from pipeline.case_file import case_of, load_case_file
+from pipeline.checks.trial import TrialEvidence
+from pipeline.contact.bore import BoreStress
+from pipeline.contact.convergence import Convergence
+from pipeline.contact.envelope import Envelope
+from pipeline.contact.history import CertificatePoint
+from pipeline.cycle import Cycle
+from pipeline.design_fields import LoadCase
+from pipeline.film_history import FilmHistory
+from pipeline.follower.friction import GuideHeat
+from pipeline.parts import PartsHistory
+from pipeline.rolling import RollingHistory
+from pipeline.section import Section
+from pipeline.turn import turn
+
+POSITIONS = 72
+THETA = uniform_turn(POSITIONS)
+WAVE = np.sin(THETA)
+BASE, ROLLER, STROKE = 0.05, 0.008, 0.01
+RATE, PRELOAD, MASS, CAM_SPEED = 24_200.0, 242.0, 0.175, 80.0
+CASE_FILE = Path(__file__).parents[1] / "data" / "every_part.toml"
+FACE = {
+    "width": "20 mm",
+    "depth": "10 mm",
+    "thickness": "5 mm",
+    "friction": 0.1,
+    "roughness": "0.1 um",
+    "pv_limit": "200 MPa m/s",
+    "material": "hard",
+    "source": "f",
+}
+
+
+def changed(base: Any, **values: Any) -> Any:
+    """A section of a case or a result with some of its fields replaced."""
+    if is_dataclass(base):
+        return replace(base, **values)
+    assert isinstance(base, Section)
+    assert set(values) <= set(type(base).model_fields)
+    return base.model_copy(update=values)
+
+
+@cache
+def _case() -> Case:
+    return load_case_file(CASE_FILE)
+
+
+def case(**sections: Any) -> Case:
+    """The case that describes every part; `sections` replace its own."""
+    if "roller" in sections:
+        sections["roller_given"] = sections.pop("roller")
+    return changed(_case(), **sections)
+
+
+@cache
+def face_case() -> Case:
+    """The same case with a flat face in place of the roller."""
+    tables = tomllib.loads(CASE_FILE.read_text())
+    del tables["roller"]
+    tables["follower"] |= {"kind": "flat", "face": FACE}
+    return case_of(tables)
+
+
+def limits(**values: Any) -> Case:
+    """The case with some of its limits replaced."""
+    return case(limits=changed(_case().limits, **values))
+
+
+def load_case(name: str, **values: Any) -> LoadCase:
+    return changed(_case().load_cases[0], name=name, **values)
+
+
+@cache
+def contour(stroke: float = STROKE, base: float = BASE, roller: float = ROLLER) -> Contour:
+    """A simple harmonic lift: s = stroke (1 - cos theta) / 2."""
+    lift = Lift(THETA, 0.5 * stroke * (1.0 - np.cos(THETA)))
+    return Contour(PitchCurve(lift, base), roller)
+
+
+@cache
+def face_contour() -> FlatFaceContour:
+    """The same lift under a flat face."""
+    return FlatFaceContour(FacePath(contour().pitch.lift, BASE))
+
+
+def ring() -> Contour:
+    """A cam that lifts nothing."""
+    return contour(stroke=0.0)
+
+
+@cache
+def hollow() -> Contour:
+    """Three lobes on a small base: convex tips and hollow flanks."""
+    lift = Lift(THETA, 0.005 * (1.0 - np.cos(3.0 * THETA)))
+    return Contour(PitchCurve(lift, 0.03), ROLLER)
+
+
+@cache
+def undercut() -> Contour:
+    """Five lobes under a roller too large for their tips: cusps, and a contour that crosses."""
+    theta = uniform_turn(360)
+    return Contour(PitchCurve(Lift(theta, 0.006 * (1.0 - np.cos(5.0 * theta))), 0.03), 0.02)
+
+
+@cache
+def computed(shape: Contour) -> Cycle:
+    """The cycle of a contour by closed forms, as the product computes it."""
+    own = face_case() if isinstance(shape, FlatFaceContour) else case()
+    return foreseen_cycle(own, shape, turn(own, shape, None, "idle", POSITIONS))
+
+
+def put(result: Any, **values: Any) -> Any:
+    """A result with its figures replaced, those it has: None stays None."""
+    return replace(
+        result, **{name: v for name, v in values.items() if getattr(result, name) is not None}
+    )
+
+
+def cycle(
+    shape: Contour | None = None, load_case: str = "idle", scale: float = 1.0, **values: Any
+) -> Cycle:
+    """A cycle of made-up figures; `scale` multiplies force, stress and torque."""
+    base = computed(shape or contour())
+    slope = base.loads.lift_slope
+    rub = np.full(POSITIONS, 10.0)
+    force = 300.0 * scale + 100.0 * WAVE
+    driven = (base.loads.spring_force + base.loads.inertia_force) * slope
+    plain = {
+        "load_case": load_case,
+        "torque_before": 10.0 * WAVE,
+        "residual_torque": 5.0 * WAVE * scale,
+        "friction_residual": np.full(POSITIONS, 1e-14),
+        "loads": replace(
+            base.loads,
+            normal_force=force,
+            axial_force=force,
+            tangential_force=100.0 * WAVE,
+            friction_force_a=rub,
+            friction_force_b=rub,
+            cam_torque=driven + 2.0 * rub * np.abs(slope),
+            jam_index=0.2 + 0.1 * WAVE,
+            jam_index_statics=0.25 + 0.1 * WAVE,
+        ),
+        "contact": replace(
+            base.contact,
+            p0=(800e6 + 100e6 * WAVE) * scale,
+            p0_hertz=(800e6 + 100e6 * WAVE) * scale / 1.01,
+            von_mises=(400e6 + 100e6 * WAVE) * scale,
+            half_width=np.full(POSITIONS, 1e-4),
+            tau_depth=np.full(POSITIONS, 0.786e-4),
+            von_mises_depth=np.full(POSITIONS, 0.7e-4),
+            residual_equilibrium=np.full(POSITIONS, 1e-9),
+            residual_complementarity=np.full(POSITIONS, 1e-11),
+        ),
+        "guides": replace(
+            base.guides,
+            reaction_a=-500.0 * WAVE,
+            reaction_b=-200.0 * WAVE,
+            statics_a=-400.0 * WAVE,
+            statics_b=-150.0 * WAVE,
+            rubbing_load_a=np.abs(500.0 * WAVE),
+            rubbing_load_b=np.abs(200.0 * WAVE),
+            force_residual=np.full(POSITIONS, 1e-13),
+            moment_residual=np.full(POSITIONS, 1e-12),
+        ),
+        "rolling": _rolling(base),
+        "parts": _parts(base),
+    }
+    return replace(base, **(plain | values))
+
+
+def _rolling(base: Cycle) -> RollingHistory:
+    assert base.rolling is not None
+    still, sliding = np.zeros(POSITIONS), base.rolling.sliding
+    rolling = put(
+        base.rolling,
+        traction_demand=0.02 + 0.01 * WAVE,
+        sliding=sliding and replace(sliding, pv=100e6 + 50e6 * WAVE),
+    )
+    return replace(
+        rolling,
+        film=FilmHistory(np.full(POSITIONS, 1e-6), 2.0 + 0.5 * WAVE),
+        bore=BoreStress(
+            von_mises=np.full(POSITIONS, 500e6),
+            x=still,
+            y=still,
+            at_edge=np.ones(POSITIONS),
+            away_from_edges=np.full(POSITIONS, 200e6),
+            excluded=5e-4,
+        ),
+        envelope=Envelope(
+            theta=np.zeros(1),
+            arc=np.zeros(1),
+            depth=np.array([[0.0, 0.5e-3]]),
+            von_mises=np.array([[300e6, 400e6]]),
+            tau_max=np.array([[150e6, 200e6]]),
+            shear_range=np.array([[150e6, 200e6]]),
+            crossland=np.array([[150e6, 200e6]]),
+            dang_van=np.array([[180e6, 240e6]]),
+        ),
+    )
+
+
+def _parts(base: Cycle) -> PartsHistory:
+    parts = base.parts
+    assert parts is not None
+    heat = GuideHeat(10.0 * np.abs(base.loads.velocity), 330.0)  # of the 10 N in each guide
+    still = np.zeros(POSITIONS)
+    roughest = replace(
+        parts.friction.greatest,
+        jam_index=0.3 + 0.1 * WAVE,
+        friction_force_a=still,
+        friction_force_b=still,
+    )
+    response = replace(parts.elastic.response, contact_force=300.0 + 100.0 * WAVE)
+    return put(
+        parts,
+        friction=replace(parts.friction, greatest=roughest),
+        elastic=replace(parts.elastic, response=response),
+        bush_peak_a=30e6 + 10e6 * WAVE,
+        bush_peak_b=20e6 + 10e6 * WAVE,
+        heat_a=heat,
+        heat_b=heat,
+        pin_stress=200e6 + 100e6 * WAVE,
+        ring_amplitude=300e6 + 100e6 * WAVE,
+        ring_mean=np.full(POSITIONS, 400e6),
+        key_pressure=100e6 * WAVE,
+        bore_pressure=20e6 + 10e6 * WAVE,
+        reversals=(),
+    )
+
+
+def converged(gci: float) -> Convergence:
+    """Values that settle at 1, with an error bar."""
+    return Convergence((1.1, 1.02, 1.0), 1.0, 2.0, gci)
+
+
+def _certified(theta: float, off_percent: float, gci_percent: float) -> CertificatePoint:
+    """A point from which the cycle's peak pressure is that far off; it has the widest error bar."""
+    return CertificatePoint(
+        theta=theta,
+        p0=converged(0.010 * gci_percent),
+        half_width=converged(0.008 * gci_percent),
+        von_mises=converged(0.006 * gci_percent),
+        tau_max=converged(0.004 * gci_percent),
+        edges=(4.0, 8.0, 16.0),
+        dofs=(1000, 4000, 16000),
+        p0_hertz=1.0,
+        p0_cycle=1.0 + 0.01 * off_percent,
+        half_width_cycle=1.0,
+        tau_max_cycle=1.0,
+        von_mises_cycle=1.0,
+        residual_equilibrium=1e-9,
+        residual_complementarity=1e-11,
+    )
+
+
+CERTIFICATE = (_certified(0.5, 0.2, 0.5), _certified(1.5, -0.4, 0.4))
+MESH = Quality(
+    min_angle_deg=28.0, min_scaled_jacobian=0.5, edges_across_half_width=10.0, elements=1, nodes=1
+)
+BENCHMARKS = {
+    f"{name}_{figure}": 0.01 for name in ("nafems", "hertz") for figure in ("p0", "half_width")
+}
+
+
+def evidence(**values: Any) -> TrialEvidence:
+    """A trial that passes; `values` replace its parts."""
+    plain = TrialEvidence(
+        case(), contour(), (cycle(),), MESH, CERTIFICATE, BENCHMARKS, {"idle": (2.0, 1.0)}
+    )
+    return replace(plain, **values)
+
+
+def of_load_cases(*cycles: Cycle) -> TrialEvidence:
+    """A trial of several cycles, of a case with a load case for each."""
+    names = dict.fromkeys(each.load_case for each in cycles)
+    return evidence(case=case(load_cases=tuple(map(load_case, names))), cycles=cycles)
