@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+import numpy as np
+
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence
 
@@ -47,11 +49,14 @@ def with_error_bars(trial: TrialEvidence, checks: Iterable[Check]) -> tuple[Chec
 
 
 def contact_error(trial: TrialEvidence) -> float | None:
-    """Greatest difference between turn and certificate plus its error bar, as a share."""
+    """Greatest difference between turn and certificate plus its error bar, as a share.
+
+    None without a certificate, NaN where a certified figure is not known.
+    """
     points = trial.certificate
     if not points:
         return None
-    return max(abs(p.spread_percent) + abs(p.gci_percent) for p in points) / 100.0
+    return float(np.max([p.spread_percent + p.gci_percent for p in points])) / 100.0
 
 
 def _share(check: Check, contact: float | None, guides: float | None) -> float | None:

@@ -75,16 +75,17 @@ class CertificatePoint:
 
     @property
     def spread_percent(self) -> float:
-        """Largest difference between cycle and certificate of any signed figure, %."""
+        """Largest difference between cycle and certificate of any signed figure, %; a NaN wins."""
         pairs = (
             (self.p0, self.p0_cycle),
             (self.half_width, self.half_width_cycle),
             (self.tau_max, self.tau_max_cycle),
             (self.von_mises, self.von_mises_cycle),
         )
-        return 100 * max(abs(cycle / figure.extrapolated - 1) for figure, cycle in pairs)
+        return 100 * float(np.max([abs(value / one.extrapolated - 1) for one, value in pairs]))
 
     @property
     def gci_percent(self) -> float:
-        """Largest grid convergence index of the figures, %."""
-        return 100 * max(f.gci for f in (self.p0, self.half_width, self.tau_max, self.von_mises))
+        """Largest grid convergence index of the figures, %; a NaN wins."""
+        figures = (self.p0, self.half_width, self.tau_max, self.von_mises)
+        return 100 * float(np.max([figure.gci for figure in figures]))

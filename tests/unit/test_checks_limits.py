@@ -93,7 +93,7 @@ def test_a_nan_torque_leaves_the_reduction_unknown(name, field):
     assert check(name, with_cycle(**{field: NAN})).status == "not_evaluated"
 
 
-@pytest.mark.parametrize("figure", ["p0"])
+@pytest.mark.parametrize("figure", ["p0", "half_width", "tau_max", "von_mises"])
 def test_a_nan_certificate_is_a_missing_number(figure):
     """Of whichever figure: the worst of four is not known without the fourth."""
     for name, values in (

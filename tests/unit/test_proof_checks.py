@@ -65,6 +65,12 @@ def test_error_bar_of_the_pressure_joins_tiers_and_meshes():
     assert certificate_spread(given).demand == pytest.approx(0.4)
 
 
+def test_error_bar_of_the_pressure_is_unknown_where_one_angle_is():
+    trial = with_certificate(p0_cycle=np.nan)
+    (check,) = with_error_bars(trial, [contact_pressure(trial)])
+    assert check.error is None
+
+
 def test_benchmarks_are_solved_here(monkeypatch, tmp_path):
     """Both within 1 % of the known answers; the second time from what was kept."""
     monkeypatch.setenv("CAMWRIGHT_CACHE", str(tmp_path))
