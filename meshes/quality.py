@@ -15,6 +15,12 @@ from meshes.body import BodyMesh
 _NODES = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.0), (0.5, 0.5), (0.0, 0.5))
 _EQUILATERAL = 2.0 / np.sqrt(3.0)
 
+# Bounds of a mesh that may be solved on: usual in finite elements, verify.
+LEAST_ANGLE_DEG = 20.0
+LEAST_SCALED_JACOBIAN = 0.3
+FACET_SHARE = 0.99
+"""Of the edges demanded: a facet drawn on the curve is a hair longer than its size."""
+
 
 @dataclass(frozen=True)
 class Quality:
@@ -109,8 +115,8 @@ def longest_facet(mesh: BodyMesh, contact_point: ArrayLike, half_width: float) -
 def gate(
     found: Quality,
     *,
-    angle_min_deg: float = 20.0,
-    scaled_jacobian_min: float = 0.3,
+    angle_min_deg: float = LEAST_ANGLE_DEG,
+    scaled_jacobian_min: float = LEAST_SCALED_JACOBIAN,
     edges_min: float = 0.0,
 ) -> Quality:
     """`found`, if it is good enough.
@@ -123,8 +129,7 @@ def gate(
     limits = (
         ("min_angle_deg", found.min_angle_deg, angle_min_deg),
         ("min_scaled_jacobian", found.min_scaled_jacobian, scaled_jacobian_min),
-        # A facet drawn on the curve is a hair longer than asked for.
-        ("edges_across_half_width", found.edges_across_half_width, 0.99 * edges_min),
+        ("edges_across_half_width", found.edges_across_half_width, FACET_SHARE * edges_min),
     )
     for name, value, limit in limits:
         if not value >= limit:

@@ -2,38 +2,52 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from geometry.arrays import Array
+from meshes.quality import FACET_SHARE, LEAST_ANGLE_DEG, LEAST_SCALED_JACOBIAN, Quality
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, Worst, greatest
+from pipeline.contact.pair_certificate import EDGES
 
 if TYPE_CHECKING:
+    from pipeline.contact.history import CertificatePoint
     from pipeline.cycle import Cycle
 
-CONTACT_EQUILIBRIUM = 1e-6
-SPREAD_PERCENT = 1.0
-HERTZ_PERCENT = 3.0
-LEAST_ANGLE_DEG = 20.0
-LEAST_SCALED_JACOBIAN = 0.3
-LEAST_EDGES = 7.92  # 8, less the hair by which a curved facet is longer than asked
-
 VERIFICATION = "ASME V&V 10-2019, solution verification"
+RESIDUALS = f"equilibrium and contact law hold; {VERIFICATION}"
+CERTIFIED = f"{VERIFICATION}; ASME V&V 20-2009 (GCI)"
+
+
+class Bound(NamedTuple):
+    """A limit in the unit of its check, and its source."""
+
+    value: float
+    source: str
+
+
+# Bounds on the tool's own numbers: no case may loosen them.
+CONTACT_EQUILIBRIUM = Bound(1e-6, RESIDUALS)  # of the load
+HERTZ_PERCENT = Bound(3.0, "Johnson (1985) sec. 4.2(c); 2 to 3 % in use")
+SPREAD_PERCENT = Bound(1.0, CERTIFIED)
+MESH_ANGLE_DEG = Bound(LEAST_ANGLE_DEG, VERIFICATION)
+MESH_JACOBIAN = Bound(LEAST_SCALED_JACOBIAN, VERIFICATION)
+MESH_EDGES = Bound(FACET_SHARE * EDGES[1], VERIFICATION)
 
 
 def guide_equilibrium_force(evidence: TrialEvidence) -> Check:
     """Guide reactions and side force add up to nothing, and so do the forces along the stem."""
     return _residual(
-        evidence,
         "guide_equilibrium_force",
         "Force equilibrium of the guides",
         greatest(
             evidence,
             lambda cycle: np.maximum(np.abs(cycle.guides.force_residual), cycle.friction_residual),
         ),
-        evidence.limit("equilibrium", 1e-9),
+        _equilibrium(evidence),
         "greatest sum of guide and side forces over the side force, beam on elastic supports; or"
         " of push, spring, inertia and the guides' friction over the push",
     )
@@ -42,11 +56,10 @@ def guide_equilibrium_force(evidence: TrialEvidence) -> Check:
 def guide_equilibrium_moment(evidence: TrialEvidence) -> Check:
     """The moments of guide reactions and side force add up to nothing."""
     return _residual(
-        evidence,
         "guide_equilibrium_moment",
         "Moment equilibrium of the guides",
         greatest(evidence, lambda cycle: np.abs(cycle.guides.moment_residual)),
-        evidence.limit("equilibrium", 1e-9),
+        _equilibrium(evidence),
         "greatest sum of moments over that of the side force, beam on elastic supports",
     )
 
@@ -54,11 +67,10 @@ def guide_equilibrium_moment(evidence: TrialEvidence) -> Check:
 def contact_equilibrium(evidence: TrialEvidence) -> Check:
     """The contact pressure carries the normal force."""
     return _residual(
-        evidence,
         "contact_equilibrium",
         "Force equilibrium of the contact",
         greatest(evidence, lambda cycle: np.abs(cycle.contact.residual_equilibrium)),
-        evidence.limit("contact_equilibrium", CONTACT_EQUILIBRIUM),
+        CONTACT_EQUILIBRIUM,
         "greatest relative difference of the integrated pressure from the load",
     )
 
@@ -66,11 +78,10 @@ def contact_equilibrium(evidence: TrialEvidence) -> Check:
 def contact_complementarity(evidence: TrialEvidence) -> Check:
     """No pull in the contact, no overlap outside it."""
     return _residual(
-        evidence,
         "contact_complementarity",
         "Contact law",
         greatest(evidence, lambda cycle: np.abs(cycle.contact.residual_complementarity)),
-        evidence.limit("complementarity", 1e-9),
+        Bound(evidence.case.limits.complementarity, RESIDUALS),
         "greatest relative tension, overlap or gap under pressure",
     )
 
@@ -88,9 +99,9 @@ def hertz_difference(evidence: TrialEvidence) -> Check:
         id="hertz_difference",
         title="Contact pressure by finite elements against Hertz",
         demand=worst.value,
-        limit=evidence.limit("hertz_difference", HERTZ_PERCENT),
+        limit=HERTZ_PERCENT.value,
         unit="%",
-        source=evidence.source("hertz_difference", "Johnson (1985) sec. 4.2(c); 2 to 3 % in use"),
+        source=HERTZ_PERCENT.source,
         method="greatest |p0 by finite elements / p0 by Hertz - 1| over the turn",
         must_have=False,
         evidence=True,
@@ -104,21 +115,20 @@ def certificate_spread(evidence: TrialEvidence) -> Check:
         evidence,
         "certificate_spread",
         "Contact of the turn against its certificate",
-        "spread_percent",
-        evidence.limit("certificate_spread", SPREAD_PERCENT),
+        lambda point: point.spread_percent,
+        SPREAD_PERCENT,
         "p0 of the turn against both bodies meshed and solved at the certificate's angles",
     )
 
 
 def certificate_gci(evidence: TrialEvidence) -> Check:
     """Error bar of the contact pressure from three meshes."""
-    share = evidence.limit("mesh_uncertainty", 0.03)
     return _certified(
         evidence,
         "certificate_gci",
         "Mesh uncertainty of the contact pressure",
-        "gci_percent",
-        None if share is None else 100.0 * share,
+        lambda point: point.gci_percent,
+        Bound(100.0 * evidence.case.limits.mesh_uncertainty, CERTIFIED),
         "grid convergence index of p0 on three meshes, observed order, safety factor 1.25",
     )
 
@@ -126,7 +136,12 @@ def certificate_gci(evidence: TrialEvidence) -> Check:
 def mesh_angle(evidence: TrialEvidence) -> Check:
     """Sharpest corner of a triangle."""
     return _mesh(
-        evidence, "mesh_angle", "Least angle of an element", "min_angle_deg", LEAST_ANGLE_DEG, "deg"
+        evidence,
+        "mesh_angle",
+        "Least angle of an element",
+        lambda mesh: mesh.min_angle_deg,
+        MESH_ANGLE_DEG,
+        "deg",
     )
 
 
@@ -136,8 +151,8 @@ def mesh_jacobian(evidence: TrialEvidence) -> Check:
         evidence,
         "mesh_jacobian",
         "Least scaled Jacobian",
-        "min_scaled_jacobian",
-        LEAST_SCALED_JACOBIAN,
+        lambda mesh: mesh.min_scaled_jacobian,
+        MESH_JACOBIAN,
         "-",
     )
 
@@ -148,27 +163,24 @@ def mesh_edges(evidence: TrialEvidence) -> Check:
         evidence,
         "mesh_edges",
         "Edges across the contact half-width",
-        "edges_across_half_width",
-        LEAST_EDGES,
+        lambda mesh: mesh.edges_across_half_width,
+        MESH_EDGES,
         "-",
     )
 
 
-def _residual(
-    evidence: TrialEvidence,
-    name: str,
-    title: str,
-    worst: Worst,
-    limit: float | None,
-    method: str,
-) -> Check:
+def _equilibrium(evidence: TrialEvidence) -> Bound:
+    return Bound(evidence.case.limits.equilibrium, RESIDUALS)
+
+
+def _residual(name: str, title: str, worst: Worst, bound: Bound, method: str) -> Check:
     return Check(
         id=name,
         title=title,
         demand=worst.value,
-        limit=limit,
+        limit=bound.value,
         unit="-",
-        source=evidence.source(name, f"equilibrium and contact law hold; {VERIFICATION}"),
+        source=bound.source,
         method=method,
         evidence=True,
         **worst.place,
@@ -176,19 +188,24 @@ def _residual(
 
 
 def _certified(
-    evidence: TrialEvidence, name: str, title: str, field: str, limit: float | None, method: str
+    evidence: TrialEvidence,
+    name: str,
+    title: str,
+    percent: Callable[[CertificatePoint], float],
+    bound: Bound,
+    method: str,
 ) -> Check:
     points = evidence.certificate
-    values = np.array([abs(float(getattr(point, field))) for point in points])
+    values = np.array([percent(point) for point in points])
     worst = int(np.argmax(values)) if points else None
     return Check(
         id=name,
         title=title,
         demand=None if worst is None else float(values[worst]),
-        limit=limit,
+        limit=bound.value,
         unit="%",
         cam_angle_deg=None if worst is None else float(np.rad2deg(points[worst].theta)),
-        source=evidence.source(name, f"{VERIFICATION}; ASME V&V 20-2009 (GCI)"),
+        source=bound.source,
         method=method,
         must_have=bool(points) or not evidence.searching,
         evidence=True,
@@ -197,17 +214,22 @@ def _certified(
 
 
 def _mesh(
-    evidence: TrialEvidence, name: str, title: str, field: str, least: float, unit: str
+    evidence: TrialEvidence,
+    name: str,
+    title: str,
+    figure: Callable[[Quality], float],
+    bound: Bound,
+    unit: str,
 ) -> Check:
     quality = evidence.mesh_quality
     return Check(
         id=name,
         title=title,
-        demand=None if quality is None else float(getattr(quality, field)),
-        limit=evidence.limit(name, least),
+        demand=None if quality is None else figure(quality),
+        limit=bound.value,
         unit=unit,
         sense="at_least",
-        source=evidence.source(name, VERIFICATION),
+        source=bound.source,
         method="worst over all elements of cam and roller",
         must_have=quality is not None or not evidence.searching,
         evidence=True,
