@@ -101,9 +101,11 @@ class Limits(Section):
     pressure_angle: Annotated[float, In("deg", above=0, below=90)] = radians(30.0)
     curvature_ratio: Annotated[float, In(at_least=1, at_most=100)] = 1.5
     undercut_factor: Annotated[float, In(above=0, below=1)] = 0.3
+    # The depth no cam is ground to.
     second_contact_depth: Annotated[float, In("mm", above=0, at_most=1)] = 1e-6
     tool_radius: Length | None = None
     curvature_rate: Annotated[float, In("1/m/rad", above=0, at_most=1e9)] | None = None
+    # Outside over inside radius of the ring about the bore.
     minimum_wall: Annotated[float, In(at_least=1, at_most=100)] = 1.75
     contact_safety: Safety = 1.0
     yield_safety: Safety = 1.0
@@ -142,6 +144,7 @@ class Limits(Section):
     bore_safety: Safety = 1.0
     viscosity_ratio: Safety = 1.0
     wear_depth: Length = 5e-5
+    # Of the swing: a jump spreads over a few samples, a smooth law does not.
     acceleration_step: Fraction = 0.2
     guide_length: Safety = 2.0
     torque_reduction: Annotated[float, In(above=0, below=1)] = 0.4

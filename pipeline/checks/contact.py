@@ -25,8 +25,9 @@ def contact_pressure(evidence: TrialEvidence) -> Check:
     """Greatest contact pressure against the endurance of the softer body."""
     name, material = softer(evidence)
     worst = greatest(evidence, lambda cycle: cycle.contact.p0)
-    endurance, safety = material.endurance_pressure, evidence.limit("contact_safety", 1.0)
-    limit = None if endurance is None or safety is None else 1e-6 * endurance / safety
+    endurance = material.endurance_pressure
+    safety = evidence.case.limits.contact_safety
+    limit = None if endurance is None else 1e-6 * endurance / safety
     return Check(
         id="contact_pressure",
         title="Contact pressure against surface endurance",
@@ -45,13 +46,12 @@ def first_yield(evidence: TrialEvidence) -> Check:
     """Greatest von Mises stress against yield; a rolling contact may live above it."""
     name, material = softer(evidence)
     worst = greatest(evidence, lambda cycle: cycle.contact.von_mises)
-    safety = evidence.limit("yield_safety", 1.0)
     yields = 1e-6 * material.yield_strength
     return Check(
         id="first_yield",
         title="Von Mises stress below the surface against yield",
         demand=1e-6 * worst.value,
-        limit=None if safety is None else yields / safety,
+        limit=yields / evidence.case.limits.yield_safety,
         unit="MPa",
         source=evidence.source(
             "yield_safety",
@@ -71,13 +71,12 @@ def shakedown(evidence: TrialEvidence) -> Check:
     """Greatest contact pressure against the limit of elastic shakedown."""
     name, material = softer(evidence)
     worst = greatest(evidence, lambda cycle: cycle.contact.p0)
-    safety = evidence.limit("shakedown_safety", 1.0)
     shear_yield = material.yield_strength / math.sqrt(3.0)
     return Check(
         id="shakedown",
         title="Contact pressure against shakedown",
         demand=1e-6 * worst.value,
-        limit=None if safety is None else 1e-6 * SHAKEDOWN * shear_yield / safety,
+        limit=1e-6 * SHAKEDOWN * shear_yield / evidence.case.limits.shakedown_safety,
         unit="MPa",
         source=evidence.source(
             "shakedown_safety",
@@ -103,15 +102,14 @@ def contact_pressure_at_life(evidence: TrialEvidence) -> Check:
     """Greatest contact pressure against the endurance at the life asked for."""
     case = evidence.case
     name = case.cam.material
-    card, life = case.materials[name], evidence.limit("target_life")
-    slope, intercept = (getattr(card, n, None) for n in ("endurance_slope", "endurance_intercept"))
-    safety = evidence.limit("contact_safety", 1.0)
+    card, life = case.materials[name], case.limits.target_life
+    slope, intercept = card.endurance_slope, card.endurance_intercept
     worst = greatest(evidence, lambda cycle: cycle.contact.p0)
     limit = None
-    if None not in (slope, intercept, life, safety):
-        speed = max((evidence.cam_speed(c) for c in evidence.cycles), default=math.nan)
-        modulus = _contact_modulus(evidence)
-        limit = pressure_at_life(life * speed / FULL_TURN, slope, intercept, modulus) / safety  # type: ignore[operator,arg-type]
+    if slope is not None and intercept is not None and life is not None:
+        turns = life * max(map(evidence.cam_speed, evidence.cycles)) / FULL_TURN
+        bears = pressure_at_life(turns, slope, intercept, _contact_modulus(evidence))
+        limit = bears / case.limits.contact_safety
     missing = [text for value, text in (
         (life, "no target life is asked for"),
         (slope, f"the card of {name} gives no slope of endurance"),
@@ -152,16 +150,14 @@ def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: flo
 def edge_pressure(evidence: TrialEvidence) -> Check:
     """Pressure at the ends of the line contact, which a plane model cannot see."""
     name, material = softer(evidence)
-    crowned = bool(getattr(evidence.facing, "crowned", False))
-    factor = 1.0 if crowned else evidence.limit("edge_factor", 1.3)
-    safety, endurance = evidence.limit("contact_safety", 1.0), material.endurance_pressure
+    limits, endurance = evidence.case.limits, material.endurance_pressure
+    factor = 1.0 if evidence.facing.crowned else limits.edge_factor
     worst = greatest(evidence, lambda cycle: cycle.contact.p0)
-    known = endurance is not None and safety is not None
     return Check(
         id="edge_pressure",
         title=f"Pressure at the {evidence.facing_name}'s ends against surface endurance",
-        demand=None if factor is None else 1e-6 * factor * worst.value,
-        limit=1e-6 * endurance / safety if known and endurance and safety else None,
+        demand=1e-6 * factor * worst.value,
+        limit=None if endurance is None else 1e-6 * endurance / limits.contact_safety,
         unit="MPa",
         source=evidence.source(
             "edge_factor",
@@ -170,7 +166,7 @@ def edge_pressure(evidence: TrialEvidence) -> Check:
         ),
         method=f"greatest contact pressure times {factor}; two dimensions cannot see the ends",
         lift_can_help=True,
-        note="" if known else f"the card of {name} gives no endurance pressure",
+        note="" if endurance is not None else f"the card of {name} gives no endurance pressure",
         **worst.place,
     )
 
@@ -178,13 +174,12 @@ def edge_pressure(evidence: TrialEvidence) -> Check:
 def shakedown_traction(evidence: TrialEvidence) -> Check:
     """Contact pressure against elastic shakedown with the follower sliding."""
     name, material = softer(evidence)
-    friction = getattr(evidence.facing, "friction", None)
-    safety = evidence.limit("shakedown_safety", 1.0)
+    friction = evidence.facing.friction
     worst = greatest(evidence, lambda cycle: cycle.contact.p0)
     limit = None
-    if friction is not None and safety is not None:
+    if friction is not None:
         shear_yield = material.yield_strength / math.sqrt(3.0)
-        limit = shakedown_factor(float(friction)) * shear_yield / safety
+        limit = shakedown_factor(friction) * shear_yield / evidence.case.limits.shakedown_safety
     return Check(
         id="shakedown_traction",
         title="Contact pressure against shakedown under sliding",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,13 +12,16 @@ from pipeline.checks import demands
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, greatest, least
 
+if TYPE_CHECKING:
+    from pipeline.cycle import Cycle
+
 RPM = 30.0 / math.pi
 
 
 def contact_margin(evidence: TrialEvidence) -> dict[str, Any]:
     """What every check of the least contact force over the preload is held against."""
     return {
-        "limit": evidence.limit("contact_force_margin", 0.2),
+        "limit": evidence.case.limits.contact_force_margin,
         "unit": "-",
         "sense": "at_least",
         "source": evidence.source(
@@ -30,7 +33,7 @@ def contact_margin(evidence: TrialEvidence) -> dict[str, Any]:
 def jam_limit(evidence: TrialEvidence) -> dict[str, Any]:
     """What every jam index is held against."""
     return {
-        "limit": evidence.limit("jam_index", 0.5),
+        "limit": evidence.case.limits.jam_index,
         "unit": "-",
         "source": evidence.source(
             "jam_index", "locks at 1, Rothbart (2004) eq. 6.8; half of it held"
@@ -64,7 +67,7 @@ def jump(evidence: TrialEvidence) -> Check:
         id="jump",
         title="Unloading inertia over spring force",
         demand=worst.value,
-        limit=evidence.limit("jump", 1.0),
+        limit=evidence.case.limits.jump,
         unit="-",
         source=evidence.source(
             "jump", "F_s + m w^2 s'' > 0, follower jump, Norton (2009) and Rothbart (2004)"
@@ -106,13 +109,13 @@ def _on_points(evidence: TrialEvidence) -> str:
 def jump_speed(evidence: TrialEvidence) -> Check:
     """Crank speed at which the follower leaves the cam, against the over-speed."""
     worst = least(evidence, _jump_speed)
-    factor = evidence.limit("jump_speed", 1.3)
+    factor = evidence.case.limits.jump_speed
     over, note = _overspeed(evidence)
     return Check(
         id="jump_speed",
         title="Crank speed of the first jump",
         demand=RPM * worst.value,
-        limit=None if factor is None else RPM * factor * over,
+        limit=RPM * factor * over,
         unit="rpm",
         sense="at_least",
         source=evidence.source(
@@ -131,7 +134,7 @@ def contact_at_overspeed(evidence: TrialEvidence) -> Check:
     """Least contact force at the over-speed beside the preload."""
     over, note = _overspeed(evidence)
 
-    def force(cycle: Any) -> Array:
+    def force(cycle: Cycle) -> Array:
         scale = (over / cycle.crank_speed) ** 2
         loads = cycle.loads
         return np.asarray(
@@ -155,7 +158,7 @@ def contact_at_overspeed(evidence: TrialEvidence) -> Check:
     )
 
 
-def _jump_speed(cycle: Any) -> Array:
+def _jump_speed(cycle: Cycle) -> Array:
     """Crank speed (n,), rad/s, at which each place of the turn lets go; a NaN stays."""
     pull = -np.asarray(cycle.loads.inertia_force, dtype=float)
     spring = np.asarray(cycle.loads.spring_force, dtype=float)
@@ -167,10 +170,10 @@ def _jump_speed(cycle: Any) -> Array:
 
 def _overspeed(evidence: TrialEvidence) -> tuple[float, str]:
     """Over-speed of the crank, rad/s, and what to say of it."""
-    given = evidence.limit("overspeed")
-    fastest = max((float(c.crank_speed) for c in evidence.cycles), default=math.nan)
-    if given is not None and given >= fastest:
-        return given, ""
+    over = evidence.case.limits.overspeed
+    fastest = max(cycle.crank_speed for cycle in evidence.cycles)
+    if over is not None and over >= fastest:
+        return over, ""
     return fastest, "no over-speed is given: that of the fastest load case"
 
 

@@ -22,14 +22,8 @@ GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 def torque_reduction(evidence: TrialEvidence) -> Check | None:
     """Share of the torque ripple the cam takes away; None when there is no engine."""
-    states = getattr(evidence.case, "load_cases", ())
-    weights = {state.name: state.ripple_weight for state in states}
-    running = tuple(
-        cycle
-        for cycle in evidence.cycles
-        if cycle.torque_before is not None and weights.get(cycle.load_case, 1.0) > 0
-    )
-    only_loads = [name for name, weight in weights.items() if not weight > 0]
+    only_loads = [s.name for s in evidence.case.load_cases if not s.ripple_weight > 0]
+    running = cycles_of_ripple(evidence)
     if not running:
         return None
     worst = worst_case(replace(evidence, cycles=running), _reduction, at_least=True)
@@ -37,7 +31,7 @@ def torque_reduction(evidence: TrialEvidence) -> Check | None:
         id=TORQUE_REDUCTION,
         title="Torque ripple taken away",
         demand=worst.value,
-        limit=evidence.limit("torque_reduction", 0.4),
+        limit=evidence.case.limits.torque_reduction,
         unit="-",
         sense="at_least",
         source=evidence.source("torque_reduction", "least value asked for by the case"),
@@ -49,10 +43,19 @@ def torque_reduction(evidence: TrialEvidence) -> Check | None:
     )
 
 
+def cycles_of_ripple(evidence: TrialEvidence) -> tuple[Cycle, ...]:
+    """The cycles with an engine whose load case counts for the ripple."""
+    weights = {state.name: state.ripple_weight for state in evidence.case.load_cases}
+    return tuple(
+        cycle
+        for cycle in evidence.cycles
+        if cycle.torque_before is not None and weights[cycle.load_case] > 0
+    )
+
+
 def speed_reduction(evidence: TrialEvidence) -> Check | None:
     """Share of the crank speed's ripple the cam takes away; None without a crankshaft."""
-    states = getattr(evidence.case, "load_cases", ())
-    idle = {state.name for state in states if not state.ripple_weight > 0}
+    idle = {state.name for state in evidence.case.load_cases if not state.ripple_weight > 0}
     shares = {
         name: 1.0 - after / before if before > 0 else np.nan
         for name, (before, after) in evidence.speed_ripple.items()
@@ -61,20 +64,20 @@ def speed_reduction(evidence: TrialEvidence) -> Check | None:
     if not shares:
         return None
     worst = min(shares, key=lambda name: -np.inf if np.isnan(shares[name]) else shares[name])
-    asked = evidence.limit("speed_reduction")
+    limit = evidence.case.limits.speed_reduction
     return Check(
         id="speed_reduction",
         title="Speed ripple of the crank taken away",
         demand=float(shares[worst]),
-        limit=asked,
+        limit=limit,
         unit="-",
         sense="at_least",
         load_case=worst,
         source=evidence.source("speed_reduction", "least value asked for by the case"),
         method="1 - std of the crank speed with the cam over that of the engine alone,"
         " inertia of crank and follower included",
-        must_have=asked is not None,
-        note="" if asked is not None else "no reduction of the speed ripple is asked for",
+        must_have=limit is not None,
+        note="" if limit is not None else "no reduction of the speed ripple is asked for",
     )
 
 
@@ -92,7 +95,7 @@ def energy_closure(evidence: TrialEvidence) -> Check:
         id="energy_closure",
         title="Energy not given back by the friction-free cam",
         demand=worst.value,
-        limit=evidence.limit("energy_closure", 1e-9),
+        limit=evidence.case.limits.energy_closure,
         unit="-",
         source=evidence.source("energy_closure", "conservation of energy over one turn"),
         method="integral of (F_s + m w^2 s'') s' over the lift's spline, over the energy stored",
@@ -108,7 +111,7 @@ def friction_balance(evidence: TrialEvidence) -> Check:
         id="friction_balance",
         title="Friction loss against heat in guides and face",
         demand=worst.value,
-        limit=evidence.limit("friction_balance", 1e-6),
+        limit=evidence.case.limits.friction_balance,
         unit="-",
         source=evidence.source("friction_balance", "conservation of energy over one turn"),
         method="cam work less that of spring and inertia, against friction times way of what rubs"
@@ -143,7 +146,7 @@ def _touching_slope(cycle: Cycle) -> Array:
 def _heat(evidence: TrialEvidence, cycle: Cycle) -> float:
     """Heat of all that rubs over a turn, J; of the guides, from the pushes in their bores."""
     loads, slope = cycle.loads, _touching_slope(cycle)
-    parts = getattr(cycle, "parts", None)
+    parts = cycle.parts
     if parts is None:
         friction = np.abs(loads.friction_force_a) + np.abs(loads.friction_force_b)
         rubbed = friction * np.abs(slope)

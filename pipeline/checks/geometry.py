@@ -9,11 +9,8 @@ from geometry.extrema import greatest
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, rollers_only
 
-ACCELERATION_STEP = 0.2  # of the swing: a jump spreads over a few samples, a smooth law does not
 RESTING = 1e-9  # swing of s'' over the lift, 1/rad^2, of a cam that is round
 TOOL_ALLOWANCE = 1.1  # a hollow is ground by a wheel at least a tenth smaller
-SECOND_CONTACT_DEPTH = 1e-6  # m, the depth no cam is ground to
-HUB_RATIO = 1.75  # outside over inside radius of the ring about the bore
 
 
 def closure(evidence: TrialEvidence) -> Check:
@@ -22,7 +19,7 @@ def closure(evidence: TrialEvidence) -> Check:
         id="closure",
         title="Lift closes after one turn",
         demand=float(evidence.contour.pitch.lift.closure),
-        limit=evidence.limit("closure", 1e-9),
+        limit=evidence.case.limits.closure,
         unit="m",
         source=evidence.source("closure", "fundamental law of cam design, Norton (2009) ch. 2"),
         method="difference of the lift at the two ends of the turn, as its source gave it",
@@ -40,7 +37,7 @@ def acceleration_step(evidence: TrialEvidence) -> Check:
         title="Step of the acceleration over its swing",
         # Rest, and the round-off of it, has no step.
         demand=0.0 if swing <= RESTING * lift.highest.value else float(steps[worst] / swing),
-        limit=evidence.limit("acceleration_step", ACCELERATION_STEP),
+        limit=evidence.case.limits.acceleration_step,
         unit="-",
         cam_angle_deg=_degrees(float(lift.theta[worst])),
         source=evidence.source(
@@ -56,12 +53,12 @@ def acceleration_step(evidence: TrialEvidence) -> Check:
 def pressure_angle(evidence: TrialEvidence) -> Check:
     """Greatest angle between the contact normal and the follower's axis."""
     value, theta = evidence.contour.pitch.pressure_angle_max()
-    limit = evidence.limit("pressure_angle", float(np.deg2rad(30.0)))
+    limit = float(np.rad2deg(evidence.case.limits.pressure_angle))
     return Check(
         id="pressure_angle",
         title="Pressure angle",
         demand=float(np.rad2deg(abs(value))),
-        limit=None if limit is None else round(float(np.rad2deg(limit)), 9),  # 30, not 29.9...96
+        limit=round(limit, 9),  # 30, not 29.9...96
         unit="deg",
         cam_angle_deg=_degrees(theta),
         source=evidence.source(
@@ -80,7 +77,7 @@ def curvature_ratio(evidence: TrialEvidence) -> Check:
         id="curvature_ratio",
         title="Least convex pitch radius over roller radius",
         demand=float(value / evidence.contour.roller_radius),
-        limit=evidence.limit("curvature_ratio", 1.5),
+        limit=evidence.case.limits.curvature_ratio,
         unit="-",
         sense="at_least",
         cam_angle_deg=_degrees(theta),
@@ -103,7 +100,7 @@ def undercut(evidence: TrialEvidence) -> Check:
         id="undercut",
         title=f"Undercut factor {factor}",
         demand=float(found.factor),
-        limit=evidence.limit("undercut_factor", 0.3),
+        limit=evidence.case.limits.undercut_factor,
         unit="-",
         sense="at_least",
         cam_angle_deg=_degrees(found.theta),
@@ -132,12 +129,11 @@ def self_intersection(evidence: TrialEvidence) -> Check:
 def second_contact(evidence: TrialEvidence) -> Check:
     """The follower touches the cam in one place only."""
     value, theta = evidence.contour.clearance()
-    depth = evidence.limit("second_contact_depth", SECOND_CONTACT_DEPTH)
     return Check(
         id="second_contact",
         title=f"{evidence.facing_name.capitalize()} cuts into another part of the cam",
         demand=1e3 * float(np.maximum(0.0, -value)),  # NaN stays, nothing in sight is no depth
-        limit=None if depth is None else 1e3 * depth,
+        limit=1e3 * evidence.case.limits.second_contact_depth,
         unit="mm",
         cam_angle_deg=_degrees(theta),
         source=evidence.source("second_contact", "one contact at a time, Rothbart (2004) ch. 6"),
@@ -172,7 +168,7 @@ def concave_radius(evidence: TrialEvidence) -> Check | None:
 
 def curvature_rate(evidence: TrialEvidence) -> Check | None:
     """How fast the contour's curvature changes; a case that gives no bound asks for none."""
-    limit, contour = evidence.limit("curvature_rate"), evidence.contour
+    limit, contour = evidence.case.limits.curvature_rate, evidence.contour
     if limit is None:
         return None
     count = contour.pitch.lift.search_count
@@ -194,7 +190,7 @@ def minimum_wall(evidence: TrialEvidence) -> Check:
     """The ring of steel about the bore and its keyway."""
     cam = evidence.case.cam
     contour = evidence.contour
-    keyway = getattr(cam, "keyway", None)
+    keyway = cam.keyway
     # The key's far edge may point at the lowest place of the contour; assume it does.
     inside = cam.bore_radius + (keyway.depth if keyway is not None else 0.0)
     outside, theta = contour.radius_min()
@@ -202,7 +198,7 @@ def minimum_wall(evidence: TrialEvidence) -> Check:
         id="minimum_wall",
         title="Least contour radius over bore radius with keyway",
         demand=float(outside / inside),
-        limit=evidence.limit("minimum_wall", HUB_RATIO),
+        limit=evidence.case.limits.minimum_wall,
         unit="-",
         sense="at_least",
         cam_angle_deg=_degrees(theta),

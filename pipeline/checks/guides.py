@@ -63,11 +63,10 @@ def _pressure(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
 
 def _explained(evidence: TrialEvidence, side: str, guide: Guide, worst: Worst) -> list[str]:
     """What of the pressure at its worst is of point supports, of length and of clearance."""
-    cycle = next((c for c in evidence.cycles if c.load_case == worst.load_case), None)
-    parts = getattr(cycle, "parts", None)
-    if cycle is None or parts is None:
+    cycle = next(each for each in evidence.cycles if each.load_case == worst.load_case)
+    if cycle.parts is None:
         return []
-    share, guides = parts.shares.reaction_a, cycle.guides
+    share, guides = cycle.parts.shares.reaction_a, cycle.guides
     on_points = guides.statics_a if side == "A" else guides.statics_b
     k = int(np.argmax(np.abs(_reaction(cycle, side))))
     unit = 1e-6 * np.sign(_reaction(cycle, side)[k]) / _area(guide)
@@ -116,17 +115,22 @@ def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
 
 def pv_limit(guide: Guide) -> float | None:
     """The limit given, or else that of nylon in the state of lubrication given, Pa m/s."""
-    state = getattr(guide, "lubrication", None)
-    if guide.pv_limit is not None or state is None or not _is_nylon(guide):
-        return guide.pv_limit
-    return NYLON_PV[state]
+    state = _graded_state(guide)
+    return guide.pv_limit if state is None else NYLON_PV[state]
 
 
 def _pv_source(guide: Guide) -> str:
-    if guide.pv_limit is None and pv_limit(guide) is not None:
-        state = str(getattr(guide, "lubrication", "")).replace("_", " ")
-        return f"nylon, {state}: Mott, table 16-1, and a bush maker's graded limits: verify"
+    state = _graded_state(guide)
+    if state is not None:
+        words = state.replace("_", " ")
+        return f"nylon, {words}: Mott, table 16-1, and a bush maker's graded limits: verify"
     return guide.source or f"{guide.material} bush"
+
+
+def _graded_state(guide: Guide) -> str | None:
+    """The lubrication whose graded limit holds; None where the guide has one of its own."""
+    graded = guide.pv_limit is None and _is_nylon(guide)
+    return guide.lubrication if graded else None
 
 
 def _lubrication_asked(guide: Guide, demand: float) -> list[str]:
@@ -158,7 +162,7 @@ def guide_length(evidence: TrialEvidence) -> Check:
         id="guide_length",
         title="Guided length over the greatest overhang",
         demand=spread / overhang,
-        limit=evidence.limit("guide_length", 2.0),
+        limit=case.limits.guide_length,
         unit="-",
         sense="at_least",
         source=evidence.source(

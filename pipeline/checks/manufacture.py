@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from geometry.arrays import FULL_TURN, Array
 from pipeline.checks.check import Check
-from pipeline.checks.function import TORQUE_REDUCTION
+from pipeline.checks.function import TORQUE_REDUCTION, cycles_of_ripple
 from pipeline.checks.trial import TrialEvidence, Worst, greatest, worst_case
+
+if TYPE_CHECKING:
+    from pipeline.cycle import Cycle
 
 
 def profile_waviness(evidence: TrialEvidence) -> Check:
     """Force of the follower riding over the contour's waves beside the contact force."""
     case = evidence.case
-    band = getattr(case.cam, "profile_tolerance", None)
-    length = getattr(case.cam, "waviness_length", 5e-3)
+    band, length = case.cam.profile_tolerance, case.cam.waviness_length
     mass = case.follower.mass
 
-    def force(cycle: Any) -> Array:
+    def force(cycle: Cycle) -> Array:
         along = evidence.cam_speed(cycle) * _path(evidence, cycle.theta)
         # A wave that fills the band of the tolerance has half of it as amplitude.
         added = mass * 0.5 * (band or 0.0) * (FULL_TURN * along / length) ** 2
@@ -33,7 +36,7 @@ def profile_waviness(evidence: TrialEvidence) -> Check:
         id="profile_waviness",
         title="Force of the contour's waves over the contact force",
         demand=worst.value,
-        limit=evidence.limit("waviness", 0.2),
+        limit=case.limits.waviness,
         unit="-",
         source=evidence.source("waviness", "10 to 20 % of the force, Rothbart (2004) sec. 10.4"),
         method=f"m delta (2 pi v/lambda)^2, waves that fill the profile tolerance,"
@@ -45,8 +48,7 @@ def profile_waviness(evidence: TrialEvidence) -> Check:
 
 def chord_error(evidence: TrialEvidence) -> Check:
     """What straight lines between the points of the shop's contour table miss of it."""
-    tolerance = getattr(evidence.case.cam, "profile_tolerance", None)
-    share = evidence.limit("chord_share", 0.25)
+    tolerance, share = evidence.case.cam.profile_tolerance, evidence.case.limits.chord_share
     theta = evidence.case.workshop.theta
     contour = evidence.contour
     points = contour.points(theta)
@@ -58,7 +60,7 @@ def chord_error(evidence: TrialEvidence) -> Check:
         id="chord_error",
         title="Chord error of the contour's table",
         demand=1e6 * float(sag[worst]),
-        limit=None if tolerance is None or share is None else 1e6 * share * tolerance,
+        limit=None if tolerance is None else 1e6 * share * tolerance,
         unit="um",
         cam_angle_deg=float(np.rad2deg(theta[worst])),
         source=evidence.source("chord_share", "a quarter of the profile tolerance, geometry"),
@@ -69,20 +71,20 @@ def chord_error(evidence: TrialEvidence) -> Check:
 
 def phase_tolerance(evidence: TrialEvidence) -> Check | None:
     """Ripple still taken away when key and gear stand as far off as they may."""
-    running = [cycle for cycle in evidence.cycles if cycle.torque_before is not None]
-    asked = {state.name: state.ripple_weight for state in evidence.case.load_cases}
-    running = [cycle for cycle in running if asked.get(cycle.load_case, 1.0) > 0]
+    running = cycles_of_ripple(evidence)
     if not running:
         return None
-    phase = getattr(getattr(evidence.case, "tolerances", None), "phase", 0.0)
-    ratio = evidence.case.mechanism.gear_ratio
-    given = TrialEvidence(evidence.case, evidence.contour, tuple(running))
-    worst = worst_case(given, lambda cycle: _reduction(cycle, phase, ratio), at_least=True)
+    phase, ratio = evidence.case.tolerances.phase, evidence.case.mechanism.gear_ratio
+    worst = worst_case(
+        replace(evidence, cycles=running),
+        lambda cycle: _reduction(cycle, phase, ratio),
+        at_least=True,
+    )
     return Check(
         id="phase_tolerance",
         title="Torque ripple taken away at the end of the phase tolerance",
         demand=worst.value if phase > 0 else None,
-        limit=evidence.limit(TORQUE_REDUCTION, 0.4),
+        limit=evidence.case.limits.torque_reduction,
         unit="-",
         sense="at_least",
         source=evidence.source(TORQUE_REDUCTION, "least value asked for by the case"),
@@ -93,7 +95,7 @@ def phase_tolerance(evidence: TrialEvidence) -> Check | None:
     )
 
 
-def _reduction(cycle: Any, phase: float, ratio: float) -> float:
+def _reduction(cycle: Cycle, phase: float, ratio: float) -> float:
     before = np.asarray(cycle.torque_before, dtype=float)
     taken = before - np.asarray(cycle.residual_torque, dtype=float)
     ripple = float(np.std(before))

@@ -6,7 +6,7 @@ not describe a part, it is not evaluated.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,31 +20,20 @@ from pipeline.follower.ring import goodman
 from pipeline.outer_ring import why_solid
 
 if TYPE_CHECKING:
-    from pipeline.cycle import Cycle
     from pipeline.elastic_history import ElasticHistory
+    from pipeline.follower.friction import GuideHeat
     from pipeline.part_fields import Guide
     from pipeline.parts import PartsHistory
 
 
-def _known(evidence: TrialEvidence) -> bool:
-    cycles = evidence.cycles
-    return bool(cycles) and all(getattr(c, "parts", None) is not None for c in cycles)
-
-
-def _parts(cycle: Cycle) -> PartsHistory:
-    parts = cycle.parts
-    if parts is None:  # pragma: no cover - asked of no such cycle
-        raise ValueError("a cycle without parts")
-    return parts
-
-
 def jam_at_worst_friction(evidence: TrialEvidence) -> Check | None:
     """How near the guides are to locking at the greatest friction."""
-    if not _known(evidence):
+    parts = evidence.parts
+    if parts is None:
         return None
     guides = evidence.case.guides
     bounded = guides.a.friction_max is not None and guides.b.friction_max is not None
-    worst = greatest(evidence, lambda cycle: _parts(cycle).friction.jam_index_max)
+    worst = greatest(evidence, lambda cycle: parts[cycle].friction.jam_index_max)
     return Check(
         id="jam_at_worst_friction",
         title="Jam index at the greatest friction",
@@ -59,13 +48,14 @@ def jam_at_worst_friction(evidence: TrialEvidence) -> Check | None:
 
 def elastic_contact(evidence: TrialEvidence) -> Check | None:
     """Least contact force with an elastic stem."""
-    if not _known(evidence):
+    parts = evidence.parts
+    if parts is None:
         return None
     worst = least(
         evidence,
-        lambda cycle: _parts(cycle).elastic.response.contact_force / evidence.preload(cycle),
+        lambda cycle: parts[cycle].elastic.response.contact_force / evidence.preload(cycle),
     )
-    histories = [_parts(cycle).elastic for cycle in evidence.cycles]
+    histories = [each.elastic for each in parts.values()]
     methods = "; ".join(dict.fromkeys(history.method for history in histories))
     return Check(
         id="elastic_contact",
@@ -108,9 +98,10 @@ def bush_peak_b(evidence: TrialEvidence) -> Check | None:
 def _peak(
     evidence: TrialEvidence, side: str, guide: Guide, of: Callable[[PartsHistory], Array]
 ) -> Check | None:
-    if not _known(evidence):
+    parts = evidence.parts
+    if parts is None:
         return None
-    worst = greatest(evidence, lambda cycle: of(_parts(cycle)))
+    worst = greatest(evidence, lambda cycle: of(parts[cycle]))
     material = evidence.case.material(guide.material)
     return Check(
         id=f"bush_peak_{side}",
@@ -138,14 +129,12 @@ def bush_temperature_b(evidence: TrialEvidence) -> Check | None:
 
 
 def _temperature(evidence: TrialEvidence, side: str, guide: Guide) -> Check | None:
-    if not _known(evidence):
+    parts = evidence.parts
+    if parts is None:
         return None
     material = evidence.case.material(guide.material)
-    worst = worst_case(
-        evidence,
-        lambda c: (_parts(c).heat_a if side == "A" else _parts(c).heat_b).temperature,
-    )
-    notes = _hottest(evidence, side, worst.value)
+    worst = worst_case(evidence, lambda cycle: _heat(parts[cycle], side).temperature)
+    notes = _hottest(evidence, parts.values(), side, worst.value)
     if guide.thermal_resistance is None and material.conductivity is None:
         notes.append("no way of the heat is given")
     if material.temperature_limit is None:
@@ -165,13 +154,17 @@ def _temperature(evidence: TrialEvidence, side: str, guide: Guide) -> Check | No
     )
 
 
-def _hottest(evidence: TrialEvidence, side: str, nominal: float) -> list[str]:
+def _heat(parts: PartsHistory, side: str) -> GuideHeat:
+    return parts.heat_a if side == "A" else parts.heat_b
+
+
+def _hottest(
+    evidence: TrialEvidence, histories: Iterable[PartsHistory], side: str, nominal: float
+) -> list[str]:
     """What the temperature (K) becomes at the greatest friction, where it is known and higher."""
     ambient, found = evidence.case.guides.ambient_temperature, []
-    for cycle in evidence.cycles:
-        parts = _parts(cycle)
-        heat = parts.heat_a if side == "A" else parts.heat_b
-        worst = parts.friction.greatest
+    for parts in histories:
+        heat, worst = _heat(parts, side), parts.friction.greatest
         friction = worst.friction_force_a if side == "A" else worst.friction_force_b
         power = float(np.mean(friction * np.abs(worst.velocity)))
         if heat.mean_power > 0.0:
@@ -183,11 +176,11 @@ def _hottest(evidence: TrialEvidence, side: str, nominal: float) -> list[str]:
 @rollers_only
 def roller_pin(evidence: TrialEvidence) -> Check | None:
     """Bending of the roller's pin."""
-    if not _known(evidence):
+    parts = evidence.parts
+    if parts is None:
         return None
-    pin = evidence.case.roller.pin
-    share = evidence.limit("pin_share", 0.6)
-    if pin is None or share is None:
+    pin, share = evidence.case.roller.pin, evidence.case.limits.pin_share
+    if pin is None:
         return not_described(
             "roller_pin",
             "Bending of the roller's pin",
@@ -196,7 +189,7 @@ def roller_pin(evidence: TrialEvidence) -> Check | None:
             must_have=True,
         )
     material = evidence.case.material(pin.material)
-    worst = greatest(evidence, lambda cycle: _given(_parts(cycle).pin_stress))
+    worst = greatest(evidence, lambda cycle: _given(parts[cycle].pin_stress))
     return Check(
         id="roller_pin",
         title="Bending of the roller's pin",
@@ -213,7 +206,8 @@ def roller_pin(evidence: TrialEvidence) -> Check | None:
 @rollers_only
 def roller_ring(evidence: TrialEvidence) -> Check | None:
     """Fatigue of the bearing's outer ring, which bends on its balls as it rolls on the cam."""
-    if not _known(evidence):
+    parts = evidence.parts
+    if parts is None:
         return None
     case, title = evidence.case, "Bending of the roller's outer ring on its balls"
     ring = case.roller.bearing.ring
@@ -222,7 +216,7 @@ def roller_ring(evidence: TrialEvidence) -> Check | None:
         note = f"{solid}: the contact takes the roller as solid on its hub"
         return not_described("roller_ring", title, "MPa", note, must_have=False)
     strength, tensile = ring.fatigue_bending, ring.tensile_strength
-    worst = greatest(evidence, lambda cycle: _ring_amplitude(_parts(cycle), tensile))
+    worst = greatest(evidence, lambda cycle: _ring_amplitude(parts[cycle], tensile))
     missing = [
         f"no {name} of the ring is given"
         for name, value in (("fatigue strength", strength), ("tensile strength", tensile))
@@ -253,19 +247,19 @@ def _ring_amplitude(parts: PartsHistory, tensile_strength: float | None) -> Arra
 
 def key_pressure(evidence: TrialEvidence) -> Check | None:
     """Pressure on the flank of the cam's key."""
-    if not _known(evidence):
+    parts = evidence.parts
+    if parts is None:
         return None
     if evidence.case.cam.keyway is None:
         return not_described(
             "key_pressure", "Pressure on the key", "MPa", "no keyway is given", must_have=False
         )
-    worst = greatest(evidence, lambda cycle: np.abs(_given(_parts(cycle).key_pressure)))
-    limit = evidence.limit("key_pressure", 100e6)
+    worst = greatest(evidence, lambda cycle: np.abs(_given(parts[cycle].key_pressure)))
     return Check(
         id="key_pressure",
         title="Pressure on the key",
         demand=1e-6 * worst.value,
-        limit=None if limit is None else 1e-6 * limit,
+        limit=1e-6 * evidence.case.limits.key_pressure,
         unit="MPa",
         source=evidence.source("key_pressure", "100 to 150 MPa static, DIN 6892: verify"),
         method="4 T/(d h l) at the greatest cam torque, the key's height twice the keyway's depth",
@@ -277,15 +271,15 @@ def key_pressure(evidence: TrialEvidence) -> Check | None:
 
 def bore_pressure(evidence: TrialEvidence) -> Check | None:
     """Mean pressure of the cam's bore on its shaft."""
-    if not _known(evidence):
+    parts = evidence.parts
+    if parts is None:
         return None
-    worst = greatest(evidence, lambda cycle: _parts(cycle).bore_pressure)
-    limit = evidence.limit("bore_pressure", 100e6)
+    worst = greatest(evidence, lambda cycle: parts[cycle].bore_pressure)
     return Check(
         id="bore_pressure",
         title="Pressure of the bore on the shaft",
         demand=1e-6 * worst.value,
-        limit=None if limit is None else 1e-6 * limit,
+        limit=1e-6 * evidence.case.limits.bore_pressure,
         unit="MPa",
         source=evidence.source("bore_pressure", "100 MPa as for a key, DIN 6892: verify"),
         method="greatest normal force over bore diameter and cam width",
@@ -297,12 +291,12 @@ def bore_pressure(evidence: TrialEvidence) -> Check | None:
 
 def torque_reversals(evidence: TrialEvidence) -> Check | None:
     """Whether the gear's and the key's flanks stay together."""
-    if not _known(evidence):
+    parts = evidence.parts
+    if parts is None:
         return None
-    worst = worst_case(evidence, lambda cycle: float(len(_parts(cycle).reversals)))
-    steepest = max(
-        (abs(r.slope) for cycle in evidence.cycles for r in _parts(cycle).reversals), default=0.0
-    )
+    worst = worst_case(evidence, lambda cycle: float(len(parts[cycle].reversals)))
+    slopes = [abs(one.slope) for each in parts.values() for one in each.reversals]
+    steepest = max(slopes, default=0.0)
     return Check(
         id="torque_reversals",
         title="Reversals of the torque through gear and key in a turn",
@@ -319,12 +313,12 @@ def torque_reversals(evidence: TrialEvidence) -> Check | None:
 
 def cam_unbalance(evidence: TrialEvidence) -> Check | None:
     """Unbalance of the cam as made, and the hole that would take it away."""
-    if not _known(evidence):
+    if evidence.parts is None:
         return None
     found = balance(evidence.case, evidence.contour)
     made = found.as_made
     speed = max(evidence.cam_speed(cycle) for cycle in evidence.cycles)
-    limit = evidence.limit("unbalance")
+    limit = evidence.case.limits.unbalance
     return Check(
         id="cam_unbalance",
         title="Unbalance of the cam",

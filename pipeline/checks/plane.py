@@ -18,27 +18,24 @@ if TYPE_CHECKING:
     from pipeline.contact.bore import BoreStress
     from pipeline.cycle import Cycle
 
-EDGE_FACTOR = 1.3
+LEAST_EDGE_FACTOR = 1.3  # on a contact without a crown: 1.3 to 2, shop practice: verify
 CLEAR_OF_HOLDS = 10.0  # half-widths, beyond which a contact no longer feels how a body is held
 EXCLUDED_SHARE = 0.5  # of the keyway's depth
 
 
 def edge_derating(evidence: TrialEvidence) -> Check:
     """Whether the pressure at the ends of the contact is raised by what nobody computed."""
-    crowned = bool(getattr(evidence.facing, "crowned", False))
-    factor = 1.0 if crowned else evidence.limit("edge_factor", EDGE_FACTOR)
+    crowned = evidence.facing.crowned
     return Check(
         id="edge_derating",
         title="Edge factor on the plane contact pressure",
-        demand=factor,
-        limit=1.0 if crowned else EDGE_FACTOR,
+        demand=1.0 if crowned else evidence.case.limits.edge_factor,
+        limit=1.0 if crowned else LEAST_EDGE_FACTOR,
         unit="-",
         sense="at_least",
         source="derate 1.3 to 2 or crown the roller, shop practice: verify",
         method="factor that edge_pressure puts on the plane solution; 1 where the ends are crowned",
-        note="plane strain sees neither the ends of the contact, nor a tilt of its axis"
-        if factor is not None
-        else "no edge factor and no crown is given",
+        note="plane strain sees neither the ends of the contact, nor a tilt of its axis",
         evidence=True,
     )
 
@@ -46,12 +43,11 @@ def edge_derating(evidence: TrialEvidence) -> Check:
 def clear_of_holds(evidence: TrialEvidence) -> Check:
     """Least steel between the contact and where its bodies are held, in half-widths."""
     case = evidence.case
-    key = getattr(case.cam, "keyway", None)
+    key = case.cam.keyway
     held = case.cam.bore_radius + (0.0 if key is None else key.depth)
     wall = evidence.contour.radius_min().value - held
-    hub = getattr(evidence.facing, "hub_radius", None)
-    if evidence.rolls and hub is not None:
-        wall = min(wall, evidence.contour.roller_radius - hub)
+    if evidence.rolls:
+        wall = min(wall, evidence.contour.roller_radius - case.roller.hub_radius)
     worst = greatest(evidence, lambda cycle: cycle.contact.half_width)
     loaded = worst.value > 0 or np.isnan(worst.value)
     return Check(
@@ -70,7 +66,7 @@ def clear_of_holds(evidence: TrialEvidence) -> Check:
 
 def excluded_zone(evidence: TrialEvidence) -> Check | None:
     """Size of the zones at the keyway's edges whose stress is not counted; None without a key."""
-    key = getattr(evidence.case.cam, "keyway", None)
+    key = evidence.case.cam.keyway
     if key is None or not _bores(evidence):
         return None
     radius = max(bore.excluded for bore in _bores(evidence))
@@ -92,16 +88,15 @@ def bore_stress(evidence: TrialEvidence) -> Check | None:
         return None
     name = evidence.case.cam.material
     card = evidence.case.materials[name]
-    worst = greatest(evidence, lambda cycle: _bore(cycle, "away_from_edges"))
+    worst = greatest(evidence, _away_from_edges)
     at_edges = max(float(np.max(bore.von_mises)) for bore in _bores(evidence))
-    safety = evidence.limit("bore_safety", 1.0)
-    core = getattr(card, "core_yield_strength", None) or card.yield_strength
+    core = card.core_yield_strength or card.yield_strength
     radius = 1e3 * max(bore.excluded for bore in _bores(evidence))
     return Check(
         id="bore_stress",
         title="Von Mises stress at the bore",
         demand=1e-6 * worst.value,
-        limit=None if safety is None else 1e-6 * core / safety,
+        limit=1e-6 * core / evidence.case.limits.bore_safety,
         unit="MPa",
         source=evidence.source("bore_safety", f"yield of the core of {name}", card.source),
         method="finite elements on a rigid shaft, edges of the keyway left out by excluded_zone",
@@ -140,13 +135,13 @@ def stress_inside(evidence: TrialEvidence) -> Check:
 
 
 def _bores(evidence: TrialEvidence) -> list[BoreStress]:
-    turns = [getattr(cycle, "rolling", None) for cycle in evidence.cycles]
+    turns = [cycle.rolling for cycle in evidence.cycles]
     return [turn.bore for turn in turns if turn is not None and turn.bore is not None]
 
 
-def _bore(cycle: Cycle, name: str) -> Array:
-    found = None if cycle.rolling is None else cycle.rolling.bore
-    return np.full(cycle.theta.size, np.nan) if found is None else np.asarray(getattr(found, name))
+def _away_from_edges(cycle: Cycle) -> Array:
+    bore = None if cycle.rolling is None else cycle.rolling.bore
+    return np.full(cycle.theta.size, np.nan) if bore is None else bore.away_from_edges
 
 
 CHECKS = (edge_derating, clear_of_holds, stress_inside, excluded_zone, bore_stress)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from pipeline.contact.convergence import Convergence, converged
 from pipeline.follower.guides import KNOTS, GuidePair, guide_reactions
 from pipeline.follower.stem import Stem
 
+if TYPE_CHECKING:
+    from pipeline.contact.history import CertificatePoint
+
 GCI = "grid convergence index, ASME V&V 20-2009, sec. 2-4; <= 3 %"
 BENCHMARK = 0.03
 KNOTS_TRIED = (7, 13, 25)  # twice as many each time, the ends counted once
@@ -19,30 +23,29 @@ KNOTS_TRIED = (7, 13, 25)  # twice as many each time, the ends counted once
 
 def mesh_p0(evidence: TrialEvidence) -> Check:
     """Error bar of the peak pressure."""
-    return _of_certificate(evidence, "p0", "peak pressure")
+    return _of_certificate(evidence, "p0", "peak pressure", lambda point: point.p0)
 
 
 def mesh_half_width(evidence: TrialEvidence) -> Check:
     """Error bar of the contact's half-width."""
-    return _of_certificate(evidence, "half_width", "half-width")
+    return _of_certificate(evidence, "half_width", "half-width", lambda point: point.half_width)
 
 
 def mesh_von_mises(evidence: TrialEvidence) -> Check:
     """Error bar of the von Mises stress below the surface."""
-    return _of_certificate(evidence, "von_mises", "von Mises stress")
+    return _of_certificate(evidence, "von_mises", "von Mises stress", lambda point: point.von_mises)
 
 
 def mesh_tau_max(evidence: TrialEvidence) -> Check:
     """Error bar of the greatest shear below the surface."""
-    return _of_certificate(evidence, "tau_max", "greatest shear")
+    return _of_certificate(evidence, "tau_max", "greatest shear", lambda point: point.tau_max)
 
 
 def mesh_reaction(evidence: TrialEvidence) -> Check | None:
     """Error bar of the guide reaction from three divisions of the guides."""
-    cycles = evidence.cycles
-    if not cycles or any(getattr(c, "parts", None) is None for c in cycles):
+    if evidence.parts is None:
         return None
-    cycle = max(cycles, key=lambda c: float(np.max(np.abs(c.guides.reaction_a))))
+    cycle = max(evidence.cycles, key=lambda c: float(np.max(np.abs(c.guides.reaction_a))))
     k = int(np.argmax(np.abs(cycle.guides.reaction_a)))
     load, reach = cycle.loads.tangential_force[[k]], cycle.loads.overhang[[k]]
     stem, guides = Stem.from_case(evidence.case), GuidePair.from_case(evidence.case)
@@ -51,12 +54,11 @@ def mesh_reaction(evidence: TrialEvidence) -> Check | None:
         for n in KNOTS_TRIED
     ]
     figure = converged(values, 2.0)
-    share = evidence.limit("mesh_uncertainty", 0.03)
     return Check(
         id="mesh_reaction",
         title="Mesh uncertainty of the reaction in guide A",
         demand=100.0 * figure.gci,
-        limit=None if share is None else 100.0 * share,
+        limit=100.0 * evidence.case.limits.mesh_uncertainty,
         unit="%",
         load_case=cycle.load_case,
         cam_angle_deg=float(np.rad2deg(cycle.theta[k])),
@@ -81,34 +83,33 @@ def benchmark_hertz(evidence: TrialEvidence) -> Check:
     return _benchmark(evidence, "hertz", title, "Johnson (1985) sec. 4.2(c)")
 
 
-def _of_certificate(evidence: TrialEvidence, field: str, words: str) -> Check:
+def _of_certificate(
+    evidence: TrialEvidence,
+    name: str,
+    words: str,
+    figure: Callable[[CertificatePoint], Convergence],
+) -> Check:
     points = evidence.certificate
-    figures = [getattr(point, field, None) for point in points]
-    known = bool(points) and all(figure is not None for figure in figures)
-    share = evidence.limit("mesh_uncertainty", 0.03)
-    worst: Any = None
-    if known:
-        worst = max(zip(points, figures, strict=True), key=_gci)
+    worst = max(points, key=lambda point: _gci(figure(point)), default=None)
     return Check(
-        id=f"mesh_{field}",
+        id=f"mesh_{name}",
         title=f"Mesh uncertainty of the {words}",
-        demand=None if worst is None else 100.0 * worst[1].gci,
-        limit=None if share is None else 100.0 * share,
+        demand=None if worst is None else 100.0 * figure(worst).gci,
+        limit=100.0 * evidence.case.limits.mesh_uncertainty,
         unit="%",
-        cam_angle_deg=None if worst is None else float(np.rad2deg(worst[0].theta)),
+        cam_angle_deg=None if worst is None else float(np.rad2deg(worst.theta)),
         source=evidence.source("mesh_uncertainty", GCI),
         method="three meshes of both bodies at every certified angle"
-        + ("" if worst is None else f"; {_order(worst[1])}"),
+        + ("" if worst is None else f"; {_order(figure(worst))}"),
         must_have=bool(points) or not evidence.searching,
         evidence=True,
-        note="" if known else "this trial carries no certificate",
+        note="" if points else "this trial carries no certificate",
     )
 
 
-def _gci(pair: tuple[Any, Any]) -> float:
+def _gci(figure: Convergence) -> float:
     """The error bar, a NaN beyond all others."""
-    value = float(pair[1].gci)
-    return np.inf if np.isnan(value) else value
+    return np.inf if np.isnan(figure.gci) else figure.gci
 
 
 def _order(figure: Convergence) -> str:

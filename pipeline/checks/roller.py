@@ -45,7 +45,7 @@ def roller_static(evidence: TrialEvidence) -> Check:
         demand=static_safety(worst.value, rating)
         if rating is not None and worst.value > 0
         else None,
-        limit=evidence.limit("roller_static_safety", 1.0),
+        limit=evidence.case.limits.roller_static_safety,
         unit="-",
         sense="at_least",
         source=evidence.source(
@@ -62,7 +62,7 @@ def roller_static(evidence: TrialEvidence) -> Check:
 def roller_life(evidence: TrialEvidence) -> Check:
     """Rating life of the bearing over the turn."""
     bearing = evidence.case.roller.bearing
-    rating, target = bearing.C, evidence.limit("roller_life")
+    rating, target = bearing.C, evidence.case.limits.roller_life
 
     worst = worst_case(evidence, lambda cycle: _life(evidence, cycle), at_least=True)
     missing = [
@@ -91,8 +91,8 @@ def roller_life(evidence: TrialEvidence) -> Check:
 def roller_speed(evidence: TrialEvidence) -> Check:
     """Roller speed against the share of the bearing's limiting speed."""
     bearing = evidence.case.roller.bearing
-    share, ceiling = evidence.limit("roller_speed_share", 0.7), bearing.speed_limit
-    limit = None if share is None or ceiling is None else RPM * share * ceiling
+    share, ceiling = evidence.case.limits.roller_speed_share, bearing.speed_limit
+    limit = None if ceiling is None else RPM * share * ceiling
     worst = greatest(evidence, lambda cycle: np.abs(_spin(evidence, cycle)))
     return Check(
         id="roller_speed",
@@ -112,7 +112,7 @@ def roller_speed(evidence: TrialEvidence) -> Check:
 def roller_radial(evidence: TrialEvidence) -> Check:
     """Greatest force on the roller against what its outer ring bears unsupported."""
     bearing = evidence.case.roller.bearing
-    limit = getattr(bearing, "radial_limit", None)
+    limit = bearing.radial_limit
     worst = greatest(evidence, lambda cycle: cycle.loads.normal_force)
     return Check(
         id="roller_radial",

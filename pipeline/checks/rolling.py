@@ -29,13 +29,11 @@ def roller_grip(evidence: TrialEvidence) -> Check:
     """Tangential force that rolling asks for against friction."""
     friction = evidence.case.roller.friction
     worst = greatest(evidence, _demand)
-    share = evidence.limit("skid", 0.5)
-    known = friction is not None and share is not None
     return Check(
         id="roller_grip",
         title="Grip that keeps the roller rolling",
         demand=worst.value,
-        limit=share * friction if known and share is not None and friction is not None else None,
+        limit=None if friction is None else evidence.case.limits.skid * friction,
         unit="-",
         source=evidence.source(
             "skid", "half of friction, Rothbart, Cam Design Handbook (2004), eq. 10.7: verify"
@@ -43,7 +41,7 @@ def roller_grip(evidence: TrialEvidence) -> Check:
         method="(roller inertia + bearing drag) over roller radius and normal force",
         must_have=False,
         lift_can_help=True,
-        note="" if known else "no friction of the roller on the cam is given",
+        note="" if friction is not None else "no friction of the roller on the cam is given",
         **worst.place,
     )
 
@@ -65,13 +63,13 @@ def film_ratio(evidence: TrialEvidence) -> Check:
         id="film_ratio",
         title="Oil film over roughness",
         demand=worst.value,
-        limit=evidence.limit("film_ratio", 1.0),
+        limit=case.limits.film_ratio,
         unit="-",
         sense="at_least",
         source=evidence.source(
             "film_ratio",
             "below 1 boundary, 1 to 3 mixed, above 3 full film",
-            "" if case.lubricant is None else getattr(case.lubricant, "source", ""),
+            "" if case.lubricant is None else case.lubricant.source,
         ),
         method="least film of Dowson and Higginson (1966) where loaded, over the rms roughness",
         must_have=False,
@@ -99,10 +97,10 @@ def surface_fatigue(evidence: TrialEvidence) -> Check:
 def torsion_limit(evidence: TrialEvidence, author: str) -> dict[str, Any]:
     """The limit in torsion of the cam's material, against which an author's stress is held."""
     name, card = cam_card(evidence)
-    torsion, safety = card.fatigue_torsion, evidence.limit("fatigue_safety", 1.0)
-    known = torsion is not None and card.fatigue_bending is not None and safety is not None
+    torsion, safety = card.fatigue_torsion, evidence.case.limits.fatigue_safety
+    known = torsion is not None and card.fatigue_bending is not None
     return {
-        "limit": 1e-6 * torsion / safety if known and torsion and safety else None,
+        "limit": 1e-6 * torsion / safety if known and torsion else None,
         "unit": "MPa",
         "source": evidence.source("fatigue_safety", f"{author}; limits of {name}", card.source),
         "note": "" if known else f"the card of {name} gives no fatigue limits",
@@ -116,12 +114,11 @@ def hardened_case(evidence: TrialEvidence) -> Check:
     worst = worst_case(
         evidence, lambda cycle: _of_map(cycle, lambda map_: _use_of_strength(map_, card))
     )
-    safety = evidence.limit("case_safety", 1.0)
     return Check(
         id="hardened_case",
         title="Strength of case and core below the surface",
         demand=worst.value if known else None,
-        limit=None if safety is None else 1.0 / safety,
+        limit=1.0 / evidence.case.limits.case_safety,
         unit="-",
         source=evidence.source("case_safety", f"yield of case and core of {name}", card.source),
         method="greatest von Mises stress over the yield strength at its depth, which falls "

@@ -17,12 +17,11 @@ def guide_clearance(evidence: TrialEvidence) -> Check:
     highest = pitch.height_base + pitch.lift.highest.value + mouth
     behind = contour.roller_radius if evidence.face is None else evidence.face.thickness
     gap = float(np.minimum(highest - contour.radius_max().value, mouth - behind))
-    asked = evidence.limit("clearance", 1e-3)
     return Check(
         id="guide_clearance",
         title=f"Gap between guide A and cam or {evidence.facing_name}",
         demand=1e3 * gap,
-        limit=None if asked is None else 1e3 * asked,
+        limit=1e3 * case.limits.clearance,
         unit="mm",
         sense="at_least",
         source=evidence.source("clearance", "1 to 2 mm, shop practice: verify"),
@@ -36,7 +35,7 @@ def guide_clearance(evidence: TrialEvidence) -> Check:
 def cam_envelope(evidence: TrialEvidence) -> Check:
     """Greatest radius of the cam beside the room there is."""
     value, theta = evidence.contour.radius_max()
-    room = evidence.limit("cam_radius")
+    room = evidence.case.limits.cam_radius
     return Check(
         id="cam_envelope",
         title="Greatest radius of the cam",

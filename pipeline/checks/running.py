@@ -29,11 +29,11 @@ HOURS = 3600.0
 def bearing_lubrication(evidence: TrialEvidence) -> Check | None:
     """Viscosity of the bearing's oil over that it needs; None where it is not given."""
     bearing = evidence.case.roller.bearing
-    viscosity = getattr(bearing, "viscosity", None)
+    viscosity, ring, pitch = bearing.viscosity, bearing.ring, bearing.pitch_diameter
     if viscosity is None:
         return None
-    ring = getattr(bearing, "ring", None)
-    pitch = getattr(bearing, "pitch_diameter", None) or getattr(ring, "pitch_diameter", None)
+    if pitch is None and ring is not None:
+        pitch = ring.pitch_diameter
     contour = evidence.contour
 
     def ratio(cycle: Cycle) -> float:
@@ -50,7 +50,7 @@ def bearing_lubrication(evidence: TrialEvidence) -> Check | None:
         id="bearing_lubrication",
         title="Viscosity ratio of the roller bearing",
         demand=worst.value,
-        limit=evidence.limit("viscosity_ratio", 1.0),
+        limit=evidence.case.limits.viscosity_ratio,
         unit="-",
         sense="at_least",
         source=evidence.source("viscosity_ratio", "kappa = v/v1 >= 1, ISO 281", bearing.source),
@@ -84,18 +84,15 @@ def bush_growth_b(evidence: TrialEvidence) -> Check | None:
 
 
 def _growth(evidence: TrialEvidence, side: str, guide: Guide) -> Check | None:
-    case = evidence.case
-    bush = case.materials.get(guide.material)
-    stem = case.materials.get(getattr(case.follower, "stem_material", ""))
-    expansion = getattr(bush, "expansion", None)
-    if bush is None or expansion is None or any(_no_parts(c) for c in evidence.cycles):
+    case, parts = evidence.case, evidence.parts
+    bush = case.material(guide.material)
+    expansion, of_stem = bush.expansion, case.material(case.follower.stem_material).expansion or 0.0
+    if expansion is None or parts is None:
         return None
-    of_stem = getattr(stem, "expansion", None) or 0.0
 
     def growth(cycle: Cycle) -> float:
-        parts = cycle.parts
-        heat = None if parts is None else (parts.heat_a if side == "A" else parts.heat_b)
-        warmer = np.nan if heat is None else heat.temperature - ROOM
+        heat = parts[cycle].heat_a if side == "A" else parts[cycle].heat_b
+        warmer = heat.temperature - ROOM
         wall = 2.0 * WALL_SHARE * guide.diameter * (expansion * warmer + bush.swelling)
         return float(wall + guide.diameter * of_stem * warmer)
 
@@ -129,17 +126,15 @@ def guide_wear_b(evidence: TrialEvidence) -> Check | None:
 
 
 def _wear(evidence: TrialEvidence, side: str, guide: Guide) -> Check | None:
-    rate = getattr(guide, "wear_rate", None)
+    rate, life = guide.wear_rate, evidence.case.limits.target_life
     if rate is None:
         return None
-    life = evidence.limit("target_life")
     worst = worst_case(evidence, lambda cycle: mean_pv(cycle, side, guide))
-    limit = evidence.limit("wear_depth", 5e-5)
     return Check(
         id=f"guide_wear_{side}",
         title=f"Wear of guide {side} over the target life",
         demand=None if life is None else 1e3 * rate * worst.value * life,
-        limit=None if limit is None else 1e3 * limit,
+        limit=1e3 * evidence.case.limits.wear_depth,
         unit="mm",
         source=evidence.source(
             "wear_depth", "0.05 mm, shop practice: verify; Archard (1953)", guide.source
@@ -150,10 +145,6 @@ def _wear(evidence: TrialEvidence, side: str, guide: Guide) -> Check | None:
         note="" if life is not None else "no target life is asked for",
         **worst.place,
     )
-
-
-def _no_parts(cycle: Cycle) -> bool:
-    return getattr(cycle, "parts", None) is None
 
 
 CHECKS = (bearing_lubrication, bush_growth_a, bush_growth_b, guide_wear_a, guide_wear_b)

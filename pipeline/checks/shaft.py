@@ -37,7 +37,7 @@ REVERSED = 0.7  # of the limit, where the torque changes its sign
 def key_shear(evidence: TrialEvidence) -> Check:
     """Shear in the section of the cam's key."""
     cam = evidence.case.cam
-    key, title = getattr(cam, "keyway", None), "Shear of the key"
+    key, title = cam.keyway, "Shear of the key"
     if key is None:
         return not_described("key_shear", title, "MPa", "no keyway is given", must_have=False)
 
@@ -49,12 +49,11 @@ def key_shear(evidence: TrialEvidence) -> Check:
         return np.where(np.isnan(torque), np.nan, found)
 
     worst = greatest(evidence, shear)
-    limit = evidence.limit("key_shear", 60e6)
     return Check(
         id="key_shear",
         title=title,
         demand=1e-6 * worst.value,
-        limit=None if limit is None else 1e-6 * limit,
+        limit=1e-6 * evidence.case.limits.key_shear,
         unit="MPa",
         source=evidence.source("key_shear", "60 MPa under reversed torque, DIN 6892: verify"),
         method="2 T/(d b l) at the greatest cam torque",
@@ -67,7 +66,7 @@ def key_shear(evidence: TrialEvidence) -> Check:
 def shaft_fatigue(evidence: TrialEvidence) -> Check:
     """Safety of the shaft under the cam against fatigue in bending and torsion."""
     case, title = evidence.case, "Fatigue safety of the camshaft at the cam's key"
-    given = getattr(case, "camshaft", None)
+    given = case.camshaft
     if given is None or given.diameter is None or given.material is None:
         note = NO_SHAFT if given is None else "no diameter or no material of the camshaft is given"
         return not_described("shaft_fatigue", title, "-", note, must_have=False)
@@ -92,7 +91,7 @@ def shaft_fatigue(evidence: TrialEvidence) -> Check:
         id="shaft_fatigue",
         title=title,
         demand=worst.value if known else None,
-        limit=evidence.limit("shaft_safety", 1.5),
+        limit=case.limits.shaft_safety,
         unit="-",
         sense="at_least",
         source=evidence.source(
@@ -112,8 +111,9 @@ def shaft_fatigue(evidence: TrialEvidence) -> Check:
 def shaft_bearing_life(evidence: TrialEvidence) -> Check:
     """Rating life of the harder loaded bearing of the camshaft."""
     case, title = evidence.case, "Rating life L10 of the camshaft's bearings"
-    given = getattr(case, "camshaft", None)
-    if given is None or given.bearing_rating is None:
+    given = case.camshaft
+    rating = None if given is None else given.bearing_rating
+    if given is None or rating is None:
         note = NO_SHAFT if given is None else "no rating of the camshaft's bearings is given"
         return not_described("shaft_bearing_life", title, "h", note, must_have=False)
 
@@ -122,13 +122,10 @@ def shaft_bearing_life(evidence: TrialEvidence) -> Check:
         if not (np.isfinite(loads.load_1).all() and np.isfinite(loads.load_2).all()):
             return float(np.nan)
         spin = np.full(cycle.theta.size, evidence.cam_speed(cycle))
-        return min(
-            rating_life(load, spin, given.bearing_rating).hours
-            for load in (loads.load_1, loads.load_2)
-        )
+        return min(rating_life(load, spin, rating).hours for load in (loads.load_1, loads.load_2))
 
     worst = worst_case(evidence, life, at_least=True)
-    target = evidence.limit("shaft_bearing_life")
+    target = case.limits.shaft_bearing_life
     return Check(
         id="shaft_bearing_life",
         title=title,
@@ -163,7 +160,7 @@ def gear_bending(evidence: TrialEvidence) -> Check | None:
         id="gear_bending",
         title="Bending stress of the driving gear's teeth",
         demand=1e-6 * worst.value,
-        **_tooth_limit(evidence, gear, "bending", 1.4, clause, REVERSED),
+        **_tooth_limit(evidence, gear, "bending", clause, REVERSED),
         method="F K/(b m pi y) at the greatest torque, one tooth bearing all of it at its tip",
         must_have=False,
         lift_can_help=True,
@@ -192,7 +189,7 @@ def gear_contact(evidence: TrialEvidence) -> Check | None:
         id="gear_contact",
         title="Contact pressure of the driving gear's teeth",
         demand=1e-6 * worst.value,
-        **_tooth_limit(evidence, gear, "contact", 1.0, "ISO 6336-2: verify"),
+        **_tooth_limit(evidence, gear, "contact", "ISO 6336-2: verify"),
         method="Z_H Z_E sqrt(F K (u + 1)/(b d u)) at the pitch point, at the greatest torque",
         must_have=False,
         lift_can_help=True,
@@ -204,25 +201,29 @@ def _tooth_limit(
     evidence: TrialEvidence,
     gear: CamshaftGear,
     kind: Literal["bending", "contact"],
-    usual_safety: float,
     clause: str,
     share: float = 1.0,
 ) -> dict[str, Any]:
     """A share of what the gear's teeth bear, over the safety asked for, and who says so."""
-    name = f"gear_{kind}_safety"
-    safety = evidence.limit(name, usual_safety)
-    limit = gear.bending_limit if kind == "bending" else gear.contact_limit
+    limits = evidence.case.limits
+    limit, safety = (
+        (gear.bending_limit, limits.gear_bending_safety)
+        if kind == "bending"
+        else (gear.contact_limit, limits.gear_contact_safety)
+    )
     return {
-        "limit": 1e-6 * share * limit / safety if limit and safety else None,
+        "limit": None if limit is None else 1e-6 * share * limit / safety,
         "unit": "MPa",
-        "source": evidence.source(name, clause, f"{gear.material}: {gear.source}".rstrip(": ")),
+        "source": evidence.source(
+            f"gear_{kind}_safety", clause, f"{gear.material}: {gear.source}".rstrip(": ")
+        ),
         "note": "" if limit is not None else f"no {kind} limit of the gear is given",
     }
 
 
 def _driven(evidence: TrialEvidence) -> tuple[CaseShaft, CamshaftGear] | None:
     """Camshaft and gear of a case that has both."""
-    shaft = getattr(evidence.case, "camshaft", None)
+    shaft = evidence.case.camshaft
     return None if shaft is None or shaft.gear is None else (shaft, shaft.gear)
 
 

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from pipeline.checks.check import Check, not_described
+from pipeline.checks.check import Check, Sense, not_described
 from pipeline.checks.trial import TrialEvidence, worst_case
 from pipeline.follower.spring import HelicalSpring, case_spring, surge_harmonics
 
 if TYPE_CHECKING:
     from pipeline.case import Case
 
+RATE_TOLERANCE = 0.05  # of the rate, where the case gives none
 NOT_WOUND = "no wire, diameter and coils of the spring are given"
 
 
@@ -48,7 +49,7 @@ def spring_fatigue(evidence: TrialEvidence) -> Check | None:
         id="spring_fatigue",
         title="Fatigue safety of the spring",
         measure=lambda spring, work: spring.fatigue_safety(work.preload, work.greatest),
-        limit=evidence.limit("spring_fatigue", 1.2),
+        limit=evidence.case.limits.spring_fatigue,
         sense="at_least",
         source="Goodman through Zimmerli's point, infinite life, Shigley ch. 10",
         method="Wahl's factor, preload to force at full lift",
@@ -62,7 +63,7 @@ def spring_solid(evidence: TrialEvidence) -> Check | None:
         id="spring_solid",
         title="Clearance of the spring to solid",
         measure=lambda spring, work: spring.solid_clearance(work.preload, work.travel),
-        limit=evidence.limit("spring_solid", 0.1),
+        limit=evidence.case.limits.spring_solid,
         sense="at_least",
         source="10 to 15 % of the greatest working deflection, Shigley ch. 10",
         method="free length less solid length less deflection at full lift, over that deflection",
@@ -86,7 +87,7 @@ def spring_buckling(evidence: TrialEvidence) -> Check | None:
 def spring_rate(evidence: TrialEvidence) -> Check | None:
     """Whether wire and coils give the rate the case asks for."""
     asked = evidence.case.spring.rate
-    tolerance = getattr(evidence.case.spring, "rate_tolerance", 0.0) or 0.05
+    tolerance = evidence.case.spring.rate_tolerance or RATE_TOLERANCE
     return _check(
         evidence,
         id="spring_rate",
@@ -101,7 +102,8 @@ def spring_rate(evidence: TrialEvidence) -> Check | None:
 
 def spring_surge(evidence: TrialEvidence) -> Check | None:
     """First natural frequency of the spring over the cam's turning."""
-    if not _ahead(evidence):
+    parts = evidence.parts
+    if parts is None:
         return None
     spring = case_spring(evidence.case)
     if spring is None:
@@ -114,13 +116,13 @@ def spring_surge(evidence: TrialEvidence) -> Check | None:
 
     worst = worst_case(evidence, lambda c: ratio(evidence.cam_speed(c))[1], at_least=True)
     highest, _, margin = ratio(max(evidence.cam_speed(cycle) for cycle in evidence.cycles))
-    surges = [cycle.parts.surge_force for cycle in evidence.cycles if cycle.parts is not None]
+    surges = [each.surge_force for each in parts.values()]
     adds = max((float(np.abs(surge).max()) for surge in surges if surge is not None), default=0.0)
     return Check(
         id="spring_surge",
         title="Surge frequency over that of the cam",
         demand=worst.value,
-        limit=evidence.limit("spring_surge", 13.0),
+        limit=evidence.case.limits.spring_surge,
         unit="-",
         sense="at_least",
         source="13 to 20 times the cam's frequency, Norton (2009), Shigley ch. 10",
@@ -141,14 +143,14 @@ def _check(
     limit: float | None,
     source: str,
     method: str,
-    sense: str = "at_most",
+    sense: Sense = "at_most",
     lift_can_help: bool = True,
 ) -> Check | None:
-    if not _ahead(evidence):
+    if evidence.parts is None:
         return None
     case = evidence.case
-    spring = case_spring(case)
-    if spring is None:
+    spring, design = case_spring(case), case.spring.design
+    if spring is None or design is None:
         return not_described(id, title, "-", NOT_WOUND, must_have=True)
     travel = evidence.contour.pitch.lift.highest.value
     preload = max(evidence.preload(cycle) for cycle in evidence.cycles)
@@ -160,8 +162,8 @@ def _check(
         demand=demand,
         limit=limit,
         unit="-",
-        sense="at_least" if sense == "at_least" else "at_most",
-        source=evidence.source(id, source, getattr(case.spring.design, "source", "")),
+        sense=sense,
+        source=evidence.source(id, source, design.source),
         method=method,
         corner="preload and rate high" if toleranced else "",
         corner_demand=demand if toleranced else None,
@@ -174,12 +176,6 @@ def hardest_work(case: Case, spring: HelicalSpring, preload: float, travel: floa
     hard = preload * (1.0 + case.spring.preload_tolerance)
     rate = spring.rate * (1.0 + case.spring.rate_tolerance)
     return Work(hard, hard + rate * travel, travel)
-
-
-def _ahead(evidence: TrialEvidence) -> bool:
-    """Whether this is a trial, not a look ahead."""
-    cycles = evidence.cycles
-    return bool(cycles) and all(getattr(c, "parts", None) is not None for c in cycles)
 
 
 CHECKS = (

@@ -43,7 +43,7 @@ def case_depth(evidence: TrialEvidence) -> Check:
         id="case_depth",
         title="Depth of the case over that of the greatest shear",
         demand=float(depth / worst.value) if depth is not None and loaded else None,
-        limit=evidence.limit("case_depth_ratio", 2.0),
+        limit=evidence.case.limits.case_depth_ratio,
         unit="-",
         sense="at_least",
         source=evidence.source(

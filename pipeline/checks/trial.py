@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pipeline.contact.history import CertificatePoint
     from pipeline.cycle import Cycle
     from pipeline.part_fields import Face, Material, Roller
+    from pipeline.parts import PartsHistory
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,14 +74,12 @@ class TrialEvidence:
 
     def preload(self, cycle: Cycle) -> float:
         """Preload of the spring in a load case, N."""
-        states = getattr(self.case, "load_cases", ())
-        own = [state.preload for state in states if state.name == cycle.load_case]
-        return float(self.case.spring.preload if own in ([], [None]) else own[0])
+        return self.case.at(cycle.load_case).spring.preload
 
-    def limit(self, name: str, default: float | None = None) -> float | None:
-        """A limit of the case in SI; the default when the case has no such limit."""
-        value = getattr(self.case.limits, name, default)
-        return None if value is None else float(value)
+    @property
+    def parts(self) -> Mapping[Cycle, PartsHistory] | None:
+        """The parts by their cycle; None in a look ahead, which does without."""
+        return {c: c.parts for c in self.cycles if c.parts is not None} or None
 
     def source(self, name: str, default: str, *figures: str) -> str:
         """The clause behind a limit: the case's own words where it has some.
