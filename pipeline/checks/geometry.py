@@ -120,7 +120,7 @@ def self_intersection(evidence: TrialEvidence) -> Check:
         limit=0.0,
         unit="crossings",
         cam_angle_deg=_degrees(crossings[0][0]) if crossings else None,
-        source=evidence.source("self_intersection", "a contour that crosses itself is cut away"),
+        source="a contour that crosses itself is cut away",
         method="crossings of the contour with itself, found between samples too",
         lift_can_help=True,
     )
@@ -136,7 +136,7 @@ def second_contact(evidence: TrialEvidence) -> Check:
         limit=1e3 * evidence.case.limits.second_contact_depth,
         unit="mm",
         cam_angle_deg=_degrees(theta),
-        source=evidence.source("second_contact", "one contact at a time, Rothbart (2004) ch. 6"),
+        source="one contact at a time, Rothbart (2004) ch. 6",
         method=f"depth of the {evidence.facing_name} in contour parts away from its contact",
         lift_can_help=True,
     )
@@ -218,7 +218,7 @@ def spring_travel(evidence: TrialEvidence) -> Check:
         limit=None if travel is None else 1e3 * float(travel),
         unit="mm",
         cam_angle_deg=_degrees(lift.highest.theta),
-        source=evidence.source("spring_travel", "travel of the spring as given in the case"),
+        source="travel of the spring as given in the case",
         method="greatest lift, between samples too",
         lift_can_help=True,
         note="" if travel is not None else "no spring travel is given",

@@ -9,7 +9,7 @@ import numpy as np
 from geometry.arrays import Array
 from pipeline.checks import demands
 from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence, Worst, greatest, worst_case
+from pipeline.checks.trial import TrialEvidence, Worst, cited, greatest, worst_case
 from pipeline.follower.friction import NYLON_PV
 
 if TYPE_CHECKING:
@@ -48,9 +48,7 @@ def _pressure(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
         demand=1e-6 * worst.value,
         limit=None if limit is None else 1e-6 * limit,
         unit="MPa",
-        source=evidence.source(
-            f"bush_pressure_{side}", guide.source or f"{guide.material} bush", guide.source
-        ),
+        source=guide.source or f"{guide.material} bush",
         method="greatest reaction by finite elements over diameter x length",
         lift_can_help=True,
         note="; ".join(
@@ -100,7 +98,7 @@ def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
         demand=1e-6 * worst.value,
         limit=None if limit is None else 1e-6 * limit,
         unit="MPa m/s",
-        source=evidence.source(f"bush_pv_{side}", _pv_source(guide), guide.source),
+        source=_pv_source(guide),
         method="mean |R v| over the turn by finite elements over diameter x length;"
         " R sums the pushes of both sides of the bore",
         lift_can_help=True,
@@ -123,7 +121,8 @@ def _pv_source(guide: Guide) -> str:
     state = _graded_state(guide)
     if state is not None:
         words = state.replace("_", " ")
-        return f"nylon, {words}: Mott, table 16-1, and a bush maker's graded limits: verify"
+        graded = f"nylon, {words}: Mott, table 16-1, and a bush maker's graded limits: verify"
+        return cited(graded, guide.source)
     return guide.source or f"{guide.material} bush"
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence, greatest, rollers_only, worst_case
+from pipeline.checks.trial import TrialEvidence, cited, greatest, rollers_only, worst_case
 from pipeline.follower.roller import rating_life, roller_motion, static_safety
 
 if TYPE_CHECKING:
@@ -120,9 +120,7 @@ def roller_radial(evidence: TrialEvidence) -> Check:
         demand=worst.value,
         limit=limit,
         unit="N",
-        source=evidence.source(
-            "radial_limit", "F_r,max of a track roller", f"{bearing.name}: {bearing.source}"
-        ),
+        source=cited("F_r,max of a track roller", f"{bearing.name}: {bearing.source}"),
         method="greatest normal force over the turn",
         lift_can_help=True,
         note=""

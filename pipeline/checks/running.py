@@ -11,7 +11,7 @@ import numpy as np
 
 from pipeline.checks.check import Check
 from pipeline.checks.guides import mean_pv
-from pipeline.checks.trial import TrialEvidence, rollers_only, worst_case
+from pipeline.checks.trial import TrialEvidence, cited, rollers_only, worst_case
 from pipeline.follower.guides import WALL_SHARE
 from pipeline.follower.roller import roller_motion
 
@@ -103,9 +103,7 @@ def _growth(evidence: TrialEvidence, side: str, guide: Guide) -> Check | None:
         demand=1e3 * worst.value,
         limit=1e3 * guide.clearance,
         unit="mm",
-        source=evidence.source(
-            f"bush_growth_{side}", "no seizure when hot and wet, bush makers", bush.source
-        ),
+        source=cited("no seizure when hot and wet, bush makers", bush.source),
         method="wall of a quarter of the bore swells inwards, in a housing that does not give, at"
         " the bush's running temperature",
         must_have=False,

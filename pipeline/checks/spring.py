@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from pipeline.checks.check import Check, Sense, not_described
-from pipeline.checks.trial import TrialEvidence, worst_case
+from pipeline.checks.trial import TrialEvidence, cited, worst_case
 from pipeline.follower.spring import HelicalSpring, case_spring, surge_harmonics
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ def spring_fatigue(evidence: TrialEvidence) -> Check | None:
         measure=lambda spring, work: spring.fatigue_safety(work.preload, work.greatest),
         limit=evidence.case.limits.spring_fatigue,
         sense="at_least",
+        settable=True,
         source="Goodman through Zimmerli's point, infinite life, Shigley ch. 10",
         method="Wahl's factor, preload to force at full lift",
     )
@@ -65,6 +66,7 @@ def spring_solid(evidence: TrialEvidence) -> Check | None:
         measure=lambda spring, work: spring.solid_clearance(work.preload, work.travel),
         limit=evidence.case.limits.spring_solid,
         sense="at_least",
+        settable=True,
         source="10 to 15 % of the greatest working deflection, Shigley ch. 10",
         method="free length less solid length less deflection at full lift, over that deflection",
     )
@@ -144,8 +146,10 @@ def _check(
     source: str,
     method: str,
     sense: Sense = "at_most",
+    settable: bool = False,
     lift_can_help: bool = True,
 ) -> Check | None:
+    """The check of a spring's measure; `settable`: its limit is the case's, under the same id."""
     if evidence.parts is None:
         return None
     case = evidence.case
@@ -163,7 +167,9 @@ def _check(
         limit=limit,
         unit="-",
         sense=sense,
-        source=evidence.source(id, source, design.source),
+        source=evidence.source(id, source, design.source)
+        if settable
+        else cited(source, design.source),
         method=method,
         corner="preload and rate high" if toleranced else "",
         corner_demand=demand if toleranced else None,

@@ -82,12 +82,20 @@ class TrialEvidence:
         return {c: c.parts for c in self.cycles if c.parts is not None} or None
 
     def source(self, name: str, default: str, *figures: str) -> str:
-        """The clause behind a limit: the case's own words where it has some.
+        """The clause behind a limit of the case: its own words where it has some.
 
-        Where its figures come from is told in either case: a recalled one stays one.
+        The figures' origin is cited in either case, so that a recalled one stays one.
+
+        Parameters
+        ----------
+        name : str   of the limit in the case
         """
-        clause = str(self.case.limits.sources.get(name) or default)
-        return "; ".join([clause, *(figure for figure in figures if figure and figure != clause)])
+        return cited(self.case.limits.sources.get(name) or default, *figures)
+
+
+def cited(clause: str, *figures: str) -> str:
+    """A clause, and where its figures come from as far as that is not the same."""
+    return "; ".join([clause, *(figure for figure in figures if figure and figure != clause)])
 
 
 def rollers_only(

@@ -1,12 +1,26 @@
 """What a limit is made of, and a NaN in one of two load cases; each check in test_every_check."""
 
+from dataclasses import replace
+
 import made_trial as made
 import numpy as np
 import pytest
 from check_tools import check
-from trial_variants import NAN, cycle_with, with_certificate, with_cycle, with_limits, with_mesh
+from trial_variants import (
+    NAN,
+    cycle_with,
+    faced,
+    hollow,
+    soft,
+    with_certificate,
+    with_cycle,
+    with_limits,
+    with_mesh,
+)
 
+from pipeline.checks.everything import all_checks
 from pipeline.checks.trial import TrialEvidence
+from pipeline.design_fields import Limits
 
 
 @pytest.mark.parametrize(
@@ -107,3 +121,24 @@ def test_a_nan_certificate_is_a_missing_number(figure):
 
 def test_a_nan_mesh_is_a_missing_number():
     assert check("mesh_angle", with_mesh(min_angle_deg=np.nan)).status == "not_evaluated"
+
+
+class Watched(dict):
+    """Sources of a case that note the names they are looked up by."""
+
+    def __init__(self):
+        super().__init__()
+        self.names = set()
+
+    def get(self, name, default=None):
+        self.names.add(name)
+        return super().get(name, default)
+
+
+def test_sources_are_looked_up_by_names_of_limits():
+    """`limits.sources` accepts no other name, so that another could never be there."""
+    sources = Watched()
+    for trial in (made.evidence(), hollow(), soft(), faced()):
+        limits = made.changed(trial.case.limits, sources=sources)
+        all_checks(replace(trial, case=made.changed(trial.case, limits=limits)))
+    assert sources.names <= set(Limits.model_fields)
