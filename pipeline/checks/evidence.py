@@ -81,7 +81,7 @@ def contact_complementarity(evidence: TrialEvidence) -> Check:
         "contact_complementarity",
         "Contact law",
         greatest(evidence, lambda cycle: np.abs(cycle.contact.residual_complementarity)),
-        Bound(evidence.case.limits.complementarity, RESIDUALS),
+        Bound(evidence.case.limits.complementarity, evidence.source("complementarity", RESIDUALS)),
         "greatest relative tension, overlap or gap under pressure",
     )
 
@@ -128,7 +128,10 @@ def certificate_gci(evidence: TrialEvidence) -> Check:
         "certificate_gci",
         "Mesh uncertainty of the contact pressure",
         lambda point: point.gci_percent,
-        Bound(100.0 * evidence.case.limits.mesh_uncertainty, CERTIFIED),
+        Bound(
+            100.0 * evidence.case.limits.mesh_uncertainty,
+            evidence.source("mesh_uncertainty", CERTIFIED),
+        ),
         "grid convergence index of p0 on three meshes, observed order, safety factor 1.25",
     )
 
@@ -170,7 +173,7 @@ def mesh_edges(evidence: TrialEvidence) -> Check:
 
 
 def _equilibrium(evidence: TrialEvidence) -> Bound:
-    return Bound(evidence.case.limits.equilibrium, RESIDUALS)
+    return Bound(evidence.case.limits.equilibrium, evidence.source("equilibrium", RESIDUALS))
 
 
 def _residual(name: str, title: str, worst: Worst, bound: Bound, method: str) -> Check:

@@ -136,7 +136,9 @@ def second_contact(evidence: TrialEvidence) -> Check:
         limit=1e3 * evidence.case.limits.second_contact_depth,
         unit="mm",
         cam_angle_deg=_degrees(theta),
-        source="one contact at a time, Rothbart (2004) ch. 6",
+        source=evidence.source(
+            "second_contact_depth", "one contact at a time, Rothbart (2004) ch. 6"
+        ),
         method=f"depth of the {evidence.facing_name} in contour parts away from its contact",
         lift_can_help=True,
     )

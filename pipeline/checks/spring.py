@@ -127,7 +127,9 @@ def spring_surge(evidence: TrialEvidence) -> Check | None:
         limit=evidence.case.limits.spring_surge,
         unit="-",
         sense="at_least",
-        source="13 to 20 times the cam's frequency, Norton (2009), Shigley ch. 10",
+        source=evidence.source(
+            "spring_surge", "13 to 20 times the cam's frequency, Norton (2009), Shigley ch. 10"
+        ),
         method="sqrt(k/m)/2 of the active coils; modes driven by the harmonics of the lift",
         must_have=False,
         note=f"highest harmonic of at least 1 % of the acceleration: {highest};"
