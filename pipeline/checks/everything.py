@@ -99,12 +99,7 @@ def _idle_waivers(names: Sequence[str]) -> Check:
 
 
 def design_checks(trial: TrialEvidence) -> tuple[Check, ...]:
-    """The checks of the design that are quick, to foresee a cam from closed forms.
-
-    Of each cycle it takes ``load_case, crank_speed, theta, torque_before, residual_torque``,
-    the ``loads``, and by whichever way they were found ``contact.p0``, ``contact.von_mises``,
-    ``guides.reaction_a`` and ``guides.reaction_b``.
-    """
+    """The checks of the design that are quick; of closed-form cycles, without parts and rolling."""
     return checked_by(trial, (function for function in DESIGN if function not in SLOW))
 
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Array
 from meshes.quality import FACET_SHARE, LEAST_ANGLE_DEG, LEAST_SCALED_JACOBIAN, Quality
 from pipeline.checks.check import Check
 from pipeline.checks.trial import TrialEvidence, Worst, greatest
@@ -15,7 +14,6 @@ from pipeline.contact.pair_certificate import EDGES
 
 if TYPE_CHECKING:
     from pipeline.contact.history import CertificatePoint
-    from pipeline.cycle import Cycle
 
 VERIFICATION = "ASME V&V 10-2019, solution verification"
 RESIDUALS = f"equilibrium and contact law hold; {VERIFICATION}"
@@ -89,12 +87,7 @@ def contact_complementarity(evidence: TrialEvidence) -> Check:
 def hertz_difference(evidence: TrialEvidence) -> Check:
     """Finite elements beside the closed form; a difference asks for a reason, not for a fix."""
 
-    def percent(cycle: Cycle) -> Array:
-        hertz, found = np.asarray(cycle.contact.p0_hertz), np.asarray(cycle.contact.p0)
-        idle = hertz == 0
-        return 100.0 * np.abs(np.where(idle, 0.0, found / np.where(idle, 1.0, hertz) - 1.0))
-
-    worst = greatest(evidence, percent)
+    worst = greatest(evidence, lambda cycle: 100.0 * np.abs(cycle.contact.p0_difference))
     return Check(
         id="hertz_difference",
         title="Contact pressure by finite elements against Hertz",

@@ -160,10 +160,9 @@ def contact_at_overspeed(evidence: TrialEvidence) -> Check:
 
 def _jump_speed(cycle: Cycle) -> Array:
     """Crank speed (n,), rad/s, at which each place of the turn lets go; a NaN stays."""
-    pull = -np.asarray(cycle.loads.inertia_force, dtype=float)
-    spring = np.asarray(cycle.loads.spring_force, dtype=float)
+    pull = -cycle.loads.inertia_force
     slows = pull > 0
-    ratio = np.sqrt(spring / np.where(slows, pull, 1.0))
+    ratio = np.sqrt(cycle.loads.spring_force / np.where(slows, pull, 1.0))
     free = np.where(np.isnan(pull), np.nan, np.inf)
     return np.where(slows, cycle.crank_speed * ratio, free)
 

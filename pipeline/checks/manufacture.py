@@ -26,7 +26,7 @@ def profile_waviness(evidence: TrialEvidence) -> Check:
         along = evidence.cam_speed(cycle) * _path(evidence, cycle.theta)
         # A wave that fills the band of the tolerance has half of it as amplitude.
         added = mass * 0.5 * (band or 0.0) * (FULL_TURN * along / length) ** 2
-        nominal = np.asarray(cycle.loads.normal_force, dtype=float)
+        nominal = cycle.loads.normal_force
         held = nominal > 0
         share = np.where(held, added / np.where(held, nominal, 1.0), np.inf)
         return np.where(np.isnan(nominal), np.nan, share)

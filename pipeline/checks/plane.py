@@ -114,7 +114,7 @@ def stress_inside(evidence: TrialEvidence) -> Check:
     """Whether the greatest stress of the contact lies in the steel and not in a wall's reach."""
 
     def share(cycle: Cycle) -> Array:
-        half = np.asarray(cycle.contact.half_width, dtype=float)
+        half = cycle.contact.half_width
         loaded = half > 0
         depth = cycle.contact.von_mises_depth / np.where(loaded, half, 1.0)
         return np.where(loaded, depth, np.where(np.isnan(half), np.nan, np.inf))

@@ -43,7 +43,7 @@ def key_shear(evidence: TrialEvidence) -> Check:
 
     def shear(cycle: Cycle) -> Array:
         diameter, height = 2.0 * cam.bore_radius, 2.0 * key.depth
-        torque = np.asarray(cycle.loads.cam_torque, dtype=float)
+        torque = cycle.loads.cam_torque
         known = np.where(np.isnan(torque), 0.0, torque)
         found = np.abs(key_stress(known, diameter, key.width, height, cam.width).shear)
         return np.where(np.isnan(torque), np.nan, found)
@@ -229,7 +229,7 @@ def _driven(evidence: TrialEvidence) -> tuple[CaseShaft, CamshaftGear] | None:
 
 def _tooth_force(shaft: CaseShaft, gear: CamshaftGear, cycle: Cycle) -> Array:
     """Force on the pitch circle (n,), application factor included, N."""
-    torque = np.abs(np.asarray(cycle.loads.cam_torque) + shaft.drag)
+    torque = np.abs(cycle.loads.cam_torque + shaft.drag)
     return np.asarray(gear.application_factor * torque / shaft.gear_radius)
 
 
