@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -31,7 +31,7 @@ class ContourLike(Protocol):
 class KeywayLike(Protocol):
     """A slot into the bore: `width` across, `depth` beyond the bore radius (m), at `angle` (rad).
 
-    An attribute `fillet` (m) rounds its two inner corners; without it they are sharp.
+    `fillet` (m) rounds its two inner corners; at 0 they are sharp.
     """
 
     @property
@@ -40,6 +40,8 @@ class KeywayLike(Protocol):
     def depth(self) -> float: ...
     @property
     def angle(self) -> float: ...
+    @property
+    def fillet(self) -> float: ...
 
 
 @dataclass(frozen=True)
@@ -177,7 +179,7 @@ def hole_size(size: SizeField, path: Trace, hole: HoleLike) -> SizeField:
 
 
 def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -> SizeField:
-    fillet = _fillet(keyway)
+    fillet = keyway.fillet
     if fillet > 0:
         outer, half = bore_radius + keyway.depth, 0.5 * keyway.width
         for side in (-1.0, 1.0):
@@ -240,7 +242,7 @@ def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
         raise InputError("cam.keyway.width", keyway.width, f"< {1.8 * bore_radius:g} m")
     half, outer = 0.5 * keyway.width, bore_radius + keyway.depth
     mouth = float(np.arcsin(half / bore_radius))
-    fillet = _fillet(keyway)
+    fillet = keyway.fillet
     # A sliver of a straight side between the fillets would make slivers of triangles.
     fillet_max = 0.8 * min(half, outer - bore_radius * np.cos(mouth))
     if not 0 <= fillet <= fillet_max:
@@ -268,8 +270,3 @@ def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
 def _keyway_frame(keyway: KeywayLike) -> Array:
     cosine, sine = np.cos(keyway.angle), np.sin(keyway.angle)
     return np.array([[cosine, -sine], [sine, cosine]])
-
-
-def _fillet(keyway: KeywayLike) -> float:
-    fillet: Any = getattr(keyway, "fillet", 0.0)
-    return float(fillet or 0.0)

@@ -96,8 +96,8 @@ def _unbalance(case: Case, contour: Contour) -> Unbalance:
 
 def unbalance_force(case: Case, contour: Contour, cam_speed: float, theta: Array) -> Array:
     """What the cam as made throws at its shaft, (2, n), N, as `rotating_force` has it."""
-    asked = getattr(case.cam, "counter_hole", None) is not None
-    made = balance(case, contour).as_made if asked else _unbalance(case, contour)
+    drilled = case.cam.counter_hole is not None
+    made = balance(case, contour).as_made if drilled else _unbalance(case, contour)
     return rotating_force(made, cam_speed, theta)
 
 

@@ -34,6 +34,7 @@ from pipeline.checks.check import Check
 from pipeline.checks.everything import DESIGN, PARTS, SIGNED, CheckFunction, checked_by
 from pipeline.checks.trial import TrialEvidence
 from pipeline.engine.torque import Torque
+from pipeline.part_fields import Guide
 from pipeline.speed import rubbing_of, speed_ripple
 from pipeline.turn import Turn, turn
 
@@ -143,7 +144,7 @@ def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
     tolerances, spring = case.tolerances, case.spring
     share = tolerances.friction
 
-    def friction(guide: Any) -> tuple[float, float]:
+    def friction(guide: Guide) -> tuple[float, float]:
         nominal = guide.friction or 1.0
         low = 1.0 - share if guide.friction_min is None else guide.friction_min / nominal
         high = 1.0 + share if guide.friction_max is None else guide.friction_max / nominal
@@ -231,7 +232,7 @@ def applied(case: Case, corner: Corner) -> Case:
     )
 
 
-def _rubbing(guide: Any, factor: float) -> Any:
+def _rubbing(guide: Guide, factor: float) -> Guide:
     friction, low, high = guide.friction * factor, guide.friction_min, guide.friction_max
     bounds = {
         "friction_min": None if low is None else min(low, friction),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import radians
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
@@ -85,8 +86,7 @@ class _WheelTable(Section):
     def wheel(self) -> TriggerWheel:
         from pipeline.engine.trigger_wheel import TriggerWheel
 
-        share = getattr(self, "tooth_share", 0.5)
-        return TriggerWheel(self.teeth, self.missing_teeth, self.reference_angle, share)
+        return TriggerWheel(self.teeth, self.missing_teeth, self.reference_angle)
 
     def band(self) -> Filter:
         from pipeline.engine.speed_trace import Filter
@@ -104,6 +104,9 @@ class SpeedTable(_WheelTable):
     tooth_share: Annotated[float, In(above=0, below=1)] = 0.5
     averaged_over: Annotated[float, In("deg", at_least=0, at_most=60)] = 0.0
     reference_file: FileName | None = None
+
+    def wheel(self) -> TriggerWheel:
+        return replace(super().wheel(), tooth_share=self.tooth_share)
 
 
 class VoltageTable(_WheelTable):
@@ -134,9 +137,12 @@ class Crankshaft(Section):
     source: Text = ""
 
 
-def engine_files(engine: object) -> Iterator[tuple[str, str]]:
+def engine_files(engine: Engine | None) -> Iterator[tuple[str, str]]:
     """Dotted field and name of every file an engine draws in."""
-    for name in ("file", "motored_file", "reference_file"):
-        given = getattr(engine, name, None)
-        if given is not None:
-            yield f"engine.{name}", given
+    if engine is None or isinstance(engine, Cylinder):
+        return
+    yield "engine.file", engine.file
+    if isinstance(engine, PressureTable) and engine.motored_file is not None:
+        yield "engine.motored_file", engine.motored_file
+    if isinstance(engine, SpeedTable) and engine.reference_file is not None:
+        yield "engine.reference_file", engine.reference_file

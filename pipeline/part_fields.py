@@ -53,6 +53,8 @@ class Spring(Section):
 class Keyway(Section):
     """A keyway in the bore; the angle is that of its middle, in the cam frame."""
 
+    fillet: ClassVar[float] = 0.0  # its inner corners are meshed sharp
+
     width: Length
     depth: Length
     angle: Angle = 0.0

@@ -298,7 +298,7 @@ class RunFolder:
             return
         try:
             import fcntl
-        except ImportError:  # pragma: no cover - not on Windows
+        except ImportError:  # Windows has no such lock
             return
         lock = (self.path / _LOCK).open("w")
         try:

@@ -125,11 +125,10 @@ def format(value: float, unit: str) -> str:  # noqa: A001 - reads as units.forma
     if not isfinite(value):
         raise InputError("value", value, "finite")
     exact = _registry().Quantity(Decimal(value), _si_unit(unit)).to(_unit(unit)).magnitude
-    for digits in range(1, 19):
-        number = f"{exact:.{digits}g}"
-        if float(_to_si(Decimal(number), unit, unit)) == value:
-            return f"{_plain(Decimal(number))} {unit}"
-    return f"{value!r} {_si_unit(unit):~P}"  # pragma: no cover - 18 digits hold any float
+    # 18 digits hold any float.
+    numbers = (Decimal(f"{exact:.{digits}g}") for digits in range(1, 19))
+    shortest = next(n for n in numbers if float(_to_si(n, unit, unit)) == value)
+    return f"{_plain(shortest)} {unit}"
 
 
 def _plain(number: Decimal) -> str:

@@ -11,6 +11,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from geometry.arrays import FULL_TURN, Array, finite, freeze
 from geometry.contour import Contour
+from geometry.drawing import KeywayLike
 from geometry.errors import GeometryError, InputError
 
 
@@ -241,7 +242,11 @@ def rotating_force(found: Unbalance, cam_speed: float, theta: Array) -> Array:
 
 
 def unbalance(
-    contour: Contour, bore_radius: float, keyway: Any, width: float, density: float
+    contour: Contour,
+    bore_radius: float,
+    keyway: KeywayLike | None,
+    width: float,
+    density: float,
 ) -> Unbalance:
     """Mass and unbalance of the cam with its bore and keyway, holes left out.
 
@@ -251,7 +256,7 @@ def unbalance(
 
     Parameters
     ----------
-    keyway : width, depth, angle in m and rad; or None
+    keyway : KeywayLike       or None
     width, density : float    m and kg/m3, > 0
 
     Raises

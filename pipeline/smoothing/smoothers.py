@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +12,9 @@ from scipy.special import eval_legendre, spherical_jn
 
 from geometry.arrays import Array, finite, readonly
 from geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from pipeline.design_fields import Smoothing
 
 CYCLE = 4.0 * np.pi  # rad of crank in one engine cycle
 
@@ -78,11 +81,10 @@ class Smoother:
                 raise InputError(f"smoothing.{name}", getattr(self, name), limit)
 
     @classmethod
-    def from_case(cls, smoothing: Any) -> Smoother:
-        """The smoother a case asks for; what the case leaves out keeps its default."""
+    def from_case(cls, smoothing: Smoothing) -> Smoother:
+        """The smoother of a case."""
         names = ("kind", "points", "spacing", "width", "harmonics", "taper", "degree", "cutoff")
-        given = {name: getattr(smoothing, name, None) for name in names}
-        return cls(**{name: value for name, value in given.items() if value is not None})
+        return cls(**{name: getattr(smoothing, name) for name in names})
 
     def stretched(self, strength: float) -> Smoother:
         """The same smoother at another strength."""

@@ -14,6 +14,7 @@ from pipeline.engine.speed_trace import (
     speed_from_teeth,
 )
 from pipeline.engine.trigger_wheel import TriggerWheel, counted, learned_wheel
+from pipeline.engine_fields import SpeedTable, VoltageTable
 
 THETA = np.arange(720) * CYCLE / 720
 SPEED = 150.0 + 4.0 * np.sin(THETA / 2) + 3.0 * np.cos(THETA) - 1.5 * np.sin(2.5 * THETA)
@@ -233,3 +234,11 @@ def test_a_filter_beyond_the_teeth_is_refused():
         TriggerWheel(36, 2, tooth_share=1.0)
     with pytest.raises(InputError, match="whole turns"):
         learned_wheel(WHEEL, [counted("run", some_times(1)[0], WHEEL, True)])
+
+
+def test_the_wheel_of_a_case_has_its_tooth_share():
+    speed = SpeedTable(kind="speed", file="a.csv", teeth=60, missing_teeth=2, tooth_share=0.3)
+    wheel = speed.wheel()
+    assert (wheel.teeth, wheel.missing, wheel.tooth_share) == (60, 2, 0.3)
+    voltage = VoltageTable(kind="voltage", file="a.csv")
+    assert voltage.wheel().tooth_share == TriggerWheel().tooth_share

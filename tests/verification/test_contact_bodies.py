@@ -1,7 +1,5 @@
 """The cycle tier against the full contact: what real bodies add, and where it stops."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
 
@@ -10,6 +8,7 @@ from geometry.contour import Contour
 from geometry.lift import Lift
 from geometry.pitch_curve import PitchCurve
 from meshes.body import roller_mesh
+from meshes.cam_outline import Keyway
 from meshes.sizing import Sizing
 from pipeline import cache
 from pipeline.contact import factor
@@ -24,13 +23,7 @@ from pipeline.contact.surface import ContactFrame, normal_loads
 THETA = uniform_turn(720)
 STEEL = Elastic(210e9, 0.3)
 WIDTH = 5e-3
-
-
-@dataclass(frozen=True)
-class Slot:
-    width: float = 4e-3
-    depth: float = 2e-3
-    angle: float = np.pi
+SLOT = Keyway(4e-3, 2e-3, np.pi)
 
 
 def pair(cam=STEEL, roller=STEEL, *, lift=0.0, pitch=0.03, bore=6e-3, hub=4e-3, keyway=None):
@@ -51,9 +44,9 @@ def history(of, theta, force):
 @pytest.mark.parametrize(
     ("of", "theta", "force"),
     [
-        pytest.param(pair(lift=4e-3, keyway=Slot()), 0.7, 20.0, id="light"),
-        pytest.param(pair(lift=4e-3, keyway=Slot()), 0.5 * np.pi, 2e4, id="heavy"),
-        pytest.param(pair(keyway=Slot()), np.pi, 2e3, id="over the keyway"),
+        pytest.param(pair(lift=4e-3, keyway=SLOT), 0.7, 20.0, id="light"),
+        pytest.param(pair(lift=4e-3, keyway=SLOT), 0.5 * np.pi, 2e4, id="heavy"),
+        pytest.param(pair(keyway=SLOT), np.pi, 2e3, id="over the keyway"),
         pytest.param(pair(hub=9e-3), 0.0, 2e3, id="thin roller"),
         pytest.param(pair(bore=18.5e-3), 0.0, 2e3, id="thin cam"),
         pytest.param(pair(pitch=10.4e-3, bore=2e-4), 0.0, 200.0, id="cam of 0.4 mm"),
@@ -79,7 +72,7 @@ def test_thin_ring_presses_harder_than_hertz_says():
 
 
 def test_stress_moves_smoothly_over_the_turn():
-    of = pair(lift=4e-3, keyway=Slot())
+    of = pair(lift=4e-3, keyway=SLOT)
     ratio = history(of, THETA, 2e3)
     share = ratio.tau_max / ratio.p0
     assert np.abs(np.diff(share)).max() < 1e-3 * share.mean()
@@ -89,7 +82,7 @@ def test_stress_moves_smoothly_over_the_turn():
 
 def test_many_positions_are_answered_as_few_are():
     # Many go through a condensed body, few through the whole one.
-    of = pair(lift=4e-3, keyway=Slot())
+    of = pair(lift=4e-3, keyway=SLOT)
     angles = THETA[::48]
     many, few = history(of, angles, 2e3), history(of, angles[:3], 2e3)
     for name in ("p0", "half_width", "tau_max", "von_mises"):
