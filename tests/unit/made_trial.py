@@ -58,11 +58,13 @@ FACE = {
 
 
 def changed(base: Any, **values: Any) -> Any:
-    """A section of a case or a result with some of its fields replaced."""
+    """A section of a case or a result with some of its fields replaced, by what they may be."""
     if is_dataclass(base):
         return replace(base, **values)
     assert isinstance(base, Section)
-    assert set(values) <= set(type(base).model_fields)
+    fields = type(base).model_fields
+    for name, value in values.items():
+        assert value is not None or fields[name].default is None, f"{name} cannot be left out"
     return base.model_copy(update=values)
 
 
