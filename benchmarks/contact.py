@@ -15,17 +15,22 @@ import time
 
 import numpy as np
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.contact import hertz
-from pipeline.contact.certificate import ContactSide, solve_contact
-from pipeline.contact.elastic_body import Elastic
-from pipeline.contact.follower_body import RollerBody
-from pipeline.contact.pair import ContactPair, CycleBodies, elastic_body, pair_history
-from pipeline.contact.pair_certificate import certificate_point, solve_pair
-from pipeline.contact.patch import contact_patch
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.certificate import certificate_point, solve_pair
+from camwright.pipeline.contact.contact_pair import (
+    ContactPair,
+    CycleBodies,
+    elastic_body,
+    pair_history,
+)
+from camwright.pipeline.contact.contact_patch import contact_patch
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.contact.follower_body import RollerBody
+from camwright.pipeline.contact.full_contact import ContactSide, solve_contact
 
 POSITIONS = 720
 ANGLES = 8

@@ -15,11 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline import trial as road
-from pipeline.case_file import load_case_file
-from pipeline.cycle import finished
-from pipeline.smoothing.smoothers import Smoother
-from pipeline.turn import turn
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.cycle.cycle import finished
+from camwright.pipeline.cycle.turn import turn
+from camwright.pipeline.smoothing.smoothers import Smoother
 
 ROOT = Path(__file__).resolve().parent.parent
 POSITIONS = 720

@@ -18,12 +18,12 @@ import tempfile
 import time
 from pathlib import Path
 
-from pipeline.case_file import load_case_file
-from pipeline.progress import Silent
-from pipeline.run import run_case
-from reports import browser
-from reports.page import PAGE
-from reports.parts import build
+from camwright.pipeline.base.progress import Silent
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.run import run_case
+from camwright.reports import browser
+from camwright.reports.page import PAGE
+from camwright.reports.sections import build
 
 ROOT = Path(__file__).resolve().parent.parent
 SECONDS, MEBIBYTES, MEGABYTES, OPEN_SECONDS = 40.0, 3072.0, 8.0, 2.0
@@ -50,7 +50,7 @@ def main() -> None:
             case = load_case_file(ROOT / "cases" / "gx120.toml")
             run_case(case, copy, positions=72, progress=Silent(), present=build)
         start = time.perf_counter()
-        subprocess.run([sys.executable, "-m", "pipeline.cli", "report", str(copy)], check=True)
+        subprocess.run([sys.executable, "-m", "camwright", "report", str(copy)], check=True)
         told("report, by the clock", time.perf_counter() - start, "s", SECONDS)
         used = resource.getrusage(resource.RUSAGE_CHILDREN)
         told("report, computing", used.ru_utime + used.ru_stime, "s", SECONDS)

@@ -6,10 +6,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from pipeline.case_file import load_case_file
-from pipeline.progress import Silent
-from pipeline.run import run_case
-from reports.parts import build
+from camwright.pipeline.base.progress import Silent
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.run import run_case
+from camwright.reports.sections import build
 
 ROOT = Path(__file__).resolve().parent.parent
 

@@ -19,12 +19,12 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline import trial as road
-from pipeline.case_file import load_case_file
-from pipeline.progress import Silent
-from pipeline.run import run_case
-from pipeline.smoothing.constrained import synthesise
-from pipeline.smoothing.problem import problem_of
+from camwright.pipeline import solver as road
+from camwright.pipeline.base.progress import Silent
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.run import run_case
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.problem_setup import problem_of
 
 ROOT = Path(__file__).resolve().parent.parent
 POSITIONS = 720

@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, positive, readonly, uniform_turn
-from geometry.contact_search import roller_height
-from geometry.errors import GeometryError, InputError
-from geometry.extrema import Extremum, greatest, least
-from geometry.interference import SecondContact, crossings, second_contact
-from geometry.pitch_curve import PitchCurve, cam_axes, reciprocal
+from camwright.geometry.arrays import Array, positive, readonly, uniform_turn
+from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.extrema import Extremum, greatest, least
+from camwright.geometry.follower_height import roller_height
+from camwright.geometry.interference import SecondContact, crossings, second_contact
+from camwright.geometry.pitch_curve import PitchCurve, cam_axes, reciprocal
 
 _OFFSET_TOLERANCE = 1e-14
 """Of the base radius: the round-off in the coordinates of a contour point."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, positive, uniform_turn
-from geometry.errors import InputError
-from geometry.lift import Lift
+from camwright.geometry.arrays import Array, positive, uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
 
 _QUARTER_TURN = 0.5 * np.pi
 

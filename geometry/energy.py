@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, finite, positive, readonly
-from geometry.errors import InputError
-from geometry.extrema import least
-from geometry.lift import Lift, require_uniform_turn
-from geometry.periodic import PeriodicPolynomial, periodic_quintic
+from camwright.geometry.arrays import Array, finite, positive, readonly
+from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import least
+from camwright.geometry.lift import Lift, require_uniform_turn
+from camwright.geometry.periodic_spline import PeriodicPolynomial, periodic_quintic
 
 MEAN_TOLERANCE = 1e-12
 """Of the greatest torque: a mean below this is the round-off of its removal."""

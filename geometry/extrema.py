@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import FULL_TURN, Array, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 
 Function = Callable[[Array], Array]
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import FULL_TURN, Array, uniform_turn
-from geometry.extrema import Function, valleys
+from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
+from camwright.geometry.extrema import Function, valleys
 
 Curve = Callable[[Array], Array]
 """Angles (...) -> coordinates (2, ...)."""

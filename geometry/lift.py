@@ -9,10 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
-from geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, uniform_turn
-from geometry.errors import InputError
-from geometry.extrema import Extremum, greatest, least
-from geometry.periodic import DEGREE, LEAST_SAMPLES, PeriodicPolynomial, periodic_quintic
+from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import Extremum, greatest, least
+from camwright.geometry.periodic_spline import (
+    DEGREE,
+    LEAST_SAMPLES,
+    PeriodicPolynomial,
+    periodic_quintic,
+)
 
 ANGLE_TOLERANCE = 1e-9
 """rad: angles closer than this are the same; a table in degrees is read to round-off."""

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline, make_interp_spline
 
-from geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
-from geometry.errors import InputError
-from geometry.lift import ANGLE_TOLERANCE, CLOSURE_LIMIT, Lift
-from geometry.periodic import DEGREE, LEAST_SAMPLES
+from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import ANGLE_TOLERANCE, CLOSURE_LIMIT, Lift
+from camwright.geometry.periodic_spline import DEGREE, LEAST_SAMPLES
 
 POINTS_MIN = DEGREE + 1
 _SAMPLED = 1440

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.errors import InputError
+from camwright.geometry.errors import InputError
 
 
 @dataclass(frozen=True)

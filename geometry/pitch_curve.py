@@ -8,11 +8,11 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry import path
-from geometry.arrays import Array, positive
-from geometry.errors import InputError
-from geometry.extrema import Extremum, greatest, least
-from geometry.lift import Lift
+from camwright.geometry import path
+from camwright.geometry.arrays import Array, positive
+from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import Extremum, greatest, least
+from camwright.geometry.lift import Lift
 
 
 @dataclass(frozen=True, eq=False)

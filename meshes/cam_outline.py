@@ -9,11 +9,11 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq, minimize_scalar
 
-from geometry.arrays import FULL_TURN, Array, positive
-from geometry.drawing import HoleLike
-from geometry.errors import GeometryError, InputError
-from meshes.outline import Piece, Zone, arc, line
-from meshes.sizing import EDGES_PER_TURN, SizeField, Sizing
+from camwright.geometry.arrays import FULL_TURN, Array, positive
+from camwright.geometry.cad_drawing import HoleLike
+from camwright.geometry.errors import GeometryError, InputError
+from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
+from camwright.meshes.outline import Piece, Zone, arc, line
 
 _SAMPLES = 7200  # of the contour; half a tenth of a degree
 _WALL_LEAST = 0.01  # of the bore radius

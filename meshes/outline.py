@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Array, freeze
-from geometry.errors import MeshError
-from meshes.sizing import SizeField
+from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.errors import MeshError
+from camwright.meshes.element_size import SizeField
 
 _SAMPLES = 4001  # of the size along a piece of outline; clusters at its ends come on top
 

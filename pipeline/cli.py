@@ -12,9 +12,16 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from geometry.errors import CamError
-from pipeline.commands import check, contact, inspect, redesign, run, studies
-from pipeline.commands.terminal import ERROR, INTERRUPTED, PASSED, say, stdout
+from camwright.geometry.errors import CamError
+from camwright.pipeline.commands import (
+    check_command,
+    comparison_commands,
+    contact_command,
+    inspect_command,
+    redesign_command,
+    run_command,
+)
+from camwright.pipeline.commands.terminal import ERROR, INTERRUPTED, PASSED, say, stdout
 
 # The work is parallel by processes; set before numpy is imported, it also fixes the sums' order.
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -28,17 +35,17 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 for _command in (
-    run.run,
-    check.check,
-    run.report,
-    run.init,
-    studies.compare,
-    redesign.redesign,
-    contact.contact,
-    studies.validate,
-    studies.compare_mechanisms,
-    inspect.inspect,
-    contact.deck,
+    run_command.run,
+    check_command.check,
+    run_command.report,
+    run_command.init,
+    comparison_commands.compare,
+    redesign_command.redesign,
+    contact_command.contact,
+    comparison_commands.validate,
+    comparison_commands.compare_mechanisms,
+    inspect_command.inspect,
+    contact_command.deck,
 ):
     app.command()(_command)
 

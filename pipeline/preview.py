@@ -8,24 +8,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from geometry.lift import Lift
-from pipeline import trial as road
-from pipeline.ahead import foreseen_cycle
-from pipeline.case import Case
-from pipeline.checks import rolling
-from pipeline.checks.check import Check
-from pipeline.checks.everything import DESIGN, PARTS, SIGNED, checked_by
-from pipeline.checks.trial import TrialEvidence
-from pipeline.checks.verdict import in_order
-from pipeline.cycle import Cycle, finished
-from pipeline.engine.torque import Torque
-from pipeline.smoothing import loop
-from pipeline.smoothing.constrained import synthesise
-from pipeline.smoothing.design import Design, Problem
-from pipeline.smoothing.problem import problem_of
-from pipeline.smoothing.smoothers import Smoother
-from pipeline.speed import rubbing_of, speed_ripple
-from pipeline.turn import Turn
+from camwright.geometry.lift import Lift
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.checks import surface_durability
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.checks.registry import DESIGN, PARTS, SIGNED, checked_by
+from camwright.pipeline.checks.verdict import in_order
+from camwright.pipeline.cycle.ahead import foreseen_cycle
+from camwright.pipeline.cycle.crank_speed import rubbing_of, speed_ripple
+from camwright.pipeline.cycle.cycle import Cycle, finished
+from camwright.pipeline.cycle.turn import Turn
+from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.smoothing import fe_correction
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
 
 MARK = "closed forms only: "
 _ROUNDS = 4  # of synthesis and correction
@@ -73,16 +73,16 @@ def look_ahead(case: Case) -> LookAhead:
         smoother = None if case.engine is None else Smoother.from_case(case.smoothing)
         return _seen(case, torques, road.designed_lift(case, torques, smoother))
     problem: Problem = problem_of(case, torques)
-    earlier: loop.Moved | None = None
+    earlier: fe_correction.Moved | None = None
     for _ in range(_ROUNDS):
         design = synthesise(problem)
-        seen = _seen(loop.redrawn(case, design), torques, design.lift())
+        seen = _seen(fe_correction.redrawn(case, design), torques, design.lift())
         seen = replace(seen, design=design, problem=problem)
-        corrections = loop.corrections_of(seen.cycles)
-        moved = loop.moved(design, problem, corrections)
-        if not design.feasible or loop.settled(moved, seen.checks):
+        corrections = fe_correction.corrections_of(seen.cycles)
+        moved = fe_correction.moved(design, problem, corrections)
+        if not design.feasible or fe_correction.settled(moved, seen.checks):
             break
-        problem = loop.refined_problem(problem, design, corrections, moved.swing(earlier))
+        problem = fe_correction.refined_problem(problem, design, corrections, moved.swing(earlier))
         earlier = moved
     return seen
 
@@ -94,7 +94,7 @@ def _seen(case: Case, torques: Mapping[str, Torque], lift: Lift) -> LookAhead:
     cycles = tuple(_cycle(case, contour, given, sound) for given in turns)
     speed = speed_ripple(case, torques, contour.pitch, rubbing_of(cycles))
     evidence = TrialEvidence(case=case, contour=contour, cycles=cycles, speed_ripple=speed)
-    found = checked_by(evidence, (*DESIGN, *rolling.CHECKS, *SIGNED, *PARTS))
+    found = checked_by(evidence, (*DESIGN, *surface_durability.CHECKS, *SIGNED, *PARTS))
     marked = (replace(check, method=MARK + check.method) for check in found)
     return LookAhead(case, contour, cycles, in_order((_unsigned(), *marked)))
 

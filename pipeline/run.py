@@ -12,42 +12,52 @@ from typing import Any
 
 import numpy as np
 
-from geometry.errors import CamError
-from geometry.lift import Lift
-from pipeline import trial as road
-from pipeline.benchmarks import benchmarks
-from pipeline.bushes import bush_arrays
-from pipeline.case import Case
-from pipeline.certify import certified, positions_to_certify
-from pipeline.checks.verdict import binding, in_order, verdict
-from pipeline.contact.pair import ContactPair, CycleBodies
-from pipeline.contact_setup import contact_pair
-from pipeline.corners import governed, outcomes
-from pipeline.corners import record as corners_record
-from pipeline.cycle import Cycle, finished
-from pipeline.engine.torque import Torque
-from pipeline.field_files import write_fields
-from pipeline.given_lift import lift_origin
-from pipeline.measured import measurement_record
-from pipeline.progress import Progress
-from pipeline.records import contour_columns, headline, lift_columns, pressure_arrays, trial_record
-from pipeline.redesign.rollers import roller_problems
-from pipeline.rolling import envelope_arrays, rolling_history, rolling_record
-from pipeline.run_folder import RunFolder
-from pipeline.shop import write_shop
-from pipeline.smoothing import loop
-from pipeline.smoothing.constrained import synthesise
-from pipeline.smoothing.gentler import Next, Stop, next_smoother
-from pipeline.smoothing.infeasible import infeasibility
-from pipeline.smoothing.outlook import Attempt
-from pipeline.smoothing.prices import limits_in_use
-from pipeline.smoothing.problem import problem_of
-from pipeline.smoothing.smoothers import Smoother
-from pipeline.smoothing.starts import Starts, explored
-from pipeline.speed import consistency, rubbing_of, speed_record, study_of
-from pipeline.trial_value import Trial
-from pipeline.turn import Turn
-from pipeline.valve_train import valve_record
+from camwright.geometry.errors import CamError
+from camwright.geometry.lift import Lift
+from camwright.pipeline import solver as road
+from camwright.pipeline.base.progress import Progress
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.given_lift import lift_origin
+from camwright.pipeline.case.load_case_torque import measurement_record
+from camwright.pipeline.checks.tolerance_corners import governed, outcomes
+from camwright.pipeline.checks.tolerance_corners import record as corners_record
+from camwright.pipeline.checks.verdict import binding, in_order, verdict
+from camwright.pipeline.contact.contact_benchmarks import benchmarks
+from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies
+from camwright.pipeline.cycle.certificate_angles import certified, positions_to_certify
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.crank_speed import consistency, rubbing_of, speed_record, study_of
+from camwright.pipeline.cycle.cycle import Cycle, finished
+from camwright.pipeline.cycle.guide_pressure import bush_arrays
+from camwright.pipeline.cycle.rolling_history import (
+    envelope_arrays,
+    rolling_history,
+    rolling_record,
+)
+from camwright.pipeline.cycle.turn import Turn
+from camwright.pipeline.cycle.valve_train import valve_record
+from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.results.field_output import write_fields
+from camwright.pipeline.results.run_folder import RunFolder
+from camwright.pipeline.results.run_records import (
+    contour_columns,
+    headline,
+    lift_columns,
+    pressure_arrays,
+    trial_record,
+)
+from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.results.workshop_files import write_shop
+from camwright.pipeline.smoothing import fe_correction
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.infeasibility import infeasibility
+from camwright.pipeline.smoothing.multistart import Starts, explored
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.roller_alternatives import roller_problems
+from camwright.pipeline.smoothing.shadow_prices import limits_in_use
+from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.smoothing.smoothing_feedback import Next, Stop, next_smoother
+from camwright.pipeline.smoothing.smoothing_forecast import Attempt
 
 
 @dataclass
@@ -175,7 +185,7 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
     why = "the cam of least ripple within all limits"
     trials: list[Trial] = []
     starts: Starts | None = None
-    earlier: loop.Moved | None = None
+    earlier: fe_correction.Moved | None = None
     while True:
         journey.progress.stage(f"trial {len(trials) + 1}: synthesis")
         with journey.watch.stage("synthesis"):
@@ -183,10 +193,12 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
                 design = synthesise(problem)
             else:
                 design, starts = explored(problem, given.smoothing.starts)
-        journey = replace(journey, case=loop.redrawn(given, design))
+        journey = replace(journey, case=fe_correction.redrawn(given, design))
         done = _trial(journey, len(trials) + 1, None, why, design.lift())
         drawn_from = None if trials else starts
-        trials.append(replace(done, synthesis=loop.design_record(design, problem, drawn_from)))
+        trials.append(
+            replace(done, synthesis=fe_correction.design_record(design, problem, drawn_from))
+        )
         journey.folder.write_limits(len(trials), *limits_in_use(design))
         found = binding(done.checks)
         if not design.feasible:
@@ -195,9 +207,9 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
             record = {**(trials[-1].synthesis or {}), "infeasible": report.as_record()}
             trials[-1] = replace(trials[-1], synthesis=record)
             return journey, trials, Stop(report.sentence, found, len(trials))
-        corrections = loop.corrections_of(done.cycles)
-        moved = loop.moved(design, problem, corrections)
-        settled = loop.settled(moved, done.checks)
+        corrections = fe_correction.corrections_of(done.cycles)
+        moved = fe_correction.moved(design, problem, corrections)
+        settled = fe_correction.settled(moved, done.checks)
         if settled or done.mesh is None or len(trials) == given.solver.max_trials:
             last = f"trial {len(trials)} {'fails' if found else 'passes every must-have check'}"
             agree = "" if starts is None else f"; {starts.sentence}"
@@ -205,7 +217,7 @@ def _constrained_trials(journey: Journey) -> tuple[Journey, list[Trial], Stop]:
             return journey, trials, Stop(reason, found, len(trials))
         why = moved.sentence
         journey.progress.note(f"trial {len(trials)}: {why}")
-        problem = loop.refined_problem(problem, design, corrections, moved.swing(earlier))
+        problem = fe_correction.refined_problem(problem, design, corrections, moved.swing(earlier))
         earlier = moved
 
 

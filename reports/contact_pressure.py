@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Array
-from pipeline.tables import Table
-from reports.rasters import Above
+from camwright.geometry.arrays import Array
+from camwright.pipeline.base.tables import Table
+from camwright.reports.field_raster import Above
 
 FILE = "5_pressure.npz"
 _NEAR = 1e-6  # deg

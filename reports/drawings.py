@@ -9,13 +9,13 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from pipeline.files import write_atomic
-from reports.figures import Figure
-from reports.material import FIGURES, Material
-from reports.parts_sheet import part_figures
-from reports.plots import svg_and_png
-from reports.sheet import figures
-from reports.strip import strip_figures
+from camwright.pipeline.base.files import write_atomic
+from camwright.reports.analysis_sheet import figures
+from camwright.reports.figure_svg import svg_and_png
+from camwright.reports.figures import Figure
+from camwright.reports.limits_strip import strip_figures
+from camwright.reports.part_figures import part_figures
+from camwright.reports.report_data import FIGURES, Material
 
 GROUPS = (
     ("Torque", ("torque", "torque-components", "crank-speed")),

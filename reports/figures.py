@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Array
+from camwright.geometry.arrays import Array
 
 SERIES = ("blue", "vermillion", "green", "purple", "orange", "sky")
 FAR_LIMIT = 1.6

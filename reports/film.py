@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from geometry.errors import ResultError
-from reports.film_frames import Stage
-from reports.film_patch import colour_table
-from reports.material import FIGURES, Material
-from reports.plots import COLOURS
-from reports.turn_view import read_turn_view
+from camwright.geometry.errors import ResultError
+from camwright.reports.figure_svg import COLOURS
+from camwright.reports.film_frames import Stage
+from camwright.reports.film_patch import colour_table
+from camwright.reports.report_data import FIGURES, Material
+from camwright.reports.scene_turn import read_turn_view
 
 MP4, GIF = "turn.mp4", "turn.gif"
 SECONDS = 12.0

@@ -17,9 +17,10 @@ from matplotlib.font_manager import findfont
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from PIL import Image, ImageDraw, ImageFont
 
-from geometry.arrays import Array
-from reports.film_patch import COLOUR_MAP, PatchSeries, colour_table, read_patches
-from reports.film_raster import (
+from camwright.geometry.arrays import Array
+from camwright.reports.figure_svg import COLOURS, style
+from camwright.reports.film_patch import COLOUR_MAP, PatchSeries, colour_table, read_patches
+from camwright.reports.film_raster import (
     BodyRaster,
     CamRaster,
     Layer,
@@ -29,10 +30,9 @@ from reports.film_raster import (
     paint_disc,
     painted,
 )
-from reports.material import Material
-from reports.page import shortened
-from reports.plots import COLOURS, style
-from reports.turn_view import TurnView
+from camwright.reports.page import shortened
+from camwright.reports.report_data import Material
+from camwright.reports.scene_turn import TurnView
 
 SIZE = (1280, 720)
 FLOOR_SHARE, TOP_SHARE = 0.5e-3, 0.2

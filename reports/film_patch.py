@@ -14,11 +14,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy import sparse
 
-from geometry.arrays import Array
-from geometry.errors import ResultError
-from reports.film_raster import Pixels, Window, interpolation, painted
-from reports.plots import COLOURS
-from reports.turn_view import TurnView
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ResultError
+from camwright.reports.figure_svg import COLOURS
+from camwright.reports.film_raster import Pixels, Window, interpolation, painted
+from camwright.reports.scene_turn import TurnView
 
 INDEX = Path("fields") / "patch_cycle.pvd"
 PRESSURE = "5_pressure.npz"

@@ -14,7 +14,7 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import Delaunay
 
-from geometry.arrays import Array
+from camwright.geometry.arrays import Array
 
 Pixels = Any
 _OWN = 220  # samples across a body's own raster

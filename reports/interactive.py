@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from geometry.arrays import Array
-from reports.figures import (
+from camwright.geometry.arrays import Array
+from camwright.reports.figures import (
     STROKES,
     AngleFigure,
     Curve,

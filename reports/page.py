@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from pipeline.files import write_atomic
-from pipeline.results import TrialRecord
-from reports import interactive, proof, tables
-from reports.drawings import drawn_groups
-from reports.material import Material
-from reports.pictures import PICTURES
-from reports.turn import Turn
-from reports.verdict import verdict
+from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.results.run_reader import TrialRecord
+from camwright.reports import interactive, report_tables, verification_tables
+from camwright.reports.drawings import drawn_groups
+from camwright.reports.picture_list import PICTURES
+from camwright.reports.report_data import Material
+from camwright.reports.sheet_turn import Turn
+from camwright.reports.verdict_text import verdict
 
 PAGE = "8_report.html"
 LONG = 700
@@ -78,32 +78,34 @@ def context(material: Material) -> dict[str, Any]:
         "name": str(case.get("name") or summary["case"]),
         "title": str(case.get("title") or summary["case"]),
         "verdict": verdict(run.verdict, final.checks, final.binding, statement),
-        "tiles": tables.tiles(headline),
-        "headline": tables.headline_rows(headline),
+        "tiles": report_tables.tiles(headline),
+        "headline": report_tables.headline_rows(headline),
         "facts": _facts(material),
-        "checks": _grouped(tables.check_rows(final.checks)),
+        "checks": _grouped(report_tables.check_rows(final.checks)),
         "groups": drawn_groups(material),
         "load_case": turn.load_case,
         "load_cases": len(turn.others),
         "trials": [_trial(trial) for trial in run.trials],
-        "prices": proof.prices(summary.get("prices") or final.record.get("prices")),
+        "prices": verification_tables.prices(summary.get("prices") or final.record.get("prices")),
         "pictures": [picture for draw in PICTURES for picture in draw(material)],
-        "certificate_head": tables.CERTIFICATE_HEAD,
-        "certificate": tables.certificate_rows(final.record.get("certificate") or ()),
-        "figures_head": tables.FIGURES_HEAD,
-        "certified": tables.certified_rows(final.record.get("certificate") or ()),
-        "benchmarks": proof.benchmarks(summary.get("benchmarks")),
-        "corners": proof.corners(final.checks),
-        "consistency": proof.consistency(summary.get("consistency")),
-        "crank_speed": proof.crank_speed(summary.get("speed")),
-        "valve_train": proof.valve_train(summary.get("valve_train")),
-        "mesh": tables.named_rows({k: v for k, v in mesh.items() if k != "sha256"}),
+        "certificate_head": report_tables.CERTIFICATE_HEAD,
+        "certificate": report_tables.certificate_rows(final.record.get("certificate") or ()),
+        "figures_head": report_tables.FIGURES_HEAD,
+        "certified": report_tables.certified_rows(final.record.get("certificate") or ()),
+        "benchmarks": verification_tables.benchmarks(summary.get("benchmarks")),
+        "corners": verification_tables.corners(final.checks),
+        "consistency": verification_tables.consistency(summary.get("consistency")),
+        "crank_speed": verification_tables.crank_speed(summary.get("speed")),
+        "valve_train": verification_tables.valve_train(summary.get("valve_train")),
+        "mesh": report_tables.named_rows({k: v for k, v in mesh.items() if k != "sha256"}),
         "method": str(final.record.get("contact_method") or ""),
         "residuals": residuals(turn),
-        "inputs": tables.input_tables(case),
+        "inputs": report_tables.input_tables(case),
         "assumptions": ASSUMPTIONS,
         "versions": [(str(k), str(v)) for k, v in summary["versions"].items()],
-        "timings": [(k, tables.quantity(v, "s", 3)) for k, v in summary["timings_s"].items()],
+        "timings": [
+            (k, report_tables.quantity(v, "s", 3)) for k, v in summary["timings_s"].items()
+        ],
         "hashes": _hashes(summary, mesh),
         "hashed": len(summary.get("files") or ()),
         "schema": summary["schema"],
@@ -124,7 +126,9 @@ def _facts(material: Material) -> list[tuple[str, str]]:
     ]
 
 
-def _grouped(rows: Sequence[tables.CheckRow]) -> list[tuple[str, list[tables.CheckRow]]]:
+def _grouped(
+    rows: Sequence[report_tables.CheckRow],
+) -> list[tuple[str, list[report_tables.CheckRow]]]:
     """Required checks, then optional ones: first what could not be evaluated, then what fails.
 
     Of the optional ones, what could not be evaluated comes last.
@@ -157,7 +161,7 @@ def residuals(turn: Turn) -> list[tuple[str, str]]:
         "residual_friction": "forces along the stem, friction of the guides among them",
     }
     return [
-        (words, tables.number(float(np.max(np.abs(turn.columns[name]))), 2))
+        (words, report_tables.number(float(np.max(np.abs(turn.columns[name]))), 2))
         for name, words in names.items()
         if name in turn.columns
     ]
@@ -166,13 +170,13 @@ def residuals(turn: Turn) -> list[tuple[str, str]]:
 def _trial(trial: TrialRecord) -> dict[str, Any]:
     """One row of the trials table."""
     record = trial.record
-    rows = [row for row in tables.check_rows(trial.checks) if row.id in trial.binding]
+    rows = [row for row in report_tables.check_rows(trial.checks) if row.id in trial.binding]
     width = record.get("angular_width_deg")
     return {
         "number": trial.number,
-        "smoothing": str(record.get("smoothing") or record.get("smoother") or tables.DASH),
-        "width": tables.quantity(width, "deg") if width is not None else tables.DASH,
-        "strength": tables.number(record.get("strength"), 3),
+        "smoothing": str(record.get("smoothing") or record.get("smoother") or report_tables.DASH),
+        "width": report_tables.quantity(width, "deg") if width is not None else report_tables.DASH,
+        "strength": report_tables.number(record.get("strength"), 3),
         "why": titled(str(record.get("why") or ""), trial.checks),
         "passed": trial.verdict == "pass",
         "failing": [(row.title, row.utilisation) for row in rows if row.status == "fail"],

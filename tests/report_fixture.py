@@ -530,6 +530,6 @@ def write_run(
 
 def page_of(folder: Path) -> Path:
     """The page of a run folder, drawn with everything else that a report has."""
-    from reports import parts
+    from camwright.reports import sections
 
-    return parts.build(folder)["page"][0]
+    return sections.build(folder)["page"][0]

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
-from geometry.arrays import FULL_TURN, Array
-from pipeline.follower.ring import Ring, RingBending
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.pipeline.follower.bearing_ring import Ring, RingBending
 
 _ELEMENTS_PER_GAP = 24  # between two balls
 _HOLD = 1e-6  # of the balls' stiffness, against turning on the balls, which costs nothing

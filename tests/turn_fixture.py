@@ -8,9 +8,9 @@ import numpy as np
 import report_fixture
 from scipy.spatial import Delaunay
 
-from meshes.body import BodyMesh, roller_mesh
-from meshes.files import write_pvd, write_vtu
-from meshes.sizing import Sizing
+from camwright.meshes.body_mesh import BodyMesh, roller_mesh
+from camwright.meshes.element_size import Sizing
+from camwright.meshes.mesh_files import write_pvd, write_vtu
 
 FRAMES = 6
 KNOTS = np.linspace(-1.2, 1.2, 25)

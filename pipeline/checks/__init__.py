@@ -1,9 +1,9 @@
 """One function a limit."""
 
-from pipeline.checks.check import Check
-from pipeline.checks.everything import all_checks, design_checks
-from pipeline.checks.trial import TrialEvidence
-from pipeline.checks.verdict import binding, in_order, verdict
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.checks.registry import all_checks, design_checks
+from camwright.pipeline.checks.verdict import binding, in_order, verdict
 
 __all__ = [
     "Check",

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.arrays import FULL_TURN, Array
-from pipeline.checks.check import Check
-from pipeline.checks.function import TORQUE_REDUCTION, cycles_of_ripple
-from pipeline.checks.trial import TrialEvidence, Worst, greatest, worst_case
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.extremes import TrialEvidence, Worst, greatest, worst_case
+from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION, cycles_of_ripple
 
 if TYPE_CHECKING:
-    from pipeline.cycle import Cycle
+    from camwright.pipeline.cycle.cycle import Cycle
 
 
 def profile_waviness(evidence: TrialEvidence) -> Check:

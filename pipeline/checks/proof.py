@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence
-from pipeline.contact.convergence import Convergence, converged
-from pipeline.follower.guides import KNOTS, GuidePair, guide_reactions
-from pipeline.follower.stem import Stem
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence, converged
+from camwright.pipeline.follower.guide_reactions import KNOTS, GuidePair, guide_reactions
+from camwright.pipeline.follower.stem_beam import Stem
 
 if TYPE_CHECKING:
-    from pipeline.contact.history import CertificatePoint
+    from camwright.pipeline.contact.contact_history import CertificatePoint
 
 GCI = "grid convergence index, ASME V&V 20-2009, sec. 2-4; <= 3 %"
 BENCHMARK = 0.03

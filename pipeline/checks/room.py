@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.extremes import TrialEvidence
 
 
 def guide_clearance(evidence: TrialEvidence) -> Check:

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.checks.check import Check
-from pipeline.checks.rolling import torsion_limit
-from pipeline.checks.trial import TrialEvidence, cam_card, greatest, worst_case
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.extremes import TrialEvidence, cam_card, greatest, worst_case
+from camwright.pipeline.checks.surface_durability import torsion_limit
 
 if TYPE_CHECKING:
-    from pipeline.cycle import Cycle
-    from pipeline.part_fields import Material
+    from camwright.pipeline.case.parts_section import Material
+    from camwright.pipeline.cycle.cycle import Cycle
 
 CASE_CARBURISED = 1500.0  # MPa, quality MQ
 

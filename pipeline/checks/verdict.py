@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal
 
-from pipeline.checks.check import Check
+from camwright.pipeline.checks.check import Check
 
 Verdict = Literal["pass", "fail"]
 

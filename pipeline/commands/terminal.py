@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from pipeline.progress import Bars, Lines, Progress
+from camwright.pipeline.base.progress import Bars, Lines, Progress
 
 PASSED, FAILED, ERROR, INTERRUPTED = 0, 1, 2, 130
 
@@ -38,10 +38,10 @@ def show_json(document: object) -> None:
 
 def use_cache(wanted: bool) -> None:
     """Switch off what is kept between runs, unless it is wanted."""
-    from pipeline import cache
+    from camwright.pipeline.base import disk_cache
 
     if not wanted:
-        cache.switch_off()
+        disk_cache.switch_off()
 
 
 @contextmanager
@@ -56,13 +56,18 @@ def progress_shown() -> Iterator[Progress]:
 
 def show(document: dict[str, Any], folder: Path | None) -> None:
     """Checks by utilisation, what else is to be known, then the verdict and the report's place."""
-    from pipeline.check_command import binding_lines, consistency_line, remarks, table
+    from camwright.pipeline.results.check_report import (
+        binding_lines,
+        consistency_line,
+        remarks,
+        table,
+    )
 
     stdout.print(table(document["checks"]))
     for line in remarks(document["checks"]):
         stdout.print(line, markup=False)
     if "changes" in document:
-        from pipeline.baseline import lines
+        from camwright.pipeline.results.baseline_comparison import lines
 
         for line in lines(document["changes"]):
             stdout.print(f"baseline: {line}", markup=False)

@@ -7,11 +7,11 @@ from typing import Protocol
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.contour import Contour
-from meshes.body import BodyMesh, face_mesh, roller_mesh
-from meshes.sizing import Sizing
-from pipeline.contact.elastic_body import Elastic, Springs
+from camwright.geometry.arrays import Array
+from camwright.geometry.contour import Contour
+from camwright.meshes.body_mesh import BodyMesh, face_mesh, roller_mesh
+from camwright.meshes.element_size import Sizing
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic, Springs
 
 # What a body adds varies over its wall's thickness; fewer would smooth it away.
 EDGES_ACROSS_WALL = 4

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from geometry.arrays import Array, finite, positive
-from geometry.errors import InputError
-from pipeline.contact.stress import shear_any_plane, von_mises
+from camwright.geometry.arrays import Array, finite, positive
+from camwright.geometry.errors import InputError
+from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_any_plane, von_mises
 
 # In-plane maximum shear under a frictionless line contact (Johnson 1985, sec. 4.2(a)),
 # the root of the axis field carried to more digits than are printed there.

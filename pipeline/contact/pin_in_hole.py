@@ -18,10 +18,15 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from geometry.arrays import Array, finite, freeze
-from geometry.errors import ContactError, InputError
-from pipeline.contact.active_set import solve
-from pipeline.contact.harmonics import Bush, Pin, bush_compliance, pin_compliance
+from camwright.geometry.arrays import Array, finite, freeze
+from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.contact.elasticity.active_set import solve
+from camwright.pipeline.contact.elasticity.radial_compliance import (
+    Bush,
+    Pin,
+    bush_compliance,
+    pin_compliance,
+)
 
 KNOTS = 96  # of the pressure on half the contact
 WINDOW_MAX = np.radians(120.0)

@@ -11,14 +11,14 @@ from functools import lru_cache
 
 import numpy as np
 
-from geometry.arrays import FULL_TURN, Array
-from geometry.contour import Contour
-from geometry.errors import InputError
-from meshes.body import BodyMesh
-from meshes.sizing import Sizing
-from pipeline.contact.bodies import LoadedBody
-from pipeline.contact.elastic_body import Elastic, ElasticBody, Springs
-from pipeline.contact.follower_body import EDGES_ACROSS_WALL, RollerBody
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError
+from camwright.meshes.body_mesh import BodyMesh
+from camwright.meshes.element_size import Sizing
+from camwright.pipeline.contact.body_compliance import LoadedBody
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic, ElasticBody, Springs
+from camwright.pipeline.contact.follower_body import EDGES_ACROSS_WALL, RollerBody
 
 # Of a ball's stiffness, against the ring's turning on its balls, which no load asks for.
 _HOLD = 1e-6

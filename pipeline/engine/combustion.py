@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array
-from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.geometry.arrays import Array
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
 
 
 def wiebe(progress: ArrayLike, a: float, m: float) -> Array:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from geometry.arrays import Array, finite, freeze, positive, readonly
-from geometry.errors import CamError, InputError
+from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
+from camwright.geometry.errors import CamError, InputError
 
 CYCLE_ANGLE = 4.0 * pi
 SETTLED = 1e-13  # of the mean speed, between two passes

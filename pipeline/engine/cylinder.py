@@ -10,9 +10,9 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array
-from geometry.errors import InputError
-from geometry.linkage import SliderCrank
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
+from camwright.geometry.linkage import SliderCrank
 
 Ignition = Literal["spark", "compression"]
 HeatLoss = Literal["hohenberg", "woschni"]

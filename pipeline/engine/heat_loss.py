@@ -9,8 +9,8 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array
-from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.geometry.arrays import Array
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
 
 # W/(m2 K), of the node of a step table, the pressure (Pa) and the temperature (K)
 FilmCoefficient = Callable[[int, float, float], float]

@@ -11,12 +11,18 @@ from typing import Literal, get_args
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from geometry.arrays import Array, finite, freeze
-from geometry.errors import InputError
-from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
-from pipeline.engine.torque import SAMPLES, Torque, all_cylinders, uniform_cycle
-from pipeline.engine.trace import GAP_MAX, Trace, guard_order, guard_span, one_period
-from pipeline.engine.trace_file import (
+from camwright.geometry.arrays import Array, finite, freeze
+from camwright.geometry.errors import InputError
+from camwright.pipeline.engine.angle_trace import (
+    GAP_MAX,
+    Trace,
+    guard_order,
+    guard_span,
+    one_period,
+)
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.torque import SAMPLES, Torque, all_cylinders, uniform_cycle
+from camwright.pipeline.engine.trace_file import (
     ANGLE_UNITS,
     QUANTITY_UNITS,
     angle_column,

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, finite, freeze, positive, readonly
-from geometry.errors import InputError
-from pipeline.engine.crankshaft import SpeedStatistics, speed_statistics, torque_of_motion
-from pipeline.engine.cylinder import CYCLE_ANGLE
-from pipeline.engine.torque import SAMPLES, Torque, uniform_cycle
-from pipeline.engine.trace import guard_order, guard_span
-from pipeline.engine.trace_file import (
+from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
+from camwright.geometry.errors import InputError
+from camwright.pipeline.engine.angle_trace import guard_order, guard_span
+from camwright.pipeline.engine.crankshaft import SpeedStatistics, speed_statistics, torque_of_motion
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
+from camwright.pipeline.engine.torque import SAMPLES, Torque, uniform_cycle
+from camwright.pipeline.engine.trace_file import (
     QUANTITY_UNITS,
     angle_column,
     columns_of,
@@ -26,7 +26,7 @@ from pipeline.engine.trace_file import (
     table_delimiter,
     text_lines,
 )
-from pipeline.engine.trigger_wheel import Edges, TriggerWheel, counted, learned_wheel
+from camwright.pipeline.engine.trigger_wheel import Edges, TriggerWheel, counted, learned_wheel
 
 HARMONICS = 20  # of the cycle, 10 per crank turn: where noise of 0.2 rad/s costs least
 TAPER = 0.25

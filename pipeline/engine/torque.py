@@ -10,12 +10,12 @@ from types import MappingProxyType
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from geometry.arrays import Array, finite, freeze
-from geometry.errors import InputError
-from pipeline.engine.cycle_solver import working_cycle
-from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
-from pipeline.engine.trace import read_trace
-from pipeline.engine.working_cycle import CylinderCycle
+from camwright.geometry.arrays import Array, finite, freeze
+from camwright.geometry.errors import InputError
+from camwright.pipeline.engine.angle_trace import read_trace
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.indicated_cycle import CylinderCycle
+from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
 
 SAMPLES = 720
 

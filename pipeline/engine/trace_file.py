@@ -11,8 +11,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.errors import InputError
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
 
 SIZE_MAX = 64 * 2**20  # bytes; looked up before the file is opened
 ROWS_MAX = 1_000_000

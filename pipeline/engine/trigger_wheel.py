@@ -9,8 +9,8 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, finite, freeze, readonly
-from geometry.errors import InputError
+from camwright.geometry.arrays import Array, finite, freeze, readonly
+from camwright.geometry.errors import InputError
 
 FULL_TURN = 2.0 * pi
 NEIGHBOURS = 9  # intervals, of whose median a regular one is a share

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from geometry.arrays import Array
-from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, LiftTable
+from camwright.geometry.arrays import Array
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, LiftTable
 
 # Near equal pressures the nozzle flow rises with an infinite slope; below this relative
 # difference it is bent into a straight line, worth some 10 Pa in a cylinder that breathes.

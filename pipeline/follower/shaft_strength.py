@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, finite, uniform_turn
-from geometry.errors import InputError
-from pipeline.follower.cam_body import Camshaft, ShaftLoads
+from camwright.geometry.arrays import Array, finite, uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.pipeline.follower.camshaft_loads import Camshaft, ShaftLoads
 
 _FIBRES = 72
 

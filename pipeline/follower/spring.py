@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Array, finite
-from geometry.errors import InputError
+from camwright.geometry.arrays import Array, finite
+from camwright.geometry.errors import InputError
 
 DEAD_COILS = 2.0  # squared and ground ends
 SHEAR_STRENGTH_SHARE = 0.67  # S_su over R_m

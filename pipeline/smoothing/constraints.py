@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.path import Values, curvature_slope, magnitude, speed_and_curvature
-from pipeline.checks import demands
-from pipeline.contact.hertz import peak_pressure_square
-from pipeline.follower.forces import levers
-from pipeline.follower.roller import BALL_LIFE_EXPONENT, rolling_share, wear
-from pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.geometry.arrays import Array
+from camwright.geometry.path import Values, curvature_slope, magnitude, speed_and_curvature
+from camwright.pipeline.checks import demands
+from camwright.pipeline.contact.hertz import peak_pressure_square
+from camwright.pipeline.follower.follower_forces import levers
+from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, rolling_share, wear
+from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
 
 
 class Jet(NamedTuple):

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Array
-from pipeline.smoothing.constraints import Jet, Mean, Values, lift_jet
-from pipeline.smoothing.scenario import Machine
+from camwright.geometry.arrays import Array
+from camwright.pipeline.smoothing.constraints import Jet, Mean, Values, lift_jet
+from camwright.pipeline.smoothing.scenario import Machine
 
 Function = Callable[[Jet, Values, Machine], Mapping[str, "Values | Mean"]]
 FREED = ("rate", "preload", "base_radius")

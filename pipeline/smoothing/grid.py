@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Array
-from pipeline.smoothing.spline_energy import basis_rows
+from camwright.geometry.arrays import Array
+from camwright.pipeline.smoothing.energy_spline import basis_rows
 
 ORDERS = 4  # E, E', E'', E'''
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Array
-from pipeline.smoothing.design import Problem
-from pipeline.smoothing.scenario import Scenario
+from camwright.geometry.arrays import Array
+from camwright.pipeline.smoothing.scenario import Scenario
+from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 
 def ripple_of(problem: Problem, item: Scenario, values: Array) -> Array:

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
-from geometry.path import Values
-from pipeline.follower.roller import HOUR
+from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
+from camwright.geometry.path import Values
+from camwright.pipeline.follower.roller_motion import HOUR
 
 LIFE_UNIT = 1e6 * FULL_TURN / HOUR  # rad of a million turns, per hour
 

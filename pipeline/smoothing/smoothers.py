@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import eval_legendre, spherical_jn
 
-from geometry.arrays import Array, finite, readonly
-from geometry.errors import InputError
+from camwright.geometry.arrays import Array, finite, readonly
+from camwright.geometry.errors import InputError
 
 if TYPE_CHECKING:
-    from pipeline.design_fields import Smoothing
+    from camwright.pipeline.case.requirements_section import Smoothing
 
 CYCLE = 4.0 * np.pi  # rad of crank in one engine cycle
 

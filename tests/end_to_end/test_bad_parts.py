@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from pipeline import cli
-from pipeline.case_template import template
+from camwright.pipeline import cli
+from camwright.pipeline.case.template import template
 
 CARD = """
 [bearings.own]

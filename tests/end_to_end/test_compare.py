@@ -5,15 +5,15 @@ import subprocess
 import sys
 from pathlib import Path
 
-from geometry.arrays import uniform_turn
-from reports import smoothers
+from camwright.geometry.arrays import uniform_turn
+from camwright.reports import smoother_page
 
 CASES = Path(__file__).parents[2] / "cases"
 
 
 def test_compare_tabulates_and_draws(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "pipeline.cli", "compare", str(CASES / "gx120-signed.toml"),
+        [sys.executable, "-m", "camwright", "compare", str(CASES / "gx120-signed.toml"),
          "--out", str(tmp_path)],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
@@ -35,6 +35,6 @@ def test_compare_tabulates_and_draws(tmp_path):
 
 def test_page_escapes_what_it_shows(tmp_path):
     rows = [{"smoother": "<b>", "verdict": "fail", "lift_max_mm": 1.0}]
-    page = smoothers.write(tmp_path, "a & b", rows, {"x": uniform_turn(12)})
+    page = smoother_page.write(tmp_path, "a & b", rows, {"x": uniform_turn(12)})
     text = page.read_text(encoding="utf-8")
     assert "&lt;b&gt;" in text and "a &amp; b" in text and "<b>" not in text

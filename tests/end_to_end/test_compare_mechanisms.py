@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline.mechanism.comparison import compared, lines, load_comparison
-from reports import mechanisms
+from camwright.geometry.errors import InputError
+from camwright.pipeline.studies.papers.mechanism_comparison import compared, lines, load_comparison
+from camwright.reports import mechanism_figures
 
 ROOT = Path(__file__).resolve().parents[2]
 CASE = ROOT / "cases" / "papers" / "mechanisms.toml"
@@ -43,7 +43,7 @@ def test_document_is_json(document):
 
 
 def test_draws_both_workspaces_and_the_turn(document, tmp_path):
-    drawn = mechanisms.draw(document, tmp_path)
+    drawn = mechanism_figures.draw(document, tmp_path)
     assert [path.stem for path in drawn] == [
         "energies", "turn", "workspace_slider_crank", "workspace_eccentric_cam",
     ]  # fmt: skip

@@ -15,12 +15,12 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 import turn_fixture
 
-from geometry.errors import ResultError
-from reports import film, parts
-from reports.film_frames import Stage
-from reports.film_raster import BodyRaster, CamRaster, Window, interpolation
-from reports.material import read_material
-from reports.turn_view import read_turn_view
+from camwright.geometry.errors import ResultError
+from camwright.reports import film, sections
+from camwright.reports.film_frames import Stage
+from camwright.reports.film_raster import BodyRaster, CamRaster, Window, interpolation
+from camwright.reports.report_data import read_material
+from camwright.reports.scene_turn import read_turn_view
 
 POSITIONS = 36
 BYTES_MAX = 20 << 20
@@ -45,7 +45,9 @@ def test_film_is_whole_in_both_formats_and_tells_how_far_it_is(folder: Path) -> 
     imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="optional extra film")
     told: list[tuple[int, int]] = []
     before = {path.name for path in (folder / "figures").iterdir()}
-    made = parts.build(folder, parts.chosen(["film"]), lambda *told_now: told.append(told_now))
+    made = sections.build(
+        folder, sections.chosen(["film"]), lambda *told_now: told.append(told_now)
+    )
     mp4, gif = made["film"]
     assert told == [(k + 1, turn_fixture.FRAMES) for k in range(turn_fixture.FRAMES)]
     count, _ = imageio_ffmpeg.count_frames_and_secs(str(mp4))
@@ -58,7 +60,7 @@ def test_film_is_whole_in_both_formats_and_tells_how_far_it_is(folder: Path) -> 
 
 
 def test_film_is_drawn_only_when_asked_for() -> None:
-    assert "film" not in [part.name for part in parts.chosen()]
+    assert "film" not in [part.name for part in sections.chosen()]
 
 
 def test_a_film_without_its_encoder_says_what_to_install(folder: Path, monkeypatch) -> None:

@@ -13,8 +13,8 @@ from unittest import mock
 import numpy as np
 import pytest
 
-from pipeline import cli
-from pipeline.results import load_run
+from camwright.pipeline import cli
+from camwright.pipeline.results.run_reader import load_run
 
 CASE = Path(__file__).resolve().parents[2] / "cases" / "papers" / "petrescu_c.toml"
 

@@ -9,12 +9,12 @@ import ezdxf
 import numpy as np
 import pytest
 
-from pipeline.cards.fill import filled
-from pipeline.case import Case
-from pipeline.case_file import load_case_file
-from pipeline.outer_ring import roller_in_words
-from pipeline.progress import Silent
-from pipeline.run import run_case
+from camwright.pipeline.base.progress import Silent
+from camwright.pipeline.case.cards.card_filling import filled
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.outer_ring import roller_in_words
+from camwright.pipeline.run import run_case
 
 GX120 = Path(__file__).resolve().parents[2] / "cases" / "gx120.toml"
 OPTIONS = {

@@ -17,17 +17,17 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
 import small_run
 
-from geometry.arrays import uniform_turn
-from geometry.errors import InputError
-from geometry.lift import Lift
-from pipeline import results, signoff
-from pipeline import trial as road
-from pipeline.case import Case
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.check_command import junit
-from pipeline.run_folder import RunFolder
-from pipeline.shop import write_shop
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.results.check_report import junit
+from camwright.pipeline.results.run_folder import RunFolder
+from camwright.pipeline.results.workshop_files import write_shop
 
 TECHNICIAN = "\U0001f469\u200d\U0001f527"  # two signs and a joiner
 HARM = "<script>alert(1)</script> \"quoted\" 'so' ../../etc/passwd ]]> <!-- & %s {0} $(id) "
@@ -67,7 +67,7 @@ def test_a_run_keeps_them_in_a_folder_of_any_name(tmp_path: Path) -> None:
         small_run.write_trial(folder, records())
         folder.finish(small_run.summary("fail") | {"binding": ["one_fail", "one_not_evaluated"]})
     assert list(out.parent.iterdir()) == [out]  # nothing beside it, nothing above it
-    found = results.load_run(out)
+    found = run_reader.load_run(out)
     assert [check["title"] for check in found.final.checks] == [LONG] * 3
     assert signoff.changes(out) == []
 

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from pipeline import results
-from pipeline.check_command import failing
-from pipeline.files import read_json
-from pipeline.signoff import changes
-from reports import parts
+from camwright.pipeline.base.files import read_json
+from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.check_report import failing
+from camwright.pipeline.results.signoff import changes
+from camwright.reports import sections
 
 RUNS = Path(__file__).parents[1] / "data" / "runs"
 FOLDERS = sorted(folder.name for folder in RUNS.iterdir() if folder.is_dir())
@@ -28,7 +28,7 @@ def run(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 
 def test_every_schema_has_a_run() -> None:
     found = {read_json(RUNS / name / "run.json")["schema"] for name in FOLDERS}
-    assert found == set(range(1, results.SCHEMA + 1))
+    assert found == set(range(1, run_reader.SCHEMA + 1))
 
 
 @pytest.mark.parametrize("name", FOLDERS)
@@ -37,10 +37,10 @@ def test_a_kept_run_is_small(name: str) -> None:
 
 
 def test_an_old_run_is_reported(run: Path) -> None:
-    made = parts.build(run)
+    made = sections.build(run)
     assert {path.stem for path in made["figures"]} >= ALWAYS
     text = made["page"][0].read_text(encoding="utf-8")
-    summary = results.read_summary(run)
+    summary = run_reader.read_summary(run)
     assert f"<title>{summary['verdict'].upper()}: " in text
     for record in json.loads((run / "trial_1" / "6_checks.json").read_text(encoding="utf-8")):
         assert str(record["title"]).replace("'", "&#39;") in text
@@ -48,8 +48,8 @@ def test_an_old_run_is_reported(run: Path) -> None:
 
 
 def test_an_old_run_is_judged(run: Path) -> None:
-    results.verify_run(run)
-    document = results.read_verdict(run)
+    run_reader.verify_run(run)
+    document = run_reader.read_verdict(run)
     assert document["verdict"] == "fail" and document["binding"] == ["pressure_angle"]
     assert failing(document["checks"], "must")
     if (run / "signoff.json").is_file():
@@ -59,5 +59,5 @@ def test_an_old_run_is_judged(run: Path) -> None:
 def test_a_changed_figure_of_an_old_run_is_found(run: Path) -> None:
     table = run / "trial_1" / "5_cycle.csv"
     table.write_text(table.read_text(encoding="utf-8").replace("1", "2", 1), encoding="utf-8")
-    with pytest.raises(results.ResultError, match="was changed since the run"):
-        results.verify_run(run)
+    with pytest.raises(run_reader.ResultError, match="was changed since the run"):
+        run_reader.verify_run(run)

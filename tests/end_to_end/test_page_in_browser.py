@@ -13,8 +13,8 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
-from reports import browser, interactive, page
-from reports.material import read_material
+from camwright.reports import browser, interactive, page
+from camwright.reports.report_data import read_material
 
 ALL_DRAWN = "[...document.querySelectorAll('.live')].every(e => e.dataset.drawn === 'done')"
 PLACE = """(() => { const r = document.querySelector('#pressure .live .nsewdrag')

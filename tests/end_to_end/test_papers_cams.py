@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.eccentric import Eccentric
-from pipeline import trial as road
-from pipeline.case_file import load_case_file
-from pipeline.checks import geometry as checks
-from pipeline.checks.trial import TrialEvidence
-from pipeline.contact.pair import CycleBodies, closed_form_history, pair_history
-from pipeline.contact_setup import contact_pair
-from pipeline.follower.roller import roller_motion
-from pipeline.mechanism.drive import (
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.eccentric import Eccentric
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.checks import cam_shape as checks
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.contact.contact_pair import CycleBodies, closed_form_history, pair_history
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.follower.roller_motion import roller_motion
+from camwright.pipeline.studies.papers.slider_crank_drive import (
     EccentricDrive,
     HoldingSpring,
     Masses,

@@ -16,10 +16,10 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
-from geometry.errors import ResultError
-from reports import browser, page, parts, printing
-from reports.drawings import drawn_groups
-from reports.material import Material, read_material
+from camwright.geometry.errors import ResultError
+from camwright.reports import browser, page, pdf, sections
+from camwright.reports.drawings import drawn_groups
+from camwright.reports.report_data import Material, read_material
 
 HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </script><!--"
 A4 = (595.0, 842.0)  # points
@@ -35,7 +35,7 @@ def material(tmp_path_factory: pytest.TempPathFactory) -> Material:
 def by_chromium(material: Material) -> bytes:
     if browser.executable() is None:
         pytest.skip("no Chromium here: Debian has it in the package chromium")
-    return printing.write(material)[0].read_bytes()
+    return pdf.write(material)[0].read_bytes()
 
 
 def by_weasyprint(material: Material) -> bytes:
@@ -44,7 +44,7 @@ def by_weasyprint(material: Material) -> bytes:
     except (ImportError, OSError) as error:
         pytest.skip(f"no WeasyPrint here, or no Pango for it: {error}")
     text = page.text(material, live=False).decode()
-    return printing.by_weasyprint(text, "Camwright · gx120")
+    return pdf.by_weasyprint(text, "Camwright · gx120")
 
 
 @pytest.fixture(scope="module", params=[by_chromium, by_weasyprint])
@@ -120,12 +120,12 @@ def test_without_an_engine_it_says_what_to_install(
         importlib.util, "find_spec", lambda name: None if name == "weasyprint" else real(name)
     )
     with pytest.raises(ResultError, match=r"install Chromium.*camwright\[pdf\]"):
-        parts.build(material.folder, parts.chosen(["pdf"]))
+        sections.build(material.folder, sections.chosen(["pdf"]))
 
 
 def test_without_chromium_weasyprint_prints(
     material: Material, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(browser, "executable", lambda: None)
-    monkeypatch.setattr(printing, "by_weasyprint", lambda text, footer: f"%PDF {footer}".encode())
-    assert printing.write(material)[0].read_bytes() == "%PDF Camwright · gx120".encode()
+    monkeypatch.setattr(pdf, "by_weasyprint", lambda text, footer: f"%PDF {footer}".encode())
+    assert pdf.write(material)[0].read_bytes() == "%PDF Camwright · gx120".encode()

@@ -12,9 +12,9 @@ from typing import Any
 
 import pytest
 
-from pipeline.cards.fill import filled
-from pipeline.case import Case
-from pipeline.case_template import template
+from camwright.pipeline.case.cards.card_filling import filled
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.template import template
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -12,15 +12,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.errors import InputError, ResultError
-from pipeline.case_file import case_of, load_case_file, parse_case
-from pipeline.case_text import to_toml
-from pipeline.preview import closed_form_checks
-from pipeline.progress import Silent
-from pipeline.redesign import search, study
-from pipeline.redesign.catalogue import Catalogue, catalogue_of
-from pipeline.redesign.variant import Choice
-from reports import redesign as page
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base.progress import Silent
+from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
+from camwright.pipeline.case.cards.substitution import Choice
+from camwright.pipeline.case.case_file import case_of, load_case_file, parse_case
+from camwright.pipeline.case.toml_text import to_toml
+from camwright.pipeline.preview import closed_form_checks
+from camwright.pipeline.studies.redesign import part_search, redesign_study
+from camwright.reports import redesign_page as page
 
 CASES = Path(__file__).parents[2] / "cases"
 ROLLER = "track_roller_35x16"
@@ -45,10 +45,10 @@ def small():
         {"bronze": whole.bushes["bronze"]},
     )
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(study, "catalogue_of", lambda folder: few)
-        patch.setattr(study, "pool", lambda workers: nullcontext(Inline()))
-        patch.setattr(study, "versions", lambda: {"source": "of the test"})
-        patch.setattr(search, "RUNGS", 2)
+        patch.setattr(redesign_study, "catalogue_of", lambda folder: few)
+        patch.setattr(redesign_study, "pool", lambda workers: nullcontext(Inline()))
+        patch.setattr(redesign_study, "versions", lambda: {"source": "of the test"})
+        patch.setattr(part_search, "RUNGS", 2)
         yield
 
 
@@ -66,7 +66,7 @@ def case_file(tmp_path_factory):
 @pytest.fixture(scope="module")
 def done(small, case_file, tmp_path_factory):
     out = tmp_path_factory.mktemp("redesign") / "out"
-    return out, study.redesign(case_file, out, "size", 2, Silent())
+    return out, redesign_study.redesign(case_file, out, "size", 2, Silent())
 
 
 def test_points_are_a_front_of_feasible_cases(done):
@@ -101,7 +101,7 @@ def test_what_is_solved_is_used_again(done, case_file):
     kept = {path: path.stat().st_mtime_ns for path in (out / "solved").iterdir()}
     lost = next(path for path in sorted(kept) if path.name.startswith("rough"))
     lost.unlink()  # as if the search had been killed before it
-    assert study.redesign(case_file, out, "size", 1, Silent()) == document
+    assert redesign_study.redesign(case_file, out, "size", 1, Silent()) == document
     assert lost.is_file()
     assert all(path.stat().st_mtime_ns == kept[path] for path in kept if path != lost)
 
@@ -119,15 +119,15 @@ def test_page_and_record(done):
 def test_leaves_other_folders_alone(small, case_file, tmp_path):
     (tmp_path / "letter.txt").write_text("mine")
     with pytest.raises(ResultError, match="something other"):
-        study.redesign(case_file, tmp_path, "size", 1, Silent())
+        redesign_study.redesign(case_file, tmp_path, "size", 1, Silent())
     assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
     (tmp_path / "letter.txt").rename(tmp_path / "redesign.json")
     (tmp_path / "redesign.json").write_text('{"case": "another"}')
     with pytest.raises(ResultError, match="another case"):
-        study.redesign(case_file, tmp_path, "size", 1, Silent())
+        redesign_study.redesign(case_file, tmp_path, "size", 1, Silent())
     (tmp_path / "redesign.json").write_text("[]")
     with pytest.raises(ResultError, match="another case"):
-        study.redesign(case_file, tmp_path, "size", 1, Silent())
+        redesign_study.redesign(case_file, tmp_path, "size", 1, Silent())
 
 
 def test_files_a_case_includes_go_with_its_points(tmp_path):
@@ -141,8 +141,8 @@ def test_files_a_case_includes_go_with_its_points(tmp_path):
     path = tmp_path / "own.toml"
     path.write_text(to_toml(case, {"torque.csv": "torque.csv"}), encoding="utf-8")
     parts, out = catalogue_of(None), tmp_path / "out"
-    asked = study.Search(load_case_file(path), tmp_path, parts, out, "v")
-    study._prepare(asked)
+    asked = redesign_study.Search(load_case_file(path), tmp_path, parts, out, "v")
+    redesign_study._prepare(asked)
     text = asked.text(Choice(ROLLER, "60 x 42", "bronze"))
     point = parse_case(text, out)
     assert point.included["inputs/torque.csv"] == (tmp_path / "torque.csv").read_bytes()
@@ -150,17 +150,17 @@ def test_files_a_case_includes_go_with_its_points(tmp_path):
 
 def test_refuses_what_cannot_be_redesigned(case_file, tmp_path):
     with pytest.raises(InputError, match="--against"):
-        study.redesign(case_file, tmp_path / "out", "price", 1, Silent())
+        redesign_study.redesign(case_file, tmp_path / "out", "price", 1, Silent())
     with pytest.raises(InputError, match="engine"):
         given = CASES / "papers" / "eccentric.toml"
-        study.redesign(given, tmp_path / "out", "size", 1, Silent())
+        redesign_study.redesign(given, tmp_path / "out", "size", 1, Silent())
     assert not (tmp_path / "out").exists()
 
 
 def test_an_error_is_one_line(tmp_path):
     case = str(CASES / "gx120.toml")
     done = subprocess.run(
-        [sys.executable, "-m", "pipeline.cli", "redesign", case, "--jobs", "0"],
+        [sys.executable, "-m", "camwright", "redesign", case, "--jobs", "0"],
         capture_output=True, text=True, check=False, cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 2
@@ -170,7 +170,7 @@ def test_an_error_is_one_line(tmp_path):
 
 @pytest.mark.slow
 def test_whole_catalogue_for_the_published_engine(tmp_path):
-    document = study.redesign(CASES / "gx120.toml", tmp_path / "out", "size", 2, Silent())
+    document = redesign_study.redesign(CASES / "gx120.toml", tmp_path / "out", "size", 2, Silent())
     assert document["given"]["failing"]
     points = document["points"]
     assert len(points) >= 3

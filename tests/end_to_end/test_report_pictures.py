@@ -17,8 +17,8 @@ from matplotlib.image import imread
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
-from geometry.errors import ResultError
-from reports import pictures, scene
+from camwright.geometry.errors import ResultError
+from camwright.reports import field_picture, picture_list
 
 CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
@@ -42,14 +42,14 @@ def contact(folder):
     g = report_fixture.shape(t)
     cycle = report_fixture.cycle_columns(t, g)
     worst = int(np.argmax(cycle["p0_fe_MPa"]))
-    field = scene.read_field(folder / pictures.FIELD)
+    field = field_picture.read_field(folder / picture_list.FIELD)
     point, normal = g["contour"][:, worst] * 1e3, g["normal"][:, worst]
     return field, point, normal, float(cycle["half_width_hertz_mm"][worst])
 
 
 def test_the_contact_is_found_from_the_field_alone(contact):
     field, point, normal, half_width = contact
-    found, direction = scene.find_contact(field)
+    found, direction = field_picture.find_contact(field)
     np.testing.assert_allclose(found, point, atol=0.2 * half_width)
     np.testing.assert_allclose(direction, normal, atol=0.01)
 
@@ -57,7 +57,7 @@ def test_the_contact_is_found_from_the_field_alone(contact):
 def test_what_the_file_says_of_its_contact_is_believed(contact):
     field = contact[0]
     notes = {"contact_x_mm": 1.0, "contact_y_mm": 2.0, "normal_x": 0.0, "normal_y": 3.0}
-    point, normal = scene.find_contact(replace(field, notes=notes))
+    point, normal = field_picture.find_contact(replace(field, notes=notes))
     assert point.tolist() == [1.0, 2.0]
     assert normal.tolist() == [0.0, 1.0]
 
@@ -65,15 +65,15 @@ def test_what_the_file_says_of_its_contact_is_believed(contact):
 def test_numbers_of_the_whole_file_are_read(folder, tmp_path):
     import pyvista
 
-    grid = pyvista.read(folder / pictures.FIELD)
+    grid = pyvista.read(folder / picture_list.FIELD)
     grid.field_data["half_width_mm"] = [0.125]
     grid.save(tmp_path / "noted.vtu")
-    assert scene.read_field(tmp_path / "noted.vtu").notes["half_width_mm"] == 0.125
+    assert field_picture.read_field(tmp_path / "noted.vtu").notes["half_width_mm"] == 0.125
 
 
 def test_the_contact_view_puts_the_roller_above(contact):
     field, point, normal, half_width = contact
-    view = scene.contact_view(field, half_width, point, normal)
+    view = field_picture.contact_view(field, half_width, point, normal)
     placed = view.placed(field.points)
     assert placed[1, field.body == 1].mean() > 0
     assert placed[1, field.body == 0].mean() < 0
@@ -85,14 +85,14 @@ def test_the_contact_view_puts_the_roller_above(contact):
 
 def test_the_rendered_and_the_flat_picture_agree(folder, contact):
     field, point, normal, half_width = contact
-    view = scene.contact_view(field, half_width, point, normal)
-    body = scene.body_view(field)
-    rendered = scene.render(folder / pictures.FIELD, [view, body])
+    view = field_picture.contact_view(field, half_width, point, normal)
+    body = field_picture.body_view(field)
+    rendered = field_picture.render(folder / picture_list.FIELD, [view, body])
     if rendered[0].note:
         pytest.skip("no OpenGL device, the flat picture is all there is")
     for raster in rendered:
         assert raster.pixels.shape == (raster.view.size[1], raster.view.size[0], 3)
-    flat = scene.flat(field, view).pixels.astype(float)
+    flat = field_picture.flat(field, view).pixels.astype(float)
     pixels = rendered[0].pixels.astype(float)
     shares = [0.1, 0.3, 0.42, 0.6, 0.85]
 
@@ -108,15 +108,15 @@ def test_the_rendered_and_the_flat_picture_agree(folder, contact):
 
 
 def test_without_opengl_the_page_says_so_and_still_shows_the_field(folder, contact, monkeypatch):
-    monkeypatch.setattr(scene, "WINDOWS", ("vtkNoSuchRenderWindow",))
+    monkeypatch.setattr(field_picture, "WINDOWS", ("vtkNoSuchRenderWindow",))
     real = subprocess.run
     monkeypatch.setattr(
-        scene.subprocess, "run",
+        field_picture.subprocess, "run",
         lambda command, **more: real([sys.executable, "-c", "raise SystemExit(139)"], **more),
     )  # fmt: skip
     field, point, normal, half_width = contact
-    view = scene.contact_view(field, half_width, point, normal)
-    raster = scene.render(folder / pictures.FIELD, [view])[0]
+    view = field_picture.contact_view(field, half_width, point, normal)
+    raster = field_picture.render(folder / picture_list.FIELD, [view])[0]
     assert "No OpenGL device" in raster.note
     middle = raster.pixels[raster.pixels.shape[0] // 2 + 80, raster.pixels.shape[1] // 2]
     assert np.ptp(middle.astype(float)) > 60  # a colour, not paper
@@ -124,7 +124,7 @@ def test_without_opengl_the_page_says_so_and_still_shows_the_field(folder, conta
 
 def test_pictures_are_whole_png_files(folder, contact):
     _, point, normal, half_width = contact
-    png = scene.contact_picture(folder / pictures.FIELD, half_width, point, normal)
+    png = field_picture.contact_picture(folder / picture_list.FIELD, half_width, point, normal)
     assert png.startswith(b"\x89PNG")
     image = imread(io.BytesIO(png), format="png")
     assert min(image.shape[:2]) > 500
@@ -133,7 +133,7 @@ def test_pictures_are_whole_png_files(folder, contact):
 
 def test_a_file_without_field_is_refused(tmp_path):
     with pytest.raises(ResultError, match="no such file"):
-        scene.read_field(tmp_path / "none.vtu")
+        field_picture.read_field(tmp_path / "none.vtu")
 
 
 def test_the_page_carries_both_pictures_within_its_size(built):

@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.errors import ResultError
-from pipeline import results
-from pipeline import trial as road
-from pipeline.case import Case
-from pipeline.case_file import load_case_file
-from pipeline.contact.pair import CycleBodies, pair_history
-from pipeline.contact_setup import contact_pair
-from pipeline.progress import Silent
-from pipeline.run import run_case
-from pipeline.smoothing.smoothers import Smoother
-from reports.parts import build
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import ResultError
+from camwright.pipeline import solver as road
+from camwright.pipeline.base.progress import Silent
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.results import run_reader
+from camwright.pipeline.run import run_case
+from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.reports.sections import build
 
 ROOT = Path(__file__).resolve().parents[2]
 POSITIONS = 180  # two pieces of the contact per trial
@@ -92,7 +92,7 @@ def test_run_folder_holds_what_was_promised(
 ) -> None:
     case, out, summary = finished
     assert summary == json.loads((out / "run.json").read_text())
-    assert set(results.HEADLINE) <= set(summary["headline"])
+    assert set(run_reader.HEADLINE) <= set(summary["headline"])
     assert all(value is not None for value in summary["headline"].values())
     stages = {"torque", "lift", "contour", "mesh", "cycle", "checks", "report", "total"}
     assert stages <= set(summary["timings_s"])
@@ -103,14 +103,14 @@ def test_run_folder_holds_what_was_promised(
                  "trial_1/5_bushes.npz", "scene.html"):  # fmt: skip
         assert (out / name).stat().st_size > 0, name
     assert not [entry.name for entry in out.iterdir() if entry.name.startswith(".")]
-    found = results.load_run(out)
+    found = run_reader.load_run(out)
     cycle = found.final.cycle
     assert len(cycle) == POSITIONS
-    optional = {column.header for column in results.CYCLE if column.optional}
+    optional = {column.header for column in run_reader.CYCLE if column.optional}
     assert {"torque_after_Nm", "shear_range_MPa", "bore_stress_MPa"} <= optional & set(
         cycle.columns
     )
-    assert [column.header for column in results.CYCLE if not column.optional] == [
+    assert [column.header for column in run_reader.CYCLE if not column.optional] == [
         name for name in cycle.columns if name not in optional
     ]
     np.testing.assert_array_equal(cycle["load_case"], "idle")
@@ -127,7 +127,7 @@ def test_published_design_fails_where_it_must(
     finished: tuple[Case, Path, dict[str, Any]],
 ) -> None:
     _, out, summary = finished
-    found = results.load_run(out)
+    found = run_reader.load_run(out)
     first = {check["id"]: check for check in found.trials[0].checks}
     for name in ("roller_static", "pressure_angle", "bush_pv_A", "shakedown"):
         assert first[name]["status"] == "fail", name
@@ -144,7 +144,7 @@ def test_published_design_fails_where_it_must(
 
 def test_columns_agree_with_one_another(finished: tuple[Case, Path, dict[str, Any]]) -> None:
     case, out, summary = finished
-    cycle = results.load_run(out).final.cycle
+    cycle = run_reader.load_run(out).final.cycle
     # Hertz from the columns themselves: E* of steel on steel, 1/R = 1/r_r + 1/r_c.
     modulus = 210e3 / (2 * (1 - 0.3**2))
     radius = 1 / (1 / 8.0 + 1 / cycle["contour_radius_of_curvature_mm"])
@@ -179,10 +179,10 @@ def test_pressure_of_every_position_carries_the_load(
     finished: tuple[Case, Path, dict[str, Any]],
 ) -> None:
     _, out, _ = finished
-    cycle = results.load_run(out).final.cycle
+    cycle = run_reader.load_run(out).final.cycle
     with np.load(out / "trial_1" / "5_pressure.npz") as stored:
         assert stored["pressure_MPa"].shape == stored["xi_mm"].shape
-    with np.load(results.load_run(out).final.path / "5_pressure.npz") as stored:
+    with np.load(run_reader.load_run(out).final.path / "5_pressure.npz") as stored:
         carried = np.trapezoid(stored["pressure_MPa"], stored["xi_mm"], axis=1)
         assert (stored["pressure_MPa"] >= 0).all()
         # The end knots carry nothing, so straight lines between the knots hold it all.
@@ -194,7 +194,7 @@ def test_map_of_the_turn_agrees_with_the_angles(
 ) -> None:
     """Worst stress of the swept load within 1 % of that at the worst angle, and where it is."""
     _, out, _ = finished
-    trial = results.load_run(out).final
+    trial = run_reader.load_run(out).final
     worst = json.loads((trial.path / "trial.json").read_text())["rolling"]
     (name,) = worst
     with np.load(trial.path / "5_envelope.npz") as stored:
@@ -240,7 +240,7 @@ def test_undercut_is_a_verdict(tmp_path: Path) -> None:
     assert "undercut" in summary["binding"]
     assert "contact_pressure" in summary["binding"], "an unknown contact must not pass"
     assert summary["headline"]["p0_max_MPa"] is None
-    found = results.load_run(tmp_path / "out")
+    found = run_reader.load_run(tmp_path / "out")
     assert np.isnan(found.final.cycle["p0_fe_MPa"]).all()
     assert (tmp_path / "out" / "8_report.html").is_file()
 
@@ -265,6 +265,6 @@ def test_road_may_begin_at_the_lift(tmp_path: Path) -> None:
     summary = run_case(case, tmp_path / "out", jobs=1, progress=Silent(), present=build)
     assert not (tmp_path / "out" / "1_torque.csv").exists()
     assert summary["headline"]["torque_std_before_Nm"] is None
-    cycle = results.load_run(tmp_path / "out").final.cycle
+    cycle = run_reader.load_run(tmp_path / "out").final.cycle
     assert "torque_before_Nm" not in cycle
     np.testing.assert_allclose(cycle["pitch_radius_mm"], 1e3 * radius, rtol=1e-6)

@@ -14,10 +14,10 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 import turn_fixture
 
-from reports import browser, parts, scene_html
-from reports.material import read_material
-from reports.solids import Solid, box, joined, ring, tube
-from reports.turn_view import read_turn_view
+from camwright.reports import browser, scene_page, sections
+from camwright.reports.report_data import read_material
+from camwright.reports.scene_solids import Solid, box, joined, ring, tube
+from camwright.reports.scene_turn import read_turn_view
 
 POSITIONS = 36
 BYTES_MAX = 10 << 20
@@ -30,7 +30,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("scene") / "run"
     report_fixture.write_run(folder, POSITIONS, title=HOSTILE, field=False)
     turn_fixture.add_turn(folder, POSITIONS)
-    (made,) = parts.build(folder, parts.chosen(["scene"]))["scene"]
+    (made,) = sections.build(folder, sections.chosen(["scene"]))["scene"]
     return made
 
 
@@ -51,13 +51,13 @@ def test_scene_is_one_small_file_that_reaches_for_nothing(page: Path) -> None:
 
 
 def test_a_report_has_a_scene_unless_told_otherwise() -> None:
-    assert "scene" in [part.name for part in parts.chosen()]
+    assert "scene" in [part.name for part in sections.chosen()]
 
 
 def test_a_run_without_its_turn_has_no_scene(tmp_path: Path) -> None:
     folder = report_fixture.write_run(tmp_path / "old", POSITIONS, field=False)
-    assert parts.build(folder, parts.chosen(["scene"]))["scene"] == []
-    assert not (folder / scene_html.FILE).exists()
+    assert sections.build(folder, sections.chosen(["scene"]))["scene"] == []
+    assert not (folder / scene_page.FILE).exists()
 
 
 def test_slider_and_keys_turn_the_cam(page: Path, tab: browser.Tab) -> None:

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.case_file import load_case_file
-from pipeline.progress import Silent
-from pipeline.results import load_run
-from pipeline.run import run_case
+from camwright.pipeline.base.progress import Silent
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.results.run_reader import load_run
+from camwright.pipeline.run import run_case
 
 CASES = Path(__file__).parents[2] / "cases"
 

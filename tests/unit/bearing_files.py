@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from pipeline.files import read_toml
-from pipeline.follower.bearing_cards import CARDS, BearingCard, read_card
+from camwright.pipeline.base.files import read_toml
+from camwright.pipeline.case.cards.bearing_cards import CARDS, BearingCard, read_card
 
 
 def read_cards(path: Path = CARDS) -> dict[str, BearingCard]:

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import made_trial as made
 from trial_variants import faced, hollow, soft, with_limits
 
-from pipeline.checks.check import Check
-from pipeline.checks.everything import ALL, PARTS, PROOF, SIGNED
-from pipeline.checks.trial import TrialEvidence
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.checks.registry import ALL, PARTS, PROOF, SIGNED
 
 Evidence = Callable[[], TrialEvidence]
 FUNCTIONS = (*ALL, *PROOF, *SIGNED, *PARTS)

@@ -16,28 +16,28 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.flat_face import FacePath, FlatFaceContour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from meshes.quality import Quality
-from pipeline.ahead import foreseen_cycle
-from pipeline.case import Case
-from pipeline.case_file import case_of, load_case_file
-from pipeline.checks.trial import TrialEvidence
-from pipeline.contact.bore import BoreStress
-from pipeline.contact.convergence import Convergence
-from pipeline.contact.envelope import Envelope
-from pipeline.contact.history import CertificatePoint
-from pipeline.cycle import Cycle
-from pipeline.design_fields import LoadCase
-from pipeline.film_history import FilmHistory
-from pipeline.follower.friction import GuideHeat
-from pipeline.parts import PartsHistory
-from pipeline.rolling import RollingHistory
-from pipeline.section import Section
-from pipeline.turn import turn
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.meshes.mesh_quality import Quality
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import case_of, load_case_file
+from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.case.section import Section
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.contact.bore_stress import BoreStress
+from camwright.pipeline.contact.contact_history import CertificatePoint
+from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
+from camwright.pipeline.contact.rolling_envelope import Envelope
+from camwright.pipeline.cycle.ahead import foreseen_cycle
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.oil_film_history import FilmHistory
+from camwright.pipeline.cycle.part_loads import PartsHistory
+from camwright.pipeline.cycle.rolling_history import RollingHistory
+from camwright.pipeline.cycle.turn import turn
+from camwright.pipeline.follower.guide_friction import GuideHeat
 
 POSITIONS = 72
 THETA = uniform_turn(POSITIONS)

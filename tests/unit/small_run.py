@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from pipeline import results
-from pipeline.case import Case
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.run_folder import RunFolder
-from pipeline.tables import Column
+from camwright.pipeline.base.tables import Column
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.run_folder import RunFolder
 
 ROWS = 5
 
@@ -58,14 +58,14 @@ def summary(verdict: str = "pass", trials: int = 1) -> dict[str, Any]:
         "trials": trials,
         "verdict": verdict,
         "binding": [] if verdict == "pass" else ["pressure_angle"],
-        "headline": dict.fromkeys(results.HEADLINE, 1.0),
+        "headline": dict.fromkeys(run_reader.HEADLINE, 1.0),
     }
 
 
 def write_trial(folder: RunFolder, checks: list[Mapping[str, Any]], number: int = 1) -> None:
-    folder.write_lift(number, values(results.LIFT))
-    folder.write_contour(number, values(results.CONTOUR))
-    folder.write_cycle(number, values(results.CYCLE))
+    folder.write_lift(number, values(run_reader.LIFT))
+    folder.write_contour(number, values(run_reader.CONTOUR))
+    folder.write_cycle(number, values(run_reader.CYCLE))
     folder.write_checks(number, checks)
     folder.write_trial(number, {"smoother": {"kind": "none"}, "widths": np.arange(2.0)})
 

@@ -5,8 +5,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from geometry.errors import ContactError
-from pipeline.contact import active_set
+from camwright.geometry.errors import ContactError
+from camwright.pipeline.contact.elasticity import active_set
 
 
 def problem(seed, size=6):

@@ -8,23 +8,23 @@ import made_trial as made
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.errors import GeometryError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from meshes.body import cam_mesh
-from meshes.sizing import Sizing
-from pipeline.balance import WALL, balance, drilled_hole
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.checks.parts import cam_unbalance
-from pipeline.checks.trial import TrialEvidence
-from pipeline.contact.pair import CycleBodies, pair_history
-from pipeline.contact.pair_certificate import solve_pair
-from pipeline.contact_setup import contact_pair
-from pipeline.follower.cam_body import CounterHole, greatest_hole, unbalance
-from pipeline.shop import outline_of, write_shop
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import GeometryError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.meshes.body_mesh import cam_mesh
+from camwright.meshes.element_size import Sizing
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.checks.part_strength import cam_unbalance
+from camwright.pipeline.contact.certificate import solve_pair
+from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
+from camwright.pipeline.cycle.cam_balance import WALL, balance, drilled_hole
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.follower.camshaft_loads import CounterHole, greatest_hole, unbalance
+from camwright.pipeline.results.workshop_files import outline_of, write_shop
 
 KEY = '\n[cam.keyway]\nwidth = "6 mm"\ndepth = "2.8 mm"\nangle = "50 deg"\n'
 ASKED = "\n[cam.counter_hole]\n"

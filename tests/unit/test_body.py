@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector
 
-from geometry.contour import Contour
-from geometry.errors import GeometryError, InputError, MeshError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from meshes.body import BodyMesh, block_mesh, cam_mesh, half_disc_mesh, roller_mesh
-from meshes.cam_outline import Keyway
-from meshes.quality import quality
-from meshes.sizing import Sizing
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import GeometryError, InputError, MeshError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.meshes.body_mesh import BodyMesh, block_mesh, cam_mesh, half_disc_mesh, roller_mesh
+from camwright.meshes.cam_outline import Keyway
+from camwright.meshes.element_size import Sizing
+from camwright.meshes.mesh_quality import quality
 
 HALF_WIDTH = 1e-4
 BORE = 0.01
@@ -283,7 +283,8 @@ def test_fingerprint_covers_points_and_triangles():
 
 def test_another_process_gives_the_same_mesh(roller):
     script = (
-        "from meshes.body import roller_mesh; from meshes.sizing import Sizing;"
+        "from camwright.meshes.body_mesh import roller_mesh;"
+        "from camwright.meshes.element_size import Sizing;"
         f"print(roller_mesh(0.008, 0.003, 0.7, Sizing.from_half_width({HALF_WIDTH}, 4e-3)).sha256)"
     )
     done = subprocess.run(

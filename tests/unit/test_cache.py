@@ -6,15 +6,15 @@ import os
 import numpy as np
 import pytest
 
-from pipeline import cache
+from camwright.pipeline.base import disk_cache
 
-MODULES = ("pipeline.cache",)
+MODULES = (disk_cache,)
 
 
 @pytest.fixture
 def place(tmp_path, monkeypatch):
-    monkeypatch.delenv(cache.OFF, raising=False)
-    monkeypatch.setenv(cache.FOLDER, str(tmp_path / "kept"))
+    monkeypatch.delenv(disk_cache.OFF, raising=False)
+    monkeypatch.setenv(disk_cache.FOLDER, str(tmp_path / "kept"))
     return tmp_path / "kept"
 
 
@@ -28,7 +28,7 @@ class Maker:
 
 
 def asked(maker, what=(0.3, 16)):
-    return cache.kept("thing", what, maker, MODULES)
+    return disk_cache.kept("thing", what, maker, MODULES)
 
 
 def test_computes_once_and_reads_back_bit_for_bit(place):
@@ -42,8 +42,8 @@ def test_computes_once_and_reads_back_bit_for_bit(place):
 
 @pytest.mark.parametrize("off", ["", "1"])
 def test_arrays_lie_in_memory_as_they_are_read_back(place, monkeypatch, off):
-    monkeypatch.setenv(cache.OFF, off)
-    made = cache.kept("thing", 1, lambda: {"a": np.ones((3, 4)).T, "n": np.array(7)}, MODULES)
+    monkeypatch.setenv(disk_cache.OFF, off)
+    made = disk_cache.kept("thing", 1, lambda: {"a": np.ones((3, 4)).T, "n": np.array(7)}, MODULES)
     assert made["a"].flags.c_contiguous
     assert made["n"].shape == ()
 
@@ -81,7 +81,7 @@ def test_a_broken_entry_is_computed_again(place, spoil):
 def test_new_versions_leave_old_entries_behind(place, monkeypatch):
     maker = Maker()
     asked(maker)
-    monkeypatch.setattr(cache, "_versions", lambda: ("camwright 99",))
+    monkeypatch.setattr(disk_cache, "_versions", lambda: ("camwright 99",))
     asked(maker)
     assert maker.calls == 2
 
@@ -89,7 +89,7 @@ def test_new_versions_leave_old_entries_behind(place, monkeypatch):
 def test_a_changed_recipe_leaves_old_entries_behind(place, monkeypatch):
     maker = Maker()
     asked(maker)
-    monkeypatch.setattr(cache, "_source", lambda name: b"another text")
+    monkeypatch.setattr(disk_cache, "_source", lambda module: b"another text")
     asked(maker)
     assert maker.calls == 2
 
@@ -97,7 +97,7 @@ def test_a_changed_recipe_leaves_old_entries_behind(place, monkeypatch):
 def test_switched_off_it_neither_reads_nor_writes(place, monkeypatch):
     maker = Maker()
     asked(maker)
-    monkeypatch.setenv(cache.OFF, "1")
+    monkeypatch.setenv(disk_cache.OFF, "1")
     asked(maker), asked(maker, "other")
     assert maker.calls == 3
     assert len(list(place.iterdir())) == 1
@@ -111,7 +111,7 @@ def test_what_was_not_used_for_longest_makes_room(place, monkeypatch):
     for age, path in zip((30, 20, 10), entries, strict=True):
         os.utime(path, (1e9 - age, 1e9 - age))
     asked(maker, 0)  # used again: now the newest
-    monkeypatch.setattr(cache, "LARGEST", 2 * entries[0].stat().st_size + 10)
+    monkeypatch.setattr(disk_cache, "LARGEST", 2 * entries[0].stat().st_size + 10)
     asked(maker, 3)
     assert maker.calls == 4
     left = set(place.iterdir())
@@ -128,17 +128,17 @@ def test_a_folder_that_cannot_be_made_is_no_error(place):
 
 
 def test_the_users_cache_folder_is_the_default(monkeypatch, tmp_path):
-    monkeypatch.delenv(cache.OFF, raising=False)
-    monkeypatch.delenv(cache.FOLDER, raising=False)
+    monkeypatch.delenv(disk_cache.OFF, raising=False)
+    monkeypatch.delenv(disk_cache.FOLDER, raising=False)
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert cache.folder() == tmp_path / "camwright"
+    assert disk_cache.folder() == tmp_path / "camwright"
 
 
 def _write_often(folder):
-    os.environ[cache.FOLDER] = folder
+    os.environ[disk_cache.FOLDER] = folder
     for turn in range(20):
-        found = cache.kept("race", turn % 3, Maker(float(turn % 3)), MODULES)
+        found = disk_cache.kept("race", turn % 3, Maker(float(turn % 3)), MODULES)
         if not (found["a"] == turn % 3).all():
             raise ValueError("a torn entry was read")
 

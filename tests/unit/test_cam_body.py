@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.errors import GeometryError, InputError
-from geometry.lift import Lift
-from geometry.motion import Motion, Segment
-from geometry.pitch_curve import PitchCurve
-from pipeline.follower.cam_body import (
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.case.parts_section import Keyway
+from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
     counter_hole,
     key_stress,
@@ -18,7 +19,6 @@ from pipeline.follower.cam_body import (
     torque_reversals,
     unbalance,
 )
-from pipeline.part_fields import Keyway
 
 THETA = uniform_turn(720)
 ECCENTRICITY, DISC, ROLLER = 2e-3, 40e-3, 8e-3

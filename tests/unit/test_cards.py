@@ -3,15 +3,15 @@
 import made_trial as made
 import pytest
 
-from geometry.errors import InputError
-from pipeline.cards.fill import known_cards, viscosity
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.checks.contact import contact_pressure
-from pipeline.checks.trial import TrialEvidence
-from pipeline.design_fields import Limits
-from pipeline.part_fields import Material, Oil
-from pipeline.preview import closed_form_checks
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.cards.card_filling import known_cards, viscosity
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.parts_section import Material, Oil
+from camwright.pipeline.case.requirements_section import Limits
+from camwright.pipeline.case.template import template
+from camwright.pipeline.checks.contact_strength import contact_pressure
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.preview import closed_form_checks
 
 
 def with_card(table, *lines):
@@ -35,8 +35,8 @@ def test_what_the_issue_asks_for_is_shipped():
 
 def test_endurance_lines_give_the_endurance_pressure_at_1e8():
     """A and B against the pressures beside them: 2 % as K is rounded, 5 % for the softer iron."""
-    from pipeline.checks.contact import pressure_at_life
-    from pipeline.contact.hertz import contact_modulus
+    from camwright.pipeline.checks.contact_strength import pressure_at_life
+    from camwright.pipeline.contact.hertz import contact_modulus
 
     for name, card in known_cards(None)["materials"].items():
         if "endurance_slope" in card:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from geometry.errors import InputError
-from pipeline.case import Case
-from pipeline.case_file import CASE_BYTES, load_case_file, parse_case
-from pipeline.case_template import template
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import CASE_BYTES, load_case_file, parse_case
+from camwright.pipeline.case.template import template
 
 ROOT = Path(__file__).resolve().parents[2]
 GX120 = (ROOT / "cases" / "gx120.toml").read_text(encoding="utf-8")

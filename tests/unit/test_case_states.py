@@ -6,17 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline import trial as road
-from pipeline.case_file import parse_case
-from pipeline.checks import forces, guides, roller
-from pipeline.checks.forces import contact_force_margin
-from pipeline.checks.trial import TrialEvidence
-from pipeline.corners import Corner, applied
-from pipeline.cycle import closed_form_cycle, finished
-from pipeline.preview import closed_form_checks
-from pipeline.smoothing.smoothers import Smoother
-from pipeline.turn import turn
+from camwright.geometry.errors import InputError
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.checks import guide_bushes, jump_and_jamming, roller_bearing
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.checks.jump_and_jamming import contact_force_margin
+from camwright.pipeline.checks.tolerance_corners import Corner, applied
+from camwright.pipeline.cycle.cycle import closed_form_cycle, finished
+from camwright.pipeline.cycle.turn import turn
+from camwright.pipeline.preview import closed_form_checks
+from camwright.pipeline.smoothing.smoothers import Smoother
 
 GX120_CASE = Path(__file__).resolve().parents[2] / "cases" / "gx120.toml"
 GX120 = GX120_CASE.read_text(encoding="utf-8")
@@ -138,11 +138,11 @@ def test_at_rest_alone_no_speed_dependent_check_is_missing(loads):
     given = turn(still, contour, None, "start", 72)
     cycles = (finished(still, contour, given, road.unknown_contact(given)),)
     trial = TrialEvidence(case=still, contour=contour, cycles=cycles)
-    assert forces.jump(trial).demand == pytest.approx(0.0, abs=1e-10)
-    assert guides.bush_pv_a(trial).demand == pytest.approx(0.0, abs=1e-3)
-    assert roller.roller_speed(trial).demand == pytest.approx(0.0, abs=1e-1)
-    assert roller.roller_life(trial).demand > 1e3
-    assert forces.jump_speed(trial).demand == pytest.approx(3318.0, rel=0.01)
+    assert jump_and_jamming.jump(trial).demand == pytest.approx(0.0, abs=1e-10)
+    assert guide_bushes.bush_pv_a(trial).demand == pytest.approx(0.0, abs=1e-3)
+    assert roller_bearing.roller_speed(trial).demand == pytest.approx(0.0, abs=1e-1)
+    assert roller_bearing.roller_life(trial).demand > 1e3
+    assert jump_and_jamming.jump_speed(trial).demand == pytest.approx(3318.0, rel=0.01)
 
 
 @pytest.mark.parametrize(

@@ -2,11 +2,11 @@
 
 import pytest
 
-from geometry.errors import InputError
-from pipeline.case_file import load_case_file, parse_case
-from pipeline.case_template import template
-from pipeline.follower.spring import case_spring
-from pipeline.follower.spring_catalogue import CATALOGUE, SpringDemand, read_catalogue
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.cards.spring_catalogue import CATALOGUE, SpringDemand, read_catalogue
+from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.follower.spring import case_spring
 
 WIRE = """
 [wires.steel]

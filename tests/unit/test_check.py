@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from pipeline.checks.check import Check
-from pipeline.checks.verdict import binding, in_order, verdict
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.verdict import binding, in_order, verdict
 
 
 def at_most(demand, limit=2.0, **more) -> Check:

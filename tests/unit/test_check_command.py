@@ -12,12 +12,19 @@ from pathlib import Path
 import pytest
 from small_run import check, small_case, summary, write_run, write_trial
 
-from geometry.errors import InputError
-from pipeline import cli
-from pipeline.baseline import changes, lines
-from pipeline.case_template import template
-from pipeline.check_command import binding_lines, failing, junit, remarks, rows, selected
-from pipeline.run_folder import RunFolder
+from camwright.geometry.errors import InputError
+from camwright.pipeline import cli
+from camwright.pipeline.case.template import template
+from camwright.pipeline.results.baseline_comparison import changes, lines
+from camwright.pipeline.results.check_report import (
+    binding_lines,
+    failing,
+    junit,
+    remarks,
+    rows,
+    selected,
+)
+from camwright.pipeline.results.run_folder import RunFolder
 
 RECORDS = (
     check("pass", id="a_one"),

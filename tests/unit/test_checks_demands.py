@@ -22,25 +22,25 @@ from trial_variants import (
     with_rolling,
 )
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.checks import (
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.case.requirements_section import Waiver
+from camwright.pipeline.checks import (
     all_checks,
     binding,
+    cam_shape,
     design_checks,
-    forces,
-    function,
-    geometry,
-    guides,
-    roller,
+    jump_and_jamming,
+    roller_bearing,
+    torque_balance,
     verdict,
 )
-from pipeline.checks import contact as contact_checks
-from pipeline.checks import evidence as evidence_checks
-from pipeline.checks.trial import greatest, least
-from pipeline.design_fields import Waiver
+from camwright.pipeline.checks import contact_strength as contact_checks
+from camwright.pipeline.checks import guide_bushes as guides
+from camwright.pipeline.checks import solution_verification as evidence_checks
+from camwright.pipeline.checks.extremes import greatest, least
 
 ROUND_OFF = 1e-9
 
@@ -130,9 +130,9 @@ def test_the_worst_load_case_and_angle_are_named():
     check = contact_checks.contact_pressure(trial)
     assert (check.load_case, check.cam_angle_deg) == ("rated", pytest.approx(90.0))
     assert check.demand == pytest.approx(990.0)
-    lightest = forces.contact_force_margin(trial)
+    lightest = jump_and_jamming.contact_force_margin(trial)
     assert (lightest.load_case, lightest.cam_angle_deg) == ("start", pytest.approx(270.0))
-    assert function.torque_reduction(trial).load_case == "rated"
+    assert torque_balance.torque_reduction(trial).load_case == "rated"
 
 
 def test_equal_load_cases_name_the_first():
@@ -164,21 +164,21 @@ def test_pressure_angle_of_an_eccentric_disc():
     shape = Contour(PitchCurve(lift, base), made.ROLLER)
     trial = made.evidence(contour=shape)
     # 360 quintic pieces follow the disc to 1e-9 of the lift; its derivatives less well.
-    angle = geometry.pressure_angle(trial)
+    angle = cam_shape.pressure_angle(trial)
     assert angle.demand == pytest.approx(np.rad2deg(np.arcsin(eccentricity / radius)), rel=1e-6)
-    assert geometry.curvature_ratio(trial).demand == pytest.approx(radius / made.ROLLER, rel=1e-4)
-    assert geometry.undercut(trial).demand == pytest.approx(1 - made.ROLLER / radius, rel=1e-4)
-    assert geometry.spring_travel(trial).demand == pytest.approx(2e3 * eccentricity, rel=1e-6)
-    assert geometry.concave_radius(trial) is None
+    assert cam_shape.curvature_ratio(trial).demand == pytest.approx(radius / made.ROLLER, rel=1e-4)
+    assert cam_shape.undercut(trial).demand == pytest.approx(1 - made.ROLLER / radius, rel=1e-4)
+    assert cam_shape.spring_travel(trial).demand == pytest.approx(2e3 * eccentricity, rel=1e-6)
+    assert cam_shape.concave_radius(trial) is None
 
 
 def test_limit_of_thirty_degrees_reads_thirty():
-    limit = geometry.pressure_angle(with_limits(pressure_angle=np.deg2rad(30)))
+    limit = cam_shape.pressure_angle(with_limits(pressure_angle=np.deg2rad(30)))
     assert limit.limit == 30.0
 
 
 def test_undercut_cam_is_a_verdict():
-    results = (f(made.evidence(contour=made.undercut())) for f in geometry.CHECKS)
+    results = (f(made.evidence(contour=made.undercut())) for f in cam_shape.CHECKS)
     checks = {c.id: c for c in results if c is not None}
     assert checks["undercut"].demand < 0
     assert checks["undercut"].utilisation == np.inf
@@ -189,7 +189,7 @@ def test_undercut_cam_is_a_verdict():
 
 def test_second_contact_counts_depth_only():
     trials = (with_gap(-2e-6, 1.0), with_gap(np.inf), with_gap(np.nan))
-    cut, clear, unknown = (geometry.second_contact(trial) for trial in trials)
+    cut, clear, unknown = (cam_shape.second_contact(trial) for trial in trials)
     assert [check.status for check in (cut, clear, unknown)] == ["fail", "pass", "not_evaluated"]
     assert cut.demand == pytest.approx(2e-3)
     assert cut.cam_angle_deg == pytest.approx(np.rad2deg(1.0))
@@ -197,9 +197,9 @@ def test_second_contact_counts_depth_only():
 
 
 def test_the_wall_is_thinner_by_the_keyway():
-    plain = geometry.minimum_wall(with_part("cam", keyway=None))
+    plain = cam_shape.minimum_wall(with_part("cam", keyway=None))
     assert plain.demand == pytest.approx((made.BASE - made.ROLLER) / 0.0085)
-    keyed = geometry.minimum_wall(made.evidence())
+    keyed = cam_shape.minimum_wall(made.evidence())
     assert keyed.demand == pytest.approx((made.BASE - made.ROLLER) / 0.0108)
 
 
@@ -210,25 +210,25 @@ def test_jump_is_where_inertia_eats_the_spring():
     # Harmonic lift: least s'' = -stroke/2 at full lift, F_s = P + k stroke there.
     relief = made.MASS * made.CAM_SPEED**2 * 0.5 * made.STROKE
     expected = relief / (made.PRELOAD + made.RATE * made.STROKE)
-    check = forces.jump(made.evidence())
+    check = jump_and_jamming.jump(made.evidence())
     assert check.demand == pytest.approx(expected, rel=1e-6)
     assert check.cam_angle_deg == pytest.approx(180.0)
 
 
 def test_a_follower_pressed_on_all_the_turn_cannot_jump():
-    check = forces.jump(with_loads(inertia_force=np.full(made.POSITIONS, 5.0)))
+    check = jump_and_jamming.jump(with_loads(inertia_force=np.full(made.POSITIONS, 5.0)))
     assert (check.demand, check.status) == (0.0, "pass")
 
 
 def test_contact_lost_is_worse_than_any_number():
     lost = with_loads(normal_force=np.zeros(made.POSITIONS))
-    assert forces.contact_force_margin(lost).utilisation == np.inf
+    assert jump_and_jamming.contact_force_margin(lost).utilisation == np.inf
 
 
 def test_the_return_cannot_jam():
     rising = made.cycle().loads.lift_slope > 0
     trial = with_loads(jam_index=np.where(rising, 0.1, 0.9))
-    assert forces.jam_index(trial).demand == pytest.approx(0.1)
+    assert jump_and_jamming.jam_index(trial).demand == pytest.approx(0.1)
 
 
 # --- contact ---------------------------------------------------------------------------------
@@ -257,7 +257,7 @@ def test_first_yield_does_not_decide():
 
 
 def test_static_safety_by_hand():
-    check = roller.roller_static(made.evidence())
+    check = roller_bearing.roller_static(made.evidence())
     assert check.demand == pytest.approx(600.0 / 400.0)
     assert check.cam_angle_deg == pytest.approx(90.0)
 
@@ -279,19 +279,21 @@ def test_rating_life_of_a_constant_load_on_a_ring():
     trial = made.evidence(contour=made.ring(), cycles=(steady,))
     spin = made.CAM_SPEED * (made.BASE - made.ROLLER) / made.ROLLER
     hours = 8e6 / (spin / (2.0 * np.pi)) / 3600.0
-    assert roller.roller_life(trial).demand == pytest.approx(hours, rel=ROUND_OFF)
-    assert roller.roller_speed(trial).demand == pytest.approx(spin * 30.0 / np.pi, rel=ROUND_OFF)
+    assert roller_bearing.roller_life(trial).demand == pytest.approx(hours, rel=ROUND_OFF)
+    assert roller_bearing.roller_speed(trial).demand == pytest.approx(
+        spin * 30.0 / np.pi, rel=ROUND_OFF
+    )
 
 
 def test_a_life_asked_for_is_a_must():
-    check = roller.roller_life(with_limits(roller_life=3600.0 * 1000.0))
+    check = roller_bearing.roller_life(with_limits(roller_life=3600.0 * 1000.0))
     assert check.must_have
     assert check.limit == pytest.approx(1000.0)
     assert check.status == "fail"
 
 
 def test_a_roller_at_rest_lives_for_ever():
-    assert roller.roller_life(with_cycle(crank_speed=0.0)).demand == np.inf
+    assert roller_bearing.roller_life(with_cycle(crank_speed=0.0)).demand == np.inf
 
 
 # --- guides ----------------------------------------------------------------------------------
@@ -323,7 +325,7 @@ def test_bush_pv_takes_the_size_of_what_slides_either_way():
 
 def test_torque_reduction_by_hand():
     trial = made.evidence(cycles=(made.cycle(scale=0.6),))  # std 10 to 3
-    assert function.torque_reduction(trial).demand == pytest.approx(0.7)
+    assert torque_balance.torque_reduction(trial).demand == pytest.approx(0.7)
 
 
 def test_speed_reduction_by_hand():
@@ -331,25 +333,25 @@ def test_speed_reduction_by_hand():
     ripple = {"idle": (4.0, 1.0), "rated": (2.0, 1.5), "fast": (1.0, 2.0)}
     fast = made.load_case("fast", ripple_weight=0.0)
     states = (made.load_case("idle"), made.load_case("rated"), fast)
-    check = function.speed_reduction(
+    check = torque_balance.speed_reduction(
         made.evidence(case=made.case(load_cases=states), speed_ripple=ripple)
     )
     assert (check.demand, check.load_case) == (pytest.approx(0.25), "rated")
     stalled = made.evidence(speed_ripple=ripple | {"idle": (np.nan, np.nan)})
-    assert function.speed_reduction(stalled).status == "not_evaluated"
-    assert function.speed_reduction(made.evidence(speed_ripple={})) is None
-    assert not function.speed_reduction(with_limits(speed_reduction=None)).must_have
+    assert torque_balance.speed_reduction(stalled).status == "not_evaluated"
+    assert torque_balance.speed_reduction(made.evidence(speed_ripple={})) is None
+    assert not torque_balance.speed_reduction(with_limits(speed_reduction=None)).must_have
 
 
 def test_a_cam_that_adds_ripple_has_a_negative_reduction():
-    check = function.torque_reduction(made.evidence(cycles=(made.cycle(scale=3.0),)))
+    check = torque_balance.torque_reduction(made.evidence(cycles=(made.cycle(scale=3.0),)))
     assert check.demand == pytest.approx(-0.5)
     assert check.utilisation == np.inf
     assert check.status == "fail"
 
 
 def test_an_engine_without_ripple_leaves_the_reduction_unknown():
-    check = function.torque_reduction(with_cycle(torque_before=np.zeros(made.POSITIONS)))
+    check = torque_balance.torque_reduction(with_cycle(torque_before=np.zeros(made.POSITIONS)))
     assert check.status == "not_evaluated"
 
 
@@ -357,9 +359,9 @@ def test_a_ring_takes_no_ripple_away_and_owes_no_energy():
     plain = made.cycle(made.ring())
     round_cam = replace(plain, residual_torque=plain.torque_before)
     trial = made.evidence(contour=made.ring(), cycles=(round_cam,))
-    assert function.torque_reduction(trial).status == "fail"
-    assert function.energy_closure(trial).demand == 0.0
-    assert function.friction_balance(trial).demand == 0.0
+    assert torque_balance.torque_reduction(trial).status == "fail"
+    assert torque_balance.energy_closure(trial).demand == 0.0
+    assert torque_balance.friction_balance(trial).demand == 0.0
 
 
 def test_without_an_engine_there_is_no_torque_check():
@@ -371,7 +373,7 @@ def test_without_an_engine_there_is_no_torque_check():
 def test_friction_with_the_wrong_sign_on_the_return_is_seen():
     loads = made.cycle().loads
     pushed = (loads.spring_force + loads.inertia_force + 20.0) * loads.lift_slope
-    check = function.friction_balance(with_loads(cam_torque=pushed))
+    check = torque_balance.friction_balance(with_loads(cam_torque=pushed))
     assert check.demand == pytest.approx(1.0, rel=1e-6)  # no loss at all where heat is made
     assert check.status == "fail"
 
@@ -436,7 +438,7 @@ def test_evidence_cannot_be_waived(name):
 
 def test_the_case_s_own_source_is_printed():
     trial = with_limits(sources={"pressure_angle": "house rule 7"})
-    assert geometry.pressure_angle(trial).source == "house rule 7"
+    assert cam_shape.pressure_angle(trial).source == "house rule 7"
 
 
 def test_evidence_is_frozen():

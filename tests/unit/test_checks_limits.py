@@ -18,9 +18,9 @@ from trial_variants import (
     with_mesh,
 )
 
-from pipeline.checks.everything import all_checks
-from pipeline.checks.trial import TrialEvidence
-from pipeline.design_fields import Limits
+from camwright.pipeline.case.requirements_section import Limits
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.checks.registry import all_checks
 
 
 @pytest.mark.parametrize(

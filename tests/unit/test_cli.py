@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 from small_run import check, small_case, summary, write_run, write_trial
 
-from geometry.errors import ContactError
-from pipeline import cli
-from pipeline.run_folder import RunFolder
+from camwright.geometry.errors import ContactError
+from camwright.pipeline import cli
+from camwright.pipeline.results.run_folder import RunFolder
 
 Command = Callable[..., tuple[int, str, str]]
 
@@ -46,9 +46,9 @@ def road(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Any]], None
     """Puts a stand-in in the place of the run itself."""
 
     def install(run_case: Callable[..., Any]) -> None:
-        module = ModuleType("pipeline.run")
+        module = ModuleType("camwright.pipeline.run")
         module.run_case = run_case  # type: ignore[attr-defined]
-        monkeypatch.setitem(sys.modules, "pipeline.run", module)
+        monkeypatch.setitem(sys.modules, "camwright.pipeline.run", module)
 
     return install
 
@@ -248,7 +248,7 @@ def test_help_and_version(command: Command) -> None:
 def test_version_answers_without_the_heavy_libraries() -> None:
     script = (
         "import sys; sys.argv = ['camwright', '--version']\n"
-        "from pipeline import cli\n"
+        "from camwright.pipeline import cli\n"
         "try: cli.main()\n"
         "except SystemExit: pass\n"
         "print(sorted({'numpy', 'pydantic', 'pint', 'gmsh', 'pyvista'} & set(sys.modules)))"

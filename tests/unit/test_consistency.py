@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline.engine.consistency import (
+from camwright.geometry.errors import InputError
+from camwright.pipeline.engine.crankshaft import Inertia, crank_motion
+from camwright.pipeline.engine.torque_consistency import (
     Finding,
     energy_finding,
     implied_inertia,
@@ -12,7 +13,6 @@ from pipeline.engine.consistency import (
     ratio_finding,
     work_finding,
 )
-from pipeline.engine.crankshaft import Inertia, crank_motion
 
 THETA = np.arange(720) * (4.0 * np.pi / 720)
 TORQUE = 10.0 * np.sin(THETA)  # integral -10 cos: std 10/sqrt(2) J, swing 20 J
@@ -69,7 +69,7 @@ def test_bad_speeds_are_refused():
 
 
 def test_the_line_on_the_screen_tells_both_values_and_the_flag():
-    from pipeline.check_command import consistency_line
+    from camwright.pipeline.results.check_report import consistency_line
 
     line = consistency_line({"load_case": "idle"} | finding(2.0, 1.5).as_record())
     assert line == "consistency, idle: x: given 2, implied 1.5 J (-25.0 %); MORE THAN 10 % APART"

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.errors import GeometryError, InputError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
 
 THETA = uniform_turn(360)
 ANGLE = np.random.default_rng(4).uniform(0, 2 * np.pi, 500)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline.contact.convergence import converged
+from camwright.geometry.errors import InputError
+from camwright.pipeline.contact.elasticity.mesh_convergence import converged
 
 
 @pytest.mark.parametrize("order", [1.0, 2.0, 3.0])

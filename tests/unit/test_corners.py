@@ -5,15 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.contour import Contour
-from geometry.errors import InputError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.checks.check import Check
-from pipeline.corners import Corner, Outcome, applied, corners_of, governed, outcomes, record
-from pipeline.engine.torque import Torque, uniform_cycle
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.tolerance_corners import (
+    Corner,
+    Outcome,
+    applied,
+    corners_of,
+    governed,
+    outcomes,
+    record,
+)
+from camwright.pipeline.engine.torque import Torque, uniform_cycle
 
 TOLERANCES = """
 [crankshaft]

@@ -6,19 +6,19 @@ from math import pi, radians, sqrt
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from geometry.linkage import SliderCrank
-from pipeline.engine.combustion import burn_rate, burnt_fraction, wiebe
-from pipeline.engine.cylinder import COMPRESSION_IGNITION, CylinderEngine
-from pipeline.engine.gas import AIR_AND_FUEL, Gas
-from pipeline.engine.heat_loss import Charge, film_coefficient, wall_area
-from pipeline.engine.valves import (
+from camwright.geometry.errors import InputError
+from camwright.geometry.linkage import SliderCrank
+from camwright.pipeline.engine.combustion import burn_rate, burnt_fraction, wiebe
+from camwright.pipeline.engine.cylinder import COMPRESSION_IGNITION, CylinderEngine
+from camwright.pipeline.engine.heat_loss import Charge, film_coefficient, wall_area
+from camwright.pipeline.engine.valves import (
     NEARLY_EQUAL,
     intake_valve,
     nozzle_flow,
     tappet_force,
     valve_train_torque,
 )
+from camwright.pipeline.engine.working_gas import AIR_AND_FUEL, Gas
 
 ENGINE = CylinderEngine(
     bore=0.060,

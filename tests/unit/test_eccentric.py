@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from geometry.contour import Contour
-from geometry.eccentric import Eccentric
-from geometry.errors import InputError
-from geometry.linkage import SliderCrank
-from geometry.pitch_curve import PitchCurve
+from camwright.geometry.contour import Contour
+from camwright.geometry.eccentric import Eccentric
+from camwright.geometry.errors import InputError
+from camwright.geometry.linkage import SliderCrank
+from camwright.geometry.pitch_curve import PitchCurve
 
 PHI = np.linspace(0, 2 * np.pi, 181)
 OFFSETS = pytest.mark.parametrize("offset", [0.0, 0.012, -0.007])

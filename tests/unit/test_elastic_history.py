@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.lift import Lift
-from pipeline import trial as road
-from pipeline.case_file import load_case_file
-from pipeline.cycle import finished
-from pipeline.elastic_history import elastic_follower, elastic_history
-from pipeline.follower.dynamics import harmonic_response
-from pipeline.follower.forces import FollowerSystem
-from pipeline.speed import study_of
-from pipeline.turn import turn
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.lift import Lift
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.cycle.crank_speed import study_of
+from camwright.pipeline.cycle.cycle import finished
+from camwright.pipeline.cycle.elastic_response import elastic_follower, elastic_history
+from camwright.pipeline.cycle.turn import turn
+from camwright.pipeline.follower.elastic_follower import harmonic_response
+from camwright.pipeline.follower.follower_forces import FollowerSystem
 
 CASES = Path(__file__).parents[2] / "cases"
 POSITIONS = 72

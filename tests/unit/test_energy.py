@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.energy import (
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.energy import (
     lift_from_torque,
     spring_deflection,
     spring_energy,
     stored_energy,
     without_mean,
 )
-from geometry.errors import InputError
+from camwright.geometry.errors import InputError
 
 THETA = uniform_turn(720)
 TORQUE = 20 * np.sin(THETA - 1) + 15 * np.sin(2 * THETA) + 8 * np.cos(5 * THETA)

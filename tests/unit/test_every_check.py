@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from check_registry import BY_ID, BY_ITSELF, FUNCTIONS, MADE_LATER, TRIED, check
 
-from geometry.errors import CamError
-from pipeline.case_file import load_case_file
-from pipeline.checks import proof, verdict
-from pipeline.follower.guides import GuidePair, guide_reactions
-from pipeline.follower.stem import Stem
-from pipeline.preview import closed_form_checks
+from camwright.geometry.errors import CamError
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.checks import proof, verdict
+from camwright.pipeline.follower.guide_reactions import GuidePair, guide_reactions
+from camwright.pipeline.follower.stem_beam import Stem
+from camwright.pipeline.preview import closed_form_checks
 
 MUST_HAVE = {
     # shape, room and function

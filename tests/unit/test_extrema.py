@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.extrema import greatest, least, valleys
+from camwright.geometry.extrema import greatest, least, valleys
 
 
 @pytest.mark.parametrize("place", [0.0, 1e-9, 1.234567, 3.0, 6.28])

@@ -6,8 +6,13 @@ import made_trial as made
 import pytest
 from trial_variants import faced
 
-from pipeline.checks import face, geometry, roller, rolling
-from pipeline.checks.everything import DESIGN
+from camwright.pipeline.checks import (
+    cam_shape,
+    flat_face_sliding,
+    roller_bearing,
+    surface_durability,
+)
+from camwright.pipeline.checks.registry import DESIGN
 
 HALF_WIDTH, PV = 1e-4, 150e6
 
@@ -16,7 +21,7 @@ HALF_WIDTH, PV = 1e-4, 150e6
 def test_width_of_the_face_at_its_limit(share, status):
     """Half the stroke either way, and the contact's half-width beyond."""
     needed = 2 * (0.5 * made.STROKE + HALF_WIDTH)
-    check = face.face_width(faced(width=share * needed))
+    check = flat_face_sliding.face_width(faced(width=share * needed))
     assert check.demand == pytest.approx(1e3 * needed, rel=1e-9)
     assert check.status == status
     assert check.must_have
@@ -24,14 +29,14 @@ def test_width_of_the_face_at_its_limit(share, status):
 
 @pytest.mark.parametrize(("share", "status"), [(0.99, "fail"), (1.01, "pass")])
 def test_sliding_at_its_limit(share, status):
-    check = face.face_sliding(faced(pv_limit=share * PV))
+    check = flat_face_sliding.face_sliding(faced(pv_limit=share * PV))
     assert check.demand == pytest.approx(1e-6 * PV)
     assert check.status == status
     assert check.must_have
 
 
 def test_sliding_without_a_limit_is_not_evaluated():
-    check = face.face_sliding(faced(pv_limit=None))
+    check = flat_face_sliding.face_sliding(faced(pv_limit=None))
     assert check.status == "not_evaluated"
     assert not check.must_have
     assert "no PV limit" in check.note
@@ -43,7 +48,7 @@ def test_undercut_at_its_limit(share, status):
     trial = faced()
     least = (made.BASE + 0.5 * made.STROKE) / (made.BASE + made.STROKE)
     limits = made.changed(trial.case.limits, undercut_factor=least / share)
-    check = geometry.undercut(replace(trial, case=made.changed(trial.case, limits=limits)))
+    check = cam_shape.undercut(replace(trial, case=made.changed(trial.case, limits=limits)))
     assert check.demand == pytest.approx(least, rel=1e-6)
     assert check.status == status
 
@@ -51,18 +56,18 @@ def test_undercut_at_its_limit(share, status):
 def test_checks_of_a_roller_do_not_apply_to_a_face_nor_the_other_way():
     trial = faced()
     for check in (
-        geometry.pressure_angle, geometry.curvature_ratio, geometry.concave_radius,
-        rolling.roller_grip, *roller.CHECKS,
+        cam_shape.pressure_angle, cam_shape.curvature_ratio, cam_shape.concave_radius,
+        surface_durability.roller_grip, *roller_bearing.CHECKS,
     ):  # fmt: skip
         assert check(trial) is None
-    for check in face.CHECKS:
+    for check in flat_face_sliding.CHECKS:
         assert check(made.evidence()) is None
-    assert face.face_width not in DESIGN
+    assert flat_face_sliding.face_width not in DESIGN
 
 
 def test_a_face_is_called_a_face():
     trial = faced()
-    assert geometry.second_contact(trial).title == "Face cuts into another part of the cam"
-    assert geometry.second_contact(trial).demand == 0.0
-    assert "no roughness of the face" not in rolling.film_ratio(trial).note
-    assert "no roughness of the face" in rolling.film_ratio(faced(roughness=None)).note
+    assert cam_shape.second_contact(trial).title == "Face cuts into another part of the cam"
+    assert cam_shape.second_contact(trial).demand == 0.0
+    assert "no roughness of the face" not in surface_durability.film_ratio(trial).note
+    assert "no roughness of the face" in surface_durability.film_ratio(faced(roughness=None)).note

@@ -6,11 +6,11 @@ import meshio
 import numpy as np
 import pytest
 
-from geometry.errors import MeshError, ResultError
-from meshes.body import block_mesh, roller_mesh
-from meshes.files import UNITS, write_msh, write_pvd, write_sheet, write_vtu
-from meshes.sizing import Sizing
-from meshes.vtu import QUADRATIC_TRIANGLE, Grid, vtu
+from camwright.geometry.errors import MeshError, ResultError
+from camwright.meshes.body_mesh import block_mesh, roller_mesh
+from camwright.meshes.element_size import Sizing
+from camwright.meshes.mesh_files import UNITS, write_msh, write_pvd, write_sheet, write_vtu
+from camwright.meshes.vtu import QUADRATIC_TRIANGLE, Grid, vtu
 
 
 @pytest.fixture(scope="module")

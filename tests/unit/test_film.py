@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline.contact.film import (
+from camwright.geometry.errors import InputError
+from camwright.pipeline.contact.oil_film import (
     LineFilm,
     Lubricant,
     entrainment_speed,

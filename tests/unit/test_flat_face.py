@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from geometry.contour import Contour
-from geometry.errors import InputError
-from geometry.flat_face import FacePath, FlatFaceContour
-from geometry.lift import Lift
-from geometry.motion import Motion, Segment
-from geometry.pitch_curve import PitchCurve
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError
+from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
+from camwright.geometry.lift import Lift
+from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.pitch_curve import PitchCurve
 
 THETA = np.linspace(0, 2 * np.pi, 200)
 ECCENTRICITY, RADIUS = 0.004, 0.015

@@ -3,13 +3,17 @@
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.errors import InputError
-from geometry.flat_face import FacePath, FlatFaceContour
-from geometry.lift import Lift
-from geometry.motion import Motion, Segment
-from pipeline.follower.flat_face import FaceSliding, face_motion
-from pipeline.follower.forces import FollowerSystem, follower_loads, turn_integral
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
+from camwright.geometry.lift import Lift
+from camwright.geometry.motion_laws import Motion, Segment
+from camwright.pipeline.follower.flat_face_motion import FaceSliding, face_motion
+from camwright.pipeline.follower.follower_forces import (
+    FollowerSystem,
+    follower_loads,
+    turn_integral,
+)
 
 THETA = uniform_turn(720)
 E, RADIUS, SPEED = 0.004, 0.015, 200.0

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.errors import InputError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.follower.forces import (
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
     FollowerSystem,
     follower_loads,

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.errors import InputError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.follower.forces import FollowerSystem, follower_loads
-from pipeline.follower.friction import (
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.guide_friction import (
     NYLON_PV,
     bush_resistance,
     friction_bounds,

@@ -5,12 +5,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from geometry.errors import GeometryError, InputError
-from pipeline.checks.check import Check
-from pipeline.checks.verdict import verdict
-from pipeline.smoothing.gentler import Next, Stop, best_attempt, next_smoother
-from pipeline.smoothing.outlook import Attempt, keeps_torque, score
-from pipeline.smoothing.smoothers import Smoother
+from camwright.geometry.errors import GeometryError, InputError
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.verdict import verdict
+from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.smoothing.smoothing_feedback import Next, Stop, best_attempt, next_smoother
+from camwright.pipeline.smoothing.smoothing_forecast import Attempt, keeps_torque, score
 
 Model = Callable[[float], tuple[Check, ...]]
 BOUND = 6

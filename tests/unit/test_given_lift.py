@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline.case import Case
-from pipeline.case_file import load_case_file, parse_case
-from pipeline.case_template import template
-from pipeline.given_lift import given_lift, lift_origin
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.given_lift import given_lift, lift_origin
+from camwright.pipeline.case.template import template
 
 SEGMENTS = """
 [lift]

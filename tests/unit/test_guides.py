@@ -6,10 +6,10 @@ import made_trial as made
 import numpy as np
 import pytest
 
-from geometry.errors import ContactError, InputError
-from pipeline.follower import bearing_line
-from pipeline.follower import guides as guides_module
-from pipeline.follower.guides import (
+from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.follower import guide_contact
+from camwright.pipeline.follower import guide_reactions as guides_module
+from camwright.pipeline.follower.guide_reactions import (
     WALL_SHARE,
     Guide,
     GuidePair,
@@ -17,7 +17,7 @@ from pipeline.follower.guides import (
     guide_reactions,
     lobatto,
 )
-from pipeline.follower.stem import Stem, stem_compliance
+from camwright.pipeline.follower.stem_beam import Stem, stem_compliance
 
 STEM = Stem(0.01, 210e9)
 NYLON = Guide(0.02, 0.01, 50e-6, 2e10, 0.04)
@@ -226,7 +226,7 @@ def test_nodes_must_rise():
 
 
 def test_an_unsettled_position_raises(monkeypatch):
-    monkeypatch.setattr(bearing_line, "MAX_STEPS", 1)
+    monkeypatch.setattr(guide_contact, "MAX_STEPS", 1)
     with pytest.raises(ContactError, match="not settled"):
         guide_reactions(FORCE, OVERHANG, STEM, PAIR)
 
@@ -234,7 +234,7 @@ def test_an_unsettled_position_raises(monkeypatch):
 @pytest.mark.parametrize(("spoilt", "name"), [(0, "force_residual"), (1, "complementarity")])
 def test_a_residual_that_is_not_met_raises(monkeypatch, spoilt, name):
     def careless(line, force, moment, start=None):
-        push, rigid = bearing_line.settle(line, force, moment, start)
+        push, rigid = guide_contact.settle(line, force, moment, start)
         return (push * (1 + 1e-7), rigid) if spoilt == 0 else (push, rigid * (1 + 1e-6))
 
     monkeypatch.setattr(guides_module, "settle", careless)

@@ -3,13 +3,17 @@
 import numpy as np
 import pytest
 
-from pipeline.contact import active_set, hertz
-from pipeline.contact.halfplane import (
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.elasticity import active_set
+from camwright.pipeline.contact.elasticity.halfplane import (
     point_force_displacement,
     point_force_stress,
     settlement,
 )
-from pipeline.contact.pressure import PressureShapes, fitted_ellipses
+from camwright.pipeline.contact.elasticity.pressure_distribution import (
+    PressureShapes,
+    fitted_ellipses,
+)
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49])

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from geometry.errors import InputError
-from pipeline.contact import hertz
-from pipeline.contact.stress import shear_in_plane, von_mises
+from camwright.geometry.errors import InputError
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_in_plane, von_mises
 
 
 def test_steel_cylinder_on_aluminium_block_has_the_published_half_width_and_pressure():

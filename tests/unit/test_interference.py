@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.interference import _distinct, crossings, second_contact
+from camwright.geometry.interference import _distinct, crossings, second_contact
 
 
 def forwards(theta):

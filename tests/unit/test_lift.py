@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
-from geometry.arrays import uniform_turn
-from geometry.errors import InputError
-from geometry.lift import Lift
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
 
 THETA = uniform_turn(360)
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from geometry.lift_fit import fitted_lift, lift_through
-from geometry.motion import Motion, Segment
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift_fit import fitted_lift, lift_through
+from camwright.geometry.motion_laws import Motion, Segment
 
 MOTION = Motion((Segment("polynomial_4567", np.pi, 0.01), Segment("polynomial_4567", np.pi, -0.01)))
 ROWS = np.arange(720) * 2 * np.pi / 720

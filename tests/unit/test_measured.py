@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from crank_traces import CYCLE, noisy_times, tooth_angles, voltage
 
-from geometry.errors import InputError
-from pipeline import trial as road
-from pipeline.case_file import load_case_file, parse_case
-from pipeline.measured import engine_torque, measurement_record
-from pipeline.smoothing.smoothers import Smoother
-from pipeline.speed import consistency, speed_record, study_of
+from camwright.geometry.errors import InputError
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.load_case_torque import engine_torque, measurement_record
+from camwright.pipeline.cycle.crank_speed import consistency, speed_record, study_of
+from camwright.pipeline.smoothing.smoothers import Smoother
 
 ROOT = Path(__file__).resolve().parents[2]
 GX120 = (ROOT / "cases" / "gx120.toml").read_text(encoding="utf-8")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from geometry.motion import LAWS, Motion, Segment
+from camwright.geometry.errors import InputError
+from camwright.geometry.motion_laws import LAWS, Motion, Segment
 
 TURN = 2 * np.pi
 RISE, RETURN = Segment("cycloidal", TURN / 4, 0.01), Segment("cycloidal", TURN / 4, -0.01)

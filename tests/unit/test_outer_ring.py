@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from bearing_files import read_cards
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.errors import InputError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.contact.follower_body import RollerBody
-from pipeline.contact.pair import CycleBodies, pair_history
-from pipeline.contact.ring_body import BallRing, RingBody
-from pipeline.contact_setup import contact_pair, contact_width
-from pipeline.follower.bearing_cards import as_case_table
-from pipeline.outer_ring import outer_ring, roller_in_words, why_solid
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.case.cards.bearing_cards import as_case_table
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.outer_ring import outer_ring, roller_in_words, why_solid
+from camwright.pipeline.case.template import template
+from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
+from camwright.pipeline.contact.follower_body import RollerBody
+from camwright.pipeline.contact.ring_body import BallRing, RingBody
+from camwright.pipeline.cycle.contact_setup import contact_pair, contact_width
 
 RING = {
     "outer_diameter": '"32 mm"',

@@ -13,9 +13,9 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
-from geometry.errors import ResultError
-from pipeline import files
-from reports import drawings, interactive, page
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base import files
+from camwright.reports import drawings, interactive, page
 
 HOSTILE = "<script>alert(1)</script>\"'&lt;../../x " + "אבג \u202e \U0001f527 "
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from reports import figures, page, plots
+from camwright.reports import figure_svg, figures, page
 
 TEMPLATES = Path(page.__file__).parent / "templates"
 CSS = (TEMPLATES / "report.css").read_text(encoding="utf-8")
@@ -62,5 +62,5 @@ def test_colours_stand_off_their_grounds(theme: str, front: str, ground: str, le
 
 def test_both_themes_name_the_same_colours_and_the_drawings_know_them() -> None:
     light, dark = themes().values()
-    assert set(light) == set(dark) >= set(plots.COLOURS)
-    assert {name: light[name] for name in plots.COLOURS} == plots.COLOURS
+    assert set(light) == set(dark) >= set(figure_svg.COLOURS)
+    assert {name: light[name] for name in figure_svg.COLOURS} == figure_svg.COLOURS

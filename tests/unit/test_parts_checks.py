@@ -5,29 +5,29 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.errors import InputError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline import results
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.checks import parts as part_checks
-from pipeline.checks import shaft as shaft_checks
-from pipeline.checks import spring as spring_checks
-from pipeline.checks.everything import PARTS, all_checks
-from pipeline.checks.function import friction_balance
-from pipeline.checks.geometry import acceleration_step
-from pipeline.checks.trial import TrialEvidence
-from pipeline.contact.pair import closed_form_history
-from pipeline.contact_setup import contact_pair
-from pipeline.cycle import closed_form_cycle, finished
-from pipeline.follower.forces import FollowerSystem, follower_loads
-from pipeline.follower.guides import GuidePair, guide_reactions
-from pipeline.follower.stem import Stem
-from pipeline.tables import table
-from pipeline.turn import turn
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.tables import table
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.checks import camshaft_strength as shaft_checks
+from camwright.pipeline.checks import part_strength as part_checks
+from camwright.pipeline.checks import spring_strength as spring_checks
+from camwright.pipeline.checks.cam_shape import acceleration_step
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.checks.registry import PARTS, all_checks
+from camwright.pipeline.checks.torque_balance import friction_balance
+from camwright.pipeline.contact.contact_pair import closed_form_history
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.cycle import closed_form_cycle, finished
+from camwright.pipeline.cycle.turn import turn
+from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.guide_reactions import GuidePair, guide_reactions
+from camwright.pipeline.follower.stem_beam import Stem
+from camwright.pipeline.results import run_reader
 
 SPRING = """
 [spring.design]
@@ -264,7 +264,7 @@ def test_friction_that_the_guides_do_not_have_is_found_out(bare):
 def test_columns_of_a_turn_close(bare):
     """What one row says of friction, force, heat and shares adds up: 1e-9 of the greatest."""
     cycle, guides = bare.cycles[0], bare.case.guides
-    found = table(results.CYCLE, cycle.columns(bare.case.mechanism.gear_ratio))
+    found = table(run_reader.CYCLE, cycle.columns(bare.case.mechanism.gear_ratio))
     v, rubs = found["velocity_m_per_s"], found["friction_A_N"] + found["friction_B_N"]
 
     def same(one, other):

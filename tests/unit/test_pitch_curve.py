@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.errors import InputError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
 
 THETA = uniform_turn(360)
 LIFT = Lift(THETA, 0.01 * (1 - np.cos(THETA - 0.4)) + 0.002 * np.sin(3 * THETA) ** 2)

@@ -9,8 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reports import plots
-from reports.figures import (
+from camwright.reports import figure_svg
+from camwright.reports.analysis_sheet import broken
+from camwright.reports.figures import (
     WORDS_HEIGHT,
     AngleFigure,
     Curve,
@@ -20,7 +21,6 @@ from reports.figures import (
     placed_limits,
     vertical_span,
 )
-from reports.sheet import broken
 
 CRANK = np.arange(0.0, 720.0, 10.0)
 WAVE = np.sin(np.radians(CRANK))
@@ -32,8 +32,8 @@ def figure(*panels, **more):
 
 
 def drawn(made):
-    with plots.style("test"):
-        return plots.draw(made)
+    with figure_svg.style("test"):
+        return figure_svg.draw(made)
 
 
 def words(canvas):
@@ -99,12 +99,12 @@ def test_the_alternative_text_tells_range_place_and_limit():
 
 
 def test_the_svg_is_well_formed_themed_and_free_of_clashing_ids():
-    svg = plots.svg_and_png(figure())[0]
-    other = plots.svg_and_png(AngleFigure("second", "", "", CRANK, figure().panels))[0]
+    svg = figure_svg.svg_and_png(figure())[0]
+    other = figure_svg.svg_and_png(AngleFigure("second", "", "", CRANK, figure().panels))[0]
     ET.fromstring(svg)
     assert 'role="img"' in svg
     assert "var(--blue)" in svg
-    assert not set(plots.COLOURS.values()) & set(re.findall(r"#[0-9a-f]{6}\b", svg))
+    assert not set(figure_svg.COLOURS.values()) & set(re.findall(r"#[0-9a-f]{6}\b", svg))
     assert "crank angle, deg" in svg
     ids = [re.findall(r'\bid="([^"]+)"', text) for text in (svg, other)]
     assert not set(ids[0]) & set(ids[1])
@@ -134,21 +134,21 @@ def test_words_of_near_limits_stand_clear_of_each_other():
 
 def test_trimming_coordinates_leaves_numbers_to_read_alone():
     small = Panel("depth", "mm", (Curve("", 0.004 + 0.004 * WAVE),), (LimitLine(0.0075, "limit"),))
-    svg = plots.svg_and_png(figure(small))[0]
+    svg = figure_svg.svg_and_png(figure(small))[0]
     assert re.search(r">0\.00\d+<", svg)
     assert "limit 0.0075 mm" in svg
     assert not re.search(r'"[^"<>]*\d\.\d{3}', svg)
 
 
 def test_the_same_figure_gives_the_same_bytes():
-    svg, png = plots.svg_and_png(figure())
-    assert (svg, png) == plots.svg_and_png(figure())
+    svg, png = figure_svg.svg_and_png(figure())
+    assert (svg, png) == figure_svg.svg_and_png(figure())
     assert png.startswith(b"\x89PNG")
 
 
 def test_hostile_labels_stay_text():
     panel = Panel("x", "", (Curve("<script>$x_2$", WAVE), Curve("b", WAVE)))
-    svg = plots.svg_and_png(figure(panel))[0]
+    svg = figure_svg.svg_and_png(figure(panel))[0]
     assert "<script" not in svg
     assert "&lt;script&gt;$x_2$" in svg
 
@@ -178,6 +178,6 @@ def test_the_outline_has_equal_axes_and_holds_the_follower():
                      and abs(np.mean(c.get_xdata()[:-1]) - 20.0) < 1e-9]  # fmt: skip
         assert circle.get_linestyle() == line
         assert np.ptp(circle.get_ydata()) == pytest.approx(6.0, rel=1e-3)
-    assert plots.svg_and_png(
+    assert figure_svg.svg_and_png(
         OutlineFigure("o", "", "", 42 * ring, 50 * ring, None, "roller", None, None, 0, "")
     )[0]

@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 
-from geometry.errors import ContactError
-from pipeline.contact.pressure import EllipticShapes, PressureShapes, fitted_ellipses
+from camwright.geometry.errors import ContactError
+from camwright.pipeline.contact.elasticity.pressure_distribution import (
+    EllipticShapes,
+    PressureShapes,
+    fitted_ellipses,
+)
 
 KNOTS = np.array([-1.0, -0.7, -0.1, 0.2, 0.9, 1.3])
 

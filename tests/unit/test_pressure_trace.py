@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline.engine.cycle_solver import working_cycle
-from pipeline.engine.cylinder import CylinderEngine
-from pipeline.engine.pressure_trace import (
+from camwright.geometry.errors import InputError
+from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
+from camwright.pipeline.engine.pressure_trace import (
     PressureTrace,
     cycle_statistics,
     dead_centre_offset,
     pressure_from_csv,
     torque_from_pressure,
 )
-from pipeline.engine.torque import torque_from_cycle
+from camwright.pipeline.engine.torque import torque_from_cycle
 
 ENGINE = CylinderEngine(0.06, 0.021, 0.073, 8.5, 0.144, 0.123)
 DEGREES = np.arange(720.0)

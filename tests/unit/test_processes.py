@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from pipeline.processes import pool, workers_for
+from camwright.pipeline.base.worker_processes import pool, workers_for
 
 
 @pytest.mark.parametrize(

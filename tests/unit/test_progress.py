@@ -7,7 +7,7 @@ import io
 import pytest
 from rich.console import Console
 
-from pipeline.progress import Bars, Lines, Silent
+from camwright.pipeline.base.progress import Bars, Lines, Silent
 
 
 def test_lines_speak_every_ten_seconds_and_tell_the_rest() -> None:

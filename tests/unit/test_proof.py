@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from reports import proof, tables
+from camwright.reports import report_tables, verification_tables
 
 CHECK = {
     "id": "x", "title": "Contact pressure", "demand": 1088.3, "limit": 650.0, "unit": "MPa",
@@ -19,12 +19,12 @@ CHECK = {
      (float("nan"), "")],
 )  # fmt: skip
 def test_an_error_bar_is_shown_where_it_shows_in_the_digits(error, shown) -> None:
-    assert tables.check_rows([CHECK | {"error": error}])[0].error == shown
+    assert report_tables.check_rows([CHECK | {"error": error}])[0].error == shown
 
 
 def test_the_error_bar_is_in_the_unit_of_the_demand() -> None:
     check = CHECK | {"unit": "Pa", "demand": 1.0883e9, "error": 1.5e6}
-    row = tables.check_rows([check])[0]
+    row = report_tables.check_rows([check])[0]
     assert (row.demand, row.error) == ("1088\u00a0MPa", "±\u00a01.5")
 
 
@@ -32,9 +32,9 @@ def test_a_corner_that_changes_no_digit_is_none() -> None:
     same = CHECK | {"corner": "nominal", "corner_demand": 1088.31}
     more = CHECK | {"corner": "spring rate high", "corner_demand": 1109.0}
     unknown = CHECK | {"corner": "", "corner_demand": None}
-    assert tables.worst_corner(same) is None
-    assert tables.check_rows([more])[0].corner == "spring rate high: 1109\u00a0MPa"
-    rows = proof.corners([same, more, unknown, CHECK]).rows
+    assert report_tables.worst_corner(same) is None
+    assert report_tables.check_rows([more])[0].corner == "spring rate high: 1109\u00a0MPa"
+    rows = verification_tables.corners([same, more, unknown, CHECK]).rows
     assert rows == [["Contact pressure", "spring rate high", "1088\u00a0MPa", "1109\u00a0MPa"]]
 
 
@@ -44,14 +44,14 @@ def test_a_price_is_the_ripple_that_goes_when_a_limit_gives_way() -> None:
         "ripple_per_percent_Nm": 0.03, "binds_at_deg": [[10.0, 12.5], [80.0, 80.0]],
     }  # fmt: skip
     bare = {"limit": "roller_life", "unit": "-", "ripple_per_unit_Nm": None, "binds_at_deg": []}
-    table = proof.prices([record, record | bare])
+    table = verification_tables.prices([record, record | bare])
     assert table.rows[0] == [
         "pressure angle", "30\u00a0deg", "−0.25\u00a0N\u00a0m per deg", "−0.03\u00a0N\u00a0m",
         "10–12.5, 80 deg",
     ]  # fmt: skip
     assert table.rows[1][2:] == ["–", "−0.03\u00a0N\u00a0m", "–"]
     assert all(len(row) == len(table.head) for row in table.rows)
-    assert proof.prices(None).rows == []
+    assert verification_tables.prices(None).rows == []
 
 
 def test_inputs_that_contradict_each_other_are_told() -> None:
@@ -60,25 +60,33 @@ def test_inputs_that_contradict_each_other_are_told() -> None:
         "implied": 0.0134, "unit": "kg m^2", "difference_percent": 415.0, "flagged": True,
         "how": "std of the torque's integral",
     }  # fmt: skip
-    table, flagged = proof.consistency([record])
+    table, flagged = verification_tables.consistency([record])
     assert flagged
     assert table.rows[0][-1].endswith("(differs)")
-    assert proof.consistency([record | {"flagged": False}])[1] is False
-    assert proof.consistency(None) == (proof.Table(table.label, table.head, [], 3), False)
-    bounded = proof.consistency([record | {"difference_percent": None}])[0]
+    assert verification_tables.consistency([record | {"flagged": False}])[1] is False
+    assert verification_tables.consistency(None) == (
+        verification_tables.Table(table.label, table.head, [], 3),
+        False,
+    )
+    bounded = verification_tables.consistency([record | {"difference_percent": None}])[0]
     assert bounded.rows[0][-1] == "– (differs)"
 
 
 def test_the_cranks_speed_is_told_by_load_case_and_state() -> None:
     state = {"std_rad_per_s": 3.59, "p2p_rad_per_s": 11.13, "fluctuation": 0.0708}
-    table = proof.crank_speed({"idle": {"before": state, "after": state, "flywheel": {}},
-                               "stall": {"refused": "the crank stalls"}})  # fmt: skip
+    idle = {"before": state, "after": state, "flywheel": {}}
+    table = verification_tables.crank_speed(
+        {"idle": idle, "stall": {"refused": "the crank stalls"}}
+    )
     assert [row[:2] for row in table.rows] == [["idle", "engine alone"], ["idle", "with the cam"]]
     assert table.rows[0][-1] == "7.08\u00a0%"
-    assert proof.crank_speed(None).rows == []
+    assert verification_tables.crank_speed(None).rows == []
 
 
 def test_benchmarks_are_told_in_per_cent() -> None:
     record = {"nafems_p0": 0.00206, "hertz_half_width": -2.5e-4, "nafems_residual": 1e-13}
-    assert [value for _, value in proof.benchmarks(record)] == ["0.21\u00a0%", "−0.025\u00a0%"]
-    assert proof.benchmarks(None) == []
+    assert [value for _, value in verification_tables.benchmarks(record)] == [
+        "0.21\u00a0%",
+        "−0.025\u00a0%",
+    ]
+    assert verification_tables.benchmarks(None) == []

@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from trial_variants import with_benchmark, with_certificate
 
-from pipeline import benchmarks
-from pipeline.checks import proof
-from pipeline.checks.check import Check
-from pipeline.checks.contact import contact_pressure
-from pipeline.checks.errors import with_error_bars
-from pipeline.checks.evidence import certificate_spread
-from pipeline.contact.convergence import converged
+from camwright.pipeline.checks import proof
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.contact_strength import contact_pressure
+from camwright.pipeline.checks.error_bars import with_error_bars
+from camwright.pipeline.checks.solution_verification import certificate_spread
+from camwright.pipeline.contact import contact_benchmarks
+from camwright.pipeline.contact.elasticity.mesh_convergence import converged
 
 MESHED = {
     "p0": proof.mesh_p0,
@@ -75,11 +75,11 @@ def test_benchmarks_are_solved_here(monkeypatch, tmp_path):
     """Both within 1 % of the known answers; the second time from what was kept."""
     monkeypatch.setenv("CAMWRIGHT_CACHE", str(tmp_path))
     monkeypatch.delenv("CAMWRIGHT_NO_CACHE", raising=False)
-    found = benchmarks.benchmarks(0.008)
+    found = contact_benchmarks.benchmarks(0.008)
     assert all(abs(found[f"{n}_{f}"]) < 0.01 for n in ("nafems", "hertz") for f in ("p0",))
     assert max(found["nafems_residual"], found["hertz_residual"]) < 1e-8
-    monkeypatch.setattr(benchmarks, "_solved", lambda _: pytest.fail("solved again"))
-    assert benchmarks.benchmarks(0.008) == found
+    monkeypatch.setattr(contact_benchmarks, "_solved", lambda _: pytest.fail("solved again"))
+    assert contact_benchmarks.benchmarks(0.008) == found
 
 
 def test_error_bar_of_a_guide_is_that_of_its_reaction():

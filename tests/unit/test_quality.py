@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.errors import InputError, MeshError
-from meshes.body import BodyMesh, block_mesh
-from meshes.quality import Quality, corner_angles, gate, quality, scaled_jacobians
-from meshes.sizing import Sizing
+from camwright.geometry.errors import InputError, MeshError
+from camwright.meshes.body_mesh import BodyMesh, block_mesh
+from camwright.meshes.element_size import Sizing
+from camwright.meshes.mesh_quality import Quality, corner_angles, gate, quality, scaled_jacobians
 
 GOOD = Quality(30.0, 0.6, 8.0, 100, 250)
 

@@ -6,27 +6,27 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline import trial as road
-from pipeline.case_file import load_case_file, parse_case
-from pipeline.files import json_text
-from pipeline.follower.spring import case_spring
-from pipeline.follower.spring_catalogue import SpringDemand
-from pipeline.redesign import kept
-from pipeline.redesign.bounds import RippleBound, bearable_energy
-from pipeline.redesign.catalogue import (
+from camwright.geometry.errors import InputError
+from camwright.pipeline import solver as road
+from camwright.pipeline.base.files import json_text
+from camwright.pipeline.case.cards.catalogue import (
     better_bush,
     better_roller,
     better_spring,
     catalogue_of,
     undominated,
 )
-from pipeline.redesign.front import front, thinned
-from pipeline.redesign.point import Rough
-from pipeline.redesign.rollers import roller_problems
-from pipeline.redesign.search import RUNG, RUNGS, branch
-from pipeline.redesign.variant import AS_GIVEN, Choice, travel_of, variant
-from pipeline.smoothing.problem import problem_of
+from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
+from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_of, variant
+from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.follower.spring import case_spring
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.roller_alternatives import roller_problems
+from camwright.pipeline.studies.redesign import point_store
+from camwright.pipeline.studies.redesign.design_point import Rough
+from camwright.pipeline.studies.redesign.pareto_front import front, thinned
+from camwright.pipeline.studies.redesign.part_search import RUNG, RUNGS, branch
+from camwright.pipeline.studies.redesign.ripple_bounds import RippleBound, bearable_energy
 
 CASES = Path(__file__).parents[2] / "cases"
 CHOICE = Choice("track_roller_35x16", "60 x 42", "ptfe_lined", 0.08)
@@ -277,13 +277,13 @@ def test_branch_ends_where_nothing_fits():
 
 
 def test_a_point_that_is_kept_is_not_solved_again(tmp_path):
-    task = kept.Task("no case at all", "nor this", tmp_path, "v", "whole")
+    task = point_store.Task("no case at all", "nor this", tmp_path, "v", "whole")
     known = {"feasible": True, "ripple_left_Nm": 1.0}
     task.path.parent.mkdir()
     task.path.write_text(json_text(known))
-    assert kept.solved(task) == known
+    assert point_store.solved(task) == known
     other = replace(task, version="w")  # solved by another version: it counts for nothing
-    assert kept.solved(other)["why"].startswith("case = ")
+    assert point_store.solved(other)["why"].startswith("case = ")
     assert other.path.is_file()
     task.path.write_text('{"feasib')  # torn
-    assert kept.solved(task)["feasible"] is False
+    assert point_store.solved(task)["feasible"] is False

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from geometry.errors import ResultError
-from pipeline.tables import Table
-from reports import bushes
-from reports.contact_pressure import over_the_contact
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.tables import Table
+from camwright.reports import guide_pressure_figure
+from camwright.reports.contact_pressure import over_the_contact
 
 ROWS, KNOTS = 8, 5
 
@@ -28,33 +28,35 @@ def path(tmp_path):
             f"{side}_slices_mm": along, f"{side}_round_deg": angle,
             f"{side}_pressure_MPa": pressure,
         }  # fmt: skip
-    np.savez(tmp_path / bushes.FILE, **values)
-    return tmp_path / bushes.FILE
+    np.savez(tmp_path / guide_pressure_figure.FILE, **values)
+    return tmp_path / guide_pressure_figure.FILE
 
 
 def test_reads_both_guides_and_their_worst_place(path):
-    a, b = bushes.read_bushes(path, "idle")
+    a, b = guide_pressure_figure.read_bushes(path, "idle")
     assert (a.name, a.peak, a.slice, a.worst_angle) == ("A", 40.0, 0, 315.0)
     assert b.line.shape == (ROWS, KNOTS)
 
 
 def test_draws_a_picture_of_either_side_of_the_bore(path):
-    png = bushes.drawn(bushes.read_bushes(path, "idle"))
+    png = guide_pressure_figure.drawn(guide_pressure_figure.read_bushes(path, "idle"))
     assert png.startswith(b"\x89PNG") and len(png) > 10_000
 
 
 def test_what_is_pressed_is_shown_with_a_margin():
     places = np.linspace(0.0, 10.0, 101)
-    low, high = bushes._pressed(places, np.where(np.abs(places - 5) < 1.01, 1.0, 0.0))
+    low, high = guide_pressure_figure._pressed(
+        places, np.where(np.abs(places - 5) < 1.01, 1.0, 0.0)
+    )
     assert (low, high) == pytest.approx((3.8, 6.2))
-    assert bushes._pressed(places, np.zeros(101)) == (0.0, 10.0)
+    assert guide_pressure_figure._pressed(places, np.zeros(101)) == (0.0, 10.0)
 
 
 def test_a_file_without_the_load_case_is_told(path):
     with pytest.raises(ResultError, match="rated"):
-        bushes.read_bushes(path, "rated")
+        guide_pressure_figure.read_bushes(path, "rated")
     with pytest.raises(ResultError):
-        bushes.read_bushes(path.with_name("none.npz"), "idle")
+        guide_pressure_figure.read_bushes(path.with_name("none.npz"), "idle")
 
 
 def test_pressure_over_the_contact_is_that_of_the_angle_and_of_the_harder_case(tmp_path):

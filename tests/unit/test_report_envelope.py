@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from geometry.errors import ResultError
-from reports import envelope
+from camwright.geometry.errors import ResultError
+from camwright.reports import stress_map
 
 
 @pytest.fixture
@@ -13,44 +13,44 @@ def path(tmp_path):
     values = np.array([[1.0, 3.0, 2.0], [2.0, 6.0, 4.0]])
     names = ("von_mises_MPa", "shear_range_MPa")
     np.savez(
-        tmp_path / envelope.FILE,
+        tmp_path / stress_map.FILE,
         **{"rated.cam_angle_deg": np.array([0.0, 180.0]), "rated.depth_mm": depth},
         **{f"rated.{name}": values for name in names},
     )
-    return tmp_path / envelope.FILE
+    return tmp_path / stress_map.FILE
 
 
 def test_reads_one_load_case_and_its_worst_place(path):
-    found = envelope.read_envelope(path, "rated")
-    assert envelope.worst(found, "von_mises_MPa") == (6.0, 180.0, 1.0)
+    found = stress_map.read_envelope(path, "rated")
+    assert stress_map.worst(found, "von_mises_MPa") == (6.0, 180.0, 1.0)
 
 
 def test_lays_stations_on_common_depths_and_knows_where_they_end(path):
-    found = envelope.read_envelope(path, "rated")
-    flat = envelope.unrolled(found["von_mises_MPa"], found["depth_mm"], np.array([0.0, 0.5, 1.5]))
+    found = stress_map.read_envelope(path, "rated")
+    flat = stress_map.unrolled(found["von_mises_MPa"], found["depth_mm"], np.array([0.0, 0.5, 1.5]))
     np.testing.assert_allclose(flat, [[1.0, 2.0], [3.0, 4.0], [np.nan, 5.0]])
 
 
 def test_draws_a_picture(path):
-    png = envelope.drawn(envelope.read_envelope(path, "rated"))
+    png = stress_map.drawn(stress_map.read_envelope(path, "rated"))
     assert png.startswith(b"\x89PNG") and len(png) > 5000
 
 
 def test_a_load_case_or_file_that_is_not_there_is_told(path):
     with pytest.raises(ResultError, match="idle"):
-        envelope.read_envelope(path, "idle")
+        stress_map.read_envelope(path, "idle")
     with pytest.raises(ResultError):
-        envelope.read_envelope(path.parent / "none.npz", "rated")
+        stress_map.read_envelope(path.parent / "none.npz", "rated")
 
 
 def test_draws_the_map_in_its_place_along_the_contour(path):
-    found = envelope.read_envelope(path, "rated")
+    found = stress_map.read_envelope(path, "rated")
     angle = np.arange(0.0, 360.0, 10.0)
     normal = np.stack([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
-    png = envelope.around(found, angle, 40.0 * normal, normal)
+    png = stress_map.around(found, angle, 40.0 * normal, normal)
     assert png.startswith(b"\x89PNG") and len(png) > 5000
 
 
 @pytest.mark.parametrize(("wanted", "drawn"), [(1.0, 1.0), (1.99, 1.0), (26.0, 20.0), (0.6, 0.5)])
 def test_depths_are_enlarged_by_a_round_number(wanted, drawn):
-    assert envelope._enlarged(wanted) == pytest.approx(drawn)
+    assert stress_map._enlarged(wanted) == pytest.approx(drawn)

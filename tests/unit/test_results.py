@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from small_run import ROWS, check, small_case, summary, values, write_run, write_trial
 
-from geometry.errors import ResultError
-from pipeline import results
-from pipeline.files import json_text
-from pipeline.run_folder import RunFolder
-from pipeline.tables import read_table, table
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import json_text
+from camwright.pipeline.base.tables import read_table, table
+from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.run_folder import RunFolder
 
 
 def test_cycle_columns_are_the_promised_ones() -> None:
-    headers = [column.header for column in results.CYCLE]
+    headers = [column.header for column in run_reader.CYCLE]
     assert headers[:9] == [
         "load_case",
         "cam_angle_deg",
@@ -35,7 +35,7 @@ def test_cycle_columns_are_the_promised_ones() -> None:
     for header in ("velocity_m_per_s", "cam_torque_Nm", "torque_after_Nm", "jam_index"):
         assert header in headers
     assert len(set(headers)) == len(headers)
-    assert [column.header for column in results.LIFT][3:] == [
+    assert [column.header for column in run_reader.LIFT][3:] == [
         "lift_d1_mm_per_rad",
         "lift_d2_mm_per_rad2",
         "lift_d3_mm_per_rad3",
@@ -43,10 +43,10 @@ def test_cycle_columns_are_the_promised_ones() -> None:
 
 
 def test_table_turns_si_into_the_unit_of_the_column() -> None:
-    given = values(results.LIFT, 720)
+    given = values(run_reader.LIFT, 720)
     given["lift"] = np.full(720, 0.0335)
     given["cam_angle"] = np.arange(720) * (2.0 * np.pi / 720.0)
-    made = table(results.LIFT, given)
+    made = table(run_reader.LIFT, given)
     assert made["lift_mm"].tolist() == [33.5] * 720
     assert made["cam_angle_deg"].tolist() == [0.5 * k for k in range(720)]  # no 0.49999999999999994
     with pytest.raises(ValueError, match="read-only"):
@@ -54,7 +54,7 @@ def test_table_turns_si_into_the_unit_of_the_column() -> None:
 
 
 def test_csv_reads_back_bit_for_bit(tmp_path: Path) -> None:
-    made = table(results.CYCLE, values(results.CYCLE, 300))
+    made = table(run_reader.CYCLE, values(run_reader.CYCLE, 300))
     path = tmp_path / "5_cycle.csv"
     path.write_text(made.to_csv())
     again = read_table(path)
@@ -65,19 +65,19 @@ def test_csv_reads_back_bit_for_bit(tmp_path: Path) -> None:
 
 
 def test_columns_that_do_not_apply_are_left_out() -> None:
-    given = values(results.CYCLE)
+    given = values(run_reader.CYCLE)
     del given["torque_before"], given["torque_after"]
-    made = table(results.CYCLE, given)
+    made = table(run_reader.CYCLE, given)
     assert "torque_before_Nm" not in made
     assert len(made) == ROWS
 
 
 def test_what_could_not_be_found_is_left_empty(tmp_path: Path) -> None:
-    made = table(results.CYCLE, values(results.CYCLE) | {"p0_fe": np.full(ROWS, np.nan)})
+    made = table(run_reader.CYCLE, values(run_reader.CYCLE) | {"p0_fe": np.full(ROWS, np.nan)})
     path = tmp_path / "table.csv"
     path.write_text(made.to_csv())
     assert "nan" not in path.read_text()
-    again = read_table(path, results.CYCLE)
+    again = read_table(path, run_reader.CYCLE)
     assert np.isnan(again["p0_fe_MPa"]).all()
     assert again["p0_hertz_MPa"].tolist() == made["p0_hertz_MPa"].tolist()
 
@@ -92,9 +92,9 @@ def test_what_could_not_be_found_is_left_empty(tmp_path: Path) -> None:
     ],
 )
 def test_table_refuses(change: dict[str, Any], message: str) -> None:
-    given = {name: v for name, v in (values(results.LIFT) | change).items() if v is not None}
+    given = {name: v for name, v in (values(run_reader.LIFT) | change).items() if v is not None}
     with pytest.raises(ResultError, match=message):
-        table(results.LIFT, given)
+        table(run_reader.LIFT, given)
 
 
 @pytest.mark.parametrize(
@@ -128,19 +128,19 @@ def test_rows_of_one_load_case(tmp_path: Path) -> None:
     [("pass", "pass"), ("waived", "pass"), ("fail", "fail"), ("not_evaluated", "fail")],
 )
 def test_verdict_comes_from_the_checks(tmp_path: Path, status: str, verdict: str) -> None:
-    run = results.load_run(write_run(tmp_path / "run", status=status))
+    run = run_reader.load_run(write_run(tmp_path / "run", status=status))
     assert run.verdict == verdict
     assert run.final.binding == (() if verdict == "pass" else ("pressure_angle",))
     assert run.summary["case"] == "small"
     assert run.torque is not None
-    results.verify_run(run.path)
+    run_reader.verify_run(run.path)
 
 
 def test_an_optional_check_does_not_fail_the_verdict(tmp_path: Path) -> None:
     with RunFolder(tmp_path / "run", small_case()) as folder:
         write_trial(folder, [check(), check("not_evaluated", id="film", must_have=False)])
         folder.finish(summary())
-    run = results.load_run(tmp_path / "run")
+    run = run_reader.load_run(tmp_path / "run")
     assert run.verdict == "pass"
     assert run.torque is None
 
@@ -150,7 +150,7 @@ def test_no_checks_is_no_pass(tmp_path: Path) -> None:
         write_trial(folder, [])
         folder.finish(summary("pass"))
     with pytest.raises(ResultError, match=r"run\.json says pass, the checks .* fail"):
-        results.load_run(tmp_path / "run")
+        run_reader.load_run(tmp_path / "run")
 
 
 @pytest.mark.parametrize(
@@ -168,7 +168,7 @@ def test_a_pass_that_its_numbers_do_not_bear_out(tmp_path: Path, change: dict[st
     path = run / "trial_1" / "6_checks.json"
     path.write_text(json.dumps([check() | change]))
     with pytest.raises(ResultError, match="its numbers say otherwise"):
-        results.load_run(run)
+        run_reader.load_run(run)
 
 
 @pytest.mark.parametrize(
@@ -196,13 +196,13 @@ def test_broken_run_is_one_line(
     else:
         (run / name).write_text(content + "\n1,2\n" if name.endswith("csv") else content)
     with pytest.raises(ResultError, match=message) as caught:
-        results.load_run(run)
+        run_reader.load_run(run)
     assert "\n" not in str(caught.value)
 
 
 def test_no_folder() -> None:
     with pytest.raises(ResultError, match="no such folder"):
-        results.load_run("nowhere")
+        run_reader.load_run("nowhere")
 
 
 @pytest.mark.parametrize("name", ["case.toml", "trial_1/5_cycle.csv", "1_torque.csv"])
@@ -211,10 +211,10 @@ def test_a_changed_file_is_found(tmp_path: Path, name: str) -> None:
     with (run / name).open("a") as file:
         file.write("#")
     with pytest.raises(ResultError, match=r"case\.toml|was changed since the run"):
-        results.verify_run(run)
+        run_reader.verify_run(run)
     (run / name).unlink()
     with pytest.raises(ResultError, match=r"No such file|is missing since the run"):
-        results.verify_run(run)
+        run_reader.verify_run(run)
 
 
 def test_json_holds_no_nan() -> None:

@@ -7,10 +7,15 @@ import pytest
 from bearing_files import read_cards
 from ring_beams import ring_section_forces, ring_stiffness
 
-from geometry.errors import InputError
-from pipeline.follower.bearing_cards import CARDS, BearingCard, as_case_table
-from pipeline.follower.ring import Ring, ball_stiffness, goodman, pin_bending_stress
-from pipeline.follower.ring_elements import ring_bending
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.cards.bearing_cards import CARDS, BearingCard, as_case_table
+from camwright.pipeline.follower.bearing_ring import (
+    Ring,
+    ball_stiffness,
+    goodman,
+    pin_bending_stress,
+)
+from camwright.pipeline.follower.bearing_ring_elements import ring_bending
 
 RING = Ring(7.5e-3, 1e-3, 5e-3, 210e9, 6, 1e8)
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from geometry.errors import InputError
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
 
 
 def with_fields():

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from small_run import check, small_case, summary, write_run, write_trial
 
-from geometry.errors import ResultError
-from pipeline import results, run_folder
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.files import write_atomic
-from pipeline.run_folder import RunFolder, set_aside
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.results import run_folder, run_reader
+from camwright.pipeline.results.run_folder import RunFolder, set_aside
 
 
 def entries(folder: Path) -> list[str]:
@@ -31,8 +31,8 @@ def test_a_finished_run_leaves_nothing_else_behind(tmp_path: Path) -> None:
     out = write_run(tmp_path / "new" / "run")
     assert entries(tmp_path / "new") == ["run"]
     assert entries(out) == ["1_torque.csv", "case.toml", "run.json", "signoff.json", "trial_1"]
-    summary = results.read_summary(out)
-    assert summary["input_sha256"] == small_case().sha256 == results.input_sha256(out)
+    summary = run_reader.read_summary(out)
+    assert summary["input_sha256"] == small_case().sha256 == run_reader.input_sha256(out)
     assert summary["versions"]["numpy"] == np.__version__
 
 
@@ -40,7 +40,7 @@ def test_rerun_of_the_same_case_takes_the_place_of_the_first(tmp_path: Path) -> 
     out = write_run(tmp_path / "run")
     (out / "figures").mkdir()
     write_run(out, status="fail")
-    assert results.load_run(out).verdict == "fail"
+    assert run_reader.load_run(out).verdict == "fail"
     assert not (out / "figures").exists()
     assert entries(tmp_path) == ["run"]
 
@@ -50,7 +50,7 @@ def test_failed_rerun_keeps_the_first(tmp_path: Path) -> None:
     with pytest.raises(ZeroDivisionError), RunFolder(out, small_case()):
         raise ZeroDivisionError
     assert entries(tmp_path) == ["run"]
-    assert results.load_run(out).verdict == "pass"
+    assert run_reader.load_run(out).verdict == "pass"
 
 
 def test_what_nobody_expected_leaves_solved_trials_to_resume(tmp_path: Path) -> None:
@@ -67,7 +67,7 @@ def test_what_nobody_expected_leaves_solved_trials_to_resume(tmp_path: Path) -> 
 def test_an_empty_folder_will_do(tmp_path: Path) -> None:
     (tmp_path / "run").mkdir()
     write_run(tmp_path / "run")
-    assert results.load_run(tmp_path / "run").verdict == "pass"
+    assert run_reader.load_run(tmp_path / "run").verdict == "pass"
 
 
 def test_refuses_the_run_of_another_case(tmp_path: Path) -> None:
@@ -108,7 +108,7 @@ def test_two_runs_at_once(tmp_path: Path) -> None:
             RunFolder(tmp_path / "run", small_case())
         write_trial(first, [check()])
         first.finish(summary())
-    assert results.load_run(tmp_path / "run").verdict == "pass"
+    assert run_reader.load_run(tmp_path / "run").verdict == "pass"
 
 
 def interrupted(out: Path) -> None:
@@ -220,10 +220,10 @@ def test_set_aside_makes_room_and_puts_back(tmp_path: Path) -> None:
     out = write_run(tmp_path / "run")
     with set_aside(out, other_case()):
         write_run(out, other_case(), status="fail")
-    assert results.load_run(out).verdict == "fail"
+    assert run_reader.load_run(out).verdict == "fail"
     with pytest.raises(ZeroDivisionError), set_aside(out, small_case()):
         raise ZeroDivisionError
-    assert results.load_run(out).verdict == "fail"
+    assert run_reader.load_run(out).verdict == "fail"
     with set_aside(out, small_case("large")), pytest.raises(ResultError):
         RunFolder(out, small_case("large"))
     assert entries(tmp_path) == ["run"]
@@ -237,5 +237,5 @@ def test_included_files_are_kept(tmp_path: Path) -> None:
     case = parse_case(text, tmp_path)
     out = write_run(tmp_path / "runs" / "run", case)
     assert (out / "inputs" / "torque.csv").read_text() == "crank_angle_deg,torque_Nm\n0,1\n"
-    results.verify_run(out)
-    assert results.input_sha256(out) == case.sha256
+    run_reader.verify_run(out)
+    assert run_reader.input_sha256(out) == case.sha256

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from crank_traces import CYCLE, voltage
 
-from geometry.errors import InputError
-from pipeline.engine.sensor_voltage import (
+from camwright.geometry.errors import InputError
+from camwright.pipeline.engine.pickup_voltage import (
     edges_from_voltage,
     speed_from_voltage,
     zero_crossings,
 )
-from pipeline.engine.speed_trace import Filter, speed_from_edges
-from pipeline.engine.trigger_wheel import TriggerWheel
+from camwright.pipeline.engine.speed_trace import Filter, speed_from_edges
+from camwright.pipeline.engine.trigger_wheel import TriggerWheel
 
 THETA = np.arange(720) * CYCLE / 720
 SPEED = 150.0 + 4.0 * np.sin(THETA / 2) - 3.0 * np.cos(THETA)

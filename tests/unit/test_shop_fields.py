@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.cutter import cutter_path
-from geometry.errors import InputError
-from geometry.lift import Lift
-from pipeline import trial as road
-from pipeline.case import Case
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.shop import write_shop
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.cutter_path import cutter_path
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.results.workshop_files import write_shop
 
 LIMITS = "[limits]\n"
 ORDER = '[shop]\ntable_step = "0.25 deg"\ntool_radius = "6 mm"\nchord_error = "2 um"\n'

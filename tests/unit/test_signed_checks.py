@@ -7,11 +7,18 @@ import numpy as np
 import pytest
 from trial_variants import cycle_with, with_case, with_cycle, with_limits, with_part
 
-from pipeline.checks import contact, forces, guides, manufacture, roller, room
-from pipeline.checks.contact import pressure_at_life, shakedown_factor
-from pipeline.checks.everything import all_checks
-from pipeline.checks.plane import edge_derating
-from pipeline.design_fields import Waiver
+from camwright.pipeline.case.requirements_section import Waiver
+from camwright.pipeline.checks import (
+    contact_strength,
+    guide_bushes,
+    jump_and_jamming,
+    manufacture,
+    roller_bearing,
+    room,
+)
+from camwright.pipeline.checks.contact_strength import pressure_at_life, shakedown_factor
+from camwright.pipeline.checks.plane_strain_validity import edge_derating
+from camwright.pipeline.checks.registry import all_checks
 
 RPM = 30.0 / np.pi
 MODULUS = 210e9 / (2.0 * (1.0 - 0.3**2))
@@ -19,7 +26,7 @@ MODULUS = 210e9 / (2.0 * (1.0 - 0.3**2))
 
 def test_jump_speed_by_hand():
     """F_s = P + k s against m w^2 s'': on 5 mm (1 - cos) the slowing half holds both extremes."""
-    check = forces.jump_speed(made.evidence())
+    check = jump_and_jamming.jump_speed(made.evidence())
     s, bend = 0.005 * (1.0 - np.cos(made.THETA)), 0.005 * np.cos(made.THETA)
     slows = bend < 0
     force = made.PRELOAD + made.RATE * s[slows]
@@ -28,13 +35,13 @@ def test_jump_speed_by_hand():
     assert check.demand == pytest.approx(RPM * speed, rel=1e-3)
     assert check.limit == pytest.approx(1.3 * RPM * 2.0 * made.CAM_SPEED)
     assert "no over-speed is given" in check.note
-    over = forces.jump_speed(with_limits(overspeed=400.0))
+    over = jump_and_jamming.jump_speed(with_limits(overspeed=400.0))
     assert over.limit == pytest.approx(1.3 * RPM * 400.0)
 
 
 def test_contact_at_overspeed_takes_more_than_the_load_case():
-    slow = forces.contact_at_overspeed(made.evidence())
-    fast = forces.contact_at_overspeed(with_limits(overspeed=1600.0))
+    slow = jump_and_jamming.contact_at_overspeed(made.evidence())
+    fast = jump_and_jamming.contact_at_overspeed(with_limits(overspeed=1600.0))
     s, bend = 0.005 * (1.0 - np.cos(made.THETA)), 0.005 * np.cos(made.THETA)
     force = made.PRELOAD + made.RATE * s + made.MASS * 800.0**2 * bend
     assert fast.demand == pytest.approx(force.min() / made.PRELOAD, rel=1e-3)
@@ -49,7 +56,7 @@ def test_pressure_at_life_reproduces_the_table_at_1e8():
 
 
 def test_life_asked_for_sets_the_cycles():
-    check = contact.contact_pressure_at_life(with_limits(target_life=1e4 * 3600.0))
+    check = contact_strength.contact_pressure_at_life(with_limits(target_life=1e4 * 3600.0))
     cycles = 1e4 * 3600.0 * made.CAM_SPEED / (2.0 * np.pi)
     assert check.limit == pytest.approx(1e-6 * pressure_at_life(cycles, 14.15, 66.22, MODULUS))
     assert check.must_have
@@ -57,8 +64,8 @@ def test_life_asked_for_sets_the_cycles():
 
 def test_edges_raise_the_pressure_of_a_roller_without_a_crown():
     plain = with_part("roller", crowned=False)
-    assert contact.edge_pressure(made.evidence()).demand == pytest.approx(900.0)
-    assert contact.edge_pressure(plain).demand == pytest.approx(1.3 * 900.0)
+    assert contact_strength.edge_pressure(made.evidence()).demand == pytest.approx(900.0)
+    assert contact_strength.edge_pressure(plain).demand == pytest.approx(1.3 * 900.0)
 
 
 def test_a_crowned_roller_needs_no_edge_factor():
@@ -80,11 +87,11 @@ def test_clearance_by_hand():
 
 def test_guide_length_by_hand():
     """80 mm apart, 20 mm long, 30 mm over at full lift and 40 mm at none."""
-    assert guides.guide_length(made.evidence()).demand == pytest.approx(100.0 / 40.0)
+    assert guide_bushes.guide_length(made.evidence()).demand == pytest.approx(100.0 / 40.0)
 
 
 def test_force_on_the_roller_by_hand():
-    assert roller.roller_radial(made.evidence()).demand == pytest.approx(400.0)
+    assert roller_bearing.roller_radial(made.evidence()).demand == pytest.approx(400.0)
 
 
 def test_waviness_by_hand():

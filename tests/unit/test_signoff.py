@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from small_run import check, small_case, summary, write_run, write_trial
 
-from geometry.errors import ResultError
-from pipeline import signoff
-from pipeline.run_folder import RunFolder
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.results import signoff
+from camwright.pipeline.results.run_folder import RunFolder
 
 
 @pytest.fixture

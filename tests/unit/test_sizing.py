@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from meshes.sizing import EDGES_PER_TURN, SizeField, Sizing
+from camwright.geometry.errors import InputError
+from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
 
 CONTACT = (0.03, -0.01)
 

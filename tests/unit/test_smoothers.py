@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.errors import InputError
-from pipeline.design_fields import Smoothing
-from pipeline.smoothing.smoothers import CYCLE, KINDS, Smoother, smoothed
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.requirements_section import Smoothing
+from camwright.pipeline.smoothing.smoothers import CYCLE, KINDS, Smoother, smoothed
 
 COUNT = 720
 CRANK = np.arange(COUNT) * CYCLE / COUNT

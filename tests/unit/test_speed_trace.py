@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 from crank_traces import CYCLE, noisy_times, time_at, tooth_angles
 
-from geometry.errors import InputError
-from pipeline.engine.crankshaft import torque_of_motion
-from pipeline.engine.speed_trace import (
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.engine_section import SpeedTable, VoltageTable
+from camwright.pipeline.engine.crankshaft import torque_of_motion
+from camwright.pipeline.engine.speed_trace import (
     Filter,
     SpeedTrace,
     speed_from_csv,
     speed_from_edges,
     speed_from_teeth,
 )
-from pipeline.engine.trigger_wheel import TriggerWheel, counted, learned_wheel
-from pipeline.engine_fields import SpeedTable, VoltageTable
+from camwright.pipeline.engine.trigger_wheel import TriggerWheel, counted, learned_wheel
 
 THETA = np.arange(720) * CYCLE / 720
 SPEED = 150.0 + 4.0 * np.sin(THETA / 2) + 3.0 * np.cos(THETA) - 1.5 * np.sin(2.5 * THETA)

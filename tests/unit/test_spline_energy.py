@@ -1,9 +1,14 @@
 import numpy as np
 import pytest
 
-from geometry.arrays import FULL_TURN, uniform_turn
-from geometry.errors import InputError
-from pipeline.smoothing.spline_energy import basis_matrix, exact_start, fitted_energy, force_moment
+from camwright.geometry.arrays import FULL_TURN, uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.pipeline.smoothing.energy_spline import (
+    basis_matrix,
+    exact_start,
+    fitted_energy,
+    force_moment,
+)
 
 RATE, PRELOAD, RADIUS = 24.2e3, 242.0, 0.05
 

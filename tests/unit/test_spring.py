@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline.follower.spring import HelicalSpring, Wire, surge_force, surge_harmonics
-from pipeline.follower.spring_catalogue import SpringDemand, lightest, read_catalogue
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.cards.spring_catalogue import SpringDemand, lightest, read_catalogue
+from camwright.pipeline.follower.spring import HelicalSpring, Wire, surge_force, surge_harmonics
 
 WIRE = Wire(80e9, 7850.0, 2000e6, 0.1)
 SPRING = HelicalSpring(5e-3, 30e-3, 9.0, 0.11, WIRE)

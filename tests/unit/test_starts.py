@@ -2,7 +2,7 @@
 
 import pytest
 
-from pipeline.smoothing.starts import Starts
+from camwright.pipeline.smoothing.multistart import Starts
 
 
 def test_starts_that_end_within_a_percent_agree():

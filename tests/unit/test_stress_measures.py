@@ -2,7 +2,11 @@
 
 import numpy as np
 
-from pipeline.contact.stress import PeakFinder, shear_in_plane, von_mises
+from camwright.pipeline.contact.elasticity.plane_stress_measures import (
+    PeakFinder,
+    shear_in_plane,
+    von_mises,
+)
 
 
 def test_pure_shear():

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from reports.interactive import specification
-from reports.plots import svg_and_png
-from reports.strip import BINDS, strip_figures
+from camwright.reports.figure_svg import svg_and_png
+from camwright.reports.interactive import specification
+from camwright.reports.limits_strip import BINDS, strip_figures
 
 
 def columns():

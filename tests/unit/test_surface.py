@@ -3,11 +3,15 @@
 import numpy as np
 import pytest
 
-from geometry.errors import ContactError
-from meshes.body import block_mesh, roller_mesh
-from meshes.sizing import Sizing
-from pipeline.contact.pressure import PressureShapes
-from pipeline.contact.surface import ContactFrame, knots_of, normal_loads
+from camwright.geometry.errors import ContactError
+from camwright.meshes.body_mesh import block_mesh, roller_mesh
+from camwright.meshes.element_size import Sizing
+from camwright.pipeline.contact.elasticity.pressure_distribution import PressureShapes
+from camwright.pipeline.contact.elasticity.surface_integrals import (
+    ContactFrame,
+    knots_of,
+    normal_loads,
+)
 
 UP = ContactFrame(np.zeros(2), np.array([0.0, 1.0]))
 

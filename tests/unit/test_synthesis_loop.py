@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from pipeline.checks.check import Check
-from pipeline.smoothing.loop import SETTLED, Moved, settled
-from pipeline.smoothing.scenario import Correction
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.smoothing.fe_correction import SETTLED, Moved, settled
+from camwright.pipeline.smoothing.scenario import Correction
 
 
 def moved(before, after, limit="bush_pv_A"):

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline import trial as road
-from pipeline.case_file import load_case_file
-from pipeline.smoothing.problem import problem_of
+from camwright.geometry.errors import InputError
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.smoothing.problem_setup import problem_of
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from reports import tables
-from reports.verdict import governing, governing_load_case, verdict
+from camwright.reports import report_tables
+from camwright.reports.verdict_text import governing, governing_load_case, verdict
 
 
 def check(name, status="pass", utilisation=0.5, **more):
@@ -42,22 +42,22 @@ def check(name, status="pass", utilisation=0.5, **more):
     ],
 )
 def test_a_number_has_four_digits_and_a_true_minus(value, shown):
-    assert tables.number(value) == shown
+    assert report_tables.number(value) == shown
 
 
 def test_si_values_are_shown_in_drawing_units():
-    assert tables.quantity(1.05e9, "Pa") == "1050\xa0MPa"
-    assert tables.quantity(math.radians(30), "rad") == "30\xa0deg"
-    assert tables.quantity(0.5, "-") == "0.5"
-    assert tables.quantity(None, "MPa") == "–"
-    assert "MPa\xa0m/s" in tables.quantity(1.9, "MPa m/s")
+    assert report_tables.quantity(1.05e9, "Pa") == "1050\xa0MPa"
+    assert report_tables.quantity(math.radians(30), "rad") == "30\xa0deg"
+    assert report_tables.quantity(0.5, "-") == "0.5"
+    assert report_tables.quantity(None, "MPa") == "–"
+    assert "MPa\xa0m/s" in report_tables.quantity(1.9, "MPa m/s")
 
 
 def test_a_limit_is_only_drawn_in_a_unit_that_fits():
-    assert tables.in_unit(820.0, "MPa", "MPa") == 820.0
-    assert tables.in_unit(8.2e8, "Pa", "MPa") == pytest.approx(820.0, rel=1e-12)
-    assert tables.in_unit(0.5, "-", "") == 0.5
-    assert tables.in_unit(820.0, "N", "MPa") is None
+    assert report_tables.in_unit(820.0, "MPa", "MPa") == 820.0
+    assert report_tables.in_unit(8.2e8, "Pa", "MPa") == pytest.approx(820.0, rel=1e-12)
+    assert report_tables.in_unit(0.5, "-", "") == 0.5
+    assert report_tables.in_unit(820.0, "N", "MPa") is None
 
 
 def test_checks_come_unevaluated_first_then_by_utilisation():
@@ -68,7 +68,7 @@ def test_checks_come_unevaluated_first_then_by_utilisation():
         check("missing", "not_evaluated", None, demand=None, limit=None),
         check("waived", "waived", 19.0),
     ]
-    rows = tables.check_rows(checks)
+    rows = report_tables.check_rows(checks)
     assert [row.id for row in rows] == ["missing", "endless", "waived", "high", "low"]
     assert [row.utilisation for row in rows] == ["–", "∞", "19.00", "2.00", "0.10"]
     assert [row.bar for row in rows] == [None, 1.5, 1.5, 1.5, 0.1]
@@ -79,11 +79,13 @@ def test_checks_come_unevaluated_first_then_by_utilisation():
     ("value", "shown"), [(1.0, "1.00"), (1.0004, "1.0004"), (0.9996, "0.9996"), (1.01, "1.01")]
 )
 def test_a_utilisation_is_never_rounded_across_its_limit(value, shown):
-    assert tables.check_rows([check("near", utilisation=value)])[0].utilisation == shown
+    assert report_tables.check_rows([check("near", utilisation=value)])[0].utilisation == shown
 
 
 def test_the_sense_of_a_limit_is_printed():
-    rows = tables.check_rows([check("most"), check("least", sense="at_least", utilisation=0.4)])
+    rows = report_tables.check_rows(
+        [check("most"), check("least", sense="at_least", utilisation=0.4)]
+    )
     assert [row.limit for row in rows] == ["≤\xa02\xa0MPa", "≥\xa02\xa0MPa"]
 
 
@@ -141,7 +143,7 @@ def test_input_tables_keep_each_source_beside_its_value():
         "materials": {"s355": {"E": "210 GPa", "source": "EN 10025"}},
         "load_case": [{"name": "idle"}, {"name": "rated"}],
     }
-    found = {table.title: table for table in tables.input_tables(case)}
+    found = {table.title: table for table in report_tables.input_tables(case)}
     assert found["spring"].source == "paper"
     assert found["limits"].rows == (("jam index", "0.5", "Rothbart"),)
     assert found["materials › s355"].rows == (("E", "210 GPa", ""),)
@@ -150,7 +152,7 @@ def test_input_tables_keep_each_source_beside_its_value():
 
 
 def test_input_values_keep_their_digits():
-    table = tables.input_tables({"solver": {"share": 0.6666666666666666}})[0]
+    table = report_tables.input_tables({"solver": {"share": 0.6666666666666666}})[0]
     assert table.rows[0][1] == "0.666666666667"
 
 
@@ -160,43 +162,43 @@ def test_certificate_rows_follow_their_heads():
     point = {"p0_MPa": figure, "half_width_mm": figure, "cam_angle_deg": 30.0, "dofs": [10, 20, 40],
              "edges_across_half_width": [6.0, 9.0, 13.5], "p0_hertz_MPa": 999.0,
              "spread_percent": 0.05, "residual_equilibrium": 1e-13}  # fmt: skip
-    (row,) = tables.certificate_rows([point])
+    (row,) = report_tables.certificate_rows([point])
     assert row == [
         "30", "6, 9, 13.5", "10, 20, 40", "1000, 1001, 1001.2", "1001.5", "–", "0.031", "999",
         "1002", "0.05", "1×10⁻¹³",
     ]  # fmt: skip
-    assert len(row) == len(tables.CERTIFICATE_HEAD)
-    (other,) = tables.certified_rows([point])
+    assert len(row) == len(report_tables.CERTIFICATE_HEAD)
+    (other,) = report_tables.certified_rows([point])
     assert other[:2] == ["30", "half-width a, mm"]
-    assert len(other) == len(tables.FIGURES_HEAD)
+    assert len(other) == len(report_tables.FIGURES_HEAD)
 
 
 def test_a_point_without_figures_gives_dashes():
-    assert tables.certificate_rows([{}]) == [["–"] * len(tables.CERTIFICATE_HEAD)]
-    assert tables.certified_rows([{}]) == []
+    assert report_tables.certificate_rows([{}]) == [["–"] * len(report_tables.CERTIFICATE_HEAD)]
+    assert report_tables.certified_rows([{}]) == []
 
 
 def test_a_record_shows_units_and_what_is_inside():
     record = {"min_angle_deg": 27.3, "nodes": 42531, "sha256": {"cam": "ab"}}
-    assert tables.named_rows(record) == [
+    assert report_tables.named_rows(record) == [
         ("min angle", "27.3\xa0deg"), ("nodes", "42531"), ("sha256, cam", "ab")
     ]  # fmt: skip
 
 
 def test_headlines_that_do_not_apply_are_left_out():
     headline = {"torque_std_before_Nm": None, "lift_max_mm": 33.0, "new_number": 2.5}
-    assert tables.headline_rows(headline) == [
+    assert report_tables.headline_rows(headline) == [
         ("Greatest lift", "33\xa0mm"), ("new number", "2.5")
     ]  # fmt: skip
-    assert [tile.title for tile in tables.tiles(headline)] == ["Lift"]
+    assert [tile.title for tile in report_tables.tiles(headline)] == ["Lift"]
 
 
 def test_the_removed_ripple_is_a_share_of_the_ripple_before():
-    tile = tables.tiles({"torque_std_before_Nm": 6.0, "torque_std_after_Nm": 3.0})[0]
+    tile = report_tables.tiles({"torque_std_before_Nm": 6.0, "torque_std_after_Nm": 3.0})[0]
     assert tile.value == "50\xa0%"
 
 
 def test_inputs_show_a_value_without_the_noise_of_its_last_bits():
     case = {"smoothing": {"width": "59.99999999999999 deg", "points": 12, "note": "1.5 mm each"}}
-    table = tables.input_tables(case)[0]
+    table = report_tables.input_tables(case)[0]
     assert [value for _, value, _ in table.rows] == ["60 deg", "12", "1.5 mm each"]

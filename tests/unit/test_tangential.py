@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline.contact import tangential
-from pipeline.contact.tangential import Drag, rolling_contact
+from camwright.geometry.errors import InputError
+from camwright.pipeline.contact import traction
+from camwright.pipeline.contact.traction import Drag, rolling_contact
 
 COUNT = 720
 PERIOD = 0.08
@@ -20,7 +20,7 @@ def turn(drag, force=100.0, spin=500.0, speed=4.0):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("law", [tangential.static_traction, tangential.rolling_traction])
+@pytest.mark.parametrize("law", [traction.static_traction, traction.rolling_traction])
 @pytest.mark.parametrize("ratio", [0.0, 0.3, 0.64, 1.0])
 def test_traction_carries_its_force_and_stays_below_friction(law, ratio):
     # x = cos(t) puts the points where the root of the ellipse bends.
@@ -33,8 +33,8 @@ def test_traction_carries_its_force_and_stays_below_friction(law, ratio):
 
 def test_static_contact_sticks_in_the_middle_and_rolling_at_its_leading_edge():
     full = np.sqrt(1 - np.array([-0.9, 0.0, 0.9]) ** 2)
-    static = tangential.static_traction([-0.9, 0.0, 0.9], 0.64) < full - 1e-9
-    rolling = tangential.rolling_traction([-0.9, 0.0, 0.9], 0.64) < full - 1e-9
+    static = traction.static_traction([-0.9, 0.0, 0.9], 0.64) < full - 1e-9
+    rolling = traction.rolling_traction([-0.9, 0.0, 0.9], 0.64) < full - 1e-9
     assert static.tolist() == [False, True, False]
     assert rolling.tolist() == [True, True, False]
 
@@ -42,7 +42,7 @@ def test_static_contact_sticks_in_the_middle_and_rolling_at_its_leading_edge():
 @pytest.mark.parametrize("ratio", [-0.01, 1.01, np.nan])
 def test_a_force_beyond_friction_is_refused(ratio):
     with pytest.raises(InputError):
-        tangential.stick_half_width(ratio)
+        traction.stick_half_width(ratio)
 
 
 def test_without_drag_nothing_is_asked_and_nothing_lost():
@@ -123,4 +123,4 @@ def test_drag_refuses(bad):
 
 def test_ring_inertia_of_a_full_disc():
     mass = 7830 * np.pi * 0.01**2 * 0.005
-    assert tangential.ring_inertia(0.01, 0, 0.005, 7830) == pytest.approx(mass * 0.01**2 / 2)
+    assert traction.ring_inertia(0.01, 0, 0.005, 7830) == pytest.approx(mass * 0.01**2 / 2)

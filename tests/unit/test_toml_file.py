@@ -2,10 +2,10 @@
 
 import pytest
 
-from geometry.errors import InputError
-from pipeline.cards.fill import known_cards
-from pipeline.files import read_toml
-from pipeline.follower.spring_catalogue import read_catalogue
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.files import read_toml
+from camwright.pipeline.case.cards.card_filling import known_cards
+from camwright.pipeline.case.cards.spring_catalogue import read_catalogue
 
 DEEP = "a = " + "[" * 20_000
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.errors import CamError, InputError
-from pipeline.engine import cycle_solver
-from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
-from pipeline.engine.torque import (
+from camwright.geometry.errors import CamError, InputError
+from camwright.pipeline.engine import indicated_cycle_solver
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.torque import (
     Torque,
     torque_from_csv,
     torque_from_cycle,
@@ -32,7 +32,7 @@ def uniform(count):
 
 @pytest.fixture(scope="module")
 def cycle():
-    return cycle_solver.working_cycle(ENGINE, SPEED)
+    return indicated_cycle_solver.working_cycle(ENGINE, SPEED)
 
 
 @pytest.fixture(scope="module")
@@ -149,7 +149,7 @@ def test_measured_torque_comes_back_on_whole_degrees(tmp_path, torque):
 
 
 def test_a_cycle_that_does_not_settle_raises(monkeypatch):
-    monkeypatch.setattr(cycle_solver, "CYCLES_MAX", 2)
+    monkeypatch.setattr(indicated_cycle_solver, "CYCLES_MAX", 2)
     with pytest.raises(CamError, match="did not repeat itself within 2 cycles"):
         torque_from_cylinder(ENGINE, SPEED)
 

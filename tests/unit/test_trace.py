@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline.engine import trace_file
-from pipeline.engine.trace import Trace, read_trace
+from camwright.geometry.errors import InputError
+from camwright.pipeline.engine import trace_file
+from camwright.pipeline.engine.angle_trace import Trace, read_trace
 
 CYCLE = 4.0 * np.pi
 

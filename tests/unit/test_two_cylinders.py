@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from geometry.errors import ContactError, InputError
-from pipeline import cache
-from pipeline.cli import app
-from pipeline.contact import two_cylinders
-from pipeline.contact.elastic_body import Elastic
-from pipeline.contact.halfplane import point_force_displacement
-from pipeline.contact.patch import contact_patch
-from pipeline.contact.two_cylinders import TwoCylinders
-from pipeline.contact_command import Asked, solved
+from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.base import disk_cache
+from camwright.pipeline.cli import app
+from camwright.pipeline.contact.contact_patch import contact_patch
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.contact.elasticity.halfplane import point_force_displacement
+from camwright.pipeline.studies import two_cylinders
+from camwright.pipeline.studies.two_cylinders import TwoCylinders
+from camwright.pipeline.studies.two_cylinders_document import Asked, solved
 
 STEEL = Elastic(210e9, 0.3)
 BASE = {"r1": "10", "r2": "inf", "e1": "210000", "nu1": "0.3", "line_load": "100"}
@@ -255,8 +255,8 @@ def test_asked_without_command_line():
 @pytest.fixture
 def fresh(tmp_path, monkeypatch):
     """A cache folder of its own, and no template in memory."""
-    monkeypatch.setenv(cache.OFF, "")
-    monkeypatch.setenv(cache.FOLDER, str(tmp_path / "kept"))
+    monkeypatch.setenv(disk_cache.OFF, "")
+    monkeypatch.setenv(disk_cache.FOLDER, str(tmp_path / "kept"))
     contact_patch.cache_clear()
     yield tmp_path / "kept"
     contact_patch.cache_clear()

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.errors import InputError
-from pipeline import units
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
 
 
 @pytest.mark.parametrize(

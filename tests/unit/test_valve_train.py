@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from pipeline import trial as road
-from pipeline.case_file import load_case_file, parse_case
-from pipeline.valve_train import valve_cam, valve_record
-from reports.proof import valve_train
+from camwright.geometry.errors import InputError
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.cycle.valve_train import valve_cam, valve_record
+from camwright.reports.verification_tables import valve_train
 
 PAPERS = Path(__file__).resolve().parents[2] / "cases" / "papers"
 POSITIONS = 720

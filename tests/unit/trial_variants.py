@@ -7,16 +7,16 @@ from typing import Any
 import made_trial as made
 import numpy as np
 
-from geometry.arrays import freeze
-from geometry.contour import Contour
-from geometry.extrema import Extremum
-from geometry.lift import Lift
-from geometry.periodic import DEGREE, PeriodicPolynomial
-from geometry.pitch_curve import PitchCurve
-from pipeline.checks.trial import TrialEvidence
-from pipeline.cycle import Cycle
-from pipeline.follower.cam_body import Reversal
-from pipeline.follower.friction import GuideHeat
+from camwright.geometry.arrays import freeze
+from camwright.geometry.contour import Contour
+from camwright.geometry.extrema import Extremum
+from camwright.geometry.lift import Lift
+from camwright.geometry.periodic_spline import DEGREE, PeriodicPolynomial
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.follower.camshaft_loads import Reversal
+from camwright.pipeline.follower.guide_friction import GuideHeat
 
 NAN = np.full(made.POSITIONS, np.nan)
 

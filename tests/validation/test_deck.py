@@ -10,23 +10,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.errors import InputError, MeshError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from meshes.body import roller_mesh
-from meshes.cam_outline import Keyway
-from meshes.deck import DeckBody, write_deck
-from meshes.sizing import Sizing
-from pipeline.contact import stress
-from pipeline.contact.elastic_body import Elastic, StressRecovery
-from pipeline.contact.follower_body import RollerBody
-from pipeline.contact.pair import ContactPair
-from pipeline.contact.pair_certificate import SolvedPair, solve_pair
-from pipeline.contact.ring_body import BallRing, RingBody
-from pipeline.deck import force_at, nodal_forces, write_contact_deck
-from pipeline.tables import Table
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError, MeshError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.meshes.body_mesh import roller_mesh
+from camwright.meshes.calculix_deck import DeckBody, write_deck
+from camwright.meshes.cam_outline import Keyway
+from camwright.meshes.element_size import Sizing
+from camwright.pipeline.base.tables import Table
+from camwright.pipeline.contact.certificate import SolvedPair, solve_pair
+from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.contact.elasticity import plane_stress_measures
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic, StressRecovery
+from camwright.pipeline.contact.follower_body import RollerBody
+from camwright.pipeline.contact.ring_body import BallRing, RingBody
+from camwright.pipeline.results.contact_deck import force_at, nodal_forces, write_contact_deck
 
 FORCE, THETA = 900.0, 1.1
 WITHIN = 0.01  # of the greatest: the two codes carry stresses to the nodes by different rules
@@ -108,7 +108,7 @@ def test_von_mises_is_that_of_calculix_away_from_the_contact_edge(solved, calcul
         recovery = StressRecovery(body, np.arange(body.mesh.triangles.shape[1]))
         nodal = np.zeros((3, body.mesh.points.shape[1]))
         nodal[:, recovery.nodes] = recovery(moved[:, :, None])[:, :, 0]
-        ours = stress.von_mises(nodal, body.poisson) / 1e6
+        ours = plane_stress_measures.von_mises(nodal, body.poisson) / 1e6
         xx, yy, zz, xy = calculix["STRESS"][:4, nodes]
         theirs = np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * xy**2)
         points, half = body.mesh.points, contact.solution.half_width

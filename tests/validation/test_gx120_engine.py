@@ -13,9 +13,9 @@ from math import pi, radians
 import numpy as np
 import pytest
 
-from pipeline.engine.cycle_solver import working_cycle
-from pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
-from pipeline.engine.torque import torque_from_cycle
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
+from camwright.pipeline.engine.torque import torque_from_cycle
 
 GX120 = CylinderEngine(
     bore=0.060,

@@ -15,14 +15,19 @@ import numpy as np
 import pytest
 from scipy.signal import resample
 
-from geometry.arrays import uniform_turn
-from geometry.energy import lift_from_torque, without_mean
-from geometry.pitch_curve import PitchCurve
-from pipeline.follower.dynamics import ElasticFollower, elastic_jump_speed
-from pipeline.follower.forces import FollowerSystem, follower_loads, jump_speed
-from pipeline.follower.guides import Guide, GuidePair, bush_foundation_modulus, guide_reactions
-from pipeline.follower.roller import rating_life, roller_motion, static_safety
-from pipeline.follower.stem import Stem
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.energy import lift_from_torque, without_mean
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.follower.elastic_follower import ElasticFollower, elastic_jump_speed
+from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads, jump_speed
+from camwright.pipeline.follower.guide_reactions import (
+    Guide,
+    GuidePair,
+    bush_foundation_modulus,
+    guide_reactions,
+)
+from camwright.pipeline.follower.roller_motion import rating_life, roller_motion, static_safety
+from camwright.pipeline.follower.stem_beam import Stem
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = Path(os.environ.get("CAMWRIGHT_SHARED", ROOT.parent / "shared"))

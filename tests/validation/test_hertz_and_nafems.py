@@ -10,12 +10,12 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from meshes.body import BodyMesh, block_mesh, roller_mesh
-from meshes.sizing import Sizing
-from pipeline.contact import hertz
-from pipeline.contact.certificate import ContactSide, solve_contact
-from pipeline.contact.elastic_body import ElasticBody
-from pipeline.contact.surface import ContactFrame
+from camwright.meshes.body_mesh import BodyMesh, block_mesh, roller_mesh
+from camwright.meshes.element_size import Sizing
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.elasticity.elastic_body import ElasticBody
+from camwright.pipeline.contact.elasticity.surface_integrals import ContactFrame
+from camwright.pipeline.contact.full_contact import ContactSide, solve_contact
 
 RADIUS, BLOCK = 0.05, 0.2
 ALUMINIUM, STEEL, NU = 70e9, 210e9, 0.3

@@ -12,24 +12,24 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
 import small_run
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.errors import InputError
-from geometry.inspection import inspected, real_contour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline import results
-from pipeline import trial as road
-from pipeline.case import Case
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.contact.pair import closed_form_history
-from pipeline.contact_setup import contact_pair
-from pipeline.inspection import FOLDER, lines, read_measured
-from pipeline.records import contour_columns, lift_columns
-from pipeline.run_folder import RunFolder
-from pipeline.shop import inspection_sheet
-from pipeline.tables import read_table
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.measured_contour import inspected, real_contour
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline import solver as road
+from camwright.pipeline.base.tables import read_table
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.contact.contact_pair import closed_form_history
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.run_folder import RunFolder
+from camwright.pipeline.results.run_records import contour_columns, lift_columns
+from camwright.pipeline.results.workshop_files import inspection_sheet
+from camwright.pipeline.studies.cam_inspection import FOLDER, lines, read_measured
 
 THETA = uniform_turn(360)
 RIPPLE, WAVES, PHASE = 20e-6, 12, np.radians(3.0)
@@ -149,7 +149,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Case, Contour]:
         out.write_lift(1, lift_columns(case, lift))
         out.write_contour(1, contour_columns(case, made))
         cycle = {k: np.abs(v) if v.dtype.kind == "f" else v
-                 for k, v in small_run.values(results.CYCLE).items()}  # fmt: skip
+                 for k, v in small_run.values(run_reader.CYCLE).items()}  # fmt: skip
         out.write_cycle(1, cycle)
         out.write_checks(1, [small_run.check()])
         out.write_trial(1, {})
@@ -158,8 +158,8 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Case, Contour]:
 
 
 def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
-    from pipeline.cli import app
-    from pipeline.commands.terminal import FAILED, PASSED
+    from camwright.pipeline.cli import app
+    from camwright.pipeline.commands.terminal import FAILED, PASSED
 
     folder, _, made = run
     x, y = measured(made) * 1e3
@@ -187,7 +187,7 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     checks = json.loads((folder / FOLDER / "checks.json").read_text(encoding="utf-8"))
     assert "certificate" in " ".join(check["id"] + check["method"] for check in checks)
     assert any("verdict on the part" in line for line in lines(record))
-    assert results.load_run(folder).verdict == "pass"  # the run itself is left as it was
+    assert run_reader.load_run(folder).verdict == "pass"  # the run itself is left as it was
 
 
 def test_filled_sheet_reads_back(tmp_path: Path) -> None:

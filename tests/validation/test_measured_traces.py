@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from crank_traces import CYCLE, noisy_times, tooth_angles
 
-from geometry.errors import InputError
-from pipeline.engine.consistency import implied_inertia
-from pipeline.engine.crankshaft import Inertia, crank_motion
-from pipeline.engine.cylinder import COMPRESSION_IGNITION, CylinderEngine
-from pipeline.engine.pressure_trace import (
+from camwright.geometry.errors import InputError
+from camwright.pipeline.engine.crankshaft import Inertia, crank_motion
+from camwright.pipeline.engine.cylinder import COMPRESSION_IGNITION, CylinderEngine
+from camwright.pipeline.engine.pressure_trace import (
     cycle_statistics,
     pressure_from_csv,
     torque_from_pressure,
 )
-from pipeline.engine.speed_trace import Filter, speed_from_csv, speed_from_edges
-from pipeline.engine.torque import torque_from_cylinder
-from pipeline.engine.trigger_wheel import TriggerWheel, counted
+from camwright.pipeline.engine.speed_trace import Filter, speed_from_csv, speed_from_edges
+from camwright.pipeline.engine.torque import torque_from_cylinder
+from camwright.pipeline.engine.torque_consistency import implied_inertia
+from camwright.pipeline.engine.trigger_wheel import TriggerWheel, counted
 
 GX120 = CylinderEngine(0.06, 0.021, 0.073, 8.5, 0.144, 0.123)
 INERTIA = 0.0139

@@ -2,13 +2,16 @@
 
 import pytest
 
-from pipeline.validation import e24, p15
-from pipeline.validation.registry import targets
+from camwright.pipeline.studies.papers import petrescu_2015, slider_crank_2024
+from camwright.pipeline.studies.papers.published_figures import targets
 
 
 @pytest.fixture(scope="module")
 def outcomes():
-    return {**p15.study(targets("P15")).outcomes, **e24.study(targets("E24")).outcomes}
+    return {
+        **petrescu_2015.study(targets("P15")).outcomes,
+        **slider_crank_2024.study(targets("E24")).outcomes,
+    }
 
 
 def test_every_row_has_an_outcome(outcomes):
@@ -34,14 +37,14 @@ def test_energies_and_trends_are_reproduced(outcomes):
 
 
 def test_slip_stands_beside_rolling():
-    rows = e24.study(targets("E24")).studies["energy of a turn by pair, J"]
+    rows = slider_crank_2024.study(targets("E24")).studies["energy of a turn by pair, J"]
     names = [row["mechanism"] for row in rows]
     assert "small roller, no slip" in names
     assert "small roller, slipping at mu 0.2" in names
 
 
 def test_index_stands_beside_the_true_efficiency():
-    studies = p15.study(targets("P15")).studies
+    studies = petrescu_2015.study(targets("P15")).studies
     name = next(name for name in studies if "true efficiency" in name)
     assert [row["undercut"] for row in studies[name]] == [False, False, True, True]
     assert all(row["true_efficiency_of_rise"] > 0.8 for row in studies[name])

@@ -7,14 +7,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline import trial as road
-from pipeline.case import Case
-from pipeline.case_file import load_case_file
-from pipeline.follower.forces import FollowerSystem
-from pipeline.smoothing.smoothers import Smoother
-from pipeline.validation import c24, c25
-from pipeline.validation.balancing import BASE_RADIUS, FOLLOWER_2025, RATIO, TWELVE_VALUES
-from pipeline.validation.engines import EFFECTIVE_INERTIA, ENGINE_800, GX120, SLOW_IDLE
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.follower.follower_forces import FollowerSystem
+from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.studies.papers import cardoso_2024, cardoso_2025
+from camwright.pipeline.studies.papers.balancing_cam import (
+    BASE_RADIUS,
+    FOLLOWER_2025,
+    RATIO,
+    TWELVE_VALUES,
+)
+from camwright.pipeline.studies.papers.paper_engines import (
+    EFFECTIVE_INERTIA,
+    ENGINE_800,
+    GX120,
+    SLOW_IDLE,
+)
 
 PAPERS = Path(__file__).resolve().parents[2] / "cases" / "papers"
 
@@ -39,7 +49,7 @@ def test_machine_of_2025(name: str) -> None:
 def test_preload_study_runs_one_cam_at_three_preloads() -> None:
     found = case("c25_preload")
     states = [found.at(state.name).spring.preload for state in found.load_cases]
-    assert sorted(states) == list(c25.PRELOADS)
+    assert sorted(states) == list(cardoso_2025.PRELOADS)
     torques = road.engine_torques(found)
     contour = road.cam_contour(
         found, road.designed_lift(found, torques, Smoother.from_case(found.smoothing))
@@ -53,8 +63,8 @@ def test_preload_study_runs_one_cam_at_three_preloads() -> None:
 
 def test_half_torque_case_asks_half() -> None:
     full, half = case("c25_preload"), case("c25_half_torque")
-    assert half.mechanism.compensation * RATIO == c25.MULTIPLIERS["half"]
-    assert full.mechanism.compensation * RATIO == c25.MULTIPLIERS["full"]
+    assert half.mechanism.compensation * RATIO == cardoso_2025.MULTIPLIERS["half"]
+    assert full.mechanism.compensation * RATIO == cardoso_2025.MULTIPLIERS["full"]
 
 
 def test_machine_of_2024() -> None:
@@ -62,6 +72,6 @@ def test_machine_of_2024() -> None:
     assert found.engine is not None
     assert found.engine.build() == ENGINE_800
     assert found.load_cases[0].speed == pytest.approx(SLOW_IDLE, rel=1e-3)  # 800 rpm, 83.8 rad/s
-    assert found.spring.rate == c24.SPRING.spring_rate
-    assert found.spring.preload == c24.SPRING.preload
+    assert found.spring.rate == cardoso_2024.SPRING.spring_rate
+    assert found.spring.preload == cardoso_2024.SPRING.preload
     assert found.smoothing.kind == "none"

@@ -5,11 +5,11 @@ import json
 import numpy as np
 import pytest
 
-from geometry.errors import ResultError
-from pipeline.files import json_text
-from pipeline.validation import PAPERS, reconstruction, validate
-from pipeline.validation.balancing import FOLLOWER_2025, balanced
-from pipeline.validation.registry import (
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import json_text
+from camwright.pipeline.studies.papers import PAPERS, speed_reconstruction, validate
+from camwright.pipeline.studies.papers.balancing_cam import FOLLOWER_2025, balanced
+from camwright.pipeline.studies.papers.published_figures import (
     NOT_COMPUTED,
     Outcome,
     Target,
@@ -17,7 +17,7 @@ from pipeline.validation.registry import (
     targets,
     within,
 )
-from reports.validation_page import page
+from camwright.reports.validation_page import page
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +99,7 @@ def test_the_flywheel_of_the_same_ripple_is_heavy(document):
 
 
 def test_the_reconstruction_meets_the_published_statistics():
-    found = reconstruction.load()
+    found = speed_reconstruction.load()
     torque = found.torque_at(72)
     assert found.speed.std() == pytest.approx(3.74, abs=1e-3)
     assert np.ptp(found.speed) == pytest.approx(11.08 * 3.74 / 3.58, abs=2e-3)
@@ -116,16 +116,16 @@ def test_the_reconstruction_meets_the_published_statistics():
 @pytest.mark.slow
 def test_the_shipped_reconstruction_is_what_its_script_makes():
     """The optimum is one, wherever the search begins: to 1e-9 rad/s here, 1e-6 elsewhere."""
-    again, shipped = reconstruction.reconstruct(), reconstruction.load()
+    again, shipped = speed_reconstruction.reconstruct(), speed_reconstruction.load()
     np.testing.assert_allclose(again.speed, shipped.speed, atol=1e-6)
     assert again.inertia == pytest.approx(shipped.inertia, rel=1e-6)
 
 
 def test_figures_no_curve_can_meet_are_refused(monkeypatch):
-    monkeypatch.setattr(reconstruction, "SPEED_STD", 30.0)
-    monkeypatch.setattr(reconstruction, "MAX_STEPS", 3)
+    monkeypatch.setattr(speed_reconstruction, "SPEED_STD", 30.0)
+    monkeypatch.setattr(speed_reconstruction, "MAX_STEPS", 3)
     with pytest.raises(ResultError, match="no speed curve meets"):
-        reconstruction.reconstruct()
+        speed_reconstruction.reconstruct()
 
 
 def test_a_cam_without_friction_leaves_what_smoothing_took():

@@ -6,17 +6,17 @@ to 1e-14 and its clearance relation was confirmed by a finite-element run in a p
 
 import numpy as np
 import pytest
+from pin_in_hole_elements import pin_in_hole_by_elements
 
-from geometry.errors import InputError
-from pipeline.contact.harmonics import Bush, Pin
-from pipeline.contact.pin_in_hole import (
+from camwright.geometry.errors import InputError
+from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
+from camwright.pipeline.contact.pin_in_hole import (
     peak_pressure,
     persson_clearance,
     persson_contact_angle,
     persson_pressure,
     pin_in_hole,
 )
-from pipeline.contact.pin_in_hole_elements import pin_in_hole_by_elements
 
 STEEL, STEEL_HOLE = Pin(210e9, 0.3), Bush(210e9, 0.3)
 NYLON_BUSH = Bush(2.8e9, 0.4, 0.5)

@@ -6,12 +6,19 @@ Dimensions are inferred, not printed: l1 20 mm, l2 80 mm, rollers 47.5 and 17.5 
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.eccentric import Eccentric
-from geometry.errors import InputError
-from geometry.pitch_curve import PitchCurve
-from pipeline.follower.forces import FollowerSystem, follower_loads
-from pipeline.mechanism.drive import (
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.eccentric import Eccentric
+from camwright.geometry.errors import InputError
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.studies.papers.friction_identification import (
+    Pendulum,
+    from_pendulum,
+    from_run_down,
+    read_decay,
+)
+from camwright.pipeline.studies.papers.mechanism_sizes import workspace
+from camwright.pipeline.studies.papers.slider_crank_drive import (
     DryFriction,
     EccentricDrive,
     HoldingSpring,
@@ -21,8 +28,6 @@ from pipeline.mechanism.drive import (
     dry_losses,
     stroke_efficiency,
 )
-from pipeline.mechanism.identify import Pendulum, from_pendulum, from_run_down, read_decay
-from pipeline.mechanism.workspace import workspace
 
 SPEED, LINKAGE = 37.219, Eccentric(0.020, 0.080)
 FRICTION = PairFriction(shaft=0.17, pin_a=0.026, pin_b=0.026, guide=24.4)

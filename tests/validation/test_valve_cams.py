@@ -7,12 +7,12 @@ value is about 0.30; the equations are tested here, not those numbers.
 import numpy as np
 import pytest
 
-from geometry.contour import Contour
-from geometry.errors import ContactError, InputError
-from geometry.motion import Motion, Segment
-from geometry.pitch_curve import PitchCurve
-from pipeline.follower.forces import FollowerSystem, follower_loads
-from pipeline.mechanism.valve_cam import (
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import ContactError, InputError
+from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.valve_cam import (
     ElasticValve,
     ValveCam,
     follower_acceleration,

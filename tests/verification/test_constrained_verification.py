@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from geometry.arrays import uniform_turn
-from geometry.energy import lift_from_torque, spring_deflection, stored_energy
-from geometry.pitch_curve import PitchCurve
-from pipeline import trial as road
-from pipeline.case_file import load_case_file
-from pipeline.follower.forces import FollowerSystem, follower_loads
-from pipeline.smoothing.constrained import RESERVE, Problem, synthesise
-from pipeline.smoothing.infeasible import infeasibility
-from pipeline.smoothing.prices import prices
-from pipeline.smoothing.scenario import Machine, Ratings, Scenario
-from pipeline.smoothing.smoothers import Smoother, smoothed
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.energy import lift_from_torque, spring_deflection, stored_energy
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.smoothing.constrained_synthesis import RESERVE, Problem, synthesise
+from camwright.pipeline.smoothing.infeasibility import infeasibility
+from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.shadow_prices import prices
+from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
 CASES = Path(__file__).parents[2] / "cases"
 RATINGS = Ratings(

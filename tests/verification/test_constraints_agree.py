@@ -6,25 +6,35 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline import trial as road
-from pipeline.case_file import load_case_file
-from pipeline.checks import spring
-from pipeline.checks.everything import DESIGN, PARTS, SIGNED, checked_by
-from pipeline.checks.geometry import concave_radius, spring_travel
-from pipeline.checks.trial import TrialEvidence
-from pipeline.contact.pair import closed_form_history
-from pipeline.contact_setup import contact_pair
-from pipeline.cycle import finished
-from pipeline.smoothing.constraints import Jet, Mean, load_utilisations, shape_utilisations
-from pipeline.smoothing.design import Problem
-from pipeline.smoothing.problem import problem_of
-from pipeline.smoothing.ratings import force_limits, pressure_limits, ratings_of, travel_limits
-from pipeline.smoothing.scenario import Correction, Machine, Ratings, Scenario
-from pipeline.smoothing.search import INITIAL_ENERGY, LEAST_ENERGY, Search
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.checks import spring_strength
+from camwright.pipeline.checks.cam_shape import concave_radius, spring_travel
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.checks.registry import DESIGN, PARTS, SIGNED, checked_by
+from camwright.pipeline.contact.contact_pair import closed_form_history
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.cycle import finished
+from camwright.pipeline.smoothing.allowables import (
+    force_limits,
+    pressure_limits,
+    ratings_of,
+    travel_limits,
+)
+from camwright.pipeline.smoothing.constraints import (
+    Jet,
+    Mean,
+    load_utilisations,
+    shape_utilisations,
+)
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.sampled_problem import INITIAL_ENERGY, LEAST_ENERGY, Search
+from camwright.pipeline.smoothing.scenario import Correction, Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 CASES = Path(__file__).parents[2] / "cases"
 POSITIONS = 120
@@ -156,7 +166,9 @@ def test_travel_of_each_check_of_the_spring_brings_it_to_its_limit(asking, judge
     lift = contour.pitch.lift
     stretched = replace(lift, values=lift.values * (limits[name] / lift.highest.value))
     wider = replace(contour, pitch=replace(contour.pitch, lift=stretched))
-    found = checked_by(TrialEvidence(asking, wider, cycles), (spring_travel, *spring.CHECKS))
+    found = checked_by(
+        TrialEvidence(asking, wider, cycles), (spring_travel, *spring_strength.CHECKS)
+    )
     check = next(each for each in found if each.id == name)
     assert check.utilisation == pytest.approx(1.0, rel=1e-9)
     assert ratings_of(asking).travel == min(limits.values())

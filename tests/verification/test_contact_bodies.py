@@ -3,22 +3,22 @@
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from meshes.body import roller_mesh
-from meshes.cam_outline import Keyway
-from meshes.sizing import Sizing
-from pipeline import cache
-from pipeline.contact import factor
-from pipeline.contact.bodies import LoadedBody
-from pipeline.contact.elastic_body import Elastic, ElasticBody
-from pipeline.contact.follower_body import RollerBody
-from pipeline.contact.pair import ContactPair, CycleBodies, pair_history
-from pipeline.contact.pair_certificate import solve_pair
-from pipeline.contact.pressure import PressureShapes
-from pipeline.contact.surface import ContactFrame, normal_loads
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.meshes.body_mesh import roller_mesh
+from camwright.meshes.cam_outline import Keyway
+from camwright.meshes.element_size import Sizing
+from camwright.pipeline.base import disk_cache
+from camwright.pipeline.contact.body_compliance import LoadedBody
+from camwright.pipeline.contact.certificate import solve_pair
+from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies, pair_history
+from camwright.pipeline.contact.elasticity import sparse_factor
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic, ElasticBody
+from camwright.pipeline.contact.elasticity.pressure_distribution import PressureShapes
+from camwright.pipeline.contact.elasticity.surface_integrals import ContactFrame, normal_loads
+from camwright.pipeline.contact.follower_body import RollerBody
 
 THETA = uniform_turn(720)
 STEEL = Elastic(210e9, 0.3)
@@ -127,16 +127,16 @@ def test_superposed_field_is_that_of_the_load_itself():
 @pytest.mark.parametrize(("module", "name"), [("cvxopt", "cholmod"), ("pypardiso", "pardiso")])
 def test_a_faster_solver_gives_the_same_answers(module, name, monkeypatch):
     pytest.importorskip(module, reason="optional back end", exc_type=ImportError)
-    monkeypatch.setattr(factor, "back_end", lambda: name)
+    monkeypatch.setattr(sparse_factor, "back_end", lambda: name)
     mesh = roller_mesh(1.0, 0.3, 0.0, Sizing(far_size=0.3))
     body = ElasticBody(mesh, 1.0, 0.3, "hub")
     matrix = body.stiffness[body.free_dofs][:, body.free_dofs]
     right = np.random.default_rng(0).normal(size=(matrix.shape[0], 4))
-    fast = factor.factorised(matrix)(right)
+    fast = sparse_factor.factorised(matrix)(right)
     monkeypatch.undo()
     monkeypatch.setenv("CAMWRIGHT_SOLVER", "scipy")
-    assert factor.back_end() == "scipy"
-    np.testing.assert_allclose(fast, factor.factorised(matrix)(right), rtol=1e-9, atol=1e-9)
+    assert sparse_factor.back_end() == "scipy"
+    np.testing.assert_allclose(fast, sparse_factor.factorised(matrix)(right), rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("force", [1e5, 5e6])
@@ -150,8 +150,8 @@ def test_a_contact_that_is_not_locally_flat_is_not_answered(force):
 @pytest.mark.parametrize("change", ["nothing", "load", "lift", "bore", "material", "grid"])
 def test_a_body_already_known_is_not_solved_again(change, tmp_path, monkeypatch):
     # The correction depends on the body and the grid alone, and is the same to the bit.
-    monkeypatch.delenv(cache.OFF, raising=False)
-    monkeypatch.setenv(cache.FOLDER, str(tmp_path))
+    monkeypatch.delenv(disk_cache.OFF, raising=False)
+    monkeypatch.setenv(disk_cache.FOLDER, str(tmp_path))
     theta, force = np.linspace(0.0, 1.0, 12), 1000.0
     first = history(pair(lift=2e-3), theta, force)
     of = {
@@ -170,7 +170,7 @@ def test_a_body_already_known_is_not_solved_again(change, tmp_path, monkeypatch)
     )
     second = history(of, again, load)
     assert solved == ([] if change in ("nothing", "load") else ["contour"])
-    monkeypatch.setenv(cache.OFF, "1")
+    monkeypatch.setenv(disk_cache.OFF, "1")
     without = history(of, again, load)
     for name in ("p0", "half_width", "tau_max", "von_mises", "pressure"):
         assert np.array_equal(getattr(second, name), getattr(without, name)), name

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from skfem.models.elasticity import linear_elasticity
 
-from geometry.errors import ContactError, InputError, MeshError
-from meshes.body import BodyMesh, block_mesh, roller_mesh
-from meshes.sizing import Sizing
-from pipeline.contact import hertz
-from pipeline.contact.certificate import ContactSide, solve_contact
-from pipeline.contact.convergence import converged
-from pipeline.contact.elastic_body import Elastic, ElasticBody, lame_parameters
-from pipeline.contact.pressure import PressureShapes
-from pipeline.contact.surface import ContactFrame
-from pipeline.contact.two_cylinders import TwoCylinders, finite_elements
+from camwright.geometry.errors import ContactError, InputError, MeshError
+from camwright.meshes.body_mesh import BodyMesh, block_mesh, roller_mesh
+from camwright.meshes.element_size import Sizing
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic, ElasticBody, lame_parameters
+from camwright.pipeline.contact.elasticity.mesh_convergence import converged
+from camwright.pipeline.contact.elasticity.pressure_distribution import PressureShapes
+from camwright.pipeline.contact.elasticity.surface_integrals import ContactFrame
+from camwright.pipeline.contact.full_contact import ContactSide, solve_contact
+from camwright.pipeline.studies.two_cylinders import TwoCylinders, finite_elements
 
 E, NU = 210e9, 0.3
 UP = ContactFrame(np.zeros(2), np.array([0.0, 1.0]))

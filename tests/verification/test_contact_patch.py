@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from geometry.errors import ContactError
-from pipeline.contact import hertz
-from pipeline.contact.halfplane import settlement
-from pipeline.contact.patch import contact_patch, solve_patches
-from pipeline.contact.stress import shear_in_plane, von_mises
+from camwright.geometry.errors import ContactError
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.contact_patch import contact_patch, solve_patches
+from camwright.pipeline.contact.elasticity.halfplane import settlement
+from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_in_plane, von_mises
 
 # Compressible, steel, nearly incompressible.
 POISSON = (0.0, 0.3, 0.49)

@@ -8,14 +8,14 @@ flat bodies; the certificate then answers alone.
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.contact.elastic_body import Elastic
-from pipeline.contact.follower_body import RollerBody
-from pipeline.contact.pair import ContactPair, CycleBodies, pair_history
-from pipeline.contact.pair_certificate import solve_pair
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.contact.certificate import solve_pair
+from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies, pair_history
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.contact.follower_body import RollerBody
 
 STEEL = Elastic(210e9, 0.3)
 ROLLER, WIDTH = 0.01, 5e-3

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.optimize import NonlinearConstraint, minimize
 
-from geometry.arrays import uniform_turn
-from pipeline.smoothing.constrained import RESERVE, Problem, started
-from pipeline.smoothing.convex_core import convex_start
-from pipeline.smoothing.descent import descended
-from pipeline.smoothing.scenario import Machine, Ratings, Scenario
-from pipeline.smoothing.search import Search
-from pipeline.smoothing.spline_energy import basis_matrix
+from camwright.geometry.arrays import uniform_turn
+from camwright.pipeline.smoothing.constrained_synthesis import RESERVE, Problem, started
+from camwright.pipeline.smoothing.convex_relaxation import convex_start
+from camwright.pipeline.smoothing.energy_spline import basis_matrix
+from camwright.pipeline.smoothing.sampled_problem import Search
+from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.trust_region import descended
 
 COUNT, POINTS = 14, 60
 RATE, PRELOAD, BASE = 24.2e3, 242.0, 0.05

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from geometry.errors import CamError, InputError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.engine.crankshaft import (
+from camwright.geometry.errors import CamError, InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.cycle.crank_speed import follower_inertia, mechanism_torque, speed_study
+from camwright.pipeline.engine.crankshaft import (
     Inertia,
     Load,
     crank_motion,
@@ -15,8 +16,7 @@ from pipeline.engine.crankshaft import (
     speed_statistics,
     torque_of_motion,
 )
-from pipeline.follower.forces import FollowerSystem, follower_loads
-from pipeline.speed import follower_inertia, mechanism_torque, speed_study
+from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 
 COUNT = 720
 THETA = np.arange(COUNT) * (4.0 * np.pi / COUNT)
@@ -89,7 +89,7 @@ def test_torque_of_the_motion_is_the_net_torque():
 
 def test_the_reciprocating_mass_in_the_inertia_is_its_torque_at_constant_speed():
     """At a large flywheel the speed is constant and both ways of counting agree: 1e-4."""
-    from pipeline.engine.cylinder import CylinderEngine
+    from camwright.pipeline.engine.cylinder import CylinderEngine
 
     engine = CylinderEngine(0.06, 0.021, 0.073, 8.5, 0.144, 0.123)
     varying = Inertia(10.0, engine.reciprocating_inertia(THETA))

@@ -6,13 +6,13 @@ from math import pi, radians
 import numpy as np
 import pytest
 
-from geometry.linkage import SliderCrank
-from pipeline.engine import cycle_solver, valves
-from pipeline.engine.combustion import burnt_fraction
-from pipeline.engine.cycle_solver import working_cycle
-from pipeline.engine.cylinder import COMPRESSION_IGNITION, CYCLE_ANGLE, CylinderEngine
-from pipeline.engine.gas import AIR_AND_FUEL, Gas
-from pipeline.engine.torque import torque_from_cycle
+from camwright.geometry.linkage import SliderCrank
+from camwright.pipeline.engine import indicated_cycle_solver, valves
+from camwright.pipeline.engine.combustion import burnt_fraction
+from camwright.pipeline.engine.cylinder import COMPRESSION_IGNITION, CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
+from camwright.pipeline.engine.torque import torque_from_cycle
+from camwright.pipeline.engine.working_gas import AIR_AND_FUEL, Gas
 
 ENGINE = CylinderEngine(
     bore=0.060,
@@ -119,11 +119,15 @@ def test_first_law_closes_over_the_shut_valves_by_quadrature(law):
     engine = replace(ENGINE, heat_loss=law)
     cycle = working_cycle(engine, SPEED)
     theta, pressure = cycle.theta[CLOSED], cycle.pressure[CLOSED]
-    charge = cycle_solver.Charge(pressure[0], cycle.temperature[220], float(cycle.volume[220]))
-    film = cycle_solver.film_coefficient(engine, SPEED, theta, cycle.volume[CLOSED], charge)
+    charge = indicated_cycle_solver.Charge(
+        pressure[0], cycle.temperature[220], float(cycle.volume[220])
+    )
+    film = indicated_cycle_solver.film_coefficient(
+        engine, SPEED, theta, cycle.volume[CLOSED], charge
+    )
     states = zip(pressure.tolist(), cycle.temperature[CLOSED].tolist(), strict=True)
     coefficient = np.array([film(node, p, t) for node, (p, t) in enumerate(states)])
-    area = cycle_solver.wall_area(engine, theta)
+    area = indicated_cycle_solver.wall_area(engine, theta)
     loss = coefficient * area * (cycle.temperature[CLOSED] - engine.wall_temperature) / SPEED
     work = np.trapezoid(pressure * engine.volume_rate(theta), theta)
     energy = cycle.mass[CLOSED] * AIR_AND_FUEL.energy(cycle.temperature[CLOSED])
@@ -180,7 +184,7 @@ def test_gas_work_on_whole_degrees_is_that_of_the_fine_steps(cycle):
 
 
 def test_finer_steps_change_nothing_that_matters(cycle, monkeypatch):
-    monkeypatch.setattr(cycle_solver, "SUB_STEPS_MIN", 8)
+    monkeypatch.setattr(indicated_cycle_solver, "SUB_STEPS_MIN", 8)
     fine = working_cycle(ENGINE, SPEED)
     # first order alone where the gas blown back runs out within a step
     np.testing.assert_allclose(fine.pressure, cycle.pressure, rtol=1e-3)
@@ -188,7 +192,7 @@ def test_finer_steps_change_nothing_that_matters(cycle, monkeypatch):
 
 
 def test_straightened_nozzle_law_changes_nothing_that_matters(cycle, monkeypatch):
-    for module in (valves, cycle_solver):
+    for module in (valves, indicated_cycle_solver):
         monkeypatch.setattr(module, "NEARLY_EQUAL", 2.5e-4)
     sharp = working_cycle(ENGINE, SPEED)
     np.testing.assert_allclose(sharp.pressure, cycle.pressure, rtol=3e-3)

@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.errors import InputError
-from geometry.lift import Lift
-from geometry.periodic import periodic_quintic
-from geometry.pitch_curve import PitchCurve
-from pipeline.follower.bounce import bounce
-from pipeline.follower.dynamics import (
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.periodic_spline import periodic_quintic
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.follower.elastic_follower import (
     ElasticFollower,
     collocation_response,
     elastic_jump_speed,
@@ -19,7 +18,8 @@ from pipeline.follower.dynamics import (
     periodic_response,
     quasi_static,
 )
-from pipeline.follower.forces import FollowerSystem, jump_speed
+from camwright.pipeline.follower.follower_flight import bounce
+from camwright.pipeline.follower.follower_forces import FollowerSystem, jump_speed
 
 THETA = uniform_turn(360)
 HIGH = 12e-3

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.arrays import uniform_turn
-from geometry.energy import lift_from_torque, spring_energy, stored_energy, without_mean
-from geometry.periodic import periodic_quintic
-from geometry.pitch_curve import PitchCurve
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.energy import lift_from_torque, spring_energy, stored_energy, without_mean
+from camwright.geometry.periodic_spline import periodic_quintic
+from camwright.geometry.pitch_curve import PitchCurve
 
 RATE, PRELOAD = 24.2e3, 242.0
 

@@ -5,15 +5,24 @@ from functools import cache
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.errors import InputError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.contact import hertz
-from pipeline.contact.bore import bore_stress
-from pipeline.contact.elastic_body import Elastic
-from pipeline.contact.envelope import (
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.bore_stress import bore_stress
+from camwright.pipeline.contact.contact_pair import (
+    ContactPair,
+    CycleBodies,
+    closed_form_history,
+    pair_history,
+)
+from camwright.pipeline.contact.contact_patch import contact_patch
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.contact.elasticity.plane_stress_measures import von_mises
+from camwright.pipeline.contact.follower_body import RollerBody
+from camwright.pipeline.contact.rolling_envelope import (
     STATIONS,
     FatigueLimits,
     _smallest_ball,
@@ -21,16 +30,7 @@ from pipeline.contact.envelope import (
     rolling_pass,
     swept,
 )
-from pipeline.contact.follower_body import RollerBody
-from pipeline.contact.pair import (
-    ContactPair,
-    CycleBodies,
-    closed_form_history,
-    pair_history,
-)
-from pipeline.contact.patch import contact_patch
-from pipeline.contact.stress import von_mises
-from pipeline.rolling import added_stress
+from camwright.pipeline.cycle.rolling_history import added_stress
 
 STEEL = Elastic(210e9, 0.3)
 WIDTH = 0.005
@@ -267,7 +267,7 @@ def test_bore_agrees_with_the_whole_field():
 
 
 def test_bore_grows_with_the_load_and_names_the_edges_of_the_keyway():
-    from meshes.cam_outline import Keyway
+    from camwright.meshes.cam_outline import Keyway
 
     pair = pair_of(0.0, Keyway(0.005, 0.0023, 0.0))
     bodies = CycleBodies.meshed(pair)

@@ -9,16 +9,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contact_search import face_height
-from pipeline import trial as road
-from pipeline.case_file import load_case_file, parse_case
-from pipeline.contact.elastic_body import Elastic
-from pipeline.contact.follower_body import FaceBody
-from pipeline.contact.pair import ContactPair, CycleBodies, closed_form_history, pair_history
-from pipeline.contact.pair_certificate import certificate_point
-from pipeline.contact_setup import contact_pair
-from pipeline.follower.forces import turn_integral
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.follower_height import face_height
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.contact.certificate import certificate_point
+from camwright.pipeline.contact.contact_pair import (
+    ContactPair,
+    CycleBodies,
+    closed_form_history,
+    pair_history,
+)
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.contact.follower_body import FaceBody
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.follower.follower_forces import turn_integral
 
 PAPERS = Path(__file__).resolve().parents[2] / "cases" / "papers"
 E, RADIUS, SPEED = 0.005, 0.018, 2.0 * np.pi * 2500.0 / 60.0

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.energy import lift_from_torque, stored_energy, without_mean
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.follower.forces import FollowerSystem, follower_loads
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.energy import lift_from_torque, stored_energy, without_mean
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 
 SYSTEM = FollowerSystem(0.175, 24.2e3, 242.0, 0.08, 0.03, 0.04, 0.2)
 FREE = replace(SYSTEM, friction_a=0.0, friction_b=0.0)

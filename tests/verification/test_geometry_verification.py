@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.flat_face import FacePath, FlatFaceContour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
 
 ECCENTRICITY, PITCH_RADIUS, ROLLER_RADIUS = 0.020, 0.080, 0.0475
 PHASE = 0.7

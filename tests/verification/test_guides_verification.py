@@ -6,9 +6,15 @@ import numpy as np
 import pytest
 from skfem import Basis, ElementLineHermite, MeshLine
 
-from pipeline.follower.bearing_line import BearingLine, settle
-from pipeline.follower.guides import KNOTS, Guide, GuidePair, guide_reactions, lobatto
-from pipeline.follower.stem import Stem, bending, end_flexibility, stem_compliance
+from camwright.pipeline.follower.guide_contact import BearingLine, settle
+from camwright.pipeline.follower.guide_reactions import (
+    KNOTS,
+    Guide,
+    GuidePair,
+    guide_reactions,
+    lobatto,
+)
+from camwright.pipeline.follower.stem_beam import Stem, bending, end_flexibility, stem_compliance
 
 STEM = Stem(0.01, 210e9)
 EI = STEM.bending_stiffness

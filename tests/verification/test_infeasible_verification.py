@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from pipeline import trial as road
-from pipeline.case_file import load_case_file
-from pipeline.redesign.rollers import roller_problems
-from pipeline.smoothing.constrained import synthesise
-from pipeline.smoothing.design import Problem
-from pipeline.smoothing.infeasible import infeasibility
-from pipeline.smoothing.problem import problem_of
-from pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.geometry.arrays import uniform_turn
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.infeasibility import infeasibility
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.roller_alternatives import roller_problems
+from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -5,13 +5,13 @@ import pytest
 from skfem import Basis, BilinearForm, ElementTriP2, ElementVector, FacetBasis, Functional
 from skfem.helpers import ddot, dot, sym_grad
 
-from geometry.contour import Contour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from meshes.body import block_mesh, cam_mesh, half_disc_mesh, roller_mesh
-from meshes.cam_outline import Keyway
-from meshes.quality import gate, quality
-from meshes.sizing import Sizing
+from camwright.geometry.contour import Contour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.meshes.body_mesh import block_mesh, cam_mesh, half_disc_mesh, roller_mesh
+from camwright.meshes.cam_outline import Keyway
+from camwright.meshes.element_size import Sizing
+from camwright.meshes.mesh_quality import gate, quality
 
 HALF_WIDTH = 1e-4
 THETA = np.arange(720) * (2 * np.pi / 720)

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.arrays import uniform_turn
-from geometry.motion import LAWS, Motion, Segment
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.motion_laws import LAWS, Motion, Segment
 
 STEP = 1e-30  # of the complex step: no difference is taken, so nothing cancels
 

@@ -8,25 +8,30 @@ import meshio
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.lift import Lift
-from meshes.files import UNITS
-from pipeline import trial as road
-from pipeline.bushes import bore_pressure, bush_arrays, loaded_length
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.contact import stress
-from pipeline.contact.pair import CycleBodies, pair_history
-from pipeline.contact.patch import contact_patch
-from pipeline.contact.pin_in_hole import peak_pressure
-from pipeline.contact_setup import contact_pair
-from pipeline.cycle import finished
-from pipeline.field_files import shown_positions
-from pipeline.fields import facing, write_bodies
-from pipeline.follower.guides import lobatto
-from pipeline.parts import bush_pair
-from pipeline.patch_series import INDEX, patch_mesh, patch_stress, write_patches
-from pipeline.turn_view import bore_reach, linear, turn_view
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.lift import Lift
+from camwright.meshes.mesh_files import UNITS
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
+from camwright.pipeline.contact.contact_patch import contact_patch
+from camwright.pipeline.contact.elasticity import plane_stress_measures
+from camwright.pipeline.contact.pin_in_hole import peak_pressure
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.cycle import finished
+from camwright.pipeline.cycle.guide_pressure import bore_pressure, bush_arrays, loaded_length
+from camwright.pipeline.cycle.part_loads import bush_pair
+from camwright.pipeline.follower.guide_reactions import lobatto
+from camwright.pipeline.results.contact_patch_series import (
+    INDEX,
+    patch_mesh,
+    patch_stress,
+    write_patches,
+)
+from camwright.pipeline.results.field_output import shown_positions
+from camwright.pipeline.results.recorded_turn import bore_reach, linear, turn_view
+from camwright.pipeline.results.stress_fields import facing, write_bodies
 
 POSITIONS = 12
 
@@ -58,7 +63,7 @@ def test_fields_read_back_are_those_of_the_cycle(series) -> None:
     folder, index, pair, bodies, cycle = series
     found = patch_stress(pair, bodies, cycle, slice(None))
     peaks = contact_patch(pair.cam.poisson).peaks
-    mises = peaks(stress.von_mises(found, pair.cam.poisson))[0]
+    mises = peaks(plane_stress_measures.von_mises(found, pair.cam.poisson))[0]
     # the very stress from which the cycle read its peaks, one summation order apart
     np.testing.assert_allclose(mises, cycle.contact.von_mises, rtol=1e-12)
     sets = ET.parse(index).getroot().findall("Collection/DataSet")
@@ -140,7 +145,7 @@ def test_fields_of_the_bodies_read_back_to_the_last_bit(series, body_series) -> 
             cam = data[f"stress_{component}_MPa"][:count]
             np.testing.assert_allclose(cam, 1e-6 * nodal[row, :, k], rtol=1e-14)
         # the same stress in other axes; turning them costs a few bits
-        mises = 1e-6 * stress.von_mises(own[:, :, k], pair.follower.material.poisson)
+        mises = 1e-6 * plane_stress_measures.von_mises(own[:, :, k], pair.follower.material.poisson)
         np.testing.assert_allclose(data["von_mises_MPa"][count:], mises, rtol=1e-9, atol=1e-9)
 
 
@@ -216,7 +221,7 @@ def test_view_lays_the_follower_against_the_cam(series, view) -> None:
 
 
 def test_edge_of_bore_and_keyway() -> None:
-    from meshes.cam_outline import Keyway
+    from camwright.meshes.cam_outline import Keyway
 
     angle = np.radians([0.0, 20.0, 90.0, 180.0])
     np.testing.assert_allclose(bore_reach(0.01, None, angle), 0.01)

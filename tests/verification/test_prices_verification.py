@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.smoothing.constrained import synthesise
-from pipeline.smoothing.constraints import Jet, shape_utilisations
-from pipeline.smoothing.design import Problem
-from pipeline.smoothing.prices import limits_in_use, named_limits, prices
-from pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.constraints import Jet, shape_utilisations
+from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.shadow_prices import limits_in_use, named_limits, prices
+from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.004])

@@ -8,16 +8,21 @@ from ring_beams import beam_ring_bending
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-from geometry.contour import Contour
-from geometry.eccentric import Eccentric
-from geometry.pitch_curve import PitchCurve
-from pipeline.contact.bodies import LoadedBody
-from pipeline.contact.elastic_body import Elastic
-from pipeline.contact.pair import ContactPair, CycleBodies, elastic_body, pair_history
-from pipeline.contact.pair_certificate import solve_pair
-from pipeline.contact.ring_body import BallRing, RingBody, ball_springs, unit_bend
-from pipeline.follower.ring import Ring
-from pipeline.follower.ring_elements import RingElements, ring_bending
+from camwright.geometry.contour import Contour
+from camwright.geometry.eccentric import Eccentric
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.contact.body_compliance import LoadedBody
+from camwright.pipeline.contact.certificate import solve_pair
+from camwright.pipeline.contact.contact_pair import (
+    ContactPair,
+    CycleBodies,
+    elastic_body,
+    pair_history,
+)
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.contact.ring_body import BallRing, RingBody, ball_springs, unit_bend
+from camwright.pipeline.follower.bearing_ring import Ring
+from camwright.pipeline.follower.bearing_ring_elements import RingElements, ring_bending
 
 RING = Ring(7.5e-3, 1e-3, 5e-3, 210e9, 6, 1e8)
 THIN = Ring(7.5e-3, 0.2e-3, 5e-3, 210e9, 6, 1e8 * 0.2**3)

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from geometry.contact_search import face_height, roller_height
-from geometry.contour import Contour
-from geometry.errors import GeometryError, InputError
-from geometry.flat_face import FacePath, FlatFaceContour
-from geometry.motion import LAWS, Motion, Segment
-from geometry.pitch_curve import PitchCurve
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
+from camwright.geometry.follower_height import face_height, roller_height
+from camwright.geometry.motion_laws import LAWS, Motion, Segment
+from camwright.geometry.pitch_curve import PitchCurve
 
 # Of the stroke. The search knows the contour at 20 000 points only; the cubic through them misses
 # a jump of curvature by some 1e-7 of the stroke, a smooth curve by 1e-12.

@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.errors import ContactError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.follower import rubbing
-from pipeline.follower.forces import JAM_FLOOR, FollowerSystem, follower_loads
-from pipeline.follower.guides import Guide, GuidePair, guide_reactions
-from pipeline.follower.rubbing import balanced, guided_loads
-from pipeline.follower.stem import Stem
-from pipeline.guide_shares import guide_shares
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.errors import ContactError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.follower import friction_coupling
+from camwright.pipeline.follower.follower_forces import JAM_FLOOR, FollowerSystem, follower_loads
+from camwright.pipeline.follower.friction_coupling import balanced, guided_loads
+from camwright.pipeline.follower.guide_effects import guide_shares
+from camwright.pipeline.follower.guide_reactions import Guide, GuidePair, guide_reactions
+from camwright.pipeline.follower.stem_beam import Stem
 
 THETA = uniform_turn(180)
 PITCH = PitchCurve(Lift(THETA, 0.01 * (1 - np.cos(THETA)) + 0.002 * (1 - np.cos(3 * THETA))), 0.05)
@@ -72,7 +72,7 @@ def test_agrees_with_plain_repetition():
             np.divide(load, side, out=np.ones_like(side), where=side > 0.0)
             for load in (bearing.rubbing_load_a, bearing.rubbing_load_b)
         )
-        system = replace(system, rubbing=rubbing.Rubbing(THETA, a, b))
+        system = replace(system, rubbing=friction_coupling.Rubbing(THETA, a, b))
     assert found.loads.jam_index.max() > 0.2
     np.testing.assert_allclose(found.loads.normal_force, loads.normal_force, rtol=1e-9)
     assert found.rounds < 15
@@ -215,19 +215,19 @@ def test_balance_of_functions_with_a_known_answer():
 
 
 def test_no_balance_raises(monkeypatch):
-    monkeypatch.setattr(rubbing, "_ROUNDS_MAX", 1)
+    monkeypatch.setattr(friction_coupling, "_ROUNDS_MAX", 1)
     with pytest.raises(ContactError, match="not in balance"):
         guided(ROUGH)
 
 
 def test_a_residual_that_is_missed_raises(monkeypatch):
-    solve = rubbing.guide_reactions
+    solve = friction_coupling.guide_reactions
 
     def careless(*args, **more):
         found = solve(*args, **more)
         return replace(found, rubbing_load_a=found.rubbing_load_a * (1 + 1e-8))
 
-    monkeypatch.setattr(rubbing, "guide_reactions", careless)
+    monkeypatch.setattr(friction_coupling, "guide_reactions", careless)
     with pytest.raises(ContactError, match="residual"):
         guided(ROUGH)
 

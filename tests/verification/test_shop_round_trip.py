@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.cutter import cutter_path
-from geometry.drawing import LAYERS, Outline, chords, keyway_corners, write_dxf
-from geometry.errors import GeometryError, InputError
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from meshes.cam_outline import Keyway
-from meshes.mesher import session
-from meshes.solid import write_step
-from pipeline.shop import contour_table, inspection_sheet
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.cad_drawing import LAYERS, Outline, chords, keyway_corners, write_dxf
+from camwright.geometry.contour import Contour
+from camwright.geometry.cutter_path import cutter_path
+from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.meshes.cam_outline import Keyway
+from camwright.meshes.gmsh_mesher import session
+from camwright.meshes.step_solid import write_step
+from camwright.pipeline.results.workshop_files import contour_table, inspection_sheet
 
 THETA = uniform_turn(360)
 BORE, WIDTH, KEYWAY = 0.010, 0.015, Keyway(0.005, 0.0023, 0.4)

@@ -11,25 +11,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline import trial as road
-from pipeline.cards.fill import known_cards
-from pipeline.case import Case
-from pipeline.case_file import load_case_file, parse_case
-from pipeline.case_template import template
-from pipeline.checks import all_checks, verdict
-from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence
-from pipeline.contact.pair import CycleBodies, pair_history
-from pipeline.contact_setup import contact_pair
-from pipeline.corners import Corner, applied
-from pipeline.cycle import Cycle, closed_form_cycle, finished
-from pipeline.preview import closed_form_checks
-from pipeline.smoothing.smoothers import Smoother
-from pipeline.turn import turn
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.cards.card_filling import known_cards
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.checks import all_checks, verdict
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.checks.tolerance_corners import Corner, applied
+from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.cycle import Cycle, closed_form_cycle, finished
+from camwright.pipeline.cycle.turn import turn
+from camwright.pipeline.preview import closed_form_checks
+from camwright.pipeline.smoothing.smoothers import Smoother
 
 GX120 = Path(__file__).parents[2] / "cases" / "gx120.toml"
 POSITIONS = 180

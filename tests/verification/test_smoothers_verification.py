@@ -9,7 +9,7 @@ import pytest
 from scipy.interpolate import make_smoothing_spline
 from scipy.signal import savgol_filter
 
-from pipeline.smoothing.smoothers import CYCLE, KINDS, Smoother, smoothed
+from camwright.pipeline.smoothing.smoothers import CYCLE, KINDS, Smoother, smoothed
 
 COUNT = 720
 ROOT = Path(__file__).resolve().parents[2]

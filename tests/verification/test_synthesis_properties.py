@@ -9,19 +9,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from geometry.arrays import uniform_turn
-from geometry.energy import lift_from_torque
-from pipeline import trial as road
-from pipeline.case_file import load_case_file
-from pipeline.smoothing.constrained import Problem, synthesise
-from pipeline.smoothing.design import coarsened
-from pipeline.smoothing.grid import Grid
-from pipeline.smoothing.problem import problem_of
-from pipeline.smoothing.scenario import Machine, Ratings, Scenario
-from pipeline.smoothing.search import Search
-from pipeline.smoothing.smoothers import KINDS, Smoother, smoothed
-from pipeline.smoothing.spline_energy import exact_start, fitted_energy
-from pipeline.smoothing.starts import explored
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.energy import lift_from_torque
+from camwright.pipeline import solver as road
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.smoothing.constrained_synthesis import Problem, synthesise
+from camwright.pipeline.smoothing.energy_spline import exact_start, fitted_energy
+from camwright.pipeline.smoothing.grid import Grid
+from camwright.pipeline.smoothing.multistart import explored
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.sampled_problem import Search
+from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.smoothers import KINDS, Smoother, smoothed
+from camwright.pipeline.smoothing.synthesis_problem import coarsened
 
 CASES = Path(__file__).parents[2] / "cases"
 RATE, PRELOAD, BASE = 24.2e3, 242.0, 0.05

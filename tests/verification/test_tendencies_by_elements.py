@@ -7,21 +7,21 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from geometry.arrays import uniform_turn
-from geometry.contour import Contour
-from geometry.lift import Lift
-from geometry.pitch_curve import PitchCurve
-from pipeline.case import Case
-from pipeline.case_file import parse_case
-from pipeline.case_template import template
-from pipeline.checks import contact, forces, guides
-from pipeline.checks.check import Check
-from pipeline.checks.trial import TrialEvidence
-from pipeline.contact.pair import CycleBodies, pair_history
-from pipeline.contact_setup import contact_pair
-from pipeline.corners import Corner, applied
-from pipeline.cycle import Cycle, finished
-from pipeline.turn import turn
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.template import template
+from camwright.pipeline.checks import contact_strength, guide_bushes, jump_and_jamming
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.checks.tolerance_corners import Corner, applied
+from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.cycle import Cycle, finished
+from camwright.pipeline.cycle.turn import turn
 
 POSITIONS = 36
 # What elements and the real bodies' give add to Hertz changes with the load, by as much.
@@ -92,7 +92,7 @@ def test_more_load_raises_the_pressure_as_the_root() -> None:
     assert np.abs(ratio - 2.0).max() > 0.0, "the elements are not Hertz's formula"
     wide = cycle(heavy).contact.half_width / cycle(PLAIN).contact.half_width
     np.testing.assert_allclose(wide, 2.0, rtol=ELEMENTS)
-    pressures = [judged(contact.contact_pressure, c).demand for c in (PLAIN, heavy)]
+    pressures = [judged(contact_strength.contact_pressure, c).demand for c in (PLAIN, heavy)]
     assert pressures[1] == pytest.approx(2.0 * pressures[0], rel=ELEMENTS)
 
 
@@ -100,7 +100,10 @@ def test_a_wider_roller_lowers_the_pressure() -> None:
     """As one over the root of the width that both carry."""
     narrow, wide = cycle(PLAIN), cycle(PLAIN, width=2.0)
     np.testing.assert_allclose(wide.contact.p0, narrow.contact.p0 / np.sqrt(2.0), rtol=ELEMENTS)
-    assert judged(contact.shakedown, PLAIN, 2.0).demand < judged(contact.shakedown, PLAIN).demand
+    assert (
+        judged(contact_strength.shakedown, PLAIN, 2.0).demand
+        < judged(contact_strength.shakedown, PLAIN).demand
+    )
 
 
 def test_a_larger_preload_raises_friction_loss_and_least_contact_force() -> None:
@@ -109,10 +112,10 @@ def test_a_larger_preload_raises_friction_loss_and_least_contact_force() -> None
     least = [float(cycle(corner).loads.normal_force.min()) for corner in corners]
     assert np.all(np.diff(losses) > 0)
     assert np.all(np.diff(least) > 0)
-    pv = [judged(guides.bush_pv_a, corner).demand for corner in corners]
+    pv = [judged(guide_bushes.bush_pv_a, corner).demand for corner in corners]
     assert np.all(np.diff(pv) > 0)
     # Over the preload itself the margin falls: the cam's own force grows by less.
-    share = [judged(forces.contact_force_margin, corner).demand for corner in corners]
+    share = [judged(jump_and_jamming.contact_force_margin, corner).demand for corner in corners]
     assert np.all(np.diff(share) < 0)
 
 

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from pipeline.contact import hertz, tangential
-from pipeline.contact.halfplane import settlement
-from pipeline.contact.patch import contact_patch
-from pipeline.contact.patch_tangential import rolling_increase, tangential_patch
-from pipeline.contact.stress import shear_in_plane, von_mises
+from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact import traction as tangential
+from camwright.pipeline.contact.contact_patch import contact_patch
+from camwright.pipeline.contact.elasticity.halfplane import settlement
+from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_in_plane, von_mises
+from camwright.pipeline.contact.tangential_patch import rolling_increase, tangential_patch
 
 # Peak in-plane shear and von Mises stress over p0 under sliding (nu = 0.3), from the field of
 # McEwen evaluated to 1e-9.

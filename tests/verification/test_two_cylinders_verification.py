@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from pipeline.contact.elastic_body import Elastic
-from pipeline.contact.two_cylinders import (
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.studies.two_cylinders import (
     TwoCylinders,
     closed_form,
     conforming,

@@ -1,0 +1,93 @@
+"""Curves over one turn: periodic piecewise polynomials on equally spaced angles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import PPoly, make_interp_spline
+
+from camwright.geometry.arrays import FULL_TURN, Array, freeze
+
+DEGREE = 5
+"""Quintic: the lowest odd degree with a continuous fourth derivative (C4)."""
+
+LEAST_SAMPLES = 12
+"""Fewer samples do not tell a lift from noise; the gap then exceeds 30 degrees."""
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicPolynomial:
+    """A function of the angle, one polynomial per equal part of the turn.
+
+    Parameters
+    ----------
+    coefficients : array (degree + 1, n)
+        Of rising powers of the angle from the start of part i, which is 2 pi i / n (rad).
+    """
+
+    coefficients: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, coefficients=self.coefficients)
+
+    def __call__(self, theta: ArrayLike, derivative: int = 0) -> Array:
+        """Value, or derivative of the given order, at any angle (rad)."""
+        return self._evaluate(theta, derivative, derivative)[0]
+
+    def derivatives(self, theta: ArrayLike, order: int) -> Array:
+        """Value and derivatives up to `order`, shape (order + 1, ...), looked up once."""
+        return self._evaluate(theta, 0, order)
+
+    def _evaluate(self, theta: ArrayLike, first: int, last: int) -> Array:
+        degree, count = self.coefficients.shape[0] - 1, self.coefficients.shape[1]
+        part = FULL_TURN / count
+        angle = np.mod(np.asarray(theta, dtype=float), FULL_TURN)
+        # an angle that is not a number belongs to no part: part 0 hands the NaN on
+        index = np.minimum(np.nan_to_num(angle / part).astype(np.intp), count - 1)
+        step = angle - index * part
+        local = self.coefficients.take(index, axis=1)
+        values = np.empty((last - first + 1, *angle.shape))
+        for order in range(first, last + 1):
+            value = np.zeros_like(angle)
+            for power in range(degree, order - 1, -1):
+                value = value * step + _falling(power, order) * local[power]
+            values[order - first] = value
+        return values
+
+    def antiderivative(self) -> tuple[PeriodicPolynomial, float]:
+        """The integral from angle 0, and what it gains over the whole turn.
+
+        The integral is periodic, as this type is, only if the gain is zero; the caller judges it.
+        """
+        degree, count = self.coefficients.shape[0] - 1, self.coefficients.shape[1]
+        powers = np.arange(1, degree + 2)[:, None]
+        raised = self.coefficients / powers
+        parts = np.sum(raised * (FULL_TURN / count) ** powers, axis=0)
+        sums = np.concatenate([[0.0], np.cumsum(parts)])
+        return PeriodicPolynomial(np.vstack([sums[:-1], raised])), float(sums[-1])
+
+
+def periodic_quintic(values: ArrayLike) -> PeriodicPolynomial:
+    """The C4 quintic spline through samples at n equal angles of one turn, from angle 0.
+
+    Parameters
+    ----------
+    values : array (n,)    any unit, n >= 12
+
+    References
+    ----------
+    de Boor, A Practical Guide to Splines (1978), ch. XIII: interpolation at the knots.
+    """
+    samples = np.asarray(values, dtype=float)
+    knots = np.linspace(0.0, FULL_TURN, len(samples) + 1)
+    spline = make_interp_spline(knots, np.append(samples, samples[0]), DEGREE, bc_type="periodic")
+    # the spline keeps DEGREE more knots on either side of the turn
+    inside = PPoly.from_spline((spline.t, spline.c, spline.k)).c[::-1, DEGREE:-DEGREE]
+    return PeriodicPolynomial(inside)
+
+
+def _falling(power: int, order: int) -> float:
+    """power (power - 1) ... , `order` factors: what differentiating leaves in front."""
+    return float(np.prod(np.arange(power - order + 1, power + 1)))

@@ -1,0 +1,386 @@
+"""Meshes of the bodies: curved quadratic triangles with named boundaries."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from camwright.geometry.arrays import Array, finite, freeze, positive
+from camwright.geometry.cad_drawing import HoleLike
+from camwright.geometry.errors import InputError, MeshError
+from camwright.meshes.cam_outline import (
+    ContourLike,
+    KeywayLike,
+    cam_size,
+    contour_piece,
+    hole_pieces,
+    hole_size,
+    trace,
+)
+from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
+from camwright.meshes.gmsh_mesher import Index, Triangulation, triangulate
+from camwright.meshes.outline import Facets, Piece, Zone, arc, facets, line
+
+
+@dataclass(frozen=True, eq=False)
+class BodyMesh:
+    """A body as curved quadratic triangles, in metres.
+
+    Parameters
+    ----------
+    points : (2, n)        nodes, corners before middles
+    triangles : (6, m)     node numbers: corners counter-clockwise, then middles of the edges
+                           01, 12, 20
+    boundaries : mapping   name -> (3, k) node numbers of facets: start, end, middle. Along a
+                           facet the body lies on the left, so the outward normal is the
+                           direction of travel turned right. Facets follow one another.
+
+    Raises
+    ------
+    MeshError
+        If shapes or node numbers disagree, corners do not come first, or a triangle is
+        turned over.
+    """
+
+    points: Array
+    triangles: Index
+    boundaries: Mapping[str, Index]
+
+    def __post_init__(self) -> None:
+        freeze(self, points=self.points)
+        if self.points.ndim != 2 or self.points.shape[0] != 2:
+            raise MeshError(f"points of a mesh = {self.points.shape}, must be (2, n)")
+        named = {name: _index(part, 3, self.points) for name, part in self.boundaries.items()}
+        object.__setattr__(self, "triangles", _index(self.triangles, 6, self.points))
+        object.__setattr__(self, "boundaries", MappingProxyType(named))
+        if self.triangles[:3].max() >= self.triangles[3:].min():
+            raise MeshError("corners of a mesh must be numbered before the middles of edges")
+        a, b, c = (self.points[:, self.triangles[k]] for k in range(3))
+        doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        if not (doubled > 0).all():
+            raise MeshError(f"{int((~(doubled > 0)).sum())} triangles are turned over or empty")
+
+    @property
+    def corners(self) -> int:
+        """Number of corner nodes; the nodes from there on are middles of edges."""
+        return int(self.triangles[:3].max()) + 1
+
+    @cached_property
+    def sha256(self) -> str:
+        """Fingerprint of points and triangles."""
+        digest = hashlib.sha256(np.ascontiguousarray(self.points, dtype="<f8").tobytes())
+        digest.update(np.ascontiguousarray(self.triangles, dtype="<i8").tobytes())
+        return digest.hexdigest()
+
+    @cached_property
+    def area(self) -> float:
+        """Area within the curved boundary, m2."""
+        # The Jacobian is quadratic, so the mean over the three edge middles is exact.
+        jacobians = (self.jacobian(*at) for at in ((0.5, 0.0), (0.5, 0.5), (0.0, 0.5)))
+        return float(sum(np.linalg.det(j).sum() for j in jacobians) / 6.0)
+
+    def jacobian(self, xi: float, eta: float) -> Array:
+        """Derivatives (m, 2, 2) of position by the reference coordinates (xi, eta), m.
+
+        Entry [k, i, j] is component i by coordinate j; corners are (0, 0), (1, 0), (0, 1).
+        """
+        a, b, c, ab, bc, ca = (self.points[:, row] for row in self.triangles)
+        rest = 1.0 - xi - eta
+        by_xi = (4 * xi - 1) * b - (4 * rest - 1) * a + 4 * (rest - xi) * ab + 4 * eta * (bc - ca)
+        by_eta = (4 * eta - 1) * c - (4 * rest - 1) * a + 4 * (rest - eta) * ca + 4 * xi * (bc - ab)
+        return np.stack([by_xi, by_eta]).transpose(2, 1, 0)
+
+    def facet_triples(self, name: str) -> Index:
+        """Facets (3, k) of a boundary: start, end and middle node.
+
+        Raises
+        ------
+        MeshError
+            If the body has no boundary of that name.
+        """
+        if name not in self.boundaries:
+            raise MeshError(f"boundary '{name}', must be one of {', '.join(self.boundaries)}")
+        return self.boundaries[name]
+
+    def boundary_nodes(self, name: str) -> Index:
+        """Numbers of all nodes of a boundary, ascending."""
+        return np.unique(self.facet_triples(name))
+
+    def transformed(self, angle: float, shift: ArrayLike) -> BodyMesh:
+        """The body turned by `angle` (rad) about the origin, then moved by `shift` (2,), m."""
+        cosine, sine = np.cos(angle), np.sin(angle)
+        turn = np.array([[cosine, -sine], [sine, cosine]])
+        return replace(self, points=turn @ self.points + finite("shift", shift)[:, None])
+
+    def to_skfem(self) -> Any:
+        """The mesh as ``skfem.MeshTri2``: same elements in the same order, facets by name.
+
+        Vertices keep their numbers. Middles need not; `dof_map` tells which is which.
+
+        ``skfem.FacetBasis`` inverts the curved mapping to 1e-12 of a facet, which round-off
+        allows only where coordinates are below some 1000 facet lengths. Move the contact to the
+        origin first (`transformed`), or integrate along `facet_triples`.
+        """
+        from skfem import MeshTri2
+
+        mesh = MeshTri2(
+            np.ascontiguousarray(self.points), np.ascontiguousarray(self.triangles, dtype=np.int32)
+        )
+        count = self.corners
+        keys = mesh.facets.min(axis=0).astype(np.int64) * count + mesh.facets.max(axis=0)
+        order = np.argsort(keys)
+        named = {}
+        for name, (start, end, _) in self.boundaries.items():
+            wanted = np.minimum(start, end) * count + np.maximum(start, end)
+            named[name] = order[np.searchsorted(keys, wanted, sorter=order)].astype(np.int32)
+        return mesh.with_boundaries(named)
+
+    def dof_map(self, basis: Any) -> NDArray[np.int64]:
+        """Degrees of freedom (2, n) of the x and y components at every node.
+
+        `basis` is any basis of ``ElementVector(ElementTriP2())`` on the mesh of `to_skfem`.
+        A solution ``u`` is ``u[mesh.dof_map(basis)]``, (2, n), at the nodes of this mesh.
+        """
+        rows = basis.dofs.element_dofs
+        if rows.shape != (12, self.triangles.shape[1]):
+            raise MeshError(
+                f"degrees of freedom = {rows.shape}, "
+                f"must be (12, {self.triangles.shape[1]}): a vector P2 basis of this mesh"
+            )
+        dofs = np.empty((2, self.points.shape[1]), dtype=np.int64)
+        for k, nodes in enumerate(self.triangles):
+            dofs[:, nodes] = rows[2 * k : 2 * k + 2]
+        return dofs
+
+
+def _index(values: ArrayLike, rows: int, points: Array) -> Index:
+    """`values` as read-only node numbers (rows, k) of `points`."""
+    array = np.array(values, dtype=np.int64)
+    if array.ndim != 2 or array.shape[0] != rows or array.shape[1] == 0:
+        raise MeshError(f"node numbers of a mesh = {array.shape}, must be ({rows}, k)")
+    if array.min() < 0 or array.max() >= points.shape[1]:
+        raise MeshError(f"node number of a mesh = {array.max()}, must be in 0..{points.shape[1]}")
+    array.setflags(write=False)
+    return array
+
+
+def _body(mesh: Triangulation) -> BodyMesh:
+    return BodyMesh(mesh.points, mesh.triangles, mesh.boundaries)
+
+
+def _discretised(loops: list[list[Piece]], size: SizeField) -> list[list[Facets]]:
+    return [[facets(piece, size) for piece in loop] for loop in loops]
+
+
+def _zone(sizing: Sizing, centre: float) -> Zone | None:
+    """Equal facets about an arc length, shifted by the phase; None without a contact."""
+    if sizing.contact_size is None or not sizing.refined:
+        return None
+    step = sizing.contact_size
+    return Zone(centre + sizing.phase * step, step, sizing.steps)
+
+
+def roller_mesh(radius: float, hub_radius: float, contact_angle: float, sizing: Sizing) -> BodyMesh:
+    """A roller centred on the origin, fine at the rim point at `contact_angle`.
+
+    Parameters
+    ----------
+    radius, hub_radius : float    outer radius and radius of the hole, m; 0 makes a full disc
+    contact_angle : float         where the contact is, rad; sets ``sizing.contact_point``
+    sizing : Sizing
+
+    Returns
+    -------
+    BodyMesh
+        With boundaries "rim" and, if there is a hole, "hub".
+
+    Raises
+    ------
+    InputError
+        If a radius is out of bounds.
+    MeshError
+        If the region cannot be meshed.
+    """
+    positive("roller.radius", radius, "m")
+    if not 0 <= hub_radius < 0.99 * radius:
+        raise InputError("roller.hub_radius", hub_radius, f"in 0..{0.99 * radius:g} m")
+    direction = np.array([np.cos(contact_angle), np.sin(contact_angle)])
+    sizing = replace(sizing, contact_point=radius * direction)
+    size = sizing.field().capped(2 * np.pi * radius / EDGES_PER_TURN)
+    turn = 2 * np.pi
+    loops = [[arc("rim", radius, contact_angle, contact_angle + turn, zone=_zone(sizing, 0.0))]]
+    if hub_radius > 0:
+        size = size.with_spot((0.0, 0.0), turn * hub_radius / EDGES_PER_TURN, hub_radius)
+        size = size.capped(radius - hub_radius)
+        loops.append([arc("hub", hub_radius, turn, 0.0)])
+    return _body(triangulate(_discretised(loops, size), size))
+
+
+def block_mesh(width: float, depth: float, sizing: Sizing) -> BodyMesh:
+    """A rectangle [-width/2, width/2] x [-depth, 0], fine at ``sizing.contact_point``.
+
+    Returns
+    -------
+    BodyMesh
+        With boundaries "top" (y = 0), "bottom", "left" and "right".
+
+    Raises
+    ------
+    InputError
+        If a length is not positive, or the contact is not on the top.
+    """
+    positive("block.width", width, "m")
+    positive("block.depth", depth, "m")
+    half = 0.5 * width
+    back = [line("bottom", np.array([-half, -depth]), np.array([half, -depth]))]
+    return _rectangle(width, depth, back, sizing)
+
+
+def face_mesh(width: float, thickness: float, stem_diameter: float, sizing: Sizing) -> BodyMesh:
+    """The block of a flat face on its stem, as a block whose back tells where the stem stands.
+
+    Returns
+    -------
+    BodyMesh
+        With boundaries "top", "left", "right", "stem" and, where the stem is not as wide as
+        the face, "back_left" and "back_right".
+
+    Raises
+    ------
+    InputError
+        If a length is not positive, or the contact is not on the top.
+    """
+    positive("follower.face.width", width, "m")
+    positive("follower.face.thickness", thickness, "m")
+    positive("follower.stem_diameter", stem_diameter, "m")
+    half, stem = 0.5 * width, 0.5 * min(stem_diameter, width)
+    places = [(x, -thickness) for x in (-half, -stem, stem, half)]
+    names = ("back_left", "stem", "back_right")
+    back = [
+        line(name, np.array(start), np.array(end))
+        for name, start, end in zip(names, places[:-1], places[1:], strict=True)
+        if start != end
+    ]
+    return _rectangle(width, thickness, back, sizing)
+
+
+def _rectangle(width: float, depth: float, back: list[Piece], sizing: Sizing) -> BodyMesh:
+    """[-width/2, width/2] x [-depth, 0] with a back of pieces from left to right."""
+    half = 0.5 * width
+    zone = None
+    if sizing.contact_point is not None:
+        x, y = sizing.contact_point
+        if not (abs(x) < half and abs(y) <= 1e-9 * width):
+            raise InputError("sizing.contact_point", f"({x:g}, {y:g})", "on the top of the block")
+        zone = _zone(sizing, half - x)
+    a, b, c, d = np.array([[-half, -depth], [half, -depth], [half, 0.0], [-half, 0.0]])
+    size = sizing.field().capped(0.5 * min(width, depth))
+    loop = [*back, line("right", b, c), line("top", c, d, zone), line("left", d, a)]
+    return _body(triangulate(_discretised([loop], size), size))
+
+
+def half_disc_mesh(radius: float, sizing: Sizing) -> BodyMesh:
+    """The half disc y <= 0 about the origin, fine at the origin: a contact patch.
+
+    One quarter is meshed and mirrored, so the mesh is symmetric about x = 0 to the last bit.
+
+    Returns
+    -------
+    BodyMesh
+        With boundaries "top" (y = 0) and "arc".
+
+    Raises
+    ------
+    InputError
+        If the radius is not positive, or ``sizing.phase`` is not 0: a shift would break
+        the symmetry.
+    """
+    positive("patch.radius", radius, "m")
+    if sizing.phase != 0:
+        raise InputError("sizing.phase", sizing.phase, "0 for a symmetric patch")
+    sizing = replace(sizing, contact_point=np.zeros(2))
+    size = sizing.field().capped(2 * np.pi * radius / EDGES_PER_TURN)
+    origin, right, below = np.array([[0.0, 0.0], [radius, 0.0], [0.0, -radius]])
+    quarter = [
+        line("axis", origin, below, _zone(sizing, 0.0)),
+        arc("arc", radius, -0.5 * np.pi, 0.0),
+        line("top", right, origin, _zone(sizing, radius)),
+    ]
+    return _mirrored(triangulate(_discretised([quarter], size), size), "axis")
+
+
+def _mirrored(half: Triangulation, axis: str) -> BodyMesh:
+    """`half` (x >= 0) and its image in x = 0, joined at the nodes of boundary `axis`."""
+    shared = np.unique(half.boundaries[axis])
+    count, corners = half.points.shape[1], int(half.triangles[:3].max()) + 1
+    own = np.setdiff1d(np.arange(count), shared)
+    new_corners = int((own < corners).sum())
+    # Middles of the half make room for the image's corners.
+    kept = np.arange(count) + np.where(np.arange(count) < corners, 0, new_corners)
+    image = kept.copy()
+    image[own[:new_corners]] = corners + np.arange(new_corners)
+    image[own[new_corners:]] = count + np.arange(new_corners, own.size)
+    points = np.empty((2, count + own.size))
+    points[:, image] = half.points * [[-1.0], [1.0]]
+    points[:, kept] = half.points
+    points[0, kept[shared]] = 0.0
+    triangles = np.hstack([kept[half.triangles], image[half.triangles[[0, 2, 1, 5, 4, 3]]]])
+    boundaries = {}
+    for name, facet in half.boundaries.items():
+        if name != axis:
+            turned = image[facet[[1, 0, 2], ::-1]]
+            parts = [kept[facet], turned]
+            # Facets follow one another: the half that ends on the axis comes first.
+            boundaries[name] = np.hstack(parts if facet[1, -1] in shared else parts[::-1])
+    return BodyMesh(points, triangles, boundaries)
+
+
+def cam_mesh(
+    contour: ContourLike,
+    bore_radius: float,
+    keyway: KeywayLike | None,
+    sizing: Sizing,
+    counter_hole: HoleLike | None = None,
+) -> BodyMesh:
+    """A cam, fine at the contact point on its contour.
+
+    Parameters
+    ----------
+    contour : ContourLike           ``points(theta)``, ``normal(theta)``, ``curvature(theta)``
+    bore_radius : float             m, bore centred on the origin
+    keyway : KeywayLike or None     slot into the bore: width, depth (m), angle (rad)
+    sizing : Sizing
+    counter_hole : HoleLike or None   round hole clear of bore and contour
+
+    Returns
+    -------
+    BodyMesh
+        With boundaries "contour", "bore" and, if there is one, "keyway" and "counter_hole".
+        Corners and middles of "contour" lie on the contour itself.
+
+    Raises
+    ------
+    InputError
+        If a dimension is out of bounds or the contact point is not on the contour.
+    GeometryError
+        If the contour is undercut or crosses itself, or bore, keyway or hole reach it.
+    MeshError
+        If the region cannot be meshed.
+    """
+    hole = hole_pieces(bore_radius, keyway)
+    path = trace(contour)
+    size = cam_size(path, bore_radius, keyway, sizing)
+    loops = [[contour_piece(path, sizing)], hole]
+    if counter_hole is not None:
+        size = hole_size(size, path, counter_hole)
+        x, y = counter_hole.centre.tolist()
+        turn = 2 * np.pi
+        loops.append([arc("counter_hole", counter_hole.radius, turn, 0.0, (x, y))])
+    return _body(triangulate(_discretised(loops, size), size))

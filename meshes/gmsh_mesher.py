@@ -1,0 +1,227 @@
+"""Triangles between outlines: the one place that names gmsh."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import GeometryError, MeshError
+from camwright.meshes.element_size import MILLIMETRE, SizeField
+from camwright.meshes.outline import Facets, crossing
+
+Index = NDArray[np.int64]
+
+# Everything that could change a mesh is said here, so that no configuration file,
+# environment or earlier user of the library has a say.
+_OPTIONS = {
+    "General.Terminal": 0,
+    "General.NumThreads": 1,
+    "Mesh.Binary": 0,
+    "Mesh.MshFileVersion": 4.1,
+    "Mesh.SaveAll": 0,
+    "Mesh.Algorithm": 6,  # frontal-Delaunay: the best angles of those tried
+    "Mesh.AlgorithmSwitchOnFailure": 0,
+    "Mesh.ElementOrder": 1,
+    "Mesh.MaxNumThreads1D": 1,
+    "Mesh.MaxNumThreads2D": 1,
+    "Mesh.MeshSizeExtendFromBoundary": 0,
+    "Mesh.MeshSizeFactor": 1,
+    "Mesh.MeshSizeFromCurvature": 0,
+    "Mesh.MeshSizeFromPoints": 0,
+    "Mesh.MeshSizeMax": 1e22,
+    "Mesh.MeshSizeMin": 0,
+    "Mesh.RandomFactor": 1e-9,
+    "Mesh.RandomSeed": 1,
+    "Mesh.Renumber": 0,  # outline nodes keep the numbers given to them
+    "Mesh.RecombineAll": 0,
+    "Mesh.Smoothing": 1,
+}
+
+
+@contextmanager
+def session() -> Iterator[ModuleType]:
+    """A gmsh with an empty model of its own and known options.
+
+    Where gmsh runs already, its options and current model are given back afterwards and it
+    keeps running; otherwise it ends here.
+    """
+    import gmsh
+
+    running = bool(gmsh.isInitialized())
+    if not running:
+        gmsh.initialize(readConfigFiles=False, interruptible=False)
+    kept_options = {option: gmsh.option.getNumber(option) for option in _OPTIONS}
+    kept_model = gmsh.model.getCurrent()
+    own_model = f"camwright {len(gmsh.model.list())}"
+    try:
+        for option, value in _OPTIONS.items():
+            gmsh.option.setNumber(option, value)
+        gmsh.model.add(own_model)
+        yield gmsh
+    finally:
+        if running:
+            gmsh.model.setCurrent(own_model)
+            gmsh.model.remove()
+            for option, value in kept_options.items():
+                gmsh.option.setNumber(option, value)
+            if kept_model in gmsh.model.list():
+                gmsh.model.setCurrent(kept_model)
+        else:
+            gmsh.finalize()
+
+
+@dataclass(frozen=True, eq=False)
+class Triangulation:
+    """Quadratic triangles: points (2, n) m, triangles (6, m), boundaries by name (3, k)."""
+
+    points: Array
+    triangles: Index
+    boundaries: Mapping[str, Index]
+
+
+def triangulate(loops: Sequence[Sequence[Facets]], size: SizeField) -> Triangulation:
+    """Quadratic triangles filling the region left of the `loops`, the outer one first.
+
+    Nodes are numbered corners first (those on the outline in its order), then middles.
+
+    Raises
+    ------
+    GeometryError
+        If the outline crosses itself.
+    MeshError
+        If gmsh cannot fill the region.
+    """
+    corners, rings = _ring_nodes(loops)
+    following = np.hstack([np.roll(ring, -1) for ring in rings])
+    crossed = crossing(corners, corners[:, following])
+    if crossed is not None:  # gmsh would search for ever
+        x, y = crossed / MILLIMETRE
+        raise GeometryError(f"outline crosses itself at ({x:.3f}, {y:.3f}) mm, cannot be meshed")
+    try:
+        with session() as gmsh:
+            points, triangles = _fill(gmsh, corners, rings, size)
+    except MeshError:
+        raise
+    except Exception as error:
+        raise MeshError(f"gmsh could not mesh the outline: {_one_line(error)}") from error
+    named = _named_edges(loops, rings)
+    return _quadratic(points, triangles, named)
+
+
+def _ring_nodes(loops: Sequence[Sequence[Facets]]) -> tuple[Array, list[Index]]:
+    """Distinct outline points (2, n) and, for every loop, their numbers in order."""
+    rings, blocks, first = [], [], 0
+    for loop in loops:
+        ring = np.hstack([piece.ends[:, :-1] for piece in loop])
+        rings.append(np.arange(first, first + ring.shape[1]))
+        blocks.append(ring)
+        first += ring.shape[1]
+    return np.hstack(blocks), rings
+
+
+def _fill(
+    gmsh: ModuleType, corners: Array, rings: Sequence[Index], size: SizeField
+) -> tuple[Array, Index]:
+    """Linear triangles between closed rings of corners: points (2, n) m, triangles (3, m)."""
+    model = gmsh.model
+    scaled = np.vstack([corners / MILLIMETRE, np.zeros(corners.shape[1])])
+    curves = []
+    for ring in rings:
+        first = scaled[:, ring[0]]
+        vertex = model.addDiscreteEntity(0)
+        model.setCoordinates(vertex, *first)
+        curve = model.addDiscreteEntity(1, -1, [vertex, vertex])
+        model.mesh.addNodes(0, vertex, [ring[0] + 1], first)
+        model.mesh.addNodes(1, curve, ring[1:] + 1, scaled[:, ring[1:]].T.ravel())
+        model.mesh.addElementsByType(vertex, 15, [], [ring[0] + 1])
+        ends = np.column_stack([ring, np.roll(ring, -1)]) + 1
+        model.mesh.addElementsByType(curve, 1, [], ends.ravel())
+        curves.append(curve)
+    model.geo.addPlaneSurface([model.geo.addCurveLoop([curve]) for curve in curves])
+    model.geo.synchronize()
+    _impose(gmsh, size)
+    model.mesh.generate(2)
+    tags, coordinates, _ = model.mesh.getNodes()
+    _, connectivity = model.mesh.getElementsByType(2)
+    order = np.argsort(tags)
+    known, fixed = tags[order].astype(np.int64), corners.shape[1]
+    if not connectivity.size or not np.array_equal(known[:fixed], np.arange(1, fixed + 1)):
+        raise MeshError("gmsh left the region empty or lost nodes of the outline")
+    points = coordinates.reshape(-1, 3)[order, :2].T * MILLIMETRE
+    points[:, :fixed] = corners  # bit for bit, free of the change of unit
+    triangles = np.searchsorted(known, connectivity.astype(np.int64)).reshape(-1, 3).T
+    return points, _counter_clockwise(points, triangles)
+
+
+def _impose(gmsh: ModuleType, size: SizeField) -> None:
+    """Make `size` the only rule for the size of elements."""
+    fields = gmsh.model.mesh.field
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size.far_size / MILLIMETRE)
+    rules = []
+    for formula in size.formulas():
+        rules.append(fields.add("MathEval"))
+        fields.setString(rules[-1], "F", formula)
+    if rules:
+        least = fields.add("Min")
+        fields.setNumbers(least, "FieldsList", rules)
+        fields.setAsBackgroundMesh(least)
+
+
+def _counter_clockwise(points: Array, triangles: Index) -> Index:
+    """`triangles` (3, m) with clockwise ones turned round."""
+    a, b, c = (points[:, triangles[k]] for k in range(3))
+    clockwise = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) < 0
+    turned = triangles.copy()
+    turned[1, clockwise], turned[2, clockwise] = triangles[2, clockwise], triangles[1, clockwise]
+    return turned
+
+
+def _named_edges(
+    loops: Sequence[Sequence[Facets]], rings: Sequence[Index]
+) -> list[tuple[str, Index, Array]]:
+    """For every piece its name, edges (2, k) as node numbers, and edge middles (2, k)."""
+    named = []
+    for loop, ring in zip(loops, rings, strict=True):
+        ends = np.vstack([ring, np.roll(ring, -1)])
+        start = 0
+        for piece in loop:
+            stop = start + piece.middles.shape[1]
+            named.append((piece.name, ends[:, start:stop], piece.middles))
+            start = stop
+    return named
+
+
+def _quadratic(
+    points: Array, triangles: Index, named: Sequence[tuple[str, Index, Array]]
+) -> Triangulation:
+    """Quadratic triangles from linear ones: middles of outline edges on the curve itself."""
+    count = points.shape[1]
+    sides = np.stack([triangles, np.roll(triangles, -1, axis=0)])  # 01, 12, 20
+    keys = sides.min(axis=0) * count + sides.max(axis=0)
+    edges, number = np.unique(keys, return_inverse=True)
+    number = number.reshape(keys.shape)
+    low, high = np.divmod(edges, count)
+    middles = 0.5 * (points[:, low] + points[:, high])
+    boundaries: dict[str, list[Index]] = {}
+    for name, ends, on_curve in named:
+        key = ends.min(axis=0) * count + ends.max(axis=0)
+        place = np.minimum(np.searchsorted(edges, key), edges.size - 1)
+        if not np.array_equal(edges[place], key):
+            raise MeshError(f"gmsh changed the facets of '{name}'")
+        middles[:, place] = on_curve
+        boundaries.setdefault(name, []).append(np.vstack([ends, count + place]))
+    return Triangulation(
+        np.hstack([points, middles]),
+        np.vstack([triangles, count + number]),
+        {name: np.hstack(parts) for name, parts in boundaries.items()},
+    )
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).split())

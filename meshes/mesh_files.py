@@ -1,0 +1,233 @@
+"""Mesh and field files: gmsh's MSH, VTK's VTU and PVD. Lengths in them are millimetres."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import MeshError, ResultError
+from camwright.meshes.body_mesh import BodyMesh
+from camwright.meshes.element_size import MILLIMETRE
+from camwright.meshes.gmsh_mesher import Index, session
+from camwright.meshes.vtu import QUAD, QUADRATIC_TRIANGLE, Grid, vtu
+
+UNITS = "units_mm_N_MPa"
+"""Name of the field data by which every VTU file says its units."""
+
+_LINE3, _TRIANGLE6 = 8, 9  # gmsh's element types
+
+Fields = Mapping[str, ArrayLike]
+
+
+def write_msh(path: str | Path, meshes: Mapping[str, BodyMesh]) -> None:
+    """Write bodies to one gmsh file, format 4.1, second order.
+
+    Physical names are the body's for its triangles and ``body_boundary`` for its facets, such
+    as ``cam`` and ``cam_contour``.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be written; one already there is left as it was.
+    """
+    with replacing(path) as temporary, session() as gmsh:
+        first = 1
+        for name, mesh in meshes.items():
+            _add_body(gmsh, name, mesh, first)
+            first += mesh.points.shape[1]
+        gmsh.write(str(temporary))
+        if not temporary.read_bytes().endswith(b"$EndElements\n"):  # gmsh ignores a full disk
+            raise OSError("file was cut short")
+
+
+def _add_body(gmsh: ModuleType, name: str, mesh: BodyMesh, first: int) -> None:
+    """Add `mesh` to the current model, its nodes numbered from `first`."""
+    model = gmsh.model
+    coordinates = np.vstack([mesh.points / MILLIMETRE, np.zeros(mesh.points.shape[1])])
+    free = np.ones(mesh.points.shape[1], dtype=bool)
+
+    def classify(dimension: int, entity: int, nodes: Index) -> None:
+        model.mesh.addNodes(dimension, entity, nodes + first, coordinates[:, nodes].T.ravel())
+
+    curves = []
+    for boundary, facets in mesh.boundaries.items():
+        curve = model.addDiscreteEntity(1)
+        nodes = np.unique(facets)
+        classify(1, curve, nodes[free[nodes]])
+        free[nodes] = False
+        model.mesh.addElementsByType(curve, _LINE3, [], (facets + first).T.ravel())
+        model.addPhysicalGroup(1, [curve], name=f"{name}_{boundary}")
+        curves.append(curve)
+    surface = model.addDiscreteEntity(2, -1, curves)
+    classify(2, surface, np.flatnonzero(free))
+    model.mesh.addElementsByType(surface, _TRIANGLE6, [], (mesh.triangles + first).T.ravel())
+    model.addPhysicalGroup(2, [surface], name=name)
+
+
+def write_vtu(
+    path: str | Path,
+    meshes: BodyMesh | Mapping[str, BodyMesh],
+    point_data: Fields | Mapping[str, Fields] | None = None,
+    field_data: Mapping[str, float] | None = None,
+) -> None:
+    """Write bodies with fields as quadratic triangles for ParaView.
+
+    Parameters
+    ----------
+    path
+    meshes : BodyMesh or mapping    one body, or bodies by name
+    point_data : mapping            field name, unit included -> (n,) or (c, n) at the nodes; for
+                                    several bodies one such mapping per body name, same fields
+                                    in each. A vector (2, n) gets a third component 0.
+    field_data : mapping            numbers that belong to the file as a whole; its units are
+                                    always named there
+
+    With several bodies, cell and point data ``body`` number them from 0.
+
+    Raises
+    ------
+    MeshError
+        If a field does not fit its mesh.
+    ResultError
+        If the file cannot be written; one already there is left as it was.
+    """
+    bodies: Mapping[str, BodyMesh]
+    data: Mapping[str, Any]
+    if isinstance(meshes, BodyMesh):
+        bodies, data = {"": meshes}, {"": point_data or {}}
+    else:
+        bodies, data = meshes, point_data or {name: {} for name in meshes}
+    if data.keys() != bodies.keys():
+        raise MeshError(f"fields of bodies {sorted(data)}, must be of {sorted(bodies)}")
+    starts = np.cumsum([0, *(mesh.points.shape[1] for mesh in bodies.values())])
+    points = np.hstack([mesh.points for mesh in bodies.values()]) / MILLIMETRE
+    shifted = [m.triangles.T + s for m, s in zip(bodies.values(), starts, strict=False)]
+    fields = _joined(bodies, data)
+    cell_data = {}
+    if len(bodies) > 1:
+        fields["body"] = np.repeat(np.arange(len(bodies)), np.diff(starts))
+        cell_data["body"] = np.repeat(np.arange(len(bodies)), [len(s) for s in shifted])
+    grid = Grid(
+        _in_space(points),
+        np.vstack(shifted),
+        QUADRATIC_TRIANGLE,
+        fields,
+        cell_data,
+        {UNITS: 1.0, **(field_data or {})},
+    )
+    _write_grid(path, grid)
+
+
+def write_sheet(
+    path: str | Path,
+    points: Array,
+    point_data: Fields,
+    field_data: Mapping[str, float] | None = None,
+) -> None:
+    """Write a sheet that closes on itself as quadrilaterals for ParaView.
+
+    Parameters
+    ----------
+    path
+    points : (2, n, k)           m; rows follow one another, the last joins the first
+    point_data : mapping         field name, unit included -> (n, k)
+    field_data : mapping         as for `write_vtu`
+
+    Raises
+    ------
+    MeshError
+        If a field does not fit the points.
+    ResultError
+        If the file cannot be written; one already there is left as it was.
+    """
+    rows, columns = points.shape[1:]
+    for name, values in point_data.items():
+        if np.shape(values) != (rows, columns):
+            raise MeshError(f"field '{name}' = {np.shape(values)}, must be {(rows, columns)}")
+    number = np.arange(rows * columns).reshape(rows, columns)
+    here, there = number, np.roll(number, -1, axis=0)
+    corners = [here[:, :-1], here[:, 1:], there[:, 1:], there[:, :-1]]
+    grid = Grid(
+        _in_space(points.reshape(2, -1) / MILLIMETRE),
+        np.stack(corners, axis=-1).reshape(-1, 4),
+        QUAD,
+        {name: np.asarray(values, dtype=float).ravel() for name, values in point_data.items()},
+        {},
+        {UNITS: 1.0, **(field_data or {})},
+    )
+    _write_grid(path, grid)
+
+
+def _in_space(points: Array) -> Array:
+    return np.column_stack([points.T, np.zeros(points.shape[1])])
+
+
+def _write_grid(path: str | Path, grid: Grid) -> None:
+    with replacing(path) as temporary:
+        temporary.write_bytes(vtu(grid))
+
+
+def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Any]) -> dict[str, Any]:
+    """Fields of all bodies one after the other, points first as the file wants them."""
+    names = list(next(iter(data.values())))
+    parts: dict[str, list[Array]] = {name: [] for name in names}
+    for body, mesh in bodies.items():
+        if set(data[body]) != set(names):
+            raise MeshError(f"fields of '{body}' = {sorted(data[body])}, must be {sorted(names)}")
+        for name in names:
+            values = np.asarray(data[body][name], dtype=float)
+            if values.ndim not in (1, 2) or values.shape[-1] != mesh.points.shape[1]:
+                raise MeshError(
+                    f"field '{name}' = {values.shape}, "
+                    f"must be (n,) or (c, n) with n = {mesh.points.shape[1]} nodes"
+                )
+            if values.shape[0] == 2 and values.ndim == 2:
+                values = np.vstack([values, np.zeros(values.shape[1])])
+            parts[name].append(values.T)
+    return {name: np.concatenate(values) for name, values in parts.items()}
+
+
+def write_pvd(path: str | Path, entries: Iterable[tuple[float, str | Path]]) -> None:
+    """Write a ParaView collection: `entries` are (time, file relative to the collection).
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be written; one already there is left as it was.
+    """
+    rows = "".join(
+        f'    <DataSet timestep="{float(time)!r}" part="0" '
+        f"file={quoteattr(Path(file).as_posix())}/>\n"
+        for time, file in entries
+    )
+    with replacing(path) as temporary:
+        temporary.write_text(
+            '<?xml version="1.0"?>\n'
+            '<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
+            f"  <Collection>\n{rows}  </Collection>\n</VTKFile>\n",
+            encoding="utf-8",
+        )
+
+
+@contextmanager
+def replacing(path: str | Path) -> Iterator[Path]:
+    """A name beside `path` to write to, which takes its place when all went well."""
+    path = Path(path)
+    temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    try:
+        temporary.touch()
+        yield temporary
+        temporary.replace(path)
+    except OSError as error:
+        raise ResultError(f"cannot write {path}: {error.strerror or error}") from error
+    finally:
+        temporary.unlink(missing_ok=True)

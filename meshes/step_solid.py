@@ -1,0 +1,119 @@
+"""The cam as a solid, extruded with its bore, keyway and hole, for CAD programs."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, positive
+from camwright.geometry.cad_drawing import Outline, clamped_spline, keyway_corners
+from camwright.geometry.errors import GeometryError, MeshError, ResultError
+from camwright.meshes.element_size import MILLIMETRE
+from camwright.meshes.gmsh_mesher import session
+
+_STEP_ERROR = 1e-8  # m; gmsh's kernel keeps shapes to 1e-7 mm, finer would only swell the file
+_PIECES = 8
+"""Of the contour; over longer splines the kernel's own areas are off by more than a millionth."""
+
+
+def write_step(path: Path, outline: Outline, width: float) -> None:
+    """Write the cam as one solid, from z = 0 to its width, in millimetres.
+
+    Raises
+    ------
+    GeometryError
+        If the contour is undercut.
+    MeshError
+        If the solid kernel refuses the outline.
+    ResultError
+        If the file cannot be written.
+    """
+    positive("cam.width", width, "m")
+    if outline.contour.undercut().found:
+        raise GeometryError("the contour is undercut, it bounds no solid")
+    try:
+        with session() as gmsh:
+            occ = gmsh.model.occ
+            outer = occ.addCurveLoop(_contour_curves(occ, outline))
+            hole = occ.addCurveLoop(_hole_curves(occ, outline))
+            face = occ.addPlaneSurface([outer, hole, *_counter_hole(occ, outline)])
+            occ.extrude([(2, face)], 0.0, 0.0, width / MILLIMETRE)
+            occ.synchronize()
+            with _unheard():
+                gmsh.write(str(path))
+    except (GeometryError, MeshError):
+        raise
+    except Exception as error:
+        raise MeshError(
+            f"the cam cannot be made a solid: {' '.join(str(error).split())}"
+        ) from error
+    if not path.is_file() or b"END-ISO-10303-21" not in path.read_bytes()[-200:]:
+        raise ResultError(f"{path}: the solid was not written whole")
+
+
+def _contour_curves(occ: ModuleType, outline: Outline) -> list[int]:
+    """The contour as splines over equal parts of the turn, which share their end points."""
+    seams = np.linspace(0.0, FULL_TURN, _PIECES + 1)
+    corners = (outline.contour.points(seams[:-1]) / MILLIMETRE).T.tolist()
+    ends = [occ.addPoint(x, y, 0.0) for x, y in corners]
+    curves = []
+    for k in range(_PIECES):
+        spline = clamped_spline(outline.contour, _STEP_ERROR, seams[k], seams[k + 1])
+        inner = [occ.addPoint(x, y, 0.0) for x, y in (spline.c[1:-1] / MILLIMETRE).tolist()]
+        knots, repeats = np.unique(spline.t, return_counts=True)
+        curves.append(
+            occ.addBSpline(
+                [ends[k], *inner, ends[(k + 1) % _PIECES]],
+                degree=spline.k,
+                knots=knots.tolist(),
+                multiplicities=repeats.tolist(),
+            )
+        )
+    return curves
+
+
+def _hole_curves(occ: ModuleType, outline: Outline) -> list[int]:
+    radius = outline.bore_radius / MILLIMETRE
+    if outline.keyway is None:
+        return [occ.addCircle(0.0, 0.0, 0.0, radius)]
+    corners = keyway_corners(outline.bore_radius, outline.keyway) / MILLIMETRE
+    points = [occ.addPoint(x, y, 0.0) for x, y in corners.T.tolist()]
+    sides = [occ.addLine(points[k], points[k + 1]) for k in range(3)]
+    # the bore in two arcs: the kernel takes none of half a turn or more
+    centre = occ.addPoint(0.0, 0.0, 0.0)
+    back = -corners.mean(axis=1) / np.hypot(*corners.mean(axis=1)) * radius
+    far = occ.addPoint(back[0], back[1], 0.0)
+    arcs = [
+        occ.addCircleArc(points[3], centre, far),
+        occ.addCircleArc(far, centre, points[0]),
+    ]
+    return [*sides, *arcs]
+
+
+def _counter_hole(occ: ModuleType, outline: Outline) -> list[int]:
+    """The loop of the hole against unbalance, where there is one."""
+    if outline.counter_hole is None:
+        return []
+    x, y = (outline.counter_hole.centre / MILLIMETRE).tolist()
+    return [occ.addCurveLoop([occ.addCircle(x, y, 0.0, outline.counter_hole.radius / MILLIMETRE)])]
+
+
+@contextmanager
+def _unheard() -> Iterator[None]:
+    """The standard output shut: the solid kernel talks past every option, and past Python."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    shut = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(shut, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(shut)
+        os.close(kept)

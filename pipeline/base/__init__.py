@@ -1,0 +1,1 @@
+"""Units, quantities, tables, files, disk cache, worker processes, progress."""

@@ -1,0 +1,132 @@
+"""Files read with care and written whole or not at all."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.errors import InputError, ResultError
+
+
+def inside(folder: Path, name: str, field: str) -> Path:
+    """The file `name` under `folder`; refuses every way out of it, links too.
+
+    Raises
+    ------
+    InputError
+        If the name leaves the folder or cannot be one.
+    """
+    limit = "a relative path that stays in the case file's folder"
+    path = Path(name)
+    if path.is_absolute() or ".." in path.parts or "\\" in name or ":" in name:
+        raise InputError(field, name, limit)
+    try:
+        resolved = (folder / path).resolve()
+    except (OSError, ValueError, RuntimeError):
+        raise InputError(field, name, "a readable file") from None
+    if not resolved.is_relative_to(folder.resolve()):
+        raise InputError(field, name, limit)
+    return resolved
+
+
+def read_toml(path: Path, field: str, most: int) -> dict[str, Any]:
+    """The tables of a file of at most `most` bytes.
+
+    Raises
+    ------
+    InputError
+        Naming `field`, for a file that is larger, cannot be read, is nested too deeply or is no
+        TOML in UTF-8.
+    """
+    try:
+        if path.stat().st_size > most:
+            raise InputError(field, "larger", f"at most {most // 1024} KiB")
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except RecursionError:
+        raise InputError(field, "nested too deeply", "a few tables deep") from None
+    except (OSError, ValueError) as error:  # UnicodeDecodeError and TOMLDecodeError alike
+        reason = " ".join(str(error).split())
+        raise InputError(field, reason, "a readable TOML file") from None
+
+
+def write_atomic(path: Path, content: bytes | str) -> Path:
+    """Write a file whole or not at all; missing parent folders are made.
+
+    Raises
+    ------
+    ResultError
+        If it cannot be written, such as on a full disk.
+    """
+    data = content.encode() if isinstance(content, str) else content
+    temporary = None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(prefix=".", suffix=".tmp", dir=path.parent)
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except OSError as error:
+        raise ResultError(f"{path}: {error.strerror or error}") from None
+    finally:
+        if temporary is not None:
+            Path(temporary).unlink(missing_ok=True)
+    return path
+
+
+def hash_inputs(case_text: str, included: Mapping[str, bytes]) -> str:
+    """Hash of the resolved case text and the bytes of its included files."""
+    digest = hashlib.sha256(case_text.encode())
+    for name, content in sorted(included.items()):
+        digest.update(f"\0{name}\0{len(content)}\0".encode())
+        digest.update(content)
+    return digest.hexdigest()
+
+
+def read_text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
+        raise ResultError(f"{path}: {reason}") from None
+
+
+def read_json(path: Path) -> Any:
+    try:
+        return json.loads(read_text(path), parse_constant=_no_constant)
+    except (ValueError, RecursionError) as error:
+        raise ResultError(f"{path}: not JSON ({' '.join(str(error).split())})") from None
+
+
+def json_text(value: object) -> str:
+    """JSON with numpy numbers taken in; NaN and infinity are refused, null says missing."""
+    try:
+        return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=_plain)
+    except (TypeError, ValueError) as error:
+        raise ResultError(f"a record cannot be written: {error}") from None
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return dict(value)
+    raise TypeError(f"{type(value).__name__} has no place in JSON")
+
+
+def _no_constant(name: str) -> float:
+    raise ValueError(f"{name} is not a number")
+
+
+def sha256_of(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

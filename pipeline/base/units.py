@@ -1,0 +1,157 @@
+"""Unit strings to SI and back: "12.5 mm" <-> 0.0125. The one module that names pint.
+
+Numbers are converted in decimal arithmetic and rounded once, so that "42 mm" is exactly 0.042
+and a value that was written out is read back bit for bit. The plane angle counts as a dimension
+of its own here: otherwise "25 Hz" would pass for 25 rad/s.
+"""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal, InvalidOperation
+from functools import lru_cache
+from math import isfinite
+from typing import Any
+
+from camwright.geometry.errors import InputError
+
+_NUMBER = r"[+-]?(?:\d[\d_]*(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?|[+-]?(?:nan|inf|infinity)"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*", re.IGNORECASE | re.DOTALL)
+_TERM = r"[A-Za-zµμ°Å%]+(?:\s*(?:\^|\*\*)?\s*-?[1-9]|[²³])?"
+_UNIT = re.compile(rf"(?:1\s*/\s*)?{_TERM}(?:\s*[*·/ ]\s*{_TERM})*")
+_IMPLIED_POWER = re.compile(r"(?<=[A-Za-zµμ])(-?[1-9])")
+_ANGLES = (  # endings, since prefixes go before them
+    *("radian", "degree", "turn", "arcminute", "arcsecond", "grade"),
+    *("revolutions_per_minute", "revolutions_per_second"),
+)
+_LONGEST = 80
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    import pint  # half a second, and only a case file with unit strings needs it
+
+    return pint.UnitRegistry(non_int_type=Decimal)
+
+
+@lru_cache(maxsize=512)
+def _unit(text: str) -> Any:
+    """The pint unit of `text`; raises ValueError for what is not one."""
+    if not text:
+        return _registry().dimensionless
+    if len(text) > _LONGEST or not _UNIT.fullmatch(text):
+        raise ValueError(text)
+    spelled = _IMPLIED_POWER.sub(r"**\1", text.replace("^", "**")).replace("****", "**")
+    try:
+        return _registry().Unit(spelled)
+    except Exception as error:  # pint's parser lets tokenizer errors through
+        raise ValueError(text) from error
+
+
+@lru_cache(maxsize=512)
+def _si_unit(text: str) -> Any:
+    """The coherent SI unit of the same dimension as `text`, the angle in rad."""
+    unit = _unit(text)
+    return _registry().Quantity(Decimal(1), unit).to_base_units().units
+
+
+def _to_si(number: Decimal, unit: str, wanted: str) -> Decimal:
+    converted: Decimal = _registry().Quantity(number, _unit(unit)).to(_si_unit(wanted)).magnitude
+    return converted
+
+
+def same_dimension(unit: str, other: str) -> bool:
+    """Whether a value in `unit` can be read as one in `other`."""
+    one, two = _unit(unit), _unit(other)
+    return bool(one.dimensionality == two.dimensionality and _angle(one) == _angle(two))
+
+
+def _angle(unit: Any) -> int:
+    """Power of the plane angle in a unit, which pint takes for a number."""
+    from pint.util import to_units_container
+
+    powers: Any = to_units_container(unit)
+    return int(sum(power for name, power in powers.items() if name.endswith(_ANGLES)))
+
+
+def parse(text: object, unit: str, field: str) -> float:
+    """The SI value of a unit string.
+
+    Parameters
+    ----------
+    text : object   such as ``"24.2 kN/m"``; anything but a string is refused
+    unit : str      any unit of the wanted dimension, such as ``"kN/m"``
+    field : str     dotted name for the message
+
+    Returns
+    -------
+    value : float   in m, kg, s, K, rad and what follows from them
+
+    Raises
+    ------
+    InputError
+        If the number stands bare, is not finite, or the unit is unknown or of another dimension.
+    """
+    example = f'a number with a unit, such as "1 {unit}"'
+    if not isinstance(text, str):
+        raise InputError(field, text, example)
+    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
+    if match is None or not match.group(2):
+        raise InputError(field, text, example)
+    number, given = match.group(1), match.group(2)
+    try:
+        known = same_dimension(given, unit)
+    except ValueError:
+        raise InputError(field, text, f"in a known unit, such as {unit}") from None
+    if not known:
+        raise InputError(field, text, f"in a unit of the dimension of {unit}")
+    try:
+        value = float(_to_si(Decimal(number), given, unit))
+    except (InvalidOperation, OverflowError, ValueError):
+        value = float("nan")
+    if not isfinite(value):
+        raise InputError(field, text, "finite")
+    return value
+
+
+@lru_cache(maxsize=512)
+def factor(unit: str) -> float:
+    """SI value of one `unit`: ``factor("mm")`` is 0.001. Not for offset units such as degC."""
+    return float(_to_si(Decimal(1), unit, unit))
+
+
+def format(value: float, unit: str) -> str:  # noqa: A001 - reads as units.format
+    """The shortest unit string that `parse` turns back into exactly `value` (SI)."""
+    if not isfinite(value):
+        raise InputError("value", value, "finite")
+    exact = _registry().Quantity(Decimal(value), _si_unit(unit)).to(_unit(unit)).magnitude
+    # 18 digits hold any float.
+    numbers = (Decimal(f"{exact:.{digits}g}") for digits in range(1, 19))
+    shortest = next(n for n in numbers if float(_to_si(n, unit, unit)) == value)
+    return f"{_plain(shortest)} {unit}"
+
+
+def _plain(number: Decimal) -> str:
+    """Without an exponent where that stays readable: 24200, 0.0055, 2.1e-07."""
+    if number == 0:
+        return "0"
+    exponent = number.adjusted()
+    if -5 <= exponent <= 8:
+        text = f"{number:f}"
+        return text.rstrip("0").rstrip(".") if "." in text else text
+    return f"{number.normalize():e}"
+
+
+def column(name: str, unit: str) -> str:
+    """Name of a table column that carries its unit.
+
+    ``("line_load", "N/mm")`` gives ``line_load_N_per_mm``. Products are written together (``Nm``),
+    powers as digits (``mm_per_rad2``).
+    """
+    if not unit:
+        return name
+    above, *below = (
+        part.replace("·", "").replace("*", "").replace(" ", "").replace("^", "")
+        for part in unit.split("/")
+    )
+    return "_".join([name, above, *(word for part in below for word in ("per", part))])

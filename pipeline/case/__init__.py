@@ -1,0 +1,1 @@
+"""Case files: sections, consistency, resolved text, torque and lift of a case."""

@@ -1,0 +1,129 @@
+"""What a redesign may choose from: rollers, springs and bushes, shipped or beside the case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
+from camwright.pipeline.case.cards.bearing_cards import BearingCard, read_card
+from camwright.pipeline.case.cards.card_filling import known_cards
+from camwright.pipeline.case.cards.spring_catalogue import read_catalogue
+from camwright.pipeline.follower.spring import HelicalSpring
+
+SPRINGS_FILE = "springs.toml"
+SAME_RATE = 0.05  # springs nearer than this share in rate are of one kind
+
+Part = TypeVar("Part")
+
+
+@dataclass(frozen=True)
+class Bush:
+    """A bush by its card: friction and its upper bound, pressure Pa and PV Pa m/s it bears."""
+
+    name: str
+    friction: float
+    friction_max: float
+    pressure: float
+    pv: float
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """Parts by the names of their cards, in the order of their files; the user's go first."""
+
+    rollers: Mapping[str, BearingCard]
+    springs: Mapping[str, HelicalSpring]
+    bushes: Mapping[str, Bush]
+
+
+def catalogue_of(folder: Path | None) -> Catalogue:
+    """The shipped parts and those of the user: ``cards.toml`` and ``springs.toml``.
+
+    Parameters
+    ----------
+    folder : Path   where the case lies; None: the shipped parts alone
+
+    Raises
+    ------
+    InputError
+        For a file or a card that cannot be read, by name.
+    """
+    cards = known_cards(folder)
+    springs = {spring.name: spring for spring in read_catalogue()}
+    own = None if folder is None else folder / SPRINGS_FILE
+    if own is not None and own.is_file():
+        springs |= {spring.name: spring for spring in read_catalogue(own)}
+    return Catalogue(
+        {name: read_card(name, entry) for name, entry in cards["bearings"].items()},
+        springs,
+        {name: _bush(name, entry) for name, entry in cards["bushes"].items()},
+    )
+
+
+def _bush(name: str, entry: Mapping[str, Any]) -> Bush:
+    field = f"cards.bushes.{name}"
+    for key in ("friction", "pressure_limit", "pv_limit", "material"):
+        if key not in entry:
+            raise InputError(f"{field}.{key}", "missing", "given")
+    friction = [entry["friction"], entry.get("friction_max", entry["friction"])]
+    for value in friction:
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value < 2:
+            raise InputError(f"{field}.friction", value, ">= 0 and < 2")
+    return Bush(
+        name,
+        float(friction[0]),
+        float(friction[1]),
+        units.parse(entry["pressure_limit"], "MPa", f"{field}.pressure_limit"),
+        units.parse(entry["pv_limit"], "MPa m/s", f"{field}.pv_limit"),
+    )
+
+
+def undominated(parts: Mapping[str, Part], better: Callable[[Part, Part], bool]) -> dict[str, Part]:
+    """The parts no other is as good as in every respect; of equal ones the first.
+
+    Parameters
+    ----------
+    better : callable   (one, other) -> whether `one` is in no respect worse than `other`
+    """
+    kept: dict[str, Part] = {}
+    for name, part in parts.items():
+        if any(better(other, part) for other in kept.values()):
+            continue
+        kept = {key: other for key, other in kept.items() if not better(part, other)}
+        kept[name] = part
+    return kept
+
+
+def better_roller(one: BearingCard, other: BearingCard) -> bool:
+    """Of the same size, no rating lower, and its outer ring's no less known."""
+    same = (one.outer_diameter, one.width) == (other.outer_diameter, other.width)
+    ring = (one.radial_limit or 0.0) >= (other.radial_limit or 0.0)
+    rated = one.C >= other.C and one.C0 >= other.C0 and one.speed_limit >= other.speed_limit
+    return same and ring and rated
+
+
+def better_bush(one: Bush, other: Bush) -> bool:
+    """No more friction, no limit lower."""
+    slick = one.friction <= other.friction and one.friction_max <= other.friction_max
+    return slick and one.pressure >= other.pressure and one.pv >= other.pv
+
+
+def better_spring(
+    one: tuple[HelicalSpring, float], other: tuple[HelicalSpring, float], *, by_mass: bool
+) -> bool:
+    """Of the same rate with no less travel, and no heavier where mass counts."""
+    rate = abs(one[0].rate / other[0].rate - 1.0) <= SAME_RATE
+    light = not by_mass or one[0].mass <= other[0].mass
+    return rate and one[1] >= other[1] and light
+
+
+def nearest_spring(springs: Sequence[HelicalSpring], rate: float) -> HelicalSpring:
+    """The lightest spring of a rate (N/m), or the nearest where there is none of it."""
+    alike = [spring for spring in springs if abs(spring.rate / rate - 1.0) <= SAME_RATE]
+    if alike:
+        return min(alike, key=lambda spring: spring.mass)
+    return min(springs, key=lambda spring: abs(spring.rate - rate))

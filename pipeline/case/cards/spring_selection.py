@@ -1,0 +1,126 @@
+"""``spring.catalogue = "FILE"``: the lightest spring of a catalogue, put into a case as it is read.
+
+A case that names a catalogue holds the spring found, every number of it, once it is resolved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
+from camwright.pipeline.base.files import inside
+from camwright.pipeline.case.cards.spring_catalogue import (
+    CATALOGUE,
+    SpringDemand,
+    lightest,
+    read_catalogue,
+)
+from camwright.pipeline.follower.spring import HelicalSpring
+
+SHIPPED = "shipped"
+_NEAREST = 3
+_MISS = 0.05  # of the rate, where the case states no tolerance, as `spring_rate` has it
+
+
+def put_spring(case: dict[str, Any], folder: Path | None) -> None:
+    """Replace ``spring.catalogue`` of a case's tables by ``[spring.design]`` of what it finds.
+
+    The spring has to meet the rate, the preloads of all load cases, ``spring.travel_max`` and the
+    limits of fatigue and solid clearance, also as hard as the tolerances let it be.
+
+    Parameters
+    ----------
+    case : dict        tables of a case file, changed in place
+    folder : Path      where the case lies; None: only the shipped catalogue is there
+
+    Raises
+    ------
+    InputError
+        If the catalogue cannot be read, travel is not given, a design is, or no spring will do.
+    """
+    spring = case.get("spring")
+    if not isinstance(spring, dict) or "catalogue" not in spring:
+        return
+    name = spring.pop("catalogue")
+    if "design" in spring:
+        raise InputError("spring.design", "a table", "left out with spring.catalogue")
+    if "travel_max" not in spring:
+        raise InputError("spring.travel_max", "missing", "given with spring.catalogue")
+    demand = _demand(case, spring)
+    if demand is None:
+        return  # the case is refused for its rate or preload
+    springs = read_catalogue(_path(name, folder))
+    best, reasons = lightest(springs, demand)
+    if best is None:
+        nearest = sorted(reasons, key=lambda each: len(reasons[each]))[:_NEAREST]
+        why = "; ".join(f"{each}: {', '.join(reasons[each])}" for each in nearest)
+        limit = f"a catalogue with a spring that will do; nearest are {why}"
+        raise InputError("spring.catalogue", name, limit if springs else "not empty")
+    spring["design"] = _design(best, f"lightest of {len(springs)} in catalogue {name}")
+
+
+def _demand(case: Mapping[str, Any], spring: Mapping[str, Any]) -> SpringDemand | None:
+    """What a case asks of its spring; None where a number is missing that the case must have."""
+
+    def number(table: Mapping[str, Any], key: str, default: float) -> float:
+        value = table.get(key, default)
+        good = isinstance(value, (int, float)) and not isinstance(value, bool)
+        return float(value) if good else default
+
+    states = case.get("load_case")
+    own = [state for state in states if isinstance(state, dict)] if isinstance(states, list) else []
+    preloads = [table["preload"] for table in (spring, *own) if "preload" in table]
+    limits = case.get("limits")
+    limits = limits if isinstance(limits, dict) else {}
+    try:
+        rate = units.parse(spring.get("rate"), "kN/m", "spring.rate")
+        preload = max((units.parse(each, "N", "spring.preload") for each in preloads), default=0.0)
+    except InputError:
+        return None
+    travel = units.parse(spring["travel_max"], "mm", "spring.travel_max")
+    if not (rate > 0.0 and preload > 0.0):
+        return None
+    if not travel > 0.0:
+        raise InputError("spring.travel_max", spring["travel_max"], "> 0 mm")
+    spread = number(spring, "rate_tolerance", 0.0)
+    return SpringDemand(
+        rate=rate,
+        preload=preload,
+        travel=travel,
+        rate_tolerance=spread or _MISS,
+        fatigue_safety=number(limits, "spring_fatigue", 1.2),
+        solid_clearance=number(limits, "spring_solid", 0.1),
+        rate_spread=spread,
+        preload_spread=number(spring, "preload_tolerance", 0.0),
+    )
+
+
+def _path(name: Any, folder: Path | None) -> Path:
+    if name == SHIPPED:
+        return CATALOGUE
+    if not isinstance(name, str) or not name:
+        raise InputError("spring.catalogue", name, f'a file name, or "{SHIPPED}"')
+    if folder is None:
+        raise InputError("spring.catalogue", name, f'"{SHIPPED}" where a case has no folder')
+    return inside(folder, name, "spring.catalogue")
+
+
+def _design(found: HelicalSpring, why: str) -> dict[str, Any]:
+    """``[spring.design]`` of a spring, as a case file has it."""
+    wire = found.wire
+    return {
+        "wire_diameter": units.format(found.wire_diameter, "mm"),
+        "mean_diameter": units.format(found.mean_diameter, "mm"),
+        "coils": found.coils,
+        "free_length": units.format(found.free_length, "mm"),
+        "end_factor": found.end_factor,
+        "shear_modulus": units.format(wire.shear_modulus, "GPa"),
+        "density": units.format(wire.density, "kg/m^3"),
+        "strength_at_1mm": units.format(wire.strength_at_1mm, "MPa"),
+        "strength_exponent": wire.exponent,
+        "treatment": "peened" if wire.peened else "plain",
+        "source": f"{why}: {found.name}; {wire.source}".rstrip("; "),
+    }

@@ -1,0 +1,216 @@
+"""A case with other parts: roller, spring and bushes of a catalogue, and what follows from them."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from camwright.pipeline.base import units
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.cards.catalogue import Catalogue, nearest_spring
+from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import case_of
+from camwright.pipeline.follower.spring import HelicalSpring, case_spring
+
+AS_GIVEN = "as given"
+WIDEST_BASE = 1.5  # times the pitch base radius of the case: where a search ends
+_IN_HAND = 1.002
+_CHAMFER_MOST = 0.05  # of the roller's width
+_FORK = 2e-3  # m between roller and cheek where the case has no pin
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Parts by name, and the room for the cam, m; None: that of the case."""
+
+    roller: str
+    spring: str
+    bush: str
+    cam_radius: float | None = None
+
+    @property
+    def words(self) -> str:
+        return f"{self.roller}, spring {self.spring}, bushes {self.bush}"
+
+
+def travel_of(spring: HelicalSpring, case: Case) -> float:
+    """Greatest lift (m) at which a spring keeps its limits in a case; 0 when none does.
+
+    Strength, fatigue, buckling and the way to solid are looked at as the checks do, at the
+    hardest spring of the tolerances.
+    """
+    given, limits = case.spring, case.limits
+    free = case.smoothing.preload_range if "preload" in case.smoothing.free else None
+    still = SpringDemand(
+        spring.rate,
+        given.preload if free is None else free[1],
+        travel=0.0,
+        fatigue_safety=limits.spring_fatigue,
+        solid_clearance=limits.spring_solid,
+        rate_spread=given.rate_tolerance,
+        preload_spread=given.preload_tolerance,
+    )
+
+    def works(travel: float) -> bool:
+        return not replace(still, travel=travel).shortfalls(spring)
+
+    low, high = 0.0, spring.free_length - spring.solid_length
+    if not works(low):
+        return 0.0
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if works(middle) else (low, middle)
+    return low
+
+
+def least_base_radius(case: Case, roller_radius: float) -> float:
+    """Pitch base radius (m) that leaves the wall about bore and keyway, a little in hand."""
+    key = case.cam.keyway
+    inside = case.cam.bore_radius + (0.0 if key is None else key.depth)
+    return _IN_HAND * (roller_radius + case.limits.minimum_wall * inside)
+
+
+def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -> Case:
+    """The case with the parts of a choice; whatever a roller or spring brings along is changed.
+
+    The roller brings its radius, width, bore, ratings, and with them the cam's width, pin,
+    overhang and mass of the follower; the spring its rate, travel and mass; the bush friction and
+    limits of both guides. The cam's base radius is free within what wall and room leave. Waivers
+    are left out: nobody signed for this design.
+
+    Parameters
+    ----------
+    folder : Path   where the case lies, for the user's cards
+
+    Raises
+    ------
+    InputError
+        If the parts do not fit into the case.
+    """
+    data = tomllib.loads(case.to_toml())
+    data.pop("waivers", None)
+    data["name"] = f"{case.name[:31]}-redesign"
+    data["title"] = f"{case.title or case.name}: {choice.words}"
+    card, spring = parts.rollers[choice.roller], parts.springs[choice.spring]
+    _put_roller(data, case, card, choice.roller)
+    _put_spring(data, case, spring)
+    _put_mass(data, case, card, spring, parts)
+    if choice.bush != AS_GIVEN:
+        _put_bushes(data, choice.bush)
+    _put_search(data, case, choice, 0.5 * card.outer_diameter)
+    return case_of(data, folder)
+
+
+def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -> Case:
+    """The case with another roller alone; the cam keeps the base circle of its surface.
+
+    Raises
+    ------
+    InputError
+        If the roller does not fit into the case.
+    """
+    data = tomllib.loads(case.to_toml())
+    _put_roller(data, case, card, name)
+    data["follower"]["mass"] = units.format(case.follower.mass + _heavier(case, card), "g")
+    base = case.cam.pitch_base_radius + 0.5 * card.outer_diameter - case.roller.radius
+    data["cam"]["pitch_base_radius"] = _mm(base)
+    return case_of(data, folder)
+
+
+def _put_roller(data: dict[str, Any], case: Case, card: BearingCard, name: str) -> None:
+    given, radius = case.roller, 0.5 * card.outer_diameter
+    roller = data["roller"]
+    inside = card.bore if card.pitch_diameter is None else card.pitch_diameter
+    chamfer = min(given.chamfer, _CHAMFER_MOST * card.width)
+    roller |= {
+        "radius": _mm(radius),
+        "width": _mm(card.width),
+        "chamfer": _mm(chamfer),
+        "hub_radius": _mm(0.25 * (card.bore + inside)),
+        "bearing": {"card": name},
+    }
+    roller.pop("inertia", None)
+    pin = {"material": case.follower.stem_material, "source": "as wide as the roller's bore"}
+    span = card.width + 2.0 * _FORK
+    if given.pin is not None:
+        pin = roller["pin"]
+        span = card.width + max(given.pin.span - given.width, 0.0)
+    roller["pin"] = pin | {"diameter": _mm(card.bore), "span": _mm(span)}
+    data["cam"]["width"] = _mm(card.width)
+    overhang = case.follower.overhang_at_max_lift + radius - given.radius
+    data["follower"]["overhang_at_max_lift"] = _mm(overhang)
+
+
+def _put_spring(data: dict[str, Any], case: Case, spring: HelicalSpring) -> None:
+    wire = spring.wire
+    data["spring"] |= {
+        "rate": units.format(spring.rate, "kN/m"),
+        "travel_max": _mm(travel_of(spring, case)),
+        "source": f"catalogue: {spring.name}; preload as it was",
+        "design": {
+            "wire_diameter": _mm(spring.wire_diameter),
+            "mean_diameter": _mm(spring.mean_diameter),
+            "coils": spring.coils,
+            "free_length": _mm(spring.free_length),
+            "end_factor": spring.end_factor,
+            "shear_modulus": units.format(wire.shear_modulus, "GPa"),
+            "density": units.format(wire.density, "kg/m^3"),
+            "strength_at_1mm": units.format(wire.strength_at_1mm, "MPa"),
+            "strength_exponent": wire.exponent,
+            "treatment": "peened" if wire.peened else "plain",
+            "source": wire.source,
+        },
+    }
+
+
+def _put_mass(
+    data: dict[str, Any], case: Case, card: BearingCard, spring: HelicalSpring, parts: Catalogue
+) -> None:
+    """The follower with the new roller and half the new spring."""
+    old = case_spring(case) or nearest_spring(list(parts.springs.values()), case.spring.rate)
+    mass = case.follower.mass + _heavier(case, card) + 0.5 * (spring.mass - old.mass)
+    data["follower"]["mass"] = units.format(mass, "g")
+
+
+def _heavier(case: Case, card: BearingCard) -> float:
+    """What a roller weighs more than the case's, kg; each solid with its pin."""
+    roller = case.roller
+    disc = 0.25 * card.outer_diameter**2 * card.width - roller.radius**2 * roller.width
+    return math.pi * case.material(roller.material).density * disc
+
+
+def _put_bushes(data: dict[str, Any], name: str) -> None:
+    place = ("length", "diameter", "clearance", "stiffness")
+    for side in ("a", "b"):
+        kept = {key: value for key, value in data["guides"][side].items() if key in place}
+        data["guides"][side] = kept | {"card": name}
+
+
+def _put_search(data: dict[str, Any], case: Case, choice: Choice, radius: float) -> None:
+    smoothing = case.smoothing
+    kept = [n for n in smoothing.free if n not in ("spring_rate", "pitch_base_radius")]
+    low = least_base_radius(case, radius)
+    high = max(WIDEST_BASE * case.cam.pitch_base_radius, 1.2 * low)
+    if "pitch_base_radius" in smoothing.free and smoothing.pitch_base_radius_range is not None:
+        given = smoothing.pitch_base_radius_range
+        low, high = max(low, given[0]), max(given[1], _IN_HAND * max(low, given[0]))
+    start = min(max(case.cam.pitch_base_radius, low), high)
+    data["cam"]["pitch_base_radius"] = _mm(start)
+    data["smoothing"] |= {
+        "kind": "constrained",
+        "free": list(dict.fromkeys([*kept, "initial_energy", "pitch_base_radius"])),
+        "pitch_base_radius_range": [_mm(low), _mm(high)],
+        "source": "redesign: the least ripple that these parts allow",
+    }
+    data["mechanism"]["compensation"] = 1.0
+    if choice.cam_radius is not None:
+        data["limits"]["cam_radius"] = _mm(choice.cam_radius)
+        data["limits"].setdefault("sources", {})["cam_radius"] = "a rung of the redesign"
+
+
+def _mm(length: float) -> str:
+    return units.format(length, "mm")

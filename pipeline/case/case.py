@@ -1,0 +1,184 @@
+"""Case file to `Case`: everything a run needs, resolved, in SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, PrivateAttr, ValidationError
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.files import hash_inputs
+from camwright.pipeline.case.engine_section import Crankshaft, Engine, engine_files
+from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.lift_section import GivenLift, LiftTable
+from camwright.pipeline.case.parts_section import (
+    Cam,
+    Camshaft,
+    Face,
+    Follower,
+    Guides,
+    Material,
+    Oil,
+    Roller,
+    Spring,
+    ValveTrain,
+)
+from camwright.pipeline.case.requirements_section import (
+    Limits,
+    LoadCase,
+    Mechanism,
+    Smoothing,
+    Solver,
+    Tolerances,
+    Waiver,
+)
+from camwright.pipeline.case.section import Name, Section, Text
+from camwright.pipeline.case.toml_text import to_toml
+from camwright.pipeline.case.workshop_section import FORM_TOLERANCE, Shop, ShopOrder
+
+INPUTS = "inputs"
+
+
+class Case(Section):
+    """One design and the states it has to bear."""
+
+    schema_version: Literal[1]
+    name: Name
+    title: Text = ""
+    notes: Text = ""
+    engine: Engine | None = None
+    crankshaft: Crankshaft | None = None
+    lift: GivenLift | None = None
+    mechanism: Mechanism = Mechanism()
+    spring: Spring
+    cam: Cam
+    camshaft: Camshaft | None = None
+    valve_train: ValveTrain | None = None
+    roller_given: Annotated[Roller | None, Field(alias="roller")] = None
+    follower: Follower
+    guides: Guides
+    lubricant: Oil | None = None
+    materials: Annotated[dict[Name, Material], Field(min_length=1, max_length=64)]
+    smoothing: Smoothing = Smoothing()
+    limits: Limits = Limits()
+    solver: Solver = Solver()
+    tolerances: Tolerances = Tolerances()
+    shop: Shop = Shop()
+    waivers: Annotated[tuple[Waiver, ...], Field(strict=False, max_length=64)] = ()
+    load_cases: Annotated[
+        tuple[LoadCase, ...], Field(alias="load_case", strict=False, min_length=1, max_length=64)
+    ]
+
+    _included: Mapping[str, bytes] = PrivateAttr(default_factory=dict)
+    _folder: Path | None = PrivateAttr(default=None)
+
+    def to_toml(self) -> str:
+        """The case with every default written out; reads back bit for bit.
+
+        Included files are named as they are kept in a run folder, ``inputs/NAME``.
+        """
+        return to_toml(self, {name: kept_as(name) for _, name in includes(self)})
+
+    @property
+    def included(self) -> Mapping[str, bytes]:
+        """Bytes of each included file, by its name in a run folder."""
+        return self._included
+
+    @property
+    def sha256(self) -> str:
+        """Hash of all that decides the result: the resolved case and the included files."""
+        return hash_inputs(self.to_toml(), self._included)
+
+    def with_positions(self, positions: int) -> Case:
+        """The same case at another number of positions per cam turn."""
+        given = self.solver.model_dump() | {"positions": positions}
+        try:
+            solver = Solver.model_validate(given)
+        except ValidationError as error:
+            raise first_error(error, "solver") from None
+        return self.model_copy(update={"solver": solver})
+
+    def at(self, load_case: str) -> Case:
+        """The case as one of its load cases has it: with the preload of that state."""
+        own = next(state.preload for state in self.load_cases if state.name == load_case)
+        if own is None:
+            return self
+        return self.model_copy(update={"spring": self.spring.model_copy(update={"preload": own})})
+
+    def path(self, name: str) -> Path:
+        """Where an included file lies; `name` as the case file has it."""
+        if self._folder is None:
+            raise InputError("case", name, "read from a file to include others")
+        return self._folder / name
+
+    @property
+    def roller(self) -> Roller:
+        """The roller of a case whose follower has one.
+
+        Raises
+        ------
+        InputError
+            If it has none.
+        """
+        if self.roller_given is None:
+            if self.follower.kind == "flat":
+                raise InputError("follower.kind", "flat", '"roller" for what only a roller has')
+            raise InputError("roller", "missing", 'given with follower.kind = "roller"')
+        return self.roller_given
+
+    @property
+    def facing(self) -> Roller | Face:
+        """The part of the follower that touches the cam."""
+        return self.roller if self.follower.face is None else self.follower.face
+
+    @property
+    def facing_field(self) -> str:
+        """Dotted name of that part's table."""
+        return "roller" if self.follower.face is None else "follower.face"
+
+    @property
+    def base_circle(self) -> float:
+        """Radius of the cam's surface where the lift is zero, m."""
+        inset = 0.0 if self.roller_given is None else self.roller_given.radius
+        return self.cam.pitch_base_radius - inset
+
+    @property
+    def contact_radius(self) -> float:
+        """Radius that stands for the contact, m: the roller's, under a face the base circle's."""
+        return self.base_circle if self.roller_given is None else self.roller_given.radius
+
+    @property
+    def largest_tool(self) -> float | None:
+        """Radius of the tool that must fit concave flanks, m: the limit's, else the workshop's."""
+        limit = self.limits.tool_radius
+        return self.shop.tool_radius if limit is None else limit
+
+    @property
+    def workshop(self) -> ShopOrder:
+        """Tables, tool, tolerance band and chord error of the workshop files."""
+        shop = self.shop
+        tool = self.largest_tool if shop.tool_radius is None else shop.tool_radius
+        given = self.cam.profile_tolerance
+        band = FORM_TOLERANCE if given is None else given
+        return ShopOrder(shop.table_step, tool, band, shop.chord_error)
+
+    def material(self, name: str) -> Material:
+        """The card of a material that the case names."""
+        return self.materials[name]
+
+
+def includes(case: Case) -> Iterator[tuple[str, str]]:
+    """Dotted field and file name of every file a case draws in."""
+    yield from engine_files(case.engine)
+    if isinstance(case.lift, LiftTable):
+        yield "lift.file", case.lift.file
+    for k, load_case in enumerate(case.load_cases):
+        if load_case.torque is not None:
+            yield f"load_case[{k}].torque", load_case.torque
+
+
+def kept_as(name: str) -> str:
+    """Where a run folder keeps an included file."""
+    return f"{INPUTS}/{Path(name).name}"

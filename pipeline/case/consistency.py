@@ -1,0 +1,185 @@
+"""Whether the sections of a case fit together: what no section can tell by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.cylinder_section import Cylinder
+from camwright.pipeline.case.engine_section import PressureTable, SpeedTable, VoltageTable
+from camwright.pipeline.case.lift_section import LiftSegments, motion_of
+from camwright.pipeline.case.parts_section import Cam, Roller
+
+if TYPE_CHECKING:
+    from camwright.pipeline.case.case import Case
+
+
+def check_sections(case: Case) -> None:
+    """Refuse a case whose sections contradict one another.
+
+    Raises
+    ------
+    InputError
+        For the first contradiction, by its dotted name.
+    """
+    _check_road(case)
+    _check_geometry(case)
+    _check_names(case)
+    _check_film(case)
+
+
+def _check_road(case: Case) -> None:
+    """The case enters the road at the torque or at the lift, never at both."""
+    if (case.engine is None) == (case.lift is None):
+        found = "neither" if case.engine is None else "both"
+        raise InputError("engine, lift", found, "exactly one of the two")
+    if isinstance(case.lift, LiftSegments):
+        motion_of(case.lift)
+    elif case.valve_train is not None:
+        limit = 'left out unless lift.kind = "segments"'
+        raise InputError("valve_train", "a table", limit)
+    if case.follower.kind == "roller":
+        _ = case.roller  # refuses a case without
+    elif case.roller_given is not None:
+        raise InputError("roller", "a table", 'left out with follower.kind = "flat"')
+    elif case.smoothing.kind == "constrained":
+        limit = 'another than "constrained", which knows rollers only, with a flat face'
+        raise InputError("smoothing.kind", "constrained", limit)
+    ratio = case.mechanism.gear_ratio
+    if case.engine is not None and ratio != 2.0:
+        raise InputError("mechanism.gear_ratio", ratio, "2 with an engine: a cam turn is 720 deg")
+    engine = case.engine
+    if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is None:
+        raise InputError("crankshaft.inertia", "missing", "given, to draw torque from a speed")
+    if isinstance(engine, (Cylinder, PressureTable)):
+        throw = engine.crank_radius + abs(engine.pin_offset)
+        _require(
+            "engine.rod_length",
+            engine.rod_length,
+            engine.rod_length > throw,
+            "longer than the crank radius and the pin offset",
+        )
+    if case.engine is not None and not case.load_cases[0].speed > 0:
+        raise InputError("load_case[0].speed", "0 rpm", "> 0 rpm: its torque designs the cam")
+    share, constrained = case.mechanism.compensation, case.smoothing.kind == "constrained"
+    if share != 1.0 and (case.engine is None or constrained):
+        limit = "1 with a lift" if case.engine is None else '1 with smoothing.kind = "constrained"'
+        raise InputError("mechanism.compensation", share, limit)
+    for k, load_case in enumerate(case.load_cases):
+        if constrained and load_case.preload is not None:
+            limit = 'left out with smoothing.kind = "constrained", which demands one spring'
+            raise InputError(f"load_case[{k}].preload", load_case.preload, limit)
+        if case.engine is None and load_case.torque is not None:
+            raise InputError(f"load_case[{k}].torque", load_case.torque, "left out with a lift")
+        modelled = isinstance(case.engine, Cylinder) and load_case.torque is None
+        if not modelled and (load_case.intake_pressure is not None or not load_case.fired):
+            name = "fired" if load_case.intake_pressure is None else "intake_pressure"
+            limit = 'left out without engine.kind = "cylinder", or with a torque of its own'
+            raise InputError(f"load_case[{k}].{name}", getattr(load_case, name), limit)
+
+
+def _check_film(case: Case) -> None:
+    if case.lubricant is None or case.lubricant.film == "smooth":
+        return
+    names = (case.cam.material, case.facing.material)
+    needed = {
+        "cam.roughness": case.cam.roughness,
+        f"{case.facing_field}.roughness": case.facing.roughness,
+        **{f"materials.{name}.hardness": case.material(name).hardness for name in names},
+    }
+    for field, value in needed.items():
+        if value is None:
+            raise InputError(field, "missing", 'given, as lubricant.film is "mixed"')
+
+
+def _check_geometry(case: Case) -> None:
+    if case.roller_given is not None:
+        _check_roller(case.cam, case.roller_given)
+    cam, surface = case.cam, case.base_circle
+    _require(
+        "cam.offset",
+        cam.offset,
+        abs(cam.offset) < cam.pitch_base_radius,
+        "smaller than cam.pitch_base_radius",
+    )
+    _require(
+        "cam.bore_radius",
+        cam.bore_radius,
+        cam.bore_radius < surface,
+        f"< {surface:.6g} m, the base circle of the surface",
+    )
+    tool, largest = case.shop.tool_radius, case.limits.tool_radius
+    if tool is not None and largest is not None:
+        _require("shop.tool_radius", tool, tool <= largest, "<= limits.tool_radius")
+    if cam.keyway is not None:
+        reach = cam.bore_radius + cam.keyway.depth
+        _require(
+            "cam.keyway.depth",
+            cam.keyway.depth,
+            reach < surface,
+            f"< {surface - cam.bore_radius:.6g} m, the ring of steel around the bore",
+        )
+        _require(
+            "cam.keyway.width",
+            cam.keyway.width,
+            cam.keyway.width < 1.8 * cam.bore_radius,
+            "< 1.8 bore radii",
+        )
+    guides = case.guides
+    reach = 0.5 * (guides.a.length + guides.b.length)
+    apart = guides.spacing > reach
+    _require("guides.spacing", guides.spacing, apart, f"> {reach:.6g} m, half of both lengths")
+    for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
+        _require(
+            f"guides.{side}.diameter",
+            guide.diameter,
+            guide.diameter >= case.follower.stem_diameter,
+            ">= follower.stem_diameter",
+        )
+
+
+def _check_roller(cam: Cam, roller: Roller) -> None:
+    radius, width = roller.radius, roller.width
+    _require("roller.radius", radius, radius < cam.pitch_base_radius, "< cam.pitch_base_radius")
+    _require("roller.hub_radius", roller.hub_radius, roller.hub_radius < radius, "< roller.radius")
+    half = "< half of roller.width"
+    _require("roller.chamfer", roller.chamfer, 2 * roller.chamfer < width, half)
+    pin = roller.pin
+    if pin is not None and pin.mounting == "straddled":
+        _require("roller.pin.span", pin.span, pin.span >= width, f">= {width:.6g} m, roller.width")
+
+
+def _require(field: str, value: float, holds: bool, limit: str) -> None:
+    if not holds:
+        raise InputError(field, f"{value:.6g} m", limit)
+
+
+def _shaft_materials(case: Case) -> Iterator[tuple[str, str]]:
+    """Field and name of every material of the camshaft and its gear."""
+    shaft = case.camshaft
+    if shaft is not None and shaft.material is not None:
+        yield "camshaft.material", shaft.material
+    if shaft is not None and shaft.gear is not None:
+        yield "camshaft.gear.material", shaft.gear.material
+
+
+def _check_names(case: Case) -> None:
+    known = ", ".join(sorted(case.materials))
+    pin = None if case.roller_given is None else case.roller_given.pin
+    for field, name in (
+        ("cam.material", case.cam.material),
+        (f"{case.facing_field}.material", case.facing.material),
+        ("follower.stem_material", case.follower.stem_material),
+        ("guides.a.material", case.guides.a.material),
+        ("guides.b.material", case.guides.b.material),
+        *(() if pin is None else (("roller.pin.material", pin.material),)),
+        *_shaft_materials(case),
+    ):
+        if name not in case.materials:
+            raise InputError(field, name, f"one of the materials: {known}")
+    seen: set[str] = set()
+    for k, load_case in enumerate(case.load_cases):
+        if load_case.name.casefold() in seen:
+            raise InputError(f"load_case[{k}].name", load_case.name, "unlike every other")
+        seen.add(load_case.name.casefold())

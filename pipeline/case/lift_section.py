@@ -1,0 +1,101 @@
+"""The lift of a case file: a table, motion laws by segments, points, or an eccentric circle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from camwright.geometry.motion_laws import Motion, Segment
+from camwright.pipeline.base.quantities import In, Length
+from camwright.pipeline.case.cylinder_section import LiftPoint
+from camwright.pipeline.case.section import FileName, Section
+
+if TYPE_CHECKING:
+    pass
+
+Stroke = Annotated[float, In("mm", above=-10_000, below=10_000)]
+LawName = Literal[
+    "dwell",
+    "parabolic",
+    "harmonic",
+    "cycloidal",
+    "modified_trapezoid",
+    "modified_sine",
+    "polynomial_345",
+    "polynomial_4567",
+]
+
+
+class LiftTable(Section):
+    """Lift over one cam turn, from a file: cam angle column, lift column.
+
+    Without `noise` the lift passes through every row; with it, the standard deviation of the
+    rows' errors, a smoother lift is fitted and the residual stated.
+    """
+
+    kind: Literal["table"] = "table"
+    file: FileName
+    noise: Annotated[float, In("um", above=0, at_most=1e6)] | None = None
+
+
+class LiftSegment(Section):
+    """A rise (stroke > 0), a return (< 0) or a dwell over an angle of the cam."""
+
+    law: LawName
+    angle: Annotated[float, In("deg", above=0, at_most=360)]
+    stroke: Stroke = 0.0
+
+
+class LiftSegments(Section):
+    """Lift by motion laws; the segments fill the turn, or its part when they repeat."""
+
+    kind: Literal["segments"]
+    repeat: Annotated[int, Field(ge=1, le=12)] = 1
+    segments: Annotated[
+        tuple[LiftSegment, ...], Field(alias="segment", strict=False, min_length=1, max_length=64)
+    ]
+
+
+class LiftPoints(Section):
+    """Lift by a B-spline through points of the turn."""
+
+    kind: Literal["points"]
+    points: Annotated[
+        tuple[LiftPoint, ...], Field(alias="point", strict=False, min_length=6, max_length=720)
+    ]
+
+
+class LiftEccentric(Section):
+    """Lift of a circle that turns off its centre; its pitch radius is base plus eccentricity."""
+
+    kind: Literal["eccentric"]
+    eccentricity: Length
+
+
+def _kind(given: Any) -> str:
+    """The kind of a lift; a table needs not say that it is one."""
+    found = given.get("kind", "table") if isinstance(given, dict) else given.kind
+    return str(found)
+
+
+GivenLift = Annotated[
+    Annotated[LiftTable, Tag("table")]
+    | Annotated[LiftSegments, Tag("segments")]
+    | Annotated[LiftPoints, Tag("points")]
+    | Annotated[LiftEccentric, Tag("eccentric")],
+    Discriminator(_kind),
+]
+LIFT_KINDS = ("table", "segments", "points", "eccentric")
+
+
+def motion_of(given: LiftSegments) -> Motion:
+    """The segments of a case.
+
+    Raises
+    ------
+    InputError
+        If they do not add up to a turn or do not close.
+    """
+    segments = tuple(Segment(part.law, part.angle, part.stroke) for part in given.segments)
+    return Motion(segments, given.repeat)

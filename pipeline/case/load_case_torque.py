@@ -1,0 +1,149 @@
+"""Engine torque of a load case, from the model or the measurement that a case names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.cylinder_section import Cylinder, TorqueTable
+from camwright.pipeline.case.engine_section import PressureTable, SpeedTable, VoltageTable
+from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.engine.pickup_voltage import speed_from_voltage
+from camwright.pipeline.engine.pressure_trace import (
+    PressureTrace,
+    cycle_statistics,
+    dead_centre_offset,
+    pressure_from_csv,
+    torque_from_pressure,
+)
+from camwright.pipeline.engine.speed_trace import SpeedTrace, speed_from_csv
+from camwright.pipeline.engine.torque import Torque, torque_from_csv, torque_from_cylinder
+
+if TYPE_CHECKING:
+    from camwright.pipeline.engine.cylinder import CylinderEngine
+
+CRANKING = 10.0
+"""Speed at which an engine that stands is turned over, rad/s: the slowest the model knows."""
+NO_HEAT = 1e-9
+
+
+def engine_torque(case: Case, state: LoadCase) -> Torque:
+    """Torque of the engine in one load case.
+
+    Raises
+    ------
+    InputError
+        For what is wrong with a file, in one line.
+    """
+    engine = case.engine
+    if state.torque is not None:
+        return torque_from_csv(case.path(state.torque))
+    if isinstance(engine, TorqueTable):
+        return torque_from_csv(case.path(engine.file))
+    if isinstance(engine, Cylinder):
+        return torque_from_cylinder(_loaded(engine, state), state.speed or CRANKING)
+    if isinstance(engine, PressureTable):
+        return torque_from_pressure(pressure(case, engine), engine.build(), state.speed)
+    if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
+        return crank_speed(case, engine).torque(case.crankshaft.inertia)
+    raise InputError("engine", "missing", "given")
+
+
+def has_torque(case: Case, state: LoadCase) -> bool:
+    """Whether an engine gives torque in a load case: not one that stands, unless it is started."""
+    started = isinstance(case.engine, Cylinder) and not state.fired
+    return state.speed > 0 or state.torque is not None or started
+
+
+def _loaded(engine: Cylinder, state: LoadCase) -> CylinderEngine:
+    """The cylinder at the throttle of a load case; unfired, its fuel gives no heat."""
+    changes: dict[str, float] = {}
+    if state.intake_pressure is not None:
+        changes["intake_pressure"] = state.intake_pressure
+    if not state.fired:
+        changes["combustion_efficiency"] = NO_HEAT
+        # Nothing drives but the hand that turns it: no friction could close the balance.
+        changes["friction_pressure"] = engine.friction_pressure or 0.0
+    return engine.model_copy(update=changes).build()
+
+
+def pressure(case: Case, engine: PressureTable) -> PressureTrace:
+    """The measured cycles of a case: pegged, turned to the dead centre, judged by their range."""
+
+    def read(name: str) -> PressureTrace:
+        return pressure_from_csv(
+            case.path(name),
+            column=engine.column,
+            units=engine.units,
+            firing_angle=engine.firing_angle,
+            gap_max=engine.gap_max,
+        )
+
+    trace = read(engine.file)
+    if engine.motored_file is not None and engine.dead_centre != "given":
+        motored = read(engine.motored_file)
+        trace = trace.turned(dead_centre_offset(motored, engine.dead_centre, engine.loss_angle))
+    if engine.intake_pressure is None:
+        return trace.guarded()
+    trace = trace.pegged(engine.intake_pressure).guarded()
+    trace.guard_scale(engine.build())
+    return trace
+
+
+def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
+    """The measured crank speed of a case."""
+    if isinstance(engine, VoltageTable):
+        path = case.path(engine.file)
+        return speed_from_voltage(path, engine.wheel(), engine.band(), engine.threshold)
+    reference = engine.reference_file
+    return speed_from_csv(
+        case.path(engine.file),
+        engine.wheel(),
+        engine.band(),
+        both_edges=engine.edges == 2,
+        column=engine.column,
+        unit=engine.speed_unit,
+        averaged_over=engine.averaged_over,
+        reference=None if reference is None else case.path(reference),
+    )
+
+
+def measurement_record(case: Case) -> Mapping[str, Any] | None:
+    """What a measurement tells beside the torque, for ``run.json``; None for a model."""
+    engine = case.engine
+    if isinstance(engine, PressureTable):
+        trace, gear = pressure(case, engine), engine.build()
+        found = cycle_statistics(trace, gear)
+        return {
+            "kind": engine.kind,
+            "cycles": int(trace.cycles.shape[0]),
+            "imep_mean_kPa": 1e-3 * float(found.imep.mean()),
+            "imep_std_kPa": 1e-3 * found.imep_std,
+            "imep_cov_percent": 100.0 * found.imep_variation,
+            "peak_mean_MPa": 1e-6 * float(found.peak.mean()),
+            "peak_angle_mean_deg": float(np.degrees(found.peak_angle.mean())),
+            "scatter_max_kPa": 1e-3 * float(trace.scatter.max()),
+            "pegging_mean_kPa": 1e-3 * float(np.mean(trace.pegging)),
+            "dead_centre": engine.dead_centre,
+            "turned_by_deg": float(np.degrees(trace.offset)),
+        }
+    if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
+        speed, inertia = crank_speed(case, engine), case.crankshaft.inertia
+        return {
+            "kind": engine.kind,
+            "cycles": speed.count,
+            "mean_rad_per_s": speed.statistics.mean,
+            "std_rad_per_s": speed.statistics.std,
+            "p2p_rad_per_s": speed.statistics.peak_to_peak,
+            "scatter_max_rad_per_s": float(speed.scatter.max()),
+            "tooth_noise_rad_per_s": speed.noise,
+            "bandwidth_Hz": speed.bandwidth,
+            "bandwidth_harmonics_of_cycle": speed.filter.harmonics,
+            "noise_amplification_Nm_per_rad_per_s": speed.noise_amplification(inertia),
+            "torque_noise_floor_Nm": speed.noise_floor(inertia),
+        }
+    return None

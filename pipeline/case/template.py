@@ -1,0 +1,172 @@
+"""The case file that `camwright init` writes: short, commented, and it runs."""
+
+from __future__ import annotations
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.section import SAFE_NAME
+
+
+def template(name: str) -> str:
+    """Text of a new case file.
+
+    Raises
+    ------
+    InputError
+        If the name cannot name a folder.
+    """
+    if not SAFE_NAME.fullmatch(name):
+        raise InputError("name", name, "1 to 40 letters, digits, '_', '-' or '.'")
+    return _TEMPLATE.replace("@NAME@", name)
+
+
+_TEMPLATE = """\
+# A balancing cam. Run it with:  camwright run @NAME@.toml --out runs/@NAME@
+#
+# A number with a dimension is written as text with its unit: "24.2 kN/m", "60 deg", "1500 rpm".
+# What is left out takes its default; the run folder's case.toml has all of it written out.
+
+schema_version = 1
+name = "@NAME@"
+title = "What is this design for?"
+
+# --- The torque to balance. Crank angle 0: top dead centre where intake starts; 360 deg: firing.
+# Measured torque instead of a model: kind = "table" and file = "torque.csv", beside this file,
+# with an angle column and a torque column, the units in the header.
+[engine]
+kind = "cylinder"
+bore = "60 mm"
+crank_radius = "21 mm"               # half of the stroke
+rod_length = "73 mm"
+compression_ratio = 8.5
+piston_mass = "144 g"                # with rings and pin
+rod_mass = "123 g"
+intake_pressure = "28 kPa"           # at idle the throttle is nearly shut
+spark = "335 deg"                    # 25 deg before firing top dead centre
+burn_duration = "80 deg"
+# friction_pressure = "165 kPa"      # left out: the friction that closes the torque balance
+
+[mechanism]
+gear_ratio = 2.0                     # crank turns per cam turn
+
+# --- The mechanism
+[spring]
+rate = "24.2 kN/m"
+preload = "400 N"                    # at the smallest cam radius
+# travel_max = "40 mm"
+# catalogue = "shipped"              # or a file: puts in the lightest spring for travel_max
+
+[cam]
+pitch_base_radius = "60 mm"          # smallest radius of the roller's CENTRE
+width = "10 mm"
+bore_radius = "10 mm"
+material = "hardened_steel"
+# [cam.keyway]
+# width = "6 mm"
+# depth = "2.8 mm"
+# [cam.counter_hole]                 # drill the hole that takes the unbalance away
+# wall = "3 mm"
+
+# [camshaft]                         # its fatigue, bearings and gear are judged where given
+# bearing_spacing = "60 mm"
+# cam_position = "20 mm"             # from the first bearing; overhung places may be negative
+# gear_position = "-15 mm"
+# gear_radius = "20 mm"
+# diameter = "20 mm"
+# material = "hardened_steel"        # with fatigue_bending and tensile_strength
+# bearing_rating = "9.95 kN"
+
+[roller]
+radius = "16 mm"
+width = "11 mm"
+chamfer = "0.5 mm"
+hub_radius = "8 mm"                  # pin or inner ring
+material = "hardened_steel"
+
+[roller.bearing]                     # ratings of its maker; a check without them is not evaluated
+name = "track roller, 32 mm"
+C = "6.8 kN"
+C0 = "8.3 kN"
+speed_limit = "6500 rpm"
+source = "made up for this template: replace by the maker's table"
+
+[follower]
+mass = "250 g"                       # with the roller and half of the spring
+stem_diameter = "12 mm"
+stem_material = "hardened_steel"
+overhang_at_max_lift = "30 mm"       # from guide A to the roller's centre
+# kind = "flat"                      # with a table [follower.face] instead of [roller]: see README
+
+[guides]
+spacing = "80 mm"                    # middle to middle
+
+[guides.a]                           # next to the cam
+length = "24 mm"
+diameter = "12 mm"
+friction = 0.04                      # friction_min and friction_max bound it; of a nylon bush
+                                     # lubrication, "dry" to "flooded", grades the PV limit
+clearance = "0.05 mm"
+material = "bronze"
+pressure_limit = "14 MPa"
+pv_limit = "1.75 MPa m/s"
+source = "Mott, Machine Elements in Mechanical Design, porous bronze, oiled"
+
+[guides.b]
+length = "24 mm"
+diameter = "12 mm"
+friction = 0.04
+clearance = "0.05 mm"
+material = "bronze"
+pressure_limit = "14 MPa"
+pv_limit = "1.75 MPa m/s"
+source = "as guide A"
+
+# --- Materials, each with where its numbers come from
+[materials.hardened_steel]
+E = "210 GPa"
+nu = 0.3
+yield_strength = "1200 MPa"
+endurance_pressure = "1490 MPa"      # p0 for 1e8 cycles of rolling with some sliding
+density = "7850 kg/m^3"
+condition = "AISI 4340, induction hardened, 50 to 58 HRC"
+source = "endurance: Rothbart, Cam Design Handbook (2004), table 9.3; yield assumed"
+
+[materials.bronze]
+E = "110 GPa"
+nu = 0.34
+yield_strength = "150 MPa"
+density = "8800 kg/m^3"
+source = "assumed"
+
+# --- How the cam is drawn, judged and computed
+[smoothing]
+# or none, gaussian, harmonic, savitzky_golay, smoothing_spline; "constrained" finds the least
+# ripple within all limits and frees what `free` names, such as initial_energy or spring_rate
+kind = "moving_average"
+points = 12
+spacing = "5 deg"                    # crank angle: 12 points make a window of 60 deg
+
+[limits]
+pressure_angle = "30 deg"
+torque_reduction = 0.4               # least share of the torque ripple to take away
+# curvature_rate = "500 1/m/rad"     # how fast the contour's curvature may change
+# tool_radius = "10 mm"              # hollows at least a tenth wider than the tool
+
+[limits.sources]
+torque_reduction = "what this design is for"
+
+[solver]
+positions = 72                       # per cam turn; 720 for the real answer
+max_trials = 3                       # lifts tried, each gentler than the last
+certificate_positions = 1            # angles solved again on ever finer meshes
+
+# --- What the files in shop/ are written for
+[shop]
+table_step = "0.5 deg"               # between the rows of the contour's table, 0.1 to 1 deg
+# tool_radius = "10 mm"              # cutter or grinding wheel; left out: that of the roller
+# chord_error = "1 um"               # of the drawing's polyline
+
+# --- One table for each state the cam has to bear
+[[load_case]]
+name = "idle"
+speed = "1500 rpm"
+"""

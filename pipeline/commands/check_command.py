@@ -1,0 +1,102 @@
+"""The verdict of a run, or a look ahead at a case's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from camwright.pipeline.commands.terminal import FAILED, PASSED, say, show, show_json
+
+
+def check(
+    target: Annotated[Path, typer.Argument(metavar="DIR|CASE", help="Run folder or case file.")],
+    as_json: Annotated[bool, typer.Option("--json", help="The checks as JSON.")] = False,
+    junit: Annotated[
+        Path | None, typer.Option("--junit", metavar="FILE", help="Write JUnit XML for CI.")
+    ] = None,
+    baseline: Annotated[
+        Path | None, typer.Option("--baseline", metavar="DIR", help="Compare with an earlier run.")
+    ] = None,
+    only: Annotated[
+        list[str] | None, typer.Option("--only", help='Ids or patterns such as "bush_*".')
+    ] = None,
+    fail_on: Annotated[
+        str, typer.Option("--fail-on", help="must, open (also not evaluated), any, never.")
+    ] = "must",
+    verify_record: Annotated[
+        bool, typer.Option("--verify-record", help="Compare the files with signoff.json.")
+    ] = False,
+) -> int:
+    """Verdict of a finished run, from its folder alone: exit 0 passed, 1 failed, 2 error.
+
+    Of a case file: its checks by closed forms, a look ahead that never passes.
+    """
+    from camwright.pipeline.results.check_report import failing, selected
+    from camwright.pipeline.results.check_report import junit as junit_text
+
+    if verify_record and not _as_signed(target):
+        return FAILED
+    is_case = target.is_file()
+    document = _checked_case(target) if is_case else _checked_run(target)
+    document["checks"] = list(selected(document["checks"], only or ()))
+    failed = failing(document["checks"], fail_on)
+    if baseline is not None:
+        from camwright.pipeline.results.baseline_comparison import changes
+
+        document["changes"] = changes(_comparable(baseline, only or ()), document["checks"])
+    if junit is not None:
+        from camwright.pipeline.base.files import write_atomic
+
+        write_atomic(junit, junit_text(document["checks"], document["case"], fail_on))
+    if as_json:
+        show_json(document)
+    else:
+        show(document, None if is_case else target)
+    return FAILED if failed else PASSED
+
+
+def _comparable(folder: Path, only: Iterable[str]) -> list[dict[str, Any]]:
+    """Checks of an earlier run, those that a pattern names."""
+    from camwright.pipeline.results.check_report import fits
+    from camwright.pipeline.results.run_reader import read_verdict
+
+    return [record for record in read_verdict(folder)["checks"] if fits(record, only)]
+
+
+def _as_signed(folder: Path) -> bool:
+    """Whether the files are those that were signed off; names each that is not."""
+    from camwright.pipeline.results import signoff
+
+    changed = signoff.changes(folder)
+    for line in changed:
+        say(f"{folder / line}")
+    return not changed
+
+
+def _checked_run(folder: Path) -> dict[str, Any]:
+    from camwright.pipeline.results.run_reader import read_verdict, verify_run
+    from camwright.pipeline.results.signoff import LIMITATIONS, SINGULARITIES
+
+    verify_run(folder)
+    spoken = {"limitations": list(LIMITATIONS), "singularities": list(SINGULARITIES)}
+    return read_verdict(folder) | spoken
+
+
+def _checked_case(path: Path) -> dict[str, Any]:
+    from camwright.pipeline.case.case_file import load_case_file
+    from camwright.pipeline.checks.verdict import binding
+    from camwright.pipeline.preview import closed_form_checks
+
+    case = load_case_file(path)
+    checks = closed_form_checks(case)
+    return {
+        "case": case.name,
+        "input_sha256": case.sha256,
+        "verdict": "fail",
+        "binding": list(binding(checks)),
+        "look_ahead": True,
+        "checks": [one.as_record() for one in checks],
+    }

@@ -1,0 +1,140 @@
+"""Run a case, report a run again, start a new case."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.commands.terminal import (
+    PASSED,
+    CaseArgument,
+    DirArgument,
+    NoCacheOption,
+    progress_shown,
+    show,
+    stdout,
+    use_cache,
+)
+
+TEMPLATE_SUFFIX = ".toml"
+
+
+def run(
+    case: CaseArgument,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run is to lie.")],
+    positions: Annotated[
+        int | None, typer.Option(help="Positions per cam turn, instead of the case's.")
+    ] = None,
+    jobs: Annotated[int | None, typer.Option(help="Processes; all cores by default.")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on after an interruption.")] = False,
+    replace: Annotated[
+        bool, typer.Option("--replace", help="Write over an earlier run of a case of this name.")
+    ] = False,
+    no_cache: NoCacheOption = False,
+) -> int:
+    """Run a case: torque, lift, contour, mesh, contact, checks, report."""
+    from camwright.pipeline.case.case_file import load_case_file
+
+    use_cache(not no_cache)
+    if jobs is not None and not 1 <= jobs <= 256:
+        raise InputError("--jobs", jobs, ">= 1 and <= 256")
+    design = load_case_file(case)
+    if positions is not None:
+        design = design.with_positions(positions)
+    if not (resume and _finished(out, design.sha256)):
+        from camwright.pipeline.results.run_folder import set_aside
+        from camwright.pipeline.run import run_case
+        from camwright.reports.sections import build
+
+        old = set_aside(out, design) if replace else nullcontext()
+        with old, progress_shown() as progress:
+            run_case(
+                design,
+                out,
+                positions=positions,
+                jobs=jobs,
+                resume=resume,
+                progress=progress,
+                present=build,
+            )
+    from camwright.pipeline.results.run_reader import read_verdict
+
+    show(read_verdict(out), out)
+    return PASSED
+
+
+def _finished(out: Path, sha256: str) -> bool:
+    """Whether `out` already holds this run, by the same versions: nothing is left to resume."""
+    from camwright.pipeline.results.run_folder import versions
+    from camwright.pipeline.results.run_reader import read_summary
+
+    if not (out / "run.json").is_file():
+        return False
+    summary = read_summary(out)
+    return bool(summary["input_sha256"] == sha256 and summary["versions"] == versions())
+
+
+def report(
+    folder: DirArgument,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Print it as 8_report.pdf as well.")] = False,
+    film: Annotated[
+        bool, typer.Option("--film", help="Draw the turn as figures/turn.mp4 and turn.gif as well.")
+    ] = False,
+    only: Annotated[
+        list[str] | None,
+        typer.Option("--only", metavar="PART", help="This part alone; may be given several times."),
+    ] = None,
+    show: Annotated[bool, typer.Option("--open", help="Show the page when it is there.")] = False,
+) -> int:
+    """Write the report of a finished run again; nothing is solved."""
+    from camwright.reports import sections
+    from camwright.reports.page import PAGE
+
+    names = [part.name for part in sections.chosen(only or ())]
+    names += [name for name, asked in (("pdf", pdf), ("film", film)) if asked]
+    with progress_shown() as shown:
+        shown.stage("report")
+        made = sections.build(folder, sections.chosen(names), shown.advance)
+    for name, files in made.items():
+        stdout.print(f"{name}: {_told(files)}", markup=False)
+    if show:
+        _shown(folder / PAGE)
+    return PASSED
+
+
+def _told(files: Sequence[Path]) -> str:
+    """The file of a part; of several, their count and folder."""
+    if len(files) == 1:
+        return str(files[0])
+    return f"{len(files)} files in {files[0].parent}" if files else "nothing to show in this run"
+
+
+def _shown(page: Path) -> None:
+    import webbrowser
+
+    if not page.is_file():
+        raise ResultError(f"{page}: no such page; `camwright report` writes it")
+    webbrowser.open(page.resolve().as_uri())
+
+
+def init(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the new case.")],
+) -> int:
+    """Write NAME.toml, a commented case file that runs."""
+    from camwright.pipeline.case.template import template
+
+    name = name.removesuffix(TEMPLATE_SUFFIX)
+    text = template(name)
+    path = Path(f"{name}{TEMPLATE_SUFFIX}")
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise ResultError(f"{path}: exists already and is left as it is") from None
+    stdout.print(f"wrote {path}; next: camwright run {path} --out runs/{name}", markup=False)
+    return PASSED

@@ -1,0 +1,113 @@
+"""Stress at the bore and the keyway of the cam, at every angle of the turn.
+
+The shaft fills the bore and is rigid: the bore does not move. Where the keyway opens into it,
+held and free surface meet at an edge and the exact stress has no bound; what a mesh shows there
+grows with refinement. Such places are counted as any other, and named.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, freeze
+from camwright.pipeline.contact.body_compliance import LoadedBody
+from camwright.pipeline.contact.elasticity import plane_stress_measures
+from camwright.pipeline.contact.elasticity.elastic_body import StressRecovery
+from camwright.pipeline.contact.elasticity.halfplane import point_force_stress
+
+_BATCH = 90
+
+
+@dataclass(frozen=True, eq=False)
+class BoreStress:
+    """Greatest von Mises stress (n,), Pa, on bore and keyway, and where.
+
+    x, y (n,) m in the cam's frame; at_edge (n,) 1 where the place is, to an element, an edge of
+    the keyway at the bore; away_from_edges (n,) Pa, the greatest elsewhere; excluded m, the
+    distance from an edge within which a place counts as at it, 0 without a keyway.
+    """
+
+    von_mises: Array
+    x: Array
+    y: Array
+    at_edge: Array
+    away_from_edges: Array
+    excluded: float = 0.0
+
+    def __post_init__(self) -> None:
+        names = ("von_mises", "x", "y", "at_edge", "away_from_edges")
+        freeze(self, **{name: getattr(self, name) for name in names})
+
+
+def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Array) -> BoreStress:
+    """Stress under contacts at points (2, n) with outward normals (2, n), loads (n,) N/m.
+
+    The contact acts as a line force: the bore lies many half-widths below it.
+    """
+    nodes, by_edge, recovery, excluded = _holes(cam)
+    rows = _rows(recovery, nodes)
+    points = cam.body.mesh.points[:, nodes]
+    measured = np.empty((nodes.size, contacts.shape[1]))
+    for start in range(0, contacts.shape[1], _BATCH):
+        part = slice(start, start + _BATCH)
+        own = recovery(cam.moved(contacts[:, part], normals[:, part]))[:, rows]
+        far = _half_plane(points, contacts[:, part], normals[:, part])
+        measured[:, part] = plane_stress_measures.von_mises(
+            (own + far) * line_load[part], cam.body.poisson
+        )
+    worst = measured.argmax(axis=0)
+    regular = measured[~by_edge].max(axis=0)
+    return BoreStress(
+        von_mises=measured.max(axis=0),
+        x=points[0, worst],
+        y=points[1, worst],
+        at_edge=by_edge[worst].astype(float),
+        away_from_edges=regular,
+        excluded=excluded,
+    )
+
+
+def _holes(cam: LoadedBody) -> tuple[Any, Any, StressRecovery, float]:
+    """Nodes (m,) of bore and keyway, which lie by an edge, their recovery, and how near that is."""
+    mesh = cam.body.mesh
+    bore = mesh.boundary_nodes("bore")
+    nodes, by_edge, near = bore, np.zeros(bore.size, dtype=bool), 0.0
+    if "keyway" in mesh.boundaries:
+        keyway = mesh.boundary_nodes("keyway")
+        nodes = np.union1d(bore, keyway)
+        edges = mesh.points[:, np.intersect1d(bore, keyway)]
+        start, end, _ = mesh.facet_triples("keyway")
+        near = 1.5 * float(np.hypot(*(mesh.points[:, end] - mesh.points[:, start])).max())
+        arm = mesh.points[:, nodes, None] - edges[:, None, :]
+        by_edge = (np.hypot(*arm) < near).any(axis=1)
+    held = np.zeros(mesh.points.shape[1], dtype=bool)
+    held[nodes] = True
+    return (
+        nodes,
+        by_edge,
+        StressRecovery(cam.body, np.flatnonzero(held[mesh.triangles].any(axis=0))),
+        near,
+    )
+
+
+def _half_plane(points: Array, contacts: Array, normals: Array) -> Array:
+    """Half-plane stress (3, m, k) at points (2, m) under unit forces, in the body's frame."""
+    arm = points[:, :, None] - contacts[:, None, :]
+    t, n = np.stack([normals[1], -normals[0]]), normals
+    x, depth = np.einsum("cmk,ck->mk", arm, t), -np.einsum("cmk,ck->mk", arm, n)
+    along, into, shear = point_force_stress(x, depth)
+    return np.stack(
+        [
+            along * t[0] ** 2 + into * n[0] ** 2 - 2 * shear * t[0] * n[0],
+            along * t[1] ** 2 + into * n[1] ** 2 - 2 * shear * t[1] * n[1],
+            along * t[0] * t[1] + into * n[0] * n[1] - shear * (t[0] * n[1] + t[1] * n[0]),
+        ]
+    )
+
+
+def _rows(recovery: StressRecovery, nodes: Any) -> Any:
+    order = np.argsort(recovery.nodes)
+    return order[np.searchsorted(recovery.nodes, nodes, sorter=order)]

@@ -1,0 +1,91 @@
+"""Contact at every angle of a turn, whichever way it was found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, readonly
+from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
+
+
+@dataclass(frozen=True, eq=False)
+class ContactHistory:
+    """Contact quantities at n cam angles, SI; zero where the surfaces carry no load.
+
+    line_load N/m; relative_radius m; p0_hertz, p0 Pa; half_width_hertz, half_width m; tau_max
+    (largest shear in the plane) and von_mises in the cam, Pa, with their depths, m;
+    tau_any_plane the largest shear on any plane, more than tau_max for nu below about 0.25;
+    residual_equilibrium, residual_complementarity, relative; pressure (n, k) Pa at the places
+    pressure_xi (n, k) m along the contact's tangent, straight lines between them; method in words.
+    """
+
+    line_load: Array
+    relative_radius: Array
+    p0_hertz: Array
+    half_width_hertz: Array
+    p0: Array
+    half_width: Array
+    tau_max: Array
+    tau_any_plane: Array
+    tau_depth: Array
+    von_mises: Array
+    von_mises_depth: Array
+    residual_equilibrium: Array
+    residual_complementarity: Array
+    pressure: Array
+    pressure_xi: Array
+    method: str
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            if field.name != "method":
+                object.__setattr__(self, field.name, readonly(getattr(self, field.name)))
+
+    @property
+    def p0_difference(self) -> Array:
+        """Finite elements over Hertz, less one; zero without load."""
+        idle = self.p0_hertz == 0
+        return np.where(idle, 0.0, self.p0 / np.where(idle, 1.0, self.p0_hertz) - 1)
+
+
+@dataclass(frozen=True)
+class CertificatePoint:
+    """The full two-body solution at one angle on three meshes, beside the cycle's own.
+
+    Convergence of p0 (Pa), half_width (m), tau_max and von_mises (Pa); edges across the
+    half-width and degrees of freedom of each mesh; residuals, the worst of the three.
+    """
+
+    theta: float
+    p0: Convergence
+    half_width: Convergence
+    tau_max: Convergence
+    von_mises: Convergence
+    edges: tuple[float, ...]
+    dofs: tuple[int, ...]
+    p0_hertz: float
+    p0_cycle: float
+    half_width_cycle: float
+    tau_max_cycle: float
+    von_mises_cycle: float
+    residual_equilibrium: float
+    residual_complementarity: float
+
+    @property
+    def spread_percent(self) -> float:
+        """Largest difference between cycle and certificate of any signed figure, %; a NaN wins."""
+        pairs = (
+            (self.p0, self.p0_cycle),
+            (self.half_width, self.half_width_cycle),
+            (self.tau_max, self.tau_max_cycle),
+            (self.von_mises, self.von_mises_cycle),
+        )
+        return 100 * float(np.max([abs(value / one.extrapolated - 1) for one, value in pairs]))
+
+    @property
+    def gci_percent(self) -> float:
+        """Largest grid convergence index of the figures, %; a NaN wins."""
+        figures = (self.p0, self.half_width, self.tau_max, self.von_mises)
+        return 100 * float(np.max([figure.gci for figure in figures]))

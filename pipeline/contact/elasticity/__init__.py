@@ -1,0 +1,1 @@
+"""Plane-strain elasticity: closed forms and finite elements."""

@@ -1,0 +1,196 @@
+"""Frictionless contact as a small complementarity problem under a given force.
+
+Find pressures p and the approach d of
+
+    gap = C p + g - d m >= 0,   p >= 0,   p . gap = 0,   m . p = F,
+
+where C is the pressure compliance (symmetric, positive definite on pressures of zero
+resultant), g the weighted initial gap and m the integrals of the pressure shapes. There is no
+penalty and no constant to choose. Problems of one size are solved together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.errors import ContactError
+
+_SWEEPS = 60
+# Below this share of the largest pressure (or of its gap) a sign is round-off.
+_ROUND_OFF = 1e-11
+_COMPLEMENTARITY = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Complementarity:
+    """Solution of `count` contact problems.
+
+    pressure (count, n) Pa, gap (count, n) weighted, approach (count,),
+    equilibrium (count,) |m.p - F| / F, complementarity (count,) worst violation of the signs
+    and of p.gap = 0, relative to the largest pressure and gap.
+    """
+
+    pressure: Array
+    gap: Array
+    approach: Array
+    equilibrium: Array
+    complementarity: Array
+
+    def __post_init__(self) -> None:
+        names = ("pressure", "gap", "approach", "equilibrium", "complementarity")
+        freeze(self, **{name: getattr(self, name) for name in names})
+
+
+def solve(
+    compliance: ArrayLike,
+    gap: ArrayLike,
+    shape_integrals: ArrayLike,
+    force: ArrayLike,
+    guess: ArrayLike | None = None,
+) -> Complementarity:
+    """Pressures under given forces, by primal-dual active sets.
+
+    Parameters
+    ----------
+    compliance : array (count, n, n) or (n, n)
+    gap : array (count, n)              weighted initial gap
+    shape_integrals : array (count, n) or (n,)
+    force : array (count,)              > 0
+    guess : array (n,) of bool          pressures that may act, to begin with; the answer does
+                                        not depend on it
+
+    Raises
+    ------
+    ContactError
+        If a problem has no finite solution, or complementarity is not met to 1e-9.
+
+    References
+    ----------
+    Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2003) 865 (the primal-dual active set);
+    a set met twice hands the problem to the primal method, which cannot cycle.
+    """
+    g = np.atleast_2d(np.asarray(gap, dtype=float))
+    count, size = g.shape
+    C = np.broadcast_to(np.asarray(compliance, dtype=float), (count, size, size))
+    m = np.broadcast_to(np.asarray(shape_integrals, dtype=float), (count, size))
+    F = np.broadcast_to(np.asarray(force, dtype=float), (count,))
+    # Each problem in units of its own: pressures about 1, gaps about 1.
+    pressure_scale = F / m.sum(axis=1)
+    gap_scale = np.abs(np.einsum("kii->ki", C)).max(axis=1) * pressure_scale
+    C = C * (pressure_scale / gap_scale)[:, None, None]
+    g = g / gap_scale[:, None]
+    weight = m / m.sum(axis=1, keepdims=True)
+
+    start = np.ones(size, dtype=bool) if guess is None else np.asarray(guess, dtype=bool)
+    p, d = _batched(C, g, weight, start)
+    moved = np.einsum("kij,kj->ki", C, p)
+    residual_gap = moved + g - d[:, None] * weight
+    largest = np.maximum(p.max(axis=1), 1e-300)
+    # Where all knots touch there is no gap, only round-off of what cancels in it.
+    gap_largest = np.maximum(np.abs(residual_gap), 1e-3 * np.abs(moved)).max(axis=1)
+    gap_largest = np.maximum(gap_largest, 1e-300)
+    violation = np.max(
+        [
+            np.maximum(-p, 0).max(axis=1) / largest,
+            np.maximum(-residual_gap, 0).max(axis=1) / gap_largest,
+            np.abs(p * residual_gap).max(axis=1) / (largest * gap_largest),
+        ],
+        axis=0,
+    )
+    if not violation.max(initial=0.0) <= _COMPLEMENTARITY:
+        raise ContactError(
+            f"complementarity = {violation.max():.1e}, must be <= {_COMPLEMENTARITY:.0e}"
+        )
+    return Complementarity(
+        pressure=p * pressure_scale[:, None],
+        gap=residual_gap * gap_scale[:, None],
+        approach=d * gap_scale / m.sum(axis=1),
+        equilibrium=np.abs(np.einsum("ki,ki->k", weight, p) - 1),
+        complementarity=violation,
+    )
+
+
+def _batched(C: Array, g: Array, m: Array, start: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Active-set sweeps over all problems at once; stragglers go to the primal method."""
+    count, size = g.shape
+    pressures, approaches = np.zeros((count, size)), np.zeros(count)
+    open_cases = np.arange(count)
+    active = np.tile(start if start.any() else np.ones_like(start), (count, 1))
+    seen: list[set[bytes]] = [set() for _ in range(count)]
+    stragglers: list[int] = []
+    for _ in range(_SWEEPS):
+        if open_cases.size == 0:
+            break
+        p, d = _equality_solution(C[open_cases], g[open_cases], m[open_cases], active[open_cases])
+        gaps = (
+            np.einsum("kij,kj->ki", C[open_cases], p) + g[open_cases] - d[:, None] * m[open_cases]
+        )
+        tolerance_p = _ROUND_OFF * np.abs(p).max(axis=1, keepdims=True)
+        tolerance_g = _ROUND_OFF * np.abs(gaps).max(axis=1, keepdims=True)
+        current = active[open_cases]
+        updated = (current & (p > -tolerance_p)) | (~current & (gaps < -tolerance_g))
+        settled = (updated == current).all(axis=1)
+        pressures[open_cases], approaches[open_cases] = p, d
+        active[open_cases] = updated
+        remaining = []
+        for row, case in enumerate(open_cases.tolist()):
+            if settled[row]:
+                continue
+            key = np.packbits(updated[row]).tobytes()
+            if key in seen[case] or not updated[row].any():
+                stragglers.append(int(case))
+            else:
+                seen[case].add(key)
+                remaining.append(int(case))
+        open_cases = np.array(remaining, dtype=int)
+    for case in [*stragglers, *open_cases.tolist()]:
+        pressures[case], approaches[case] = _primal(C[case], g[case], m[case])
+    return np.maximum(pressures, 0), approaches
+
+
+def _equality_solution(
+    C: Array, g: Array, m: Array, active: NDArray[np.bool_]
+) -> tuple[Array, Array]:
+    """Zero gap on the active pressures, zero pressure elsewhere, unit force (all batched)."""
+    count, size = g.shape
+    system = np.zeros((count, size + 1, size + 1))
+    both = active[:, :, None] & active[:, None, :]
+    system[:, :size, :size] = np.where(both, C, 0.0)
+    diagonal = np.arange(size)
+    system[:, diagonal, diagonal] += np.where(active, 0.0, 1.0)
+    system[:, :size, size] = -np.where(active, m, 0.0)
+    system[:, size, :size] = np.where(active, m, 0.0)
+    right = np.concatenate([np.where(active, -g, 0.0), np.ones((count, 1))], axis=1)
+    try:
+        solution = np.linalg.solve(system, right[:, :, None])[:, :, 0]
+    except np.linalg.LinAlgError as error:
+        raise ContactError("the pressure compliance is singular") from error
+    return solution[:, :size], solution[:, size]
+
+
+def _primal(C: Array, g: Array, m: Array) -> tuple[Array, float]:
+    """The same problem by the primal active-set method: the energy falls, so no set recurs."""
+    p = np.full(g.size, 1 / m.sum())
+    active = np.ones(g.size, dtype=bool)
+    for _ in range(20 * g.size):
+        target, d = (v[0] for v in _equality_solution(C[None], g[None], m[None], active[None]))
+        falling = active & (target < 0)
+        if falling.any():
+            steps = np.where(falling, p / np.where(falling, p - target, 1), np.inf)
+            first = int(np.argmin(steps))
+            p = p + min(1.0, steps[first]) * (target - p)
+            p[first] = 0.0
+            active[first] = False
+            continue
+        p = target
+        gaps = C @ p + g - d * m
+        gaps[active] = 0.0
+        worst = int(np.argmin(gaps))
+        if gaps[worst] >= -_ROUND_OFF * max(np.abs(gaps).max(), 1e-300):
+            return p, float(d)
+        active[worst] = True
+    raise ContactError("the contact pressures did not settle")

@@ -1,0 +1,145 @@
+"""Sparse symmetric positive definite matrices, factored once and solved for many loads.
+
+SciPy's SuperLU does it everywhere; CHOLMOD, through cvxopt, or Pardiso, through pypardiso, where
+one of them is installed and not switched off by ``CAMWRIGHT_SOLVER=scipy``. The answers are the
+same to round-off.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
+from scipy.linalg import solve_triangular
+from scipy.sparse.linalg import splu
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ContactError
+
+# Legitimate for such a matrix, and several times faster than pivoting with COLAMD.
+_SYMMETRIC: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+
+_POSITIVE_DEFINITE = 2  # Pardiso's number for such a real matrix
+
+
+def back_end() -> str:
+    """Which library factors: CHOLMOD or Pardiso where installed and not switched off, or SciPy."""
+    if os.environ.get("CAMWRIGHT_SOLVER") != "scipy":
+        for name, module in (("cholmod", "cvxopt.cholmod"), ("pardiso", "pypardiso")):
+            with suppress(ImportError):
+                importlib.import_module(module)
+                return name
+    return "scipy"
+
+
+def factorised(matrix: Any) -> Callable[[Array], Array]:
+    """Solver of a sparse symmetric positive definite matrix for right-hand sides (n, k)."""
+    chosen = back_end()
+    if chosen == "cholmod":
+        from cvxopt import cholmod, spmatrix
+        from cvxopt import matrix as dense
+
+        return _by_cholmod(sparse.csc_array(matrix), cholmod, spmatrix, dense)
+    if chosen == "pardiso":
+        from pypardiso import PyPardisoSolver
+
+        return _by_pardiso(matrix, PyPardisoSolver(mtype=_POSITIVE_DEFINITE))
+    factor = splu(sparse.csc_matrix(matrix), permc_spec="MMD_AT_PLUS_A", **_SYMMETRIC)
+    return factor.solve
+
+
+def _by_cholmod(matrix: Any, cholmod: Any, spmatrix: Any, dense: Any) -> Callable[[Array], Array]:
+    lower = sparse.coo_array(sparse.tril(matrix))
+    rows, columns = lower.coords
+    held = spmatrix(
+        dense(lower.data), dense(rows.astype(np.int64)), dense(columns.astype(np.int64))
+    )
+    factor = cholmod.symbolic(held)
+    cholmod.numeric(held, factor)
+
+    def solve(right: Array) -> Array:
+        values = dense(np.asfortranarray(right, dtype=float))
+        cholmod.solve(factor, values)
+        return np.array(values).reshape(right.shape, order="F")
+
+    return solve
+
+
+def _by_pardiso(matrix: Any, solver: Any) -> Callable[[Array], Array]:
+    upper = sparse.csr_matrix(sparse.triu(matrix, format="csr"))
+    upper.sort_indices()
+    solver.factorize(upper)
+
+    def solve(right: Array) -> Array:
+        return np.asarray(solver.solve(upper, np.asarray(right, dtype=float))).reshape(right.shape)
+
+    return solve
+
+
+class Condensed:
+    """A matrix condensed to some of its unknowns: loads act there and nowhere else.
+
+    The chosen unknowns are eliminated last, so that the end of the triangular factors is the
+    factor of the condensed matrix: loads on a few unknowns cost dense algebra of that few.
+
+    Parameters
+    ----------
+    matrix : sparse (n, n)   symmetric positive definite
+    pairs : array (2, m)     unknowns that share their neighbours, x and y of a node; unknowns
+                             without a partner stand in neither row. Orders the elimination
+    last : array (k,)        the chosen unknowns
+    """
+
+    def __init__(self, matrix: Any, pairs: ArrayLike, last: ArrayLike) -> None:
+        self._last = np.asarray(last, dtype=int)
+        order = _elimination_order(matrix, np.asarray(pairs, dtype=int), self._last)
+        permuted = sparse.csc_matrix(matrix)[order][:, order].tocsc()
+        factor = splu(permuted, permc_spec="NATURAL", **_SYMMETRIC)
+        if not np.array_equal(factor.perm_r, factor.perm_c):
+            raise ContactError("the stiffness is not positive definite")
+        self._order, self._factor = order, factor
+        size, few = order.size, self._last.size
+        # SuperLU may still exchange columns that do not see each other: look where they went.
+        place = factor.perm_c[size - few :]
+        shuffle = np.argsort(place)
+        rows = np.sort(place)
+        self._shuffle = shuffle
+        self._lower = factor.L[:, rows][rows].toarray()
+        self._upper = factor.U[:, rows][rows].toarray()
+
+    def solve_last(self, right: ArrayLike) -> Array:
+        """Values (k, m) of the chosen unknowns under loads (k, m) on them."""
+        loads = np.asarray(right, dtype=float)[self._shuffle]
+        half = solve_triangular(self._lower, loads, lower=True, unit_diagonal=True)
+        found = np.empty_like(loads)
+        found[self._shuffle] = solve_triangular(self._upper, half)
+        return found
+
+    def solve(self, right: ArrayLike) -> Array:
+        """Values (n, m) of all unknowns under loads (n, m) anywhere."""
+        loads = np.asarray(right, dtype=float)
+        found = np.empty_like(loads)
+        found[self._order] = self._factor.solve(loads[self._order])
+        return found
+
+
+def _elimination_order(matrix: Any, pairs: NDArray[Any], last: NDArray[Any]) -> NDArray[Any]:
+    """Minimum degree on the nodes rather than on their components, the chosen ones last."""
+    size = matrix.shape[0]
+    chosen = np.zeros(size, dtype=bool)
+    chosen[last] = True
+    inner = pairs[:, ~chosen[pairs].any(axis=0)]
+    rest = np.ones(size, dtype=bool)
+    rest[inner] = False
+    rest[last] = False
+    block = sparse.csc_matrix(matrix)[inner[0]][:, inner[0]].tocsc()
+    found = splu(block, permc_spec="MMD_AT_PLUS_A", **_SYMMETRIC)
+    # perm_c[j] is where column j goes.
+    sequence = np.argsort(found.perm_c)
+    return np.concatenate([inner[:, sequence].T.ravel(), np.flatnonzero(rest), last])

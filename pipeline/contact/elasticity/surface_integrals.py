@@ -1,0 +1,126 @@
+"""Integrals over a curved, meshed surface in the frame of a contact.
+
+A contact lives in one frame: origin at the common point, tangent t, normal n. A surface point
+has the coordinate xi along t; pressures act along n and are counted per unit of xi, so a force
+is the plain integral over xi. Integrals are split at the pressure knots and at the facet ends
+of the surface: unsplit quadrature makes pressures oscillate by tens of per cent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array, readonly
+from camwright.geometry.errors import ContactError
+from camwright.meshes.body_mesh import BodyMesh
+from camwright.pipeline.contact.elasticity.pressure_distribution import (
+    EllipticShapes,
+    PressureShapes,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class ContactFrame:
+    """Origin (2,) m and unit normal (2,), pointing from body 1 (cam) to body 2 (roller)."""
+
+    origin: Array
+    normal: Array
+
+    @property
+    def tangent(self) -> Array:
+        """Normal turned clockwise: seen with the normal up, xi grows to the right."""
+        return readonly([self.normal[1], -self.normal[0]])
+
+    def along(self, points: ArrayLike) -> Array:
+        """Coordinate xi of points (2, ...) along the tangent, m."""
+        return np.tensordot(self.tangent, _relative(points, self.origin), axes=1)
+
+    def above(self, points: ArrayLike) -> Array:
+        """Height of points (2, ...) above the tangent line, m."""
+        return np.tensordot(self.normal, _relative(points, self.origin), axes=1)
+
+
+def _relative(points: ArrayLike, origin: Array) -> Array:
+    values = np.asarray(points, dtype=float)
+    return values - origin.reshape((2,) + (1,) * (values.ndim - 1))
+
+
+def knots_of(mesh: BodyMesh, boundary: str, frame: ContactFrame, reach: float) -> Array:
+    """Pressure knots (k,) of a surface within `reach` of the contact, along the tangent, m.
+
+    All nodes of the surface, ends and middles of facets: with exact integrals the finer
+    pressure is stable, and results move four times less with the position of the mesh than
+    with knots at the ends alone.
+
+    Raises
+    ------
+    ContactError
+        If there are fewer than nine.
+    """
+    nodes = mesh.points[:, mesh.boundary_nodes(boundary)]
+    xi, height = frame.along(nodes), np.abs(frame.above(nodes))
+    found = np.sort(xi[(np.abs(xi) <= reach) & (height <= reach)])
+    if found.size < 9:
+        raise ContactError(f"only {found.size} nodes of {boundary} within the contact window")
+    return found
+
+
+def normal_loads(
+    mesh: BodyMesh,
+    boundary: str,
+    frame: ContactFrame,
+    shapes: PressureShapes | EllipticShapes,
+) -> Array:
+    """Nodal forces (2, nodes, n) of each pressure shape acting along the frame's normal.
+
+    The transpose weighs a displacement field with the shapes.
+
+    Raises
+    ------
+    ContactError
+        If the surface does not cover the knots.
+    """
+    triples = mesh.facet_triples(boundary)
+    xi_nodes = frame.along(mesh.points[:, triples])
+    heights = np.abs(frame.above(mesh.points[:, triples])).max(axis=0)
+    low, high = xi_nodes[:2].min(axis=0), xi_nodes[:2].max(axis=0)
+    window = shapes.knots[-1] - shapes.knots[0]
+    near = (high > shapes.knots[0]) & (low < shapes.knots[-1]) & (heights < window)
+    facets = np.flatnonzero(near)
+    order = facets[np.argsort(low[facets])]
+    slack = 1e-9 * window
+    if (
+        order.size == 0
+        or low[order[0]] > shapes.knots[0] + slack
+        or (high[order[-1]] < shapes.knots[-1] - slack)
+    ):
+        raise ContactError(f"{boundary} ends inside the contact window")
+
+    xi, weights = shapes.quadrature(np.concatenate([low[order], high[order]]))
+    facet = order[np.clip(np.searchsorted(low[order], xi, side="right") - 1, 0, order.size - 1)]
+    local = _local_coordinate(xi_nodes[:, facet], xi)
+    shape_1, shape_2 = (1 - local) * (1 - 2 * local), local * (2 * local - 1)
+    surface_shapes = np.stack([shape_1, shape_2, 4 * local * (1 - local)])
+
+    weighted = shapes.values(xi) * weights
+    along_normal = np.zeros((mesh.points.shape[1], shapes.centres.size))
+    for corner in range(3):
+        np.add.at(along_normal, triples[corner, facet], (weighted * surface_shapes[corner]).T)
+    return frame.normal[:, None, None] * along_normal
+
+
+def _local_coordinate(xi_nodes: Array, xi: Array) -> Array:
+    """Facet coordinate s in [0, 1] with xi(s) given, for quadratic facets (Newton)."""
+    first, last, middle = xi_nodes
+    s = (xi - first) / (last - first)
+    for _ in range(20):
+        value = first * (1 - s) * (1 - 2 * s) + last * s * (2 * s - 1) + middle * 4 * s * (1 - s)
+        slope = first * (4 * s - 3) + last * (4 * s - 1) + middle * 4 * (1 - 2 * s)
+        step = (value - xi) / slope
+        s = s - step
+        if np.abs(step).max(initial=0.0) < 1e-14:
+            break
+    return s

@@ -1,0 +1,292 @@
+"""Two bodies in contact by finite elements, nothing assumed but linear elasticity.
+
+Second-order bodies, continuous linear pressure on the facets of one surface, integrals split at
+the knots and facets of both, the gap from the true shapes and not from the facets, the bodies
+condensed to a compliance of the pressures, complementarity solved exactly under the given load.
+Linear pressures find the contact and overshoot at its edge; within the contact found they are
+then multiplied by an ellipse, which ends as a contact pressure does.
+
+Frictionless: the surfaces may slide past each other, also where unlike materials would drag each
+other along (Dundurs' beta is not felt), and pressures act along the one normal of the frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.contact.elasticity import active_set
+from camwright.pipeline.contact.elasticity.elastic_body import (
+    CondensedBody,
+    ElasticBody,
+    StressRecovery,
+    elements_near,
+)
+from camwright.pipeline.contact.elasticity.plane_stress_measures import (
+    PeakFinder,
+    shear_in_plane,
+    von_mises,
+)
+from camwright.pipeline.contact.elasticity.pressure_distribution import (
+    Ellipses,
+    EllipticShapes,
+    PressureShapes,
+    fitted_ellipses,
+)
+from camwright.pipeline.contact.elasticity.surface_integrals import (
+    ContactFrame,
+    knots_of,
+    normal_loads,
+)
+
+# Pressures are sought within this many half-widths of the centre.
+_WINDOW = 1.4
+# Stresses are recovered within this many half-widths of the contact.
+_STRESS_REACH = 2.0
+_EQUILIBRIUM = 1e-8
+# The second moment of a pressure cut off wrongly is off in the second order alone.
+_EDGE_UPDATES = 2
+# Overlap next to the contact over the opening at the window's end, by round-off and mesh.
+_OVERLAP = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class ContactSide:
+    """One body with the name of its contact surface."""
+
+    body: ElasticBody
+    surface: str
+
+
+@dataclass(frozen=True, eq=False)
+class ContactSolution:
+    """Contact of two bodies under a line load.
+
+    xi (k,) m and pressure (k,) Pa at the knots; p0, centre and half_width of the ellipse fitted
+    to it; tau_max, von_mises and their depths below the contact in body 1
+    (Pa, m); displacements (2, nodes) m of both bodies; equilibrium and complementarity
+    residuals, relative. Where the pressure could not be given elliptic edges, `linear_because`
+    says why; it is empty elsewhere.
+    """
+
+    xi: Array
+    pressure: Array
+    p0: float
+    centre: float
+    half_width: float
+    tau_max: float
+    tau_depth: float
+    von_mises: float
+    von_mises_depth: float
+    approach: float
+    displacements: tuple[Array, Array]
+    residual_equilibrium: float
+    residual_complementarity: float
+    dofs: int
+    linear_because: str = ""
+
+    def __post_init__(self) -> None:
+        freeze(self, xi=self.xi, pressure=self.pressure)
+
+
+def solve_contact(
+    sides: tuple[ContactSide, ContactSide],
+    frame: ContactFrame,
+    gap: Callable[[Array], Array],
+    line_load: float,
+    half_width: float,
+    *,
+    pressure_on: int = 0,
+    shapes: PressureShapes | None = None,
+) -> ContactSolution:
+    """Contact pressures, stresses and displacements of two bodies.
+
+    Parameters
+    ----------
+    sides : two ContactSide        body 1 below the frame's normal, body 2 above it
+    frame : ContactFrame
+    gap : function xi -> array     distance of the undeformed surfaces along the normal, m
+    line_load : float              N/m, > 0
+    half_width : float             Hertz half-width that sets the window, m
+    pressure_on : int              the side whose surface nodes are the pressure knots
+    shapes : PressureShapes        knots of the caller's choice instead
+
+    Raises
+    ------
+    InputError
+        If the load or the half-width is not positive.
+    ContactError
+        If the contact reaches the end of its window, or equilibrium or complementarity is not
+        met to 1e-8.
+    """
+    for name, value, si in (("line_load", line_load, "N/m"), ("half_width", half_width, "m")):
+        if not value > 0:
+            raise InputError(name, value, f"> 0 {si}")
+    if shapes is None:
+        chosen = sides[pressure_on]
+        reach = _WINDOW * half_width
+        shapes = PressureShapes(knots_of(chosen.body.mesh, chosen.surface, frame, reach))
+    seen = (_LoadedNodes.of(sides[0], frame, shapes), _LoadedNodes.of(sides[1], frame, shapes))
+    linear = _pressed(seen, shapes, gap, line_load, np.abs(shapes.centres) < half_width)
+    found = linear.solution.pressure[0]
+    if not shapes.open_ends and (found[0] > 0 or found[-1] > 0):
+        raise ContactError("the contact is wider than the window it was sought in")
+    pressed, linear_because = _with_elliptic_edges(linear, gap, line_load)
+    seen, solution = pressed.seen, pressed.solution
+    pressure = solution.pressure[0]
+    displacements = (seen[0].displacement(-pressure), seen[1].displacement(pressure))
+    support = sides[0].body.reaction(displacements[0]) - line_load * frame.normal
+    equilibrium = max(float(solution.equilibrium[0]), float(np.linalg.norm(support)) / line_load)
+    if not equilibrium <= _EQUILIBRIUM:
+        raise ContactError(f"equilibrium = {equilibrium:.1e}, must be <= {_EQUILIBRIUM:.0e}")
+    ellipse = pressed.ellipse
+    width = float(ellipse.half_width[0])
+    peak = _peak_stress(sides[0].body, displacements[0], frame, width)
+    return ContactSolution(
+        xi=shapes.centres,
+        pressure=pressed.shapes.values(shapes.centres).T @ pressure,
+        p0=float(ellipse.p0[0]),
+        centre=float(ellipse.centre[0]),
+        half_width=width,
+        tau_max=peak[0],
+        tau_depth=peak[1],
+        von_mises=peak[2],
+        von_mises_depth=peak[3],
+        approach=float(solution.approach[0]),
+        displacements=displacements,
+        residual_equilibrium=equilibrium,
+        residual_complementarity=float(solution.complementarity[0]),
+        dofs=sum(side.body.dof_count for side in sides),
+        linear_because=linear_because,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _LoadedNodes:
+    """A body condensed to the nodes under the pressures, with their loads (2, m, n)."""
+
+    side: ContactSide
+    frame: ContactFrame
+    body: CondensedBody
+    loads: Array
+
+    @classmethod
+    def of(cls, side: ContactSide, frame: ContactFrame, shapes: PressureShapes) -> _LoadedNodes:
+        loads = normal_loads(side.body.mesh, side.surface, frame, shapes)
+        nodes = np.flatnonzero((loads != 0).any(axis=(0, 2)))
+        return cls(side, frame, side.body.condensed(nodes), loads[:, nodes])
+
+    def under(self, shapes: EllipticShapes) -> _LoadedNodes:
+        """The same nodes under other pressures within those of before."""
+        loads = normal_loads(self.side.body.mesh, self.side.surface, self.frame, shapes)
+        return replace(self, loads=loads[:, self.body.nodes])
+
+    @property
+    def compliance(self) -> Array:
+        """Weighted surface displacement (n, n) per pressure."""
+        found = np.tensordot(self.loads, self.body.displacement(self.loads), axes=([0, 1], [0, 1]))
+        return (found + found.T) / 2
+
+    def displacement(self, pressure: Array) -> Array:
+        """Displacement (2, nodes) of the whole body."""
+        return self.body.everywhere((self.loads @ pressure)[:, :, None])[:, :, 0]
+
+
+@dataclass(frozen=True, eq=False)
+class _Pressed:
+    """Both bodies under the pressures found with some shapes."""
+
+    seen: tuple[_LoadedNodes, _LoadedNodes]
+    shapes: PressureShapes | EllipticShapes
+    solution: active_set.Complementarity
+
+    @cached_property
+    def ellipse(self) -> Ellipses:
+        return fitted_ellipses(self.shapes, self.solution.pressure)
+
+    @property
+    def edges(self) -> Array:
+        """Ends (2,) of the fitted ellipse, m."""
+        reach = self.ellipse.half_width[0]
+        return self.ellipse.centre[0] + np.array([-reach, reach])
+
+
+def _pressed(
+    seen: tuple[_LoadedNodes, _LoadedNodes],
+    shapes: PressureShapes | EllipticShapes,
+    gap: Callable[[Array], Array],
+    line_load: float,
+    guess: ArrayLike | None = None,
+) -> _Pressed:
+    xi, weights = shapes.quadrature()
+    solution = active_set.solve(
+        seen[0].compliance + seen[1].compliance,
+        shapes.integrated(gap(xi), xi, weights),
+        shapes.integrals,
+        [line_load],
+        guess=guess,
+    )
+    return _Pressed(seen, shapes, solution)
+
+
+def _with_elliptic_edges(
+    linear: _Pressed, gap: Callable[[Array], Array], line_load: float
+) -> tuple[_Pressed, str]:
+    """The contact again with pressures that end as an ellipse; else as it was, and why.
+
+    On every second knot: as fine as the displacements can follow.
+    """
+    shapes = linear.shapes
+    if not isinstance(shapes, PressureShapes) or shapes.open_ends:
+        return linear, "the pressure does not end within the surface"
+    step = float(np.diff(shapes.knots).max())
+    carrying = np.flatnonzero(linear.solution.pressure[0] > 0)
+    ends = shapes.centres[carrying[[0, -1]]]
+    if np.diff(carrying).max() > 1 or np.abs(ends - linear.edges).max() > 2 * step:
+        return linear, "the contact is no single ellipse"
+    found = linear
+    for _ in range(_EDGE_UPDATES):
+        cut = EllipticShapes.within(shapes.knots[::2], found.edges)
+        seen = (linear.seen[0].under(cut), linear.seen[1].under(cut))
+        found = _pressed(seen, cut, gap, line_load)
+    if not _overlap(linear, found, gap) <= _OVERLAP:
+        return linear, "the surfaces would overlap beside the ellipse"
+    return found, ""
+
+
+def _overlap(linear: _Pressed, found: _Pressed, gap: Callable[[Array], Array]) -> float:
+    """Deepest overlap beside the contact over the widest gap, both weighed by linear shapes."""
+    shapes, pressure = linear.shapes, found.solution.pressure[0]
+    xi, weights = shapes.quadrature()
+    apart = shapes.integrated(gap(xi), xi, weights)
+    for before, after in zip(linear.seen, found.seen, strict=True):
+        moved = before.body.displacement((after.loads @ pressure)[:, :, None])[:, :, 0]
+        apart += np.tensordot(before.loads, moved, axes=([0, 1], [0, 1]))
+    apart -= found.solution.approach[0] * shapes.integrals
+    low, high = found.edges
+    beside = (shapes.knots[2:] <= low) | (shapes.knots[:-2] >= high)
+    return float(-apart[beside].min() / apart.max())
+
+
+def _peak_stress(
+    body: ElasticBody, displacement: Array, frame: ContactFrame, half_width: float
+) -> tuple[float, float, float, float]:
+    """Largest in-plane shear and von Mises stress near the contact, and their depths."""
+    recovery = StressRecovery(body, elements_near(body, frame.origin, _STRESS_REACH * half_width))
+    nodal = recovery(displacement[:, :, None])
+    points = body.mesh.points[:, recovery.nodes]
+    find = PeakFinder(np.stack([frame.along(points), -frame.above(points)]) / half_width)
+    shear, shear_place = find(shear_in_plane(nodal))
+    mises, mises_place = find(von_mises(nodal, body.poisson))
+    return (
+        float(shear[0]),
+        float(shear_place[1, 0]) * half_width,
+        float(mises[0]),
+        float(mises_place[1, 0]) * half_width,
+    )

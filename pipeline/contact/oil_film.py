@@ -1,0 +1,223 @@
+"""Oil film between roller and cam, and what part of it the roughness takes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from camwright.geometry.arrays import Array, finite, freeze, positive
+from camwright.geometry.errors import InputError
+
+UNVERIFIED = (
+    "regression of Masjedi and Khonsari (2012) as recalled, not checked against the paper: verify"
+)
+_RANGE = {  # of the fit, to its order of magnitude: verify
+    "load": (2e-5, 5e-4),
+    "speed": (1e-12, 1e-10),
+    "material": (2500.0, 7500.0),
+    "roughness": (0.0, 5e-5),
+    "hardness": (0.005, 0.03),
+}
+
+
+@dataclass(frozen=True)
+class Lubricant:
+    """Viscosity (Pa s) at the inlet's temperature, pressure-viscosity coefficient (1/Pa)."""
+
+    viscosity: float
+    pressure_viscosity: float
+
+    def __post_init__(self) -> None:
+        for name in ("viscosity", "pressure_viscosity"):
+            positive(f"lubricant.{name}", getattr(self, name))
+
+
+@dataclass(frozen=True, eq=False)
+class LineFilm:
+    """What decides a film: groups of a line contact, arrays (...).
+
+    load W = P'/(E' R), speed U = eta u/(E' R), material G = alpha E', with E' = 2 E*, R and
+    the entrainment speed u, the mean of both surfaces' speeds through the contact; radius m.
+    """
+
+    load: Array
+    speed: Array
+    material: float
+    radius: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, load=self.load, speed=self.speed, radius=self.radius)
+
+    @classmethod
+    def of(
+        cls,
+        line_load: ArrayLike,
+        relative_radius: ArrayLike,
+        contact_modulus: float,
+        entrainment_speed: ArrayLike,
+        lubricant: Lubricant,
+    ) -> LineFilm:
+        """Groups from SI values: N/m, m, Pa (E*), m/s.
+
+        Raises
+        ------
+        InputError
+            If a load is negative, a radius or the modulus not positive, a value not finite.
+        """
+        load = finite("line_load", line_load)
+        if (load < 0).any():
+            raise InputError("line_load", float(load.min()), ">= 0 N/m")
+        radius = positive("relative_radius", relative_radius, "m")
+        modulus = 2 * float(positive("contact_modulus", contact_modulus, "Pa"))
+        speed = np.abs(finite("entrainment_speed", entrainment_speed))
+        return cls(
+            load=load / (modulus * radius),
+            speed=lubricant.viscosity * speed / (modulus * radius),
+            material=lubricant.pressure_viscosity * modulus,
+            radius=radius,
+        )
+
+
+def entrainment_speed(rolling_speed: ArrayLike, slip: ArrayLike = 0.0) -> Array:
+    """Mean speed (...) of the surfaces through the contact, m/s, the roller's lagging by `slip`."""
+    return np.abs(np.asarray(rolling_speed, dtype=float) - np.asarray(slip, dtype=float) / 2)
+
+
+def minimum_film(film: LineFilm) -> Array:
+    """Least film thickness (...) of smooth surfaces, m; NaN where there is no load.
+
+    References
+    ----------
+    Dowson and Higginson, Elasto-hydrodynamic Lubrication (1966):
+    H = 2.65 U^0.70 G^0.54 W^-0.13.
+    """
+    loaded = film.load > 0
+    load = np.where(loaded, film.load, 1.0)
+    film_ratio = 2.65 * film.speed**0.70 * film.material**0.54 * load**-0.13
+    return np.where(loaded, film_ratio * film.radius, np.nan)
+
+
+def lambda_ratio(thickness: ArrayLike, roughness_1: float, roughness_2: float) -> Array:
+    """Film over the roughness of both surfaces (rms, m): above 3 full film, below 1 boundary.
+
+    Raises
+    ------
+    InputError
+        If a roughness is not positive.
+    """
+    both = np.hypot(
+        float(positive("roughness", roughness_1, "m")),
+        float(positive("roughness", roughness_2, "m")),
+    )
+    return np.asarray(thickness, dtype=float) / both
+
+
+@dataclass(frozen=True, eq=False)
+class MixedFilm:
+    """Central and least film (m) and load share of the asperities (0 to 1); see `source`."""
+
+    central: Array
+    minimum: Array
+    asperity_share: Array
+    source: str = UNVERIFIED
+
+    def __post_init__(self) -> None:
+        freeze(
+            self,
+            central=self.central,
+            minimum=self.minimum,
+            asperity_share=self.asperity_share,
+        )
+
+
+def mixed_film(film: LineFilm, roughness: float, hardness: float, modulus: float) -> MixedFilm:
+    """Film of rough surfaces by a regression whose source is unverified; an option, no default.
+
+    Parameters
+    ----------
+    film : LineFilm
+    roughness : float   of both surfaces together (rms), m
+    hardness : float    Vickers, Pa
+    modulus : float     E*, Pa
+
+    Raises
+    ------
+    InputError
+        If a group lies outside the range of the fit.
+
+    References
+    ----------
+    Masjedi and Khonsari, ASME J. Tribol. 134 (2012) 011503; coefficients as recalled: verify.
+    """
+    refused = next(_refusals(film, roughness, hardness, modulus), None)
+    if refused is not None:
+        raise refused[1]
+    return _regression(film, roughness, hardness, modulus)
+
+
+def mixed_film_where_it_holds(
+    film: LineFilm, roughness: float, hardness: float, modulus: float
+) -> tuple[MixedFilm, str]:
+    """`mixed_film` at each of many positions, NaN where it refuses; and the first refusal's words.
+
+    Parameters, references as those of `mixed_film`; a position without load is not refused but
+    has no film either.
+    """
+    loaded = film.load > 0
+    at_work = LineFilm(film.load[loaded], film.speed[loaded], film.material, film.radius[loaded])
+    refusals = list(_refusals(at_work, roughness, hardness, modulus))
+    holds = loaded.copy()
+    for where, _ in refusals:
+        holds[loaded] &= ~where
+    held = LineFilm(np.where(holds, film.load, np.nan), film.speed, film.material, film.radius)
+    words = str(refusals[0][1]) if refusals else ""
+    return _regression(held, roughness, hardness, modulus), words
+
+
+def _groups(film: LineFilm, roughness: float, hardness: float, modulus: float) -> dict[str, Array]:
+    shape = np.shape(film.load)
+    return {
+        "load": np.asarray(film.load),
+        "speed": np.asarray(film.speed),
+        "material": np.full(shape, film.material),
+        "roughness": np.asarray(roughness / film.radius),
+        "hardness": np.full(shape, hardness / (2 * modulus)),
+    }
+
+
+def _refusals(
+    film: LineFilm, roughness: float, hardness: float, modulus: float
+) -> Iterator[tuple[NDArray[np.bool_], InputError]]:
+    """Where (...) a group or the answer lies outside the range of the fit, and the error."""
+    for name, values in _groups(film, roughness, hardness, modulus).items():
+        low, high = _RANGE[name]
+        outside = ~((values >= low) & (values <= high))
+        if outside.any():
+            value = float(np.atleast_1d(values)[np.atleast_1d(outside)].flat[0])
+            yield outside, InputError(f"mixed film, {name} group", value, f"in [{low:g}, {high:g}]")
+    with np.errstate(all="ignore"):  # refused above where it has no value
+        share = _asperity_share(film, roughness, hardness, modulus)
+    above = np.asarray(share > 1)
+    if above.any():
+        value = 100 * float(share[above].max() if share.ndim else share)
+        yield above, InputError("mixed film, asperity load share", value, "<= 100 %")
+
+
+def _asperity_share(film: LineFilm, roughness: float, hardness: float, modulus: float) -> Array:
+    W, U, G, s, V = _groups(film, roughness, hardness, modulus).values()
+    rough = np.log1p(4470 * s**6.015 * V**1.168 * W**0.485 * U**-3.741 * G**-2.898)
+    return np.asarray(0.005 * W**-0.408 * U**-0.088 * G**0.103 * rough / 100)
+
+
+def _regression(film: LineFilm, roughness: float, hardness: float, modulus: float) -> MixedFilm:
+    W, U, G, s, V = _groups(film, roughness, hardness, modulus).values()
+    central = 1 + 0.2 * s**1.222 * V**0.223 * W**-0.229 * U**-0.748 * G**-0.842
+    least = 1 + 0.026 * s**1.120 * V**0.185 * W**-0.312 * U**-0.809 * G**-0.977
+    return MixedFilm(
+        central=2.691 * W**-0.135 * U**0.705 * G**0.556 * central * film.radius,
+        minimum=1.652 * W**-0.077 * U**0.716 * G**0.695 * least * film.radius,
+        asperity_share=_asperity_share(film, roughness, hardness, modulus),
+    )

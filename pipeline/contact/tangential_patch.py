@@ -1,0 +1,125 @@
+"""The contact patch under tractions along its surface: stress by finite elements.
+
+The same half disc as the pressure's template, with linear traction shapes on the same knots and
+the half-plane's motion under them on its arc. Pressure and traction of bodies of one material
+do not disturb each other, so the two templates are simply added.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, freeze
+from camwright.pipeline.base import disk_cache
+from camwright.pipeline.contact import contact_patch
+from camwright.pipeline.contact.elasticity.elastic_body import StressRecovery, elements_near
+from camwright.pipeline.contact.elasticity.halfplane import point_force_displacement
+from camwright.pipeline.contact.elasticity.plane_stress_measures import (
+    PeakFinder,
+    shear_in_plane,
+    von_mises,
+)
+from camwright.pipeline.contact.elasticity.pressure_distribution import PressureShapes
+from camwright.pipeline.contact.elasticity.surface_integrals import normal_loads
+from camwright.pipeline.contact.traction import rolling_traction
+
+_SHARES = 21
+# Traction draws the peak towards the surface, where the stress bends sharply.
+_PEAK_REACH = 0.25
+
+
+@dataclass(frozen=True, eq=False)
+class TangentialPatch:
+    """Half-plane under unit linear tractions along +x, for one Poisson ratio.
+
+    points (2, m) along and depth, in half-widths; stress (3, m, n) over the traction, with
+    `points` and the knots those of `ContactPatch`.
+    """
+
+    poisson: float
+    points: Array
+    stress: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, points=self.points, stress=self.stress)
+
+    @cached_property
+    def peaks(self) -> PeakFinder:
+        """Finder of peaks in stress with a share of traction."""
+        return PeakFinder(self.points, _PEAK_REACH)
+
+
+@lru_cache(maxsize=8)
+def tangential_patch(poisson: float, elements_per_half_width: int = 16) -> TangentialPatch:
+    """The template for a material, kept between runs."""
+    arrays = disk_cache.kept(
+        "traction",
+        (float(poisson), int(elements_per_half_width)),
+        lambda: _computed(poisson, elements_per_half_width),
+        (sys.modules[__name__], *contact_patch.RECIPE),
+    )
+    return TangentialPatch(poisson, **arrays)
+
+
+def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Array, Array]:
+    """What Carter's traction makes of the largest in-plane shear and von Mises stress.
+
+    Parameters
+    ----------
+    poisson : float
+    friction : float      coefficient, > 0
+    ratio : array (...)   tangential force over friction times normal force, in [0, 1]
+
+    Returns
+    -------
+    shear, mises : array (...)   over the values without traction
+    """
+    shares, shear, mises = _increase(float(poisson), float(friction))
+    return np.interp(ratio, shares, shear), np.interp(ratio, shares, mises)
+
+
+@lru_cache(maxsize=16)
+def _increase(poisson: float, friction: float) -> tuple[Array, Array, Array]:
+    normal, along = contact_patch.contact_patch(poisson), tangential_patch(poisson)
+    centres = normal.shapes.centres
+    shares = np.linspace(0.0, 1.0, _SHARES)
+    pressure = np.sqrt(np.maximum(1 - centres**2, 0.0))
+    traction = np.stack([rolling_traction(centres, share) for share in shares], axis=1)
+    inside = np.where(np.abs(centres)[:, None] < 1, traction, 0.0)
+    field = (normal.stress @ pressure)[:, :, None] + friction * (along.stress @ inside)
+    shear, _ = along.peaks(shear_in_plane(field))
+    mises, _ = along.peaks(von_mises(field, poisson))
+    return shares, shear / shear[0], mises / mises[0]
+
+
+def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
+    body, frame, shapes = contact_patch.patch_body(poisson, elements_per_half_width)
+    upward = normal_loads(body.mesh, "top", frame, shapes)
+    loads = np.stack([upward[1], np.zeros_like(upward[1])])
+    held = _arc_displacement(body.mesh.points, body.mesh.boundary_nodes("arc"), shapes, poisson)
+    recovery = StressRecovery(body, elements_near(body, frame.origin, contact_patch.STRESS_REACH))
+    nodal = recovery(body.displacement(loads, held))
+    # As in the pressure's template: the depth axis is turned over, and with it the shear.
+    nodal[2] *= -1
+    points = body.mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]])
+    return {"points": points, "stress": nodal}
+
+
+def _arc_displacement(points: Array, arc: Any, shapes: PressureShapes, poisson: float) -> Array:
+    """Half-plane displacement (2, nodes, n) of the arc under each traction shape.
+
+    The field of a force depends on the angle from its line alone, whichever way the surface
+    runs: the normal force's field, turned by a quarter, is that of a tangential one.
+    """
+    xi, weights = shapes.quadrature()
+    x, depth = points[0, arc], -points[1, arc]
+    sideways = np.broadcast_to(depth[:, None], (arc.size, xi.size))
+    into, along = point_force_displacement(sideways, x[:, None] - xi, poisson)
+    field = np.zeros((2, points.shape[1], shapes.centres.size))
+    field[:, arc] = np.stack([along, -into]) @ (shapes.values(xi) * weights).T
+    return field

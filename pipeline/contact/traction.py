@@ -1,0 +1,267 @@
+"""Tangential side of a line contact: what it must transmit, where it sticks, how far it creeps.
+
+Similar materials: pressure and traction do not disturb each other. `ratio` is the tangential
+force over friction coefficient times normal force, `x` is in half-widths and grows in the
+direction in which the material leaves the contact, tractions are over friction coefficient
+times peak pressure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array, finite, freeze, positive
+from camwright.geometry.errors import InputError
+
+_TURNS_MAX = 50
+_SETTLED = 1e-9
+# |x| within which half of a Hertz load lies, in half-widths, to round-off; its pressure over p0.
+_HALF_LOAD = 0.403972753299517
+_HALF_LOAD_PRESSURE = np.sqrt(1 - _HALF_LOAD**2)
+
+
+def stick_half_width(ratio: ArrayLike) -> Array:
+    """Half-width of the stick zone over that of the contact; 1 without, 0 at full traction.
+
+    The same for a static contact (Cattaneo, Mindlin: in the middle) and a rolling one (Carter:
+    at the leading edge).
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), secs. 7.2(d) and 8.3.
+    """
+    return np.sqrt(1 - _ratio(ratio))
+
+
+def static_traction(x: ArrayLike, ratio: float) -> Array:
+    """Traction (...) of a contact loaded first along its normal, then along its surface.
+
+    References
+    ----------
+    Cattaneo (1938), Mindlin (1949); Johnson, Contact Mechanics (1985), sec. 7.2(d).
+    """
+    return _sheared(x, float(stick_half_width(ratio)), 0.0)
+
+
+def rolling_traction(x: ArrayLike, ratio: float) -> Array:
+    """Traction (...) of steady rolling; the stick zone starts at the leading edge x = -1.
+
+    References
+    ----------
+    Carter (1926); Johnson, Contact Mechanics (1985), sec. 8.3.
+    """
+    stick = float(stick_half_width(ratio))
+    return _sheared(x, stick, stick - 1)
+
+
+def _sheared(x: ArrayLike, stick: float, centre: float) -> Array:
+    at = np.asarray(x, dtype=float)
+    full = np.sqrt(np.maximum(1 - at**2, 0.0))
+    if stick == 0:
+        return full
+    return full - stick * np.sqrt(np.maximum(1 - ((at - centre) / stick) ** 2, 0.0))
+
+
+def creepage(
+    ratio: ArrayLike, friction: float, half_width: ArrayLike, relative_radius: ArrayLike
+) -> Array:
+    """Creep speed over rolling speed of steady rolling, short of full slip.
+
+    Parameters
+    ----------
+    ratio : array (...)              in [0, 1]
+    friction : float                 coefficient, > 0
+    half_width : array (...)         m
+    relative_radius : array (...)    m
+
+    References
+    ----------
+    Carter (1926); Johnson, Contact Mechanics (1985), sec. 8.3.
+    """
+    radius = positive("relative_radius", relative_radius, "m")
+    slope = friction * np.asarray(half_width, dtype=float) / radius
+    return slope * (1 - stick_half_width(ratio))
+
+
+def free_rolling_creepage(
+    moduli: tuple[float, float], poissons: tuple[float, float], peak_pressure: float
+) -> float:
+    """Creepage of two rollers of unlike materials that roll without force, friction vanishing.
+
+    The surface of the softer body stretches less (or more) under the pressure; slip changes
+    its sign where half the load is inside, so that its tractions balance.
+
+    References
+    ----------
+    Bentall and Johnson, Int. J. Mech. Sci. 9 (1967) 389.
+    """
+    stretch = [(1 - 2 * nu) * (1 + nu) / E for E, nu in zip(moduli, poissons, strict=True)]
+    return abs(stretch[0] - stretch[1]) * peak_pressure * float(_HALF_LOAD_PRESSURE)
+
+
+def ring_inertia(radius: float, hub_radius: float, width: float, density: float) -> float:
+    """Moment of inertia of a solid ring about its axis, kg m2: the most an outer ring can have."""
+    return 0.5 * np.pi * density * width * (radius**4 - hub_radius**4)
+
+
+@dataclass(frozen=True)
+class Drag:
+    """What keeps the roller from turning and what may turn it.
+
+    inertia kg m2; torque N m, load-free drag of bearing and seals; bearing_friction times
+    normal force times pin_radius (m) comes on top; friction of roller on cam, > 0.
+    """
+
+    inertia: float
+    friction: float
+    torque: float = 0.0
+    bearing_friction: float = 0.0
+    pin_radius: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("inertia", "torque", "bearing_friction", "pin_radius"):
+            if not 0 <= getattr(self, name) < np.inf:
+                raise InputError(f"drag.{name}", getattr(self, name), ">= 0")
+        if not 0 < self.friction < np.inf:
+            raise InputError("drag.friction", self.friction, "> 0")
+
+    def bearing_torque(self, normal_force: Array) -> Array:
+        """Drag torque (n,) of the bearing, N m."""
+        return self.torque + self.bearing_friction * self.pin_radius * normal_force
+
+
+@dataclass(frozen=True, eq=False)
+class RollingContact:
+    """Roller driven by the cam over one turn, arrays (n,).
+
+    demand N, tangential force that rolling without slip asks for; force N, the one the contact
+    gives, at most friction times normal force; slip m/s, by which the roller's surface lags
+    behind rolling; creepage, micro-slip over rolling speed while it holds, slip over rolling
+    speed while it skids; skidding, 1 or 0; utilisation, |demand| over friction times normal
+    force, infinite where the contact is open and the roller must be turned; loss J, of sliding
+    and creeping in one turn.
+    """
+
+    demand: Array
+    force: Array
+    slip: Array
+    creepage: Array
+    skidding: Array
+    utilisation: Array
+    loss: float
+
+    def __post_init__(self) -> None:
+        names = ("demand", "force", "slip", "creepage", "skidding", "utilisation")
+        freeze(self, **{name: getattr(self, name) for name in names})
+
+
+def rolling_contact(
+    normal_force: ArrayLike,
+    spin: ArrayLike,
+    rolling_speed: ArrayLike,
+    half_width: ArrayLike,
+    relative_radius: ArrayLike,
+    *,
+    drag: Drag,
+    radius: float,
+    period: float,
+) -> RollingContact:
+    """Rolling, creeping and skidding of the roller over one turn, repeated for ever.
+
+    Without slip at first; where that takes more than friction gives, the contact slips with the
+    force it has until the roller has caught up. One implicit step per position (Moreau): the
+    impulse that would restore rolling, cut off at the friction's.
+
+    Parameters
+    ----------
+    normal_force : array (n,)      N, at positions equally spaced in time
+    spin : array (n,)              rad/s of rolling without slip
+    rolling_speed : array (n,)     m/s, at which the surfaces pass through the contact
+    half_width, relative_radius : array (n,)   m
+    drag : Drag
+    radius : float                 of the roller, m
+    period : float                 s, of one turn
+
+    Returns
+    -------
+    RollingContact
+
+    Raises
+    ------
+    InputError
+        If a value is not finite, or the radius or the period not positive.
+
+    References
+    ----------
+    Carter (1926) for the creepage; Moreau (1988) for the steps.
+    """
+    positive("roller.radius", radius, "m")
+    positive("period", period, "s")
+    force = np.maximum(finite("normal_force", normal_force), 0.0)
+    rolling, limit = finite("spin", spin), drag.friction * force
+    speed = np.abs(finite("rolling_speed", rolling_speed))
+    step = period / force.size
+    resisting = drag.bearing_torque(force)
+    demand, given, turning = _steps(rolling, limit, resisting, drag.inertia, radius, step)
+    slip = radius * (rolling - turning)
+    sliding = np.abs(slip) > _SETTLED * radius * np.abs(rolling).max(initial=1e-300)
+    share = np.divide(np.abs(given), limit, out=np.zeros_like(limit), where=limit > 0)
+    creep = creepage(np.clip(share, 0, 1), drag.friction, half_width, relative_radius)
+    gross = np.divide(np.abs(slip), speed, out=np.zeros_like(slip), where=speed > 0)
+    creep = np.where(sliding & (limit > 0), gross, np.where(limit > 0, creep, 0.0))
+    idle = np.where(np.abs(demand) > 0, np.inf, 0.0)
+    return RollingContact(
+        demand=demand,
+        force=given,
+        slip=np.where(sliding, slip, 0.0),
+        creepage=creep,
+        skidding=(sliding & (limit > 0)).astype(float),
+        utilisation=np.divide(np.abs(demand), limit, out=idle, where=limit > 0),
+        loss=float(np.sum(np.abs(given) * creep * speed) * step),
+    )
+
+
+def _steps(
+    rolling: Array, limit: Array, resisting: Array, inertia: float, radius: float, step: float
+) -> tuple[Array, Array, Array]:
+    """Demand and force (n,) N and spin (n,) rad/s, turn after turn until one repeats itself."""
+    count = rolling.size
+    change = rolling - np.roll(rolling, 1)
+    sense = np.sign(rolling)
+    demand = (inertia * change / step + sense * resisting) / radius
+    given, turning = np.zeros(count), np.array(rolling)
+    omega = float(rolling[-1])
+    scale = max(float(np.abs(rolling).max()), 1e-300)
+    for _ in range(_TURNS_MAX):
+        start = omega
+        for k in range(count):
+            target, drag = float(rolling[k]), float(resisting[k])
+            wanted = (inertia * (target - omega) / step + float(sense[k]) * drag) / radius
+            given[k] = np.clip(wanted, -limit[k], limit[k])
+            if abs(wanted) <= limit[k]:
+                omega = target
+            elif inertia == 0:
+                omega = 0.0
+            else:
+                driven = omega + float(given[k]) * radius * step / inertia
+                omega = _braked(driven, drag * step / inertia)
+            turning[k] = omega
+        if abs(omega - start) <= _SETTLED * scale:
+            break
+    return demand, given, turning
+
+
+def _braked(omega: float, loss: float) -> float:
+    """Spin after a drag that stops a roller but never turns it back."""
+    return float(np.sign(omega) * max(abs(omega) - loss, 0.0))
+
+
+def _ratio(ratio: ArrayLike) -> Array:
+    values = finite("ratio", ratio)
+    if ((values < 0) | (values > 1)).any():
+        worst = float(values.flat[np.argmax(np.abs(values - 0.5))])
+        raise InputError("tangential force over friction limit", worst, "in [0, 1]")
+    return values

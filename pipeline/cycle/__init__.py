@@ -1,0 +1,1 @@
+"""Loads, contact and part loads over one cam turn."""

@@ -1,0 +1,106 @@
+"""Unbalance of a case's cam, and the hole that takes it away, drilled or only proposed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import GeometryError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.follower.camshaft_loads import (
+    CounterHole,
+    Unbalance,
+    counter_hole,
+    greatest_hole,
+    rotating_force,
+    unbalance,
+)
+
+WALL = 3e-3
+"""Steel left around a hole that the case does not ask for, m."""
+_GRAM_MILLIMETRE = 1e-6  # kg m
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """A cam's unbalance and its counter-hole.
+
+    hole is the one that takes all of it away, or most of it where `missed` says why none takes
+    all; None where no hole fits or none is needed. density is per area, kg/m2.
+    """
+
+    unbalance: Unbalance
+    hole: CounterHole | None
+    missed: str
+    drilled: bool
+    density: float
+
+    @property
+    def left(self) -> Unbalance:
+        """What is left once the hole is drilled; the unbalance itself without one."""
+        if self.hole is None:
+            return self.unbalance
+        area = np.pi * self.hole.radius**2
+        moment: Array = self.unbalance.moment - area * self.hole.centre
+        mass = self.unbalance.mass - self.density * area
+        product = self.density * float(np.hypot(*moment))
+        return Unbalance(self.unbalance.area - area, moment, mass, product)
+
+    @property
+    def as_made(self) -> Unbalance:
+        """Of the cam as the shop is told to make it."""
+        return self.left if self.drilled else self.unbalance
+
+    def record(self) -> dict[str, Any]:
+        """As ``trial.json`` holds it."""
+        hole = self.hole
+        return {
+            "mass_g": 1e3 * self.unbalance.mass,
+            "unbalance_g_mm": self.unbalance.product / _GRAM_MILLIMETRE,
+            "unbalance_angle_deg": float(np.degrees(self.unbalance.angle) % 360.0),
+            "unbalance_left_g_mm": self.left.product / _GRAM_MILLIMETRE,
+            "hole_diameter_mm": None if hole is None else 2e3 * hole.radius,
+            "hole_x_mm": None if hole is None else 1e3 * float(hole.centre[0]),
+            "hole_y_mm": None if hole is None else 1e3 * float(hole.centre[1]),
+            "hole_drilled": self.drilled and hole is not None,
+            "hole_note": self.missed,
+        }
+
+
+def balance(case: Case, contour: Contour) -> Balance:
+    """Unbalance of the cam with bore and keyway, and the hole that takes it away."""
+    cam, found = case.cam, _unbalance(case, contour)
+    asked = cam.counter_hole
+    wall = WALL if asked is None else asked.wall
+    depth = 0.0 if cam.keyway is None else cam.keyway.depth
+    hole, missed = None, ""
+    for search in (counter_hole,) if found.balanced else (counter_hole, greatest_hole):
+        try:
+            hole = search(contour, found, cam.bore_radius, wall, depth)
+            break
+        except GeometryError as error:
+            missed = str(error)
+    density = case.material(cam.material).density
+    return Balance(found, hole, missed, asked is not None, density * cam.width)
+
+
+def _unbalance(case: Case, contour: Contour) -> Unbalance:
+    cam = case.cam
+    density = case.material(cam.material).density
+    return unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density)
+
+
+def unbalance_force(case: Case, contour: Contour, cam_speed: float, theta: Array) -> Array:
+    """What the cam as made throws at its shaft, (2, n), N, as `rotating_force` has it."""
+    drilled = case.cam.counter_hole is not None
+    made = balance(case, contour).as_made if drilled else _unbalance(case, contour)
+    return rotating_force(made, cam_speed, theta)
+
+
+def drilled_hole(case: Case, contour: Contour) -> CounterHole | None:
+    """The hole the shop drills; None where the case asks for none or none fits."""
+    return None if case.cam.counter_hole is None else balance(case, contour).hole

@@ -1,0 +1,241 @@
+"""A measured trace: one quantity against crank angle over one cycle, from a CSV file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import Akima1DInterpolator
+
+from camwright.geometry.arrays import Array, finite, freeze, readonly
+from camwright.geometry.errors import InputError
+from camwright.pipeline.engine.trace_file import (
+    QUANTITY_UNITS,
+    angle_column,
+    number_table,
+    split_cells,
+    table_delimiter,
+    text_lines,
+    value_column,
+)
+
+CYCLE_ANGLE = 4.0 * pi
+ROWS_MIN = 12
+GAP_MAX = np.radians(20.0)
+GAP_OVER_MEDIAN_MAX = 5.0
+VALUE_MAX = 1e12  # beyond what any engine shows, and what sums and squares can bear
+END_TOLERANCE = 0.25  # of the usual spacing, by which the last sample may miss the period's end
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """Samples of one quantity over one period of the crank, as the file gave them.
+
+    Parameters
+    ----------
+    source : str               name of the file
+    quantity : str             "torque", "pressure" or "speed"
+    column : str               header of the value column
+    angle : array (n,)         rad, strictly increasing over less than one period, n >= 12
+    values : array (n,)        N m, Pa or rad/s
+    period : float             rad
+    end_difference : float     value at the end minus that at the start where the file gave both
+                               (their mean was kept), else 0
+    """
+
+    source: str
+    quantity: str
+    column: str
+    angle: Array
+    values: Array
+    period: float = CYCLE_ANGLE
+    end_difference: float = 0.0
+
+    def __post_init__(self) -> None:
+        freeze(self, angle=self.angle, values=finite(f"{self.source}, {self.column}", self.values))
+        wild = np.abs(self.values) > VALUE_MAX
+        if wild.any():
+            worst = float(self.values[wild][0])
+            limit = f"within {VALUE_MAX:g} of zero in SI units"
+            raise InputError(f"{self.source}, {self.column}", worst, limit)
+
+    @property
+    def spacing(self) -> Array:
+        """Angle from each sample to the next, the last to the first one period on, rad."""
+        return np.diff(np.append(self.angle, self.angle[0] + self.period))
+
+    @property
+    def _curve(self) -> Akima1DInterpolator:
+        """The interpolant over the period and some samples either side of it."""
+        pad = min(self.angle.size, 6)
+        ahead, behind = self.angle[:pad] + self.period, self.angle[-pad:] - self.period
+        angle = np.concatenate([behind, self.angle, ahead])
+        values = np.concatenate([self.values[-pad:], self.values, self.values[:pad]])
+        return Akima1DInterpolator(angle, values, method="makima")
+
+    def __call__(self, angle: ArrayLike) -> Array:
+        """Value at crank angles (rad, any shape), periodic, through every sample.
+
+        A modified Akima spline: a cubic whose slopes come from the five nearest samples. Unlike
+        the C2 cubic it does not ring along the cycle from one noisy sample, a step or an uneven
+        spacing; unlike the monotone cubic (pchip) it does not cut off a peak between two samples.
+        """
+        wrapped = self.angle[0] + np.mod(np.asarray(angle) - self.angle[0], self.period)
+        return readonly(self._curve(wrapped))
+
+    def uniform(self, count: int) -> Array:
+        """Values at `count` equally spaced angles from 0, the end left out.
+
+        Of a file sampled at least twice as densely each value is the mean over its own cell,
+        so that no sample is lost and noise is not folded back.
+        """
+        step = self.period / count
+        angle = np.arange(count) * step
+        if np.median(self.spacing) > 0.5 * step:
+            return self(angle)
+        ends = np.append(angle - 0.5 * step, self.period - 0.5 * step)
+        turns, rest = np.divmod(ends - self.angle[0], self.period)
+        sums = self._curve.antiderivative()
+        start = sums(self.angle[0])
+        whole = sums(self.angle[0] + self.period) - start
+        return np.asarray(np.diff(turns * whole + sums(self.angle[0] + rest) - start) / step)
+
+
+def read_trace(
+    path: str | Path,
+    quantity: str = "torque",
+    *,
+    column: str | None = None,
+    period: float = CYCLE_ANGLE,
+) -> Trace:
+    """One quantity over one period of the crank, from a CSV file.
+
+    The first line that is not a comment (`#`) names the columns and their units, in any usual
+    form: `crank_angle_deg`, `crank angle [deg]`, `angle (rad)`, `torque_Nm`, `torque [kN m]`.
+    Columns are parted by semicolons, tabs or commas; the decimal sign is a point, or a comma where
+    columns are not parted by it. Angles increase strictly; both ends of the period may be present,
+    the mean of their values is then kept.
+
+    Parameters
+    ----------
+    path : path
+    quantity : str            "torque", "pressure" or "speed"
+    column : str, optional    the value column by its header or the header's name part; needed
+                              where several fit
+    period : float            rad
+
+    Raises
+    ------
+    InputError
+        One line with file, line, value and what would be accepted, for a file that is missing, a
+        folder, empty, binary or over 64 MiB; a unit missing or unknown; a cell that is no finite
+        number; angles repeated, out of order or with gaps over 20 deg or 5 times the usual
+        spacing; another span than the period; fewer than 12 rows.
+    """
+    path = Path(path)
+    if quantity not in QUANTITY_UNITS:
+        raise InputError("quantity", quantity, "one of " + ", ".join(QUANTITY_UNITS))
+    lines = text_lines(path)
+    head_line, head = lines[0]
+    delimiter = table_delimiter(path.name, head_line, head)
+    header = [cell.strip() for cell in split_cells(head, delimiter)]
+    angle_at, angle_factor = angle_column(path.name, header)
+    value_at, value_factor = value_column(path.name, header, quantity, column)
+    table = number_table(path.name, lines[1:], header, delimiter, (angle_at, value_at))
+    numbers = [number for number, _ in lines[1:]]
+    angle = table[:, 0] * angle_factor
+    guard_order(path.name, numbers, table[:, 0], header[angle_at])
+    guard_span(path.name, angle, angle_factor, period)
+    values = table[:, 1] * value_factor
+    return one_period(path.name, quantity, header[value_at], numbers, angle, values, period)
+
+
+def one_period(
+    name: str,
+    quantity: str,
+    column: str,
+    lines: Sequence[int],
+    angle: Array,
+    values: Array,
+    period: float = CYCLE_ANGLE,
+    gap_max: float = GAP_MAX,
+) -> Trace:
+    """The trace of one column whose order and span are known to be right.
+
+    Parameters
+    ----------
+    lines : sequence (n,)   line of each row in the file
+    angle : array (n,)      rad; a row at the end of the period is averaged with the first
+    values : array (n,)     SI
+    gap_max : float         rad, the widest stretch without a row
+
+    Raises
+    ------
+    InputError
+        If a gap is wider, or above 5 times the usual spacing.
+    """
+    difference = 0.0
+    if period - (angle[-1] - angle[0]) <= END_TOLERANCE * np.median(np.diff(angle)):
+        difference = float(values[-1] - values[0])
+        values = np.append(0.5 * (values[0] + values[-1]), values[1:-1])
+        angle = angle[:-1]
+    trace = Trace(name, quantity, column, angle, values, period, difference)
+    _guard_gaps(trace, lines, gap_max)
+    return trace
+
+
+def guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> None:
+    """Refuse too few rows, and angles that repeat or fall, as the file wrote them."""
+    if angle.size < ROWS_MIN:
+        raise InputError(name, f"{angle.size} rows", f"{ROWS_MIN} rows or more")
+    steps = np.diff(angle)
+    if (steps > 0.0).all():
+        return
+    at = int(np.flatnonzero(~(steps > 0.0))[0]) + 1
+    fault = "repeats an angle" if angle[at] in angle[:at] else f"falls after {angle[at - 1]:g}"
+    value = f"{angle[at]:g} ({fault})"
+    raise InputError(f"{name} line {lines[at]}, {header}", value, "above the row before")
+
+
+def guard_span(
+    name: str, angle: Array, factor: float, period: float, gap_max: float = GAP_MAX
+) -> None:
+    """Refuse a trace that is not one period long, with a hint where the unit seems wrong."""
+    spacing = float(np.median(np.diff(angle)))
+    span = float(angle[-1] - angle[0])
+    excess = span - period
+    if excess <= END_TOLERANCE * spacing and -excess <= _gap_limit(spacing, gap_max):
+        return
+    written = span / factor
+    in_degrees = factor != 1.0 and abs(written / period - 1.0) < 0.1
+    in_radians = factor == 1.0 and abs(written / np.degrees(period) - 1.0) < 0.1
+    hint = ""
+    if in_degrees:
+        hint = " (the angles look like radians)"
+    elif in_radians:
+        hint = " (the angles look like degrees)"
+    elif abs(2.0 * span / period - 1.0) < 0.1:
+        hint = " (this is half a cycle)"
+    value = f"{np.degrees(span):.6g} deg from first to last row{hint}"
+    raise InputError(f"{name} span", value, f"one cycle of {np.degrees(period):g} deg")
+
+
+def _gap_limit(spacing: float, gap_max: float) -> float:
+    """The widest gap let through beside a usual spacing, rad; one asked for is taken as it is."""
+    if gap_max > GAP_MAX:
+        return float(gap_max) * (1.0 + 1e-9)
+    return min(float(gap_max), GAP_OVER_MEDIAN_MAX * spacing) * (1.0 + 1e-9)
+
+
+def _guard_gaps(trace: Trace, lines: Sequence[int], gap_max: float) -> None:
+    """Refuse a trace with a stretch too long to be guessed."""
+    limit = _gap_limit(float(np.median(trace.spacing)), gap_max)
+    widest = int(np.argmax(trace.spacing))
+    if trace.spacing[widest] > limit:
+        gap, start = np.degrees(trace.spacing[widest]), np.degrees(trace.angle[widest])
+        field = f"{trace.source} line {lines[widest]}, gap after {start:g} deg"
+        raise InputError(field, f"{gap:.4g} deg", f"at most {np.degrees(limit):.4g} deg")

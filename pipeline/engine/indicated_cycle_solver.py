@@ -1,0 +1,358 @@
+"""Steps through the working cycle of one cylinder until it repeats itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil, degrees, radians, sqrt
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import CamError, InputError
+from camwright.pipeline.engine.combustion import burnt_fraction
+from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.heat_loss import Charge, FilmCoefficient, film_coefficient, wall_area
+from camwright.pipeline.engine.indicated_cycle import CycleBalance, CylinderCycle
+from camwright.pipeline.engine.valves import NEARLY_EQUAL, exhaust_valve, intake_valve, nozzle_flow
+from camwright.pipeline.engine.working_gas import AIR_AND_FUEL, Gas
+
+STEPS_PER_CYCLE = 720
+REPEATS_WITHIN = 1e-6
+CYCLES_MAX = 200
+SUB_STEPS_MIN = 2
+SPEED_RANGE = (10.0, 2000.0)  # rad/s
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """The steps of one cycle; tables of plain floats, which a scalar loop reads fastest.
+
+    Node 2 i is the start of step i, node 2 i + 1 its middle.
+    """
+
+    start: int  # whole degree at which the cycle is cut: the first with the intake valve shut
+    per_degree: list[int]
+    length: list[float]  # rad
+    burnt: list[float]  # fraction of the fuel burnt per rad, mean over the step
+    theta: Array
+    volume: Array
+    volume_rate: list[float]
+    wall: list[float]
+    intake: list[float]
+    exhaust: list[float]
+
+
+def _steps(engine: CylinderEngine, crank_speed: float) -> _Steps:
+    intake, exhaust = intake_valve(engine), exhaust_valve(engine)
+    start = ceil(degrees(engine.intake_window[1]) - 1e-9)
+    whole = np.radians(start + np.arange(STEPS_PER_CYCLE + 1.0))
+    # The open valves ask for a step below the time the gas takes to level out through them,
+    # the faster the nearer to equal pressures, where the nozzle law is steepest.
+    gas_speed = 1.3 * sqrt(AIR_AND_FUEL.constant * 900.0) * sqrt(2.0 / NEARLY_EQUAL)
+    area = intake.flow_area(whole) + exhaust.flow_area(whole)
+    levelling = gas_speed / crank_speed * area / engine.volume(whole)
+    steepest = np.maximum(levelling[:-1], levelling[1:]) * radians(1.0)
+    per_degree = np.maximum(SUB_STEPS_MIN, np.ceil(steepest / 1.5)).astype(int)
+    length = np.repeat(radians(1.0) / per_degree, per_degree)
+    ends = radians(start) + np.concatenate([[0.0], np.cumsum(length)])
+    theta = np.empty(2 * length.size + 1)
+    theta[::2], theta[1::2] = ends, 0.5 * (ends[:-1] + ends[1:])
+    return _Steps(
+        start=start,
+        per_degree=per_degree.tolist(),
+        length=length.tolist(),
+        burnt=(np.maximum(np.diff(burnt_fraction(engine, ends)), 0.0) / length).tolist(),
+        theta=theta,
+        volume=engine.volume(theta),
+        volume_rate=engine.volume_rate(theta).tolist(),
+        wall=wall_area(engine, theta).tolist(),
+        intake=intake.flow_area(theta).tolist(),
+        exhaust=exhaust.flow_area(theta).tolist(),
+    )
+
+
+@dataclass
+class _Port:
+    """Gas pushed back into the intake; it is drawn in again before fresh charge is."""
+
+    fresh_enthalpy: float  # J/kg
+    mass: float = 0.0
+    enthalpy: float = 0.0
+    burnt: float = 0.0
+
+    @property
+    def offered(self) -> float:
+        """Specific enthalpy of what flows in next, J/kg."""
+        return self.enthalpy / self.mass if self.mass > 0.0 else self.fresh_enthalpy
+
+    def give(self, drawn: float) -> tuple[float, float]:
+        """Let a mass flow into the cylinder.
+
+        Returns
+        -------
+        burnt : float       the burnt gas in it, kg
+        enthalpy : float    what it holds over its mass at the enthalpy offered, J: not zero where
+                            the gas pushed back runs out and fresh charge follows
+        """
+        if self.mass == 0.0:
+            return 0.0, 0.0
+        beyond = max(drawn - self.mass, 0.0) * (self.fresh_enthalpy - self.offered)
+        given = min(drawn / self.mass, 1.0)
+        burnt = given * self.burnt
+        self.mass -= given * self.mass
+        self.enthalpy -= given * self.enthalpy
+        self.burnt -= burnt
+        return burnt, beyond
+
+    def take(self, pushed: float, enthalpy: float, burnt: float) -> None:
+        """Let a mass flow out of the cylinder, its specific enthalpy and burnt fraction given."""
+        self.mass += pushed
+        self.enthalpy += pushed * enthalpy
+        self.burnt += pushed * burnt
+
+
+@dataclass
+class _Content:
+    """The gas in the cylinder: kg, J, kg."""
+
+    mass: float
+    energy: float
+    burnt: float
+
+    def state(self, gas: Gas, volume: float) -> tuple[float, float]:
+        """Pressure (Pa) and temperature (K)."""
+        temperature = gas.temperature(self.energy / self.mass)
+        return self.mass * gas.constant * temperature / volume, temperature
+
+
+# per rad: intake and exhaust mass and their enthalpy into the cylinder, work and heat out of it
+Flows = tuple[float, float, float, float, float]
+Rates = Callable[[int, float, float, float], Flows]
+
+
+def _rates_of(
+    engine: CylinderEngine,
+    crank_speed: float,
+    gas: Gas,
+    steps: _Steps,
+    film: FilmCoefficient,
+) -> Rates:
+    """The flows at a node, of mass, energy and the specific enthalpy the intake offers.
+
+    Everything they need is bound to local names: they are asked for some 1e4 times per cycle.
+    """
+    volume, volume_rate = steps.volume.tolist(), steps.volume_rate
+    wall, intake_area, exhaust_area = steps.wall, steps.intake, steps.exhaust
+    a, b, constant = gas.heat_capacity, gas.heat_capacity_rise, gas.constant
+    wall_temperature = engine.wall_temperature
+    intake_pressure, intake_temperature = engine.intake_pressure, engine.intake_temperature
+    exhaust_pressure, exhaust_temperature = engine.exhaust_pressure, engine.exhaust_temperature
+    exhaust_enthalpy = gas.enthalpy(exhaust_temperature)
+    gamma_intake, gamma_exhaust = gas.gamma(intake_temperature), gas.gamma(exhaust_temperature)
+
+    def rates(node: int, mass: float, energy: float, offered: float) -> Flows:
+        specific = energy / (mass * constant)
+        temperature = 2.0 * specific / (a + sqrt(a * a + 2.0 * b * specific))
+        pressure = mass * constant * temperature / volume[node]
+        lost = film(node, pressure, temperature) * wall[node]
+        lost *= (temperature - wall_temperature) / crank_speed
+        work = pressure * volume_rate[node]
+        intake = exhaust = enthalpy = 0.0
+        if intake_area[node] > 0.0 or exhaust_area[node] > 0.0:
+            gamma = 1.0 + 1.0 / (a + b * temperature)
+            leaving = energy / mass + constant * temperature
+            if pressure <= intake_pressure:
+                intake = nozzle_flow(
+                    intake_pressure, intake_temperature, pressure, constant, gamma_intake
+                )
+            else:
+                intake = -nozzle_flow(pressure, temperature, intake_pressure, constant, gamma)
+            intake *= intake_area[node] / crank_speed
+            if pressure < exhaust_pressure:
+                exhaust = nozzle_flow(
+                    exhaust_pressure, exhaust_temperature, pressure, constant, gamma_exhaust
+                )
+            else:
+                exhaust = -nozzle_flow(pressure, temperature, exhaust_pressure, constant, gamma)
+            exhaust *= exhaust_area[node] / crank_speed
+            enthalpy = intake * (offered if intake > 0.0 else leaving)
+            enthalpy += exhaust * (exhaust_enthalpy if exhaust > 0.0 else leaving)
+        return intake, exhaust, enthalpy, work, lost
+
+    return rates
+
+
+def _step(
+    rates: Rates,
+    node: int,
+    length: float,
+    content: _Content,
+    heat: float,
+    offered: float,
+) -> list[float]:
+    """The flows of one classical Runge-Kutta step, with heat set free at a given rate (J/rad)."""
+    mass, energy = content.mass, content.energy
+
+    def after(flows: Flows, part: float) -> tuple[float, float]:
+        intake, exhaust, enthalpy, work, lost = flows
+        return mass + part * (intake + exhaust), energy + part * (heat + enthalpy - work - lost)
+
+    half = 0.5 * length
+    k1 = rates(node, mass, energy, offered)
+    k2 = rates(node + 1, *after(k1, half), offered)
+    k3 = rates(node + 1, *after(k2, half), offered)
+    k4 = rates(node + 2, *after(k3, length), offered)
+    sixth = length / 6.0
+    return [sixth * (a + 2.0 * (b + c) + d) for a, b, c, d in zip(k1, k2, k3, k4, strict=True)]
+
+
+def _exchange(content: _Content, port: _Port, intake: float, exhaust: float, gas: Gas) -> float:
+    """Carry the burnt gas and the intake's contents along with what passed the valves.
+
+    Returns the enthalpy (J) that the gas drawn in holds over what the intake offered.
+    """
+    own, over = content.burnt / content.mass, 0.0
+    if intake > 0.0:
+        burnt, over = port.give(intake)
+    else:
+        specific = content.energy / content.mass
+        leaving = specific + gas.constant * gas.temperature(specific)
+        port.take(-intake, leaving, own)
+        burnt = intake * own
+    content.burnt += burnt + exhaust * (1.0 if exhaust > 0.0 else own)
+    return over
+
+
+def fuel_mass(engine: CylinderEngine, fresh: float) -> float:
+    """Fuel (kg) burnt with a fresh charge (kg): drawn in with it, or injected into it.
+
+    The injected mass itself, a few per cent, is not added to the gas.
+    """
+    parts = engine.air_fuel_ratio + (1.0 if engine.ignition == "spark" else 0.0)
+    return fresh / parts
+
+
+def _one_cycle(
+    engine: CylinderEngine,
+    crank_speed: float,
+    gas: Gas,
+    steps: _Steps,
+    content: _Content,
+    port: _Port,
+) -> tuple[Array, CycleBalance]:
+    """Step `content` and `port` through one cycle.
+
+    Mass and energy are the unknowns, so both are conserved to round-off whatever the step.
+
+    Returns
+    -------
+    states : array (2, 720)   mass (kg) and energy (J) at the whole degrees, from `steps.start`
+    balance : CycleBalance    what went in and out
+    """
+    pressure, temperature = content.state(gas, float(steps.volume[0]))
+    charge = Charge(pressure, temperature, float(steps.volume[0]))
+    film = film_coefficient(engine, crank_speed, steps.theta, steps.volume, charge)
+    rates = _rates_of(engine, crank_speed, gas, steps, film)
+    fuel = fuel_mass(engine, content.mass - content.burnt)
+    released = fuel * engine.combustion_efficiency * engine.lower_heating_value
+    first = content.mass, content.energy
+    states, sums, heat_released, step = [], [0.0] * 5, 0.0, 0
+    for count in steps.per_degree:
+        states.append((content.mass, content.energy))
+        for _ in range(count):
+            heat, length = released * steps.burnt[step], steps.length[step]
+            flows = _step(rates, 2 * step, length, content, heat, port.offered)
+            intake, exhaust, _, work, lost = flows
+            if steps.burnt[step] > 0.0:
+                content.burnt = content.mass  # the flame leaves no fresh charge behind
+            if intake != 0.0 or exhaust != 0.0:
+                flows[2] += _exchange(content, port, intake, exhaust, gas)
+            content.mass += intake + exhaust
+            content.energy += heat * length + flows[2] - work - lost
+            sums = [total + part for total, part in zip(sums, flows, strict=True)]
+            heat_released += heat * length
+            step += 1
+    intake, exhaust, enthalpy, work, lost = sums
+    balance = CycleBalance(
+        heat_released=heat_released,
+        heat_lost=lost,
+        work=work,
+        enthalpy_in=enthalpy,
+        energy_change=content.energy - first[1],
+        intake_mass=intake,
+        exhaust_mass=-exhaust,
+        mass_change=content.mass - first[0],
+    )
+    return np.array(states).T, balance
+
+
+def working_cycle(
+    engine: CylinderEngine, crank_speed: float, gas: Gas = AIR_AND_FUEL
+) -> CylinderCycle:
+    """The periodic working cycle of one cylinder at constant crank speed.
+
+    A single zone of ideal gas: first law with Wiebe heat, heat to the walls and isentropic flow
+    through both valves. Cycles are stepped until pressure, mass, energy and burnt gas as the
+    intake valve closes repeat within 1e-6.
+
+    Parameters
+    ----------
+    engine : CylinderEngine
+    crank_speed : float    rad/s, from 10 to 2000
+    gas : Gas
+
+    Raises
+    ------
+    InputError
+        If the speed is out of range.
+    CamError
+        If the cycle does not repeat itself within 200 cycles.
+
+    References
+    ----------
+    Heywood, Internal Combustion Engine Fundamentals (1988), sec. 9.5 and 14.4.
+    Cardoso et al., Designs 8, 47 (2024), eqs 1 to 6.
+    """
+    if not SPEED_RANGE[0] <= crank_speed <= SPEED_RANGE[1]:
+        limit = f"from {SPEED_RANGE[0]:g} to {SPEED_RANGE[1]:g} rad/s"
+        raise InputError("crank_speed", crank_speed, limit)
+    steps = _steps(engine, crank_speed)
+    volume = float(steps.volume[0])
+    temperature = engine.intake_temperature + 60.0
+    mass = engine.intake_pressure * volume / (gas.constant * temperature)
+    content = _Content(mass, mass * gas.energy(temperature), 0.2 * mass)
+    port = _Port(gas.enthalpy(engine.intake_temperature))
+    cycles = 0
+    while cycles < CYCLES_MAX:
+        cycles += 1
+        before = _fingerprint(content, gas, volume)
+        states, balance = _one_cycle(engine, crank_speed, gas, steps, content, port)
+        change = np.abs(_fingerprint(content, gas, volume) / before - 1.0)
+        if change.max() < REPEATS_WITHIN:
+            break
+    else:
+        text = f"the working cycle did not repeat itself within {CYCLES_MAX} cycles"
+        raise CamError(f"{text}: the pressure still moves by {change[0]:.1e}")
+    mass_at, energy_at = np.roll(states, steps.start, axis=1)
+    theta = np.radians(np.arange(float(STEPS_PER_CYCLE)))
+    temperature_at = gas.temperature(energy_at / mass_at)
+    return CylinderCycle(
+        engine=engine,
+        crank_speed=crank_speed,
+        theta=theta,
+        pressure=mass_at * gas.constant * temperature_at / engine.volume(theta),
+        temperature=temperature_at,
+        mass=mass_at,
+        fuel_mass=fuel_mass(engine, before[1] * (1.0 - before[3])),
+        residual_fraction=float(before[3]),
+        balance=balance,
+        cycles=cycles,
+        closure=float(change[0]),
+    )
+
+
+def _fingerprint(content: _Content, gas: Gas, volume: float) -> Array:
+    """Pressure, mass, energy and burnt fraction: what must repeat from cycle to cycle."""
+    pressure, _ = content.state(gas, volume)
+    return np.array([pressure, content.mass, content.energy, content.burnt / content.mass])

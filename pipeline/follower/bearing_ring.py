@@ -1,0 +1,163 @@
+"""A bearing's outer ring that rolls on a cam, carried by its balls alone; and the roller's pin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array, freeze
+from camwright.geometry.errors import InputError
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A thin ring of rectangular section on equal balls.
+
+    Parameters
+    ----------
+    radius : float            of the middle line, m, > 0
+    thickness, width : float  m, > 0; the thickness below half the radius
+    modulus : float           E, Pa, > 0
+    balls : int               >= 3
+    ball_stiffness : float    of each ball with its raceways, N/m, > 0
+    """
+
+    radius: float
+    thickness: float
+    width: float
+    modulus: float
+    balls: int
+    ball_stiffness: float
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "thickness", "width", "modulus", "ball_stiffness"):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise InputError(f"ring.{name}", getattr(self, name), "> 0")
+        if not self.thickness < 0.5 * self.radius:
+            raise InputError("ring.thickness", self.thickness, "< half the radius, a thin ring")
+        if self.balls < 3:
+            raise InputError("ring.balls", self.balls, ">= 3")
+
+    @property
+    def bending_stiffness(self) -> float:
+        """E I, N m2."""
+        return self.modulus * self.width * self.thickness**3 / 12.0
+
+    def stress_inside(self, moment: Array, hoop: Array) -> Array:
+        """Stress along the ring at its inside, Pa, of a section's moment, N m, and pull, N.
+
+        The moment stretches the inside; of a curved bar it stretches it more than the outside.
+
+        References
+        ----------
+        Winkler and Bach's curved bar; Timoshenko, Strength of Materials II.
+        """
+        inside, outside = self.radius - 0.5 * self.thickness, self.radius + 0.5 * self.thickness
+        area, neutral = self.width * self.thickness, self.thickness / np.log(outside / inside)
+        lever = area * (self.radius - neutral) * inside
+        return np.asarray(hoop / area + moment * (neutral - inside) / lever)
+
+
+@dataclass(frozen=True, eq=False)
+class RingBending:
+    """Per newton of the cam's push, at ball positions `phase` (n,), rad, from the push.
+
+    `ball_load` (n, balls) as shares of the push, >= 0, the first ball at the phase, the others
+    on from it; `moment_max`, `moment_min` (n,) in the ring, m, positive where the inside is
+    stretched; `stress_max`, `stress_min` (n,) along the ring at its inside, Pa/N;
+    `compliance` (n,) under the push, m/N.
+    """
+
+    phase: Array
+    ball_load: Array
+    moment_max: Array
+    moment_min: Array
+    stress_max: Array
+    stress_min: Array
+    compliance: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+
+    @property
+    def stress_amplitude(self) -> float:
+        """Half of what a point of the groove swings through, Pa/N.
+
+        Each point of the ring passes under the push and over the balls; the swing is taken over
+        all places and ball positions.
+        """
+        return 0.5 * float(self.stress_max.max() - self.stress_min.min())
+
+    @property
+    def stress_mean(self) -> float:
+        """Middle of what a point of the groove swings through, Pa/N, tension positive."""
+        return 0.5 * float(self.stress_max.max() + self.stress_min.min())
+
+    def carrying(self, position: int) -> tuple[float, ...]:
+        """Angles from the push of the balls that carry at one of the ball positions, rad."""
+        loads = self.ball_load[position]
+        angles = self.phase[position] + FULL_TURN * np.arange(loads.size) / loads.size
+        return tuple(float(angle) for angle in angles[loads > 0.0])
+
+
+def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
+    """Amplitude about no mean stress that tires as much, Pa; infinite where the mean breaks it.
+
+    A mean that presses is not counted in favour.
+
+    References
+    ----------
+    Shigley's Mechanical Engineering Design, ch. 6: modified Goodman line.
+    """
+    left = 1.0 - np.maximum(mean, 0.0) / tensile_strength
+    broken = np.where(amplitude > 0.0, np.inf, 0.0)
+    return np.divide(amplitude, left, out=broken, where=left > 0.0)
+
+
+def ball_stiffness(force: float, diameter: float, modulus: float, poisson: float) -> float:
+    """Of a ball between two raceways under a force, secant, N/m; an estimate.
+
+    Each contact as that of a ball on a flat, d = (9 F^2/(16 E*^2 R))^(1/3), stiffened by the
+    grooves' osculation by the usual 1.3 (recalled, verify); the ring's bending hardly asks.
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), sec. 4.2(a); Harris and Kotzalas (2007), ch. 6.
+    """
+    for name, value in (("force", force), ("diameter", diameter), ("modulus", modulus)):
+        if not 0.0 < value < np.inf:
+            raise InputError(f"ball.{name}", value, "> 0")
+    contact = modulus / (2.0 * (1.0 - poisson**2))
+    way = (9.0 * force**2 / (16.0 * contact**2 * 0.5 * diameter)) ** (1.0 / 3.0)
+    return 1.3 * force / (2.0 * way)
+
+
+def pin_bending_stress(
+    force: float, diameter: float, width: float, span: float, overhung: bool = False
+) -> float:
+    """Greatest bending stress of the roller's pin, Pa, the load spread over the bearing's width.
+
+    Parameters
+    ----------
+    force : float      N, >= 0
+    diameter : float   of the pin, m, > 0
+    width : float      of the bearing, m, > 0
+    span : float       between the supports' middles (straddled) or from the support's face to
+                       the middle of the bearing (overhung), m, > 0
+    overhung : bool
+
+    Raises
+    ------
+    InputError
+        If a value is out of these bounds, or a straddling support lies inside the bearing.
+    """
+    for name, value in (("diameter", diameter), ("width", width), ("span", span)):
+        if not 0.0 < value < np.inf:
+            raise InputError(f"roller.pin_{name}", value, "> 0 m")
+    if not 0.0 <= force < np.inf:
+        raise InputError("roller.force", force, ">= 0 N")
+    if not overhung and span < width:
+        raise InputError("roller.pin_span", span, f">= {width:g} m, the width of the bearing")
+    moment = force * span if overhung else force * (span / 4.0 - width / 8.0)
+    return 32.0 * moment / (np.pi * diameter**3)

@@ -1,0 +1,163 @@
+"""A bearing's outer ring on its balls by plane finite elements: no beam is assumed.
+
+The balls are springs that only push, the cam pushes at one place. No gaps: everything grows with
+the load, so one unit load tells all.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csc_array, csc_matrix, csr_array, vstack
+from scipy.sparse.linalg import splu
+from skfem import Basis, ElementQuad2, ElementVector, MeshQuad, MeshQuad2
+from skfem.models.elasticity import lame_parameters, linear_elasticity
+
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.errors import ContactError
+from camwright.pipeline.follower.bearing_ring import Ring, RingBending
+
+_PER_GAP = 24  # elements between two balls; a multiple of all that `phases` asks for
+_LAYERS = 2
+_HOLD = 1e-6  # of the balls' stiffness, against the ring's turning on them, which costs nothing
+_SIMPSON = np.array([1.0, 4.0, 2.0, 4.0, 1.0]) / 12.0  # mean over the nodes of two layers
+
+
+class RingElements:
+    """Ring of quadratic quadrilaterals in plane stress, its sections at equal angles.
+
+    A section's radial and tangential way are means over its thickness, and forces act on the
+    whole section likewise: the dent of a ball belongs to `ball_stiffness`.
+
+    Parameters
+    ----------
+    ring : Ring
+    sections : int    each of two elements over the thickness
+    poisson : float
+
+    Attributes
+    ----------
+    stiffness : (d, d)       sparse, N/m
+    radial, along : (n, d)   a section's mean way outwards and along the ring, of the motion (d,)
+    moment : (n, d)          bending moment in a section, positive where the inside is stretched
+    hoop : (n, d)            pull along the ring in a section
+    """
+
+    def __init__(self, ring: Ring, sections: int, poisson: float = 0.3) -> None:
+        mesh = annulus(ring.radius, ring.thickness, sections)
+        element = ElementVector(ElementQuad2())
+        first, shear = lame_parameters(ring.modulus, poisson)
+        form = linear_elasticity(2.0 * first * shear / (first + 2.0 * shear), shear)
+        whole = Basis(mesh, element, intorder=4)
+        self.stiffness = csc_array(ring.width * form.assemble(whole))
+        local = ring.width * form.elemental(whole).tolocal()
+        angle = np.arctan2(*whole.doflocs[::-1]) / FULL_TURN * sections
+        height = np.hypot(*whole.doflocs) - ring.radius
+        sideways = _second(whole)
+        radial, along, moment, hoop = [], [], [], []
+        for k in range(sections):
+            off = (angle - k + 0.5 * sections) % sections - 0.5 * sections
+            here = np.flatnonzero(np.abs(off) < 0.25)
+            pair = here[np.lexsort((height[here], sideways[here]))].reshape(2, -1)
+            cosine, sine = np.cos(FULL_TURN * k / sections), np.sin(FULL_TURN * k / sections)
+            radial.append(_row(pair, np.outer([cosine, sine], _SIMPSON), whole.N))
+            along.append(_row(pair, np.outer([-sine, cosine], _SIMPSON), whole.N))
+            arm = height[pair[0]]
+            turned = _row(pair, np.outer([-sine, cosine], arm), whole.N)
+            drawn = _row(pair, np.outer([-sine, cosine], np.ones_like(arm)), whole.N)
+            after = k + sections * np.arange(_LAYERS)
+            sector = _assembled(local[after], whole.element_dofs[:, after].T, whole.N)
+            moment.append(turned @ sector)
+            hoop.append(-drawn @ sector)
+        self.radial, self.along, self.moment, self.hoop = (
+            csr_array(vstack(rows)) for rows in (radial, along, moment, hoop)
+        )
+
+
+def _second(basis: Basis) -> Array:
+    """0 for the dofs of motion in x, 1 for those in y."""
+    way = np.zeros(basis.N)
+    way[basis.get_dofs(elements=True).all(["u^2"])] = 1.0
+    return way
+
+
+def _assembled(local: Array, dofs: NDArray[np.intp], size: int) -> Any:
+    """Matrix (size, size) of the local ones (m, d, d) of some elements, dofs (m, d)."""
+    rows = np.broadcast_to(dofs[:, :, None], local.shape).ravel()
+    columns = np.broadcast_to(dofs[:, None, :], local.shape).ravel()
+    return coo_array((local.ravel(), (rows, columns)), (size, size)).tocsr()
+
+
+def _row(dofs: NDArray[np.intp], values: Array, size: int) -> Any:
+    return coo_array((values.ravel(), (np.zeros(dofs.size, int), dofs.ravel())), (1, size))
+
+
+@lru_cache(maxsize=16)
+def ring_bending(ring: Ring, phases: int = 5, poisson: float = 0.3) -> RingBending:
+    """Ring under a unit push at ball positions from right below it to midway between two.
+
+    Raises
+    ------
+    ContactError
+        If the balls that carry cannot be found.
+
+    References
+    ----------
+    Harris and Kotzalas, Advanced Concepts of Bearing Technology (2007): flexibly supported
+    outer rings.
+    """
+    count = 2 * (phases - 1) * -(-_PER_GAP // (2 * (phases - 1)))
+    body = RingElements(ring, ring.balls * count, poisson)
+    found = [_pushed(body, ring, count, k * count // (2 * (phases - 1))) for k in range(phases)]
+    phase = np.linspace(0.0, 0.5 * FULL_TURN / ring.balls, phases)
+    return RingBending(phase, *(np.array(part) for part in zip(*found, strict=True)))
+
+
+def _pushed(
+    body: RingElements, ring: Ring, count: int, shift: int
+) -> tuple[Array, float, float, float, float, float]:
+    """What `RingBending` holds of one ball position; the push is on section 0, inwards."""
+    sections = body.radial.shape[0]
+    at = (shift + count * np.arange(ring.balls)) % sections
+    carrying = np.cos(FULL_TURN * at / sections) > 0.0
+    held = body.along[[0]]
+    seen: set[bytes] = set()
+    while carrying.tobytes() not in seen:
+        seen.add(carrying.tobytes())
+        balls = body.radial[at[carrying]]
+        system = body.stiffness + ring.ball_stiffness * (balls.T @ balls + _HOLD * (held.T @ held))
+        motion = splu(csc_matrix(system)).solve(-body.radial[[0]].toarray()[0])
+        way = body.radial @ motion
+        squeezed = way[at] < 0.0
+        if (squeezed == carrying).all():
+            share = np.where(carrying, -ring.ball_stiffness * way[at], 0.0)
+            moment = body.moment @ motion
+            stress = ring.stress_inside(moment, body.hoop @ motion)
+            most, least = float(stress.max()), float(stress.min())
+            return share, float(moment.max()), float(moment.min()), most, least, float(-way[0])
+        carrying = squeezed
+    raise ContactError("ring: the balls that carry were not found")
+
+
+def annulus(radius: float, thickness: float, sections: int) -> MeshQuad2:
+    """Closed ring of curved quadratic quadrilaterals, two over the thickness."""
+    angle = FULL_TURN / sections * np.arange(sections)
+    depth = radius + thickness * np.linspace(-0.5, 0.5, _LAYERS + 1)
+    points = np.stack(
+        [np.multiply.outer(depth, np.cos(angle)), np.multiply.outer(depth, np.sin(angle))]
+    ).reshape(2, -1)
+    k = np.arange(sections)
+    after = (k + 1) % sections
+    quads = [
+        np.stack([row + k, row + sections + k, row + sections + after, row + after])
+        for row in sections * np.arange(_LAYERS)
+    ]
+    flat = MeshQuad2.from_mesh(MeshQuad(points, np.concatenate(quads, axis=1)))
+    # Middles of edges along the ring lie on the chord: lift them to the arc.
+    step = FULL_TURN / sections
+    half = np.abs(np.arctan2(flat.doflocs[1], flat.doflocs[0]) / step * 2.0)
+    between = np.round(half) % 2 == 1
+    return MeshQuad2(flat.doflocs * np.where(between, 1.0 / np.cos(0.5 * step), 1.0), flat.t)

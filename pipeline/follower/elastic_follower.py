@@ -1,0 +1,224 @@
+"""A follower on an elastic stem: its periodic response, and the speed at which it jumps.
+
+The cam moves the foot by s; a spring K with a damper c carries the mass m, whose way is x, and
+the preloaded spring k presses it down:
+
+    m x'' + c_k x' + k x + P = N,    N = K (s - x) + c (s' - x'),    N >= 0.
+
+Time derivatives; the loose foot has no mass. The mass sits P/K below the cam at rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
+from camwright.geometry.errors import InputError
+
+STEADY = 1e-12  # a speed that varies by less, of itself, is constant
+
+
+@dataclass(frozen=True)
+class ElasticFollower:
+    """One mass on an elastic stem, pressed down by a spring.
+
+    Parameters
+    ----------
+    mass : float             m, kg, > 0
+    stiffness : float        K between cam and mass, N/m, > 0
+    damping : float          c beside K, N s/m, >= 0
+    spring_rate : float      k, N/m, >= 0
+    preload : float          P, N, >= 0
+    guide_damping : float    c_k between mass and frame, N s/m, >= 0
+    """
+
+    mass: float
+    stiffness: float
+    spring_rate: float
+    preload: float
+    damping: float = 0.0
+    guide_damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, unit in (("mass", "kg"), ("stiffness", "N/m")):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise InputError(f"follower.{name}", getattr(self, name), f"> 0 {unit}")
+        for name in ("damping", "spring_rate", "preload", "guide_damping"):
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise InputError(f"follower.{name}", getattr(self, name), ">= 0")
+
+    @classmethod
+    def with_damping_ratio(
+        cls, mass: float, stiffness: float, spring_rate: float, preload: float, ratio: float
+    ) -> ElasticFollower:
+        """The stem's damper given as a share of critical."""
+        critical = 2.0 * np.sqrt(mass * (stiffness + spring_rate))
+        return cls(mass, stiffness, spring_rate, preload, ratio * float(critical))
+
+    @property
+    def natural_frequency(self) -> float:
+        """sqrt((K + k)/m) in contact, rad/s."""
+        return float(np.sqrt((self.stiffness + self.spring_rate) / self.mass))
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Periodic motion of the mass at `theta` (n,); x in m, by time, and the contact force, N."""
+
+    theta: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    contact_force: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+
+    @property
+    def lost(self) -> bool:
+        """Whether the cam would have to pull somewhere."""
+        return bool((self.contact_force < 0.0).any())
+
+
+def quasi_static(lift: ArrayLike, follower: ElasticFollower) -> Array:
+    """x where inertia and damping do nothing, (K s - P)/(K + k), m.
+
+    References
+    ----------
+    Petrescu and Petrescu, Int. J. Production Management 6(3) (2015): the elastic follower.
+    """
+    s = finite("lift", lift)
+    total = follower.stiffness + follower.spring_rate
+    return np.asarray((follower.stiffness * s - follower.preload) / total)
+
+
+def harmonic_response(lift: Array, cam_speed: float, follower: ElasticFollower) -> Response:
+    """Periodic response at constant speed by harmonic balance, the contact never lost.
+
+    Parameters
+    ----------
+    lift : array (n,)    s at equal angles of one turn from 0, m
+    cam_speed : float    rad/s, >= 0
+
+    Raises
+    ------
+    InputError
+        If an undamped follower is driven at resonance, or a value is not finite.
+    """
+    s = finite("lift", lift)
+    n, f = s.size, follower
+    w = 1j * float(finite("cam_speed", cam_speed)) * np.fft.rfftfreq(n, 1.0 / n)
+    if n % 2 == 0:
+        w[-1] = 0.0  # the highest harmonic has no sign, hence no derivative
+    total = f.stiffness + f.spring_rate
+    dynamic = total + (f.damping + f.guide_damping) * w + f.mass * w**2
+    if np.abs(dynamic).min() <= 1e-12 * total:
+        raise InputError("cam_speed", cam_speed, "off the resonance of an undamped follower")
+    foot = np.fft.rfft(s)
+    # Of the stem's shortening s - x, which a stiff stem would lose in the difference.
+    drive = (f.mass * w**2 + f.guide_damping * w + f.spring_rate) * foot
+    drive[0] += n * f.preload
+    short = drive / dynamic
+
+    def back(spectrum: Any) -> Array:
+        return np.fft.irfft(spectrum, n)
+
+    return Response(
+        theta=uniform_turn(n),
+        position=s - back(short),
+        velocity=back(w * (foot - short)),
+        acceleration=back(w**2 * (foot - short)),
+        contact_force=back((f.stiffness + f.damping * w) * short),
+    )
+
+
+def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollower) -> Response:
+    """Periodic response where the speed varies over the turn: trigonometric collocation.
+
+    Parameters
+    ----------
+    lift : array (n,)        s at equal angles of one turn from 0, m; n odd serves best
+    cam_speed : array (n,)   at the same angles, rad/s, > 0
+
+    Raises
+    ------
+    InputError
+        If a speed is not positive or the shapes differ.
+    """
+    s = finite("lift", lift)
+    speed = finite("cam_speed", cam_speed)
+    if speed.shape != s.shape:
+        raise InputError("cam_speed", speed.shape, f"of shape {s.shape}")
+    if not (speed > 0.0).all():
+        raise InputError("cam_speed", float(speed.min()), "> 0 rad/s")
+    f, rate = follower, speed[:, None] * _differentiation(s.size)
+    system: Array = f.mass * rate @ rate + (f.damping + f.guide_damping) * rate
+    system[np.diag_indices(s.size)] += f.stiffness + f.spring_rate
+    foot_speed = rate @ s
+    foot_acceleration = rate @ foot_speed
+    drive = f.mass * foot_acceleration + f.guide_damping * foot_speed + f.spring_rate * s
+    short = np.asarray(np.linalg.solve(system, drive + f.preload), dtype=float)
+    short_speed = rate @ short
+    return Response(
+        theta=uniform_turn(s.size),
+        position=s - short,
+        velocity=foot_speed - short_speed,
+        acceleration=foot_acceleration - rate @ short_speed,
+        contact_force=f.stiffness * short + f.damping * short_speed,
+    )
+
+
+def periodic_response(lift: Array, cam_speed: Array, follower: ElasticFollower) -> Response:
+    """Periodic response at speeds (n,), rad/s: harmonic balance where they are all the same."""
+    speed = finite("cam_speed", cam_speed)
+    if is_steady(speed):
+        return harmonic_response(lift, float(speed[0]), follower)
+    return collocation_response(lift, speed, follower)
+
+
+def is_steady(cam_speed: Array) -> bool:
+    """Whether a speed at the angles of a turn is constant but for round-off."""
+    return bool(np.ptp(cam_speed) <= STEADY * np.abs(cam_speed).max())
+
+
+def _differentiation(n: int) -> Array:
+    """Matrix (n, n) that differentiates a trigonometric interpolant at equal angles, 1/rad.
+
+    References
+    ----------
+    Trefethen, Spectral Methods in MATLAB (2000), ch. 3.
+    """
+    k = np.arange(n)
+    half = 0.5 * FULL_TURN / n * (k[:, None] - k)
+    np.fill_diagonal(half, 1.0)
+    slope = np.tan(half) if n % 2 == 0 else np.sin(half)
+    matrix = 0.5 * (-1.0) ** (k[:, None] - k) / slope
+    np.fill_diagonal(matrix, 0.0)
+    return matrix
+
+
+def elastic_jump_speed(
+    lift: Array, follower: ElasticFollower, speed_max: float, steps: int = 160
+) -> float:
+    """Least cam speed up to `speed_max` at which the contact force falls to zero, rad/s.
+
+    Infinite where it never does; speeds are searched in equal steps, so that resonances narrower
+    than one may be passed by.
+    """
+
+    def least(speed: float) -> float:
+        return float(harmonic_response(lift, speed, follower).contact_force.min())
+
+    before = 0.0
+    if least(before) <= 0.0:
+        return 0.0
+    for speed in np.linspace(0.0, speed_max, steps + 1)[1:]:
+        if least(float(speed)) <= 0.0:
+            return float(brentq(least, before, float(speed), xtol=1e-6 * speed_max))
+        before = float(speed)
+    return np.inf

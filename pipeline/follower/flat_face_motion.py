@@ -1,0 +1,93 @@
+"""Motion of a flat face on its cam, and what its sliding costs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.pitch_curve import PitchCurve
+
+_MEAN_SHARE = pi / 4.0  # mean over greatest pressure of Hertz's ellipse
+
+
+@dataclass(frozen=True, eq=False)
+class FaceMotion:
+    """Where (n,) m and how fast (n,) m/s the surfaces pass under a face.
+
+    place, of the contact from the stem's axis; sliding, of the cam's surface along the face;
+    entrainment, the mean of both surfaces' speeds through the contact, which itself runs along
+    the face at w s''.
+    """
+
+    place: Array
+    sliding: Array
+    entrainment: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, place=self.place, sliding=self.sliding, entrainment=self.entrainment)
+
+
+def face_motion(path: PitchCurve, cam_speed: float, theta: ArrayLike) -> FaceMotion:
+    """Sliding w (r + s) and entrainment w |(r + s)/2 + s''| of a face.
+
+    Parameters
+    ----------
+    path : PitchCurve    a `FacePath`, whose height is r + s
+    cam_speed : float    w, rad/s
+    theta : array (n,)   rad
+
+    Raises
+    ------
+    InputError
+        If a value is not finite.
+
+    References
+    ----------
+    Dowson, Harrison and Taylor, Inst. Mech. Engrs C 255 (1986): cam and flat-faced follower.
+    """
+    angle, speed = finite("theta", theta), float(finite("cam_speed", cam_speed))
+    height, bend = path.height(angle), path.lift(angle, 2)
+    passing = np.abs(speed * (0.5 * height + bend))
+    return FaceMotion(path.push_arm(angle), speed * height, passing)
+
+
+@dataclass(frozen=True, eq=False)
+class FaceSliding:
+    """A face that slides over one turn, arrays (n,) at equal angles.
+
+    place of the contact on the face m; speed m/s; pv, mean contact pressure times speed, Pa m/s;
+    power W and loss J per turn of its friction, zero where none is given.
+    """
+
+    place: Array
+    speed: Array
+    pv: Array
+    power: Array
+    loss: float
+
+    def __post_init__(self) -> None:
+        names = ("place", "speed", "pv", "power")
+        freeze(self, **{name: getattr(self, name) for name in names})
+
+    @classmethod
+    def of(
+        cls, motion: FaceMotion, peak: Array, force: Array, friction: float, cam_speed: float
+    ) -> FaceSliding:
+        """From peak pressures (n,) Pa and normal forces (n,) N."""
+        power = friction * np.maximum(force, 0.0) * motion.sliding
+        loss = float(power.mean()) * FULL_TURN / cam_speed
+        return cls(motion.place, motion.sliding, _MEAN_SHARE * peak * motion.sliding, power, loss)
+
+    def columns(self) -> Mapping[str, Array]:
+        """SI values by the names of the columns of ``5_cycle.csv``."""
+        return {
+            "place_on_face": self.place,
+            "sliding_speed": self.speed,
+            "face_pv": self.pv,
+            "face_friction_power": self.power,
+        }

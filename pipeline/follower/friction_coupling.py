@@ -1,0 +1,228 @@
+"""Friction of guides of finite length, which feeds on the contact force that it raises."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from camwright.geometry.arrays import Array, finite, freeze
+from camwright.geometry.errors import ContactError
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.follower.follower_forces import (
+    JAM_FLOOR,
+    FollowerSystem,
+    Loads,
+    Push,
+    Rubbing,
+    follower_loads,
+    share_left,
+)
+from camwright.pipeline.follower.guide_contact import settle
+from camwright.pipeline.follower.guide_reactions import (
+    KNOTS,
+    GuidePair,
+    GuideReactions,
+    bearing_line,
+    guide_reactions,
+    require_fit,
+)
+from camwright.pipeline.follower.stem_beam import Stem
+
+RESIDUAL = 1e-10  # of the axial equilibrium, over the cam's push
+_ROUNDS_MAX = 100  # bisection alone ends the widest bracket, F to F/JAM_FLOOR, in 40
+_CLIMB = 40  # rounds in which a place without an upper bound yet may go up slowly
+
+# Values at some of the positions, which are numbered by the second argument.
+Answer = Callable[[Array, NDArray[np.intp]], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Guided:
+    """Loads in balance with the guides that bear them, at the same positions.
+
+    residual (n,): the miss of the axial equilibrium, with friction of the loads the guides
+    answered in the end, over the push; rounds: solutions of the guides it took.
+    """
+
+    loads: Loads
+    reactions: GuideReactions
+    residual: Array
+    rounds: int
+
+    def __post_init__(self) -> None:
+        freeze(self, residual=self.residual)
+
+
+def guided_loads(
+    pitch: PitchCurve,
+    system: FollowerSystem,
+    stem: Stem,
+    guides: GuidePair,
+    cam_speed: ArrayLike,
+    theta: ArrayLike,
+    knots: int = KNOTS,
+) -> Guided:
+    r"""Forces on a follower whose guides have length and play, friction implicit at every angle.
+
+    The side force F_a tan(alpha), or the couple of a push beside the axis, leans the stem on the
+    mouths of its guides, which rub with mu_A R_A + mu_B R_B, R the pushes of both sides of a bore
+    by `guide_reactions`; and the push F_a has to overcome that friction:
+
+        F_a = F / (1 - sign(v) c(F_a) l),    c = (mu_A R_A + mu_B R_B) / (F_a l),
+
+    with the lean l of `Push`, for a roller |tan(alpha)|.
+
+    With play c depends on the load, so that the equation is solved for F_a, at all angles at
+    once. On the way out F_a lies between F and F/`JAM_FLOOR`, on the way back between 0 and F,
+    and both sides are continuous: a solution exists whatever the friction. On the way out the
+    search goes up from F: where guides that bite harder under more load know several answers,
+    the least push that moves the follower is the one. While the jam index is below
+    1 - `JAM_FLOOR` it is a balance of forces; at jamming it is the bound of the forces, and
+    `jam_index` tells of it as with `follower_loads`.
+
+    Parameters
+    ----------
+    pitch : PitchCurve
+    system : FollowerSystem   its `rubbing` is not used
+    stem : Stem
+    guides : GuidePair        its friction is not used, that of the system is
+    cam_speed : float or array (n,)   rad/s, >= 0
+    theta : array (n,)        cam angles, rad
+    knots : int               per guide
+
+    Raises
+    ------
+    InputError
+        As `follower_loads` and `guide_reactions` raise it.
+    ContactError
+        If a balance is missed by more than 1e-10 of the push.
+    """
+    theta = finite("theta", theta)
+    points = follower_loads(pitch, replace(system, rubbing=None), cam_speed, theta)
+    free = follower_loads(
+        pitch, replace(system, friction_a=0.0, friction_b=0.0, rubbing=None), cam_speed, theta
+    )
+    require_fit(stem, guides, points.overhang, knots)
+    way, slope = Push.of(pitch, system, theta), points.lift_slope
+    bores = _Bores(stem, guides, knots, points, way)
+
+    def answer(push: Array, at: NDArray[np.intp]) -> Array:
+        a, b = bores.factors(push, at)
+        jam = (system.friction_a * a + system.friction_b * b) * way.lean[at]
+        return np.asarray(free.axial_force[at] / share_left(slope[at], jam))
+
+    force, outward = free.axial_force, slope > 0.0
+    high = np.where(outward, force / JAM_FLOOR, force)
+    low, start = np.where(outward, force, 0.0), np.where(outward, force, points.axial_force)
+    push, rounds = balanced(answer, low, high, start)
+    everywhere = np.arange(theta.size)
+    a, b = bores.factors(push, everywhere)
+    loads = follower_loads(pitch, replace(system, rubbing=Rubbing(theta, a, b)), cam_speed, theta)
+    reactions = guide_reactions(
+        loads.tangential_force,
+        loads.overhang,
+        stem,
+        guides,
+        loads.end_moment,
+        knots=knots,
+        start=bores.state,
+    )
+    residual = _residual(system, free, loads, reactions)
+    if not residual.max(initial=0.0) <= RESIDUAL:
+        raise ContactError(
+            f"friction: residual = {residual.max():.3g}, must be <= {RESIDUAL:g} of the push"
+        )
+    return Guided(loads, reactions, residual, rounds + 2)
+
+
+def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Array, int]:
+    """Values x that are their own answer, x = f(x), each of its own function within a bracket.
+
+    f(low) >= low and f(high) <= high, f continuous: the secant through the two last values where
+    it stays in the bracket. Where it does not halve the miss the middle of the bracket is taken,
+    once a place with f(x) < x bounds it; until then the way is up, by the secant or to f(x).
+
+    Parameters
+    ----------
+    answer : function of x (k,) and the places (k,) of these among all   gives f(x), (k,)
+    low, high : array (n,)
+    start : array (n,)
+
+    Returns
+    -------
+    x : array (n,)    with |x - f(x)| <= 1e-2 of `RESIDUAL` of x
+    rounds : int      calls of the function
+
+    Raises
+    ------
+    ContactError
+        If 100 rounds do not do.
+    """
+    x, low, high = np.clip(start, low, high), low.copy(), high.copy()
+    before, missed = np.full_like(x, np.nan), np.full_like(x, np.inf)
+    bounded = np.zeros(x.shape, dtype=bool)
+    at = np.flatnonzero(high > 0.0)
+    x[high <= 0.0] = 0.0
+    for rounds in range(_ROUNDS_MAX):
+        if not at.size:
+            return x, rounds
+        now, found = x[at], answer(x[at], at)
+        miss = now - found
+        open_ = np.abs(miss) > 0.01 * RESIDUAL * found
+        low[at] = np.where(miss < 0.0, now, low[at])
+        high[at] = np.where(miss > 0.0, now, high[at])
+        bounded[at] |= miss > 0.0
+        with np.errstate(invalid="ignore", divide="ignore"):
+            secant = now - miss * (now - before[at]) / (miss - missed[at])
+        within = (secant > low[at]) & (secant <= high[at])
+        slow = np.abs(miss) > 0.5 * np.abs(missed[at])
+        halved = slow & (bounded[at] | (rounds >= _CLIMB))
+        next_ = np.where(halved, 0.5 * (low[at] + high[at]), np.where(within, secant, found))
+        x[at] = np.where(open_, next_, found)
+        before[at], missed[at] = now, miss
+        at = at[open_]
+    raise ContactError(f"friction: {at.size} positions not in balance after {_ROUNDS_MAX} rounds")
+
+
+class _Bores:
+    """Guides that are solved again and again at the same positions, each time from the last."""
+
+    def __init__(self, stem: Stem, guides: GuidePair, knots: int, points: Loads, way: Push) -> None:
+        self.line, _, half_a = bearing_line(stem, guides, knots)
+        self.reach, self.knots = points.overhang - half_a, knots
+        self.points, self.way = points, way
+        self.state: tuple[Array, Array] | None = None
+
+    def factors(self, push: Array, at: NDArray[np.intp]) -> tuple[Array, Array]:
+        """Rubbing load over the lean (k,) of axial pushes; that of points where there is none."""
+        start = None
+        if self.state is not None:
+            start = self.state[0][:, at], self.state[1][:, at]
+        side, moment = push * self.way.side[at], push * self.way.arm[at]
+        found, rigid = settle(self.line, side, moment - side * self.reach[at], start)
+        if self.state is None:
+            count = self.reach.size
+            self.state = np.zeros((len(found), count)), np.zeros((2, count))
+        self.state[0][:, at], self.state[1][:, at] = found, rigid
+        rubbed = np.abs(found[: self.knots]).sum(axis=0), np.abs(found[self.knots :]).sum(axis=0)
+        size, given = (
+            push * self.way.lean[at],
+            (self.points.rubbing_a[at], self.points.rubbing_b[at]),
+        )
+        a, b = (
+            np.divide(load, size, out=share.copy(), where=size > 0.0)
+            for load, share in zip(rubbed, given, strict=True)
+        )
+        return a, b
+
+
+def _residual(system: FollowerSystem, free: Loads, loads: Loads, found: GuideReactions) -> Array:
+    """Axial forces that do not cancel, over the push; 0 where the push is held at its bound."""
+    rubs = system.friction_a * found.rubbing_load_a + system.friction_b * found.rubbing_load_b
+    miss = loads.axial_force - np.sign(loads.lift_slope) * rubs - free.axial_force
+    bounded = share_left(loads.lift_slope, loads.jam_index) <= JAM_FLOOR
+    push = np.where(bounded, 0.0, loads.axial_force)
+    return np.divide(np.abs(miss), push, out=np.zeros_like(miss), where=push > 0.0)

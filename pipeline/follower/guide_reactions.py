@@ -1,0 +1,370 @@
+"""Reactions of two guides of finite length on the bending stem of a follower."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial.legendre import Legendre
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array, finite, freeze, readonly
+from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.follower.guide_contact import BearingLine, settle
+from camwright.pipeline.follower.stem_beam import Stem, end_flexibility, stem_compliance
+
+KNOTS = 25  # per guide; odd, so that the middle of the guide is one of them
+RESIDUAL_LIMIT = 1e-9
+_NO_LOAD = 1e-290  # N: the slope a spline leaves in a dwell; so near to zero digits are lost
+WALL_SHARE = 0.25  # wall of a plain bushing over its bore, where the drawing gives none
+
+
+@dataclass(frozen=True)
+class Guide:
+    """A bore the stem slides in.
+
+    Parameters
+    ----------
+    length : float               m, > 0
+    diameter : float             nominal, m, > 0
+    clearance : float            bore less stem, across the diameter, m, >= 0
+    foundation_modulus : float   force per length and deflection, N/m2, > 0; see
+                                 `bush_foundation_modulus`
+    friction : float             Coulomb coefficient, >= 0
+
+    Raises
+    ------
+    InputError
+        If a value is out of these bounds; a negative clearance is a press fit, which cannot slide.
+    """
+
+    length: float
+    diameter: float
+    clearance: float
+    foundation_modulus: float
+    friction: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, unit in (("length", "m"), ("diameter", "m"), ("foundation_modulus", "N/m2")):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise InputError(f"guide.{name}", getattr(self, name), f"> 0 {unit}")
+        if not 0.0 <= self.clearance < np.inf:
+            raise InputError("guide.clearance", self.clearance, ">= 0 m: a press fit cannot slide")
+        if not 0.0 <= self.friction < np.inf:
+            raise InputError("guide.friction", self.friction, ">= 0")
+
+    @classmethod
+    def from_case(cls, case: Any, name: str) -> Guide:
+        """Guide `a` or `b` of a case; a stiffness given there is that of the whole guide, N/m."""
+        given = getattr(case.guides, name)
+        material = case.materials[given.material]
+        if given.stiffness is not None:
+            modulus = given.stiffness / given.length
+        else:
+            modulus = bush_foundation_modulus(
+                given.diameter, WALL_SHARE * given.diameter, material.E, material.nu
+            )
+        return cls(given.length, given.diameter, given.clearance, modulus, given.friction)
+
+
+@dataclass(frozen=True)
+class GuidePair:
+    """Guide A beside the roller and guide B behind it.
+
+    Parameters
+    ----------
+    spacing : float   between the middles of the guides, m; the guides may not touch
+    a, b : Guide
+    """
+
+    spacing: float
+    a: Guide
+    b: Guide
+
+    def __post_init__(self) -> None:
+        least = 0.5 * (self.a.length + self.b.length)
+        if not least < self.spacing < np.inf:
+            raise InputError("guides.spacing", self.spacing, f"> {least:g} m, half of both lengths")
+
+    @classmethod
+    def from_case(cls, case: Any) -> GuidePair:
+        """The guides table of a case."""
+        return cls(case.guides.spacing, Guide.from_case(case, "a"), Guide.from_case(case, "b"))
+
+
+@dataclass(frozen=True, eq=False)
+class GuideReactions:
+    """What the guides carry at each position; arrays (n,) unless said otherwise, SI.
+
+    Guide A pushes against the side force F_t and guide B with it; both reactions are signed
+    like the statics A = F_t (a+b)/b, B = F_t a/b of point supports. The moments are couples of
+    the guides on the stem about their own middles: what finite length adds to the statics.
+    `slope_*` is the tilt of the stem at the middle of a guide, `roller_deflection` the way of
+    the roller with F_t, both from the guides' common axis. `line_pressure_*` (knots, n), N/m,
+    are the guides' pushes on the stem, positive against F_t, at `knots_*` (m from the middle of
+    the guide, growing away from the roller). `rubbing_load_*` adds the pushes of both sides of
+    the bore, where a reaction takes their difference: friction follows it. The residuals are
+    those of force, of moment about the roller, each over the load, and of the contact law at the
+    worst knot, over the largest deflection.
+    """
+
+    tangential_force: Array
+    overhang: Array
+    reaction_a: Array
+    reaction_b: Array
+    statics_a: Array
+    statics_b: Array
+    moment_a: Array
+    moment_b: Array
+    slope_a: Array
+    slope_b: Array
+    roller_deflection: Array
+    line_pressure_a: Array
+    line_pressure_b: Array
+    knots_a: Array
+    knots_b: Array
+    rubbing_load_a: Array
+    rubbing_load_b: Array
+    stem_diameter: float
+    force_residual: Array
+    moment_residual: Array
+    complementarity_residual: Array
+
+    def __post_init__(self) -> None:
+        names = set(self.__dataclass_fields__) - {"stem_diameter"}
+        freeze(self, **{name: getattr(self, name) for name in names})
+
+    @cached_property
+    def line_pressure_max_a(self) -> Array:
+        """Largest push per length in guide A, N/m, >= 0."""
+        return np.asarray(np.abs(self.line_pressure_a).max(axis=0))
+
+    @cached_property
+    def line_pressure_max_b(self) -> Array:
+        """Largest push per length in guide B, N/m, >= 0."""
+        return np.asarray(np.abs(self.line_pressure_b).max(axis=0))
+
+    @property
+    def pressure_max_a(self) -> Array:
+        """Largest projected pressure in guide A, Pa, >= 0: line pressure over stem diameter."""
+        return self.line_pressure_max_a / self.stem_diameter
+
+    @property
+    def pressure_max_b(self) -> Array:
+        """Largest projected pressure in guide B, Pa, >= 0: line pressure over stem diameter."""
+        return self.line_pressure_max_b / self.stem_diameter
+
+
+def bush_foundation_modulus(
+    bore: float, wall: float, elastic_modulus: float, poisson_ratio: float
+) -> float:
+    """Force per length and deflection of a bush in a rigid housing, N/m2.
+
+    The wall is a thin layer that cannot spread: it answers the radial approach d cos(phi) with
+    the pressure E_c d cos(phi)/t, E_c = E (1-nu)/((1+nu)(1-2nu)). Over the loaded half of the
+    bore this adds up to (pi/4) E_c D/t a unit of d.
+
+    Parameters
+    ----------
+    bore, wall : float       D and t, m, > 0
+    elastic_modulus : float  E, Pa, > 0
+    poisson_ratio : float    nu, 0 <= nu <= 0.49; a wall that keeps its volume would be rigid
+
+    Raises
+    ------
+    InputError
+        If a value is out of these bounds.
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), sec. 4.3 and 5.8: elastic foundation, thin bonded layer.
+    """
+    for name, value, unit in (
+        ("diameter", bore, "m"),
+        ("wall", wall, "m"),
+        ("elastic_modulus", elastic_modulus, "Pa"),
+    ):
+        if not 0.0 < value < np.inf:
+            raise InputError(f"guide.{name}", value, f"> 0 {unit}")
+    nu = poisson_ratio
+    if not 0.0 <= nu <= 0.49:
+        raise InputError("guide.poisson_ratio", nu, "from 0 to 0.49")
+    confined = elastic_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    return 0.25 * np.pi * confined * bore / wall
+
+
+class _Carried(NamedTuple):
+    """Reactions and couples of both guides on the stem, (n,), signed as in `GuideReactions`."""
+
+    reaction_a: Array
+    reaction_b: Array
+    couple_a: Array
+    couple_b: Array
+
+    def force_residual(self, force: Array, moment: Array, spacing: float) -> Array:
+        """What the reactions miss the side force by, over the load."""
+        miss = self.reaction_a - self.reaction_b - force
+        return _relative(miss, np.abs(force) + np.abs(moment) / spacing)
+
+    def moment_residual(self, force: Array, moment: Array, reach: Array, spacing: float) -> Array:
+        """What all moments about the roller miss the end moment by, over the load."""
+        far = reach + spacing
+        turned = self.couple_a + self.couple_b + self.reaction_a * reach - self.reaction_b * far
+        return _relative(turned - moment, np.abs(force) * far + np.abs(moment))
+
+
+def guide_reactions(
+    tangential_force: ArrayLike,
+    overhang: ArrayLike,
+    stem: Stem,
+    guides: GuidePair,
+    end_moment: ArrayLike = 0.0,
+    knots: int = KNOTS,
+    start: tuple[Array, Array] | None = None,
+) -> GuideReactions:
+    """Reactions, pressures and tilts of the guides on the elastic stem, at every position.
+
+    The guides stay while the stem slides through them, so the part of the stem between the
+    outer mouth of A and the far end of B is one beam for all positions; the overhang brings its
+    force and moment to the mouth and is added to the deflection. Each guide is a foundation
+    that only pushes, from either side of the bore, once half the clearance is used up. Its
+    integrals are taken at Lobatto knots, mouths included, that are nodes of the beam, where
+    Hermite elements are exact. The stem's far end beyond B carries nothing.
+
+    Parameters
+    ----------
+    tangential_force : array (n,)    F_t on the roller, N
+    overhang : array (n,)            a, roller centre to the middle of A, m
+    stem : Stem
+    guides : GuidePair
+    end_moment : array (n,)          on the roller end, N m, positive when it turns the stem from
+                                     its axis (roller to B) towards F_t
+    knots : int                      per guide, odd, >= 3
+    start : push, rigid              where `settle` starts, of like loads at the same positions
+
+    Returns
+    -------
+    GuideReactions
+
+    Raises
+    ------
+    InputError
+        If the roller would enter guide A, the stem would leave guide B or is thicker than a
+        bore, or a value is NaN.
+    ContactError
+        If equilibrium or the contact law is not met to 1e-9.
+    """
+    force = finite("tangential_force", tangential_force)
+    reach = np.broadcast_to(finite("overhang", overhang), force.shape)
+    moment = np.broadcast_to(finite("end_moment", end_moment), force.shape)
+    require_fit(stem, guides, reach, knots)
+    line, slopes, half_a = bearing_line(stem, guides, knots)
+    arm = reach - half_a
+    push, rigid = settle(line, force, moment - force * arm, start)
+
+    weights_a, weights_b = np.split(line.weights, 2)
+    from_a = line.positions[:knots] - half_a
+    from_b = line.positions[knots:] - half_a - guides.spacing
+    in_a, in_b = push[:knots], push[knots:]
+    carried = _Carried(in_a.sum(axis=0), -in_b.sum(axis=0), from_a @ in_a, from_b @ in_b)
+    tilt = rigid[1] - slopes @ push
+    over = end_flexibility(arm, stem)
+    result = GuideReactions(
+        tangential_force=force,
+        overhang=reach,
+        reaction_a=carried.reaction_a,
+        reaction_b=carried.reaction_b,
+        statics_a=force + (force * reach - moment) / guides.spacing,
+        statics_b=(force * reach - moment) / guides.spacing,
+        moment_a=carried.couple_a,
+        moment_b=carried.couple_b,
+        slope_a=tilt[knots // 2],
+        slope_b=tilt[knots + knots // 2],
+        roller_deflection=rigid[0]
+        - rigid[1] * arm
+        + over[:, 0, 0] * force
+        - over[:, 0, 1] * moment,
+        line_pressure_a=in_a / weights_a[:, None],
+        line_pressure_b=in_b / weights_b[:, None],
+        knots_a=from_a,
+        knots_b=from_b,
+        rubbing_load_a=np.abs(in_a).sum(axis=0),
+        rubbing_load_b=np.abs(in_b).sum(axis=0),
+        stem_diameter=stem.diameter,
+        force_residual=carried.force_residual(force, moment, guides.spacing),
+        moment_residual=carried.moment_residual(force, moment, reach, guides.spacing),
+        complementarity_residual=line.law_residual(push, rigid),
+    )
+    _certify(result)
+    return result
+
+
+def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> None:
+    """Refuse a stem that does not fit its guides at overhangs (n,), m.
+
+    Raises
+    ------
+    InputError
+        If the roller would enter guide A, the stem would leave guide B or is thicker than a bore.
+    """
+    if knots < 3 or knots % 2 == 0:
+        raise InputError("knots", knots, "odd and >= 3")
+    for name, guide in (("a", guides.a), ("b", guides.b)):
+        widest = guide.diameter + guide.clearance
+        if stem.diameter > widest * (1.0 + 1e-9):
+            raise InputError(
+                "follower.stem_diameter", stem.diameter, f"<= {widest:g} m of guide {name}"
+            )
+    if not (overhang >= 0.5 * guides.a.length).all():
+        limit = f">= {0.5 * guides.a.length:g} m, or the roller enters guide A"
+        raise InputError("follower.overhang", float(overhang.min()), limit)
+    needed = float(overhang.max()) + guides.spacing + 0.5 * guides.b.length
+    if not stem.length >= needed * (1.0 - 1e-12):
+        limit = f">= {needed:g} m, or the stem leaves guide B at the largest overhang"
+        raise InputError("follower.stem_length", stem.length, limit)
+
+
+@lru_cache(maxsize=8)
+def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine, Array, float]:
+    """Beam and foundation in one, from the mouth of A; slope compliance; half length of A."""
+    unit, weight = lobatto(knots)
+    half_a, half_b = 0.5 * guides.a.length, 0.5 * guides.b.length
+    positions = np.r_[half_a * (1.0 + unit), half_a + guides.spacing + half_b * unit]
+    deflection, slopes = stem_compliance(positions, stem)
+    line = BearingLine(
+        positions=positions,
+        weights=np.r_[half_a * weight, half_b * weight],
+        foundation=np.repeat([guides.a.foundation_modulus, guides.b.foundation_modulus], knots),
+        play=np.repeat([0.5 * guides.a.clearance, 0.5 * guides.b.clearance], knots),
+        compliance=deflection,
+        edges=np.array([0, knots - 1, knots, 2 * knots - 1]),
+    )
+    return line, readonly(slopes), half_a
+
+
+def lobatto(count: int) -> tuple[Array, Array]:
+    """Knots and weights of the Lobatto rule on [-1, 1]: the ends are knots.
+
+    References
+    ----------
+    Abramowitz and Stegun (1964), 25.4.32.
+    """
+    highest = Legendre.basis(count - 1)
+    inner = np.sort(highest.deriv().roots().real)
+    knots = np.r_[-1.0, inner, 1.0]
+    return knots, 2.0 / (count * (count - 1) * highest(knots) ** 2)
+
+
+def _relative(error: Array, scale: Array) -> Array:
+    """|error| / scale, 0 where there is no load."""
+    return np.divide(np.abs(error), scale, out=np.zeros_like(scale), where=scale > _NO_LOAD)
+
+
+def _certify(result: GuideReactions) -> None:
+    """Refuse a solution that is not in equilibrium or breaks the contact law."""
+    for name in ("force_residual", "moment_residual", "complementarity_residual"):
+        worst = float(np.max(getattr(result, name), initial=0.0))
+        if not worst <= RESIDUAL_LIMIT:
+            raise ContactError(f"guides: {name} = {worst:.3g}, must be <= {RESIDUAL_LIMIT:g}")

@@ -1,0 +1,238 @@
+"""Motion of the roller and the load its bearing carries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.errors import InputError
+from camwright.geometry.path import magnitude
+from camwright.geometry.pitch_curve import PitchCurve
+
+BALL_LIFE_EXPONENT = 3.0  # ISO 281: 3 for ball bearings, 10/3 for roller bearings
+HOUR = 3600.0
+
+
+@dataclass(frozen=True, eq=False)
+class RollerMotion:
+    """Motion of a roller that does not slip; arrays (n,), SI.
+
+    `spin` and `spin_acceleration` are those of the outer ring against the follower, rad/s and
+    rad/s2; `pitch_speed` that of the roller centre along the pitch curve, `rolling_speed` that
+    of both surfaces through the contact (the entrainment speed), m/s.
+    """
+
+    theta: Array
+    spin: Array
+    spin_acceleration: Array
+    pitch_speed: Array
+    rolling_speed: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+
+    @property
+    def spin_mean(self) -> float:
+        """Mean of |spin| over the angles given, rad/s."""
+        return float(np.mean(np.abs(self.spin)))
+
+    @property
+    def spin_max(self) -> float:
+        """Largest |spin|, rad/s."""
+        return float(np.max(np.abs(self.spin)))
+
+
+@dataclass(frozen=True)
+class RatingLife:
+    """Basic rating life: P_m in N, L10 in revolutions of the bearing and in hours."""
+
+    mean_load: float
+    revolutions: float
+    hours: float
+
+
+def roller_motion(
+    pitch: PitchCurve,
+    roller_radius: float,
+    cam_speed: float,
+    theta: ArrayLike,
+    cam_acceleration: float = 0.0,
+) -> RollerMotion:
+    """Spin and rolling speed of a roller that does not slip.
+
+    Seen from the cam the roller centre runs along the pitch curve at w |P'| and the roller turns
+    at w |P'|/r; the cam itself turns back at w, which leaves w (|P'| - r)/r against the follower.
+    The surfaces pass through the contact at the speed of the contact point along the contour,
+    w |P'| (1 - r kappa).
+
+    Parameters
+    ----------
+    pitch : PitchCurve
+    roller_radius : float      r, m, > 0
+    cam_speed : float          w, rad/s
+    theta : array (n,)         rad
+    cam_acceleration : float   rad/s2
+
+    Returns
+    -------
+    RollerMotion
+
+    Raises
+    ------
+    InputError
+        If the radius is not positive or a value is not finite.
+
+    References
+    ----------
+    Energy loss comparison between kinematically equivalent mechanisms: slider-crank and
+    eccentric cam (2024), eqs 35-37, at any pitch curve.
+    """
+    if not 0.0 < roller_radius < np.inf:
+        raise InputError("roller.radius", roller_radius, "> 0 m")
+    theta = finite("theta", theta)
+    speed = float(finite("cam_speed", cam_speed))
+    lift, slope, bend = pitch.lift.derivatives(theta, 2)
+    stretch, curvature = pitch.speed_and_curvature(theta)
+    stretch_rate = ((slope - pitch.offset) * bend + (pitch.height_base + lift) * slope) / stretch
+    spin_per_turn = rolling_share(stretch, roller_radius)
+    return RollerMotion(
+        theta=theta,
+        spin=speed * spin_per_turn,
+        spin_acceleration=speed**2 * stretch_rate / roller_radius
+        + float(finite("cam_acceleration", cam_acceleration)) * spin_per_turn,
+        pitch_speed=speed * stretch,
+        rolling_speed=speed * stretch * (1.0 - roller_radius * curvature),
+    )
+
+
+def rolling_share(pitch_speed: Any, roller_radius: float) -> Any:
+    """Spin of the roller against the follower over the cam's, from |dP/dtheta|, m/rad."""
+    return pitch_speed / roller_radius - 1.0
+
+
+def wear(normal_force: Any, spin: Any, exponent: float = BALL_LIFE_EXPONENT) -> Any:
+    """N^p |n| at each place of the turn: its mean decides the rating life; ISO 281:2007, 6.2."""
+    return normal_force**exponent * magnitude(spin)
+
+
+def equivalent_load(
+    normal_force: ArrayLike, spin: ArrayLike, exponent: float = BALL_LIFE_EXPONENT
+) -> float:
+    """P_m, the constant load of equal life, at positions equally spaced in time, N.
+
+    Each position weighs as many revolutions as the roller makes there:
+    P_m = (sum N^p |n| / sum |n|)^(1/p).
+
+    Raises
+    ------
+    InputError
+        If a force is negative, the shapes differ, or the roller stands still throughout.
+
+    References
+    ----------
+    ISO 281:2007, 5; Cardoso et al., Energies 18 (2025) 3256 for the loads.
+    """
+    force = finite("normal_force", normal_force)
+    turns = np.abs(finite("roller spin", spin))
+    if force.shape != turns.shape:
+        raise InputError("roller spin", turns.shape, f"of shape {force.shape}")
+    if (force < 0.0).any():
+        raise InputError("normal_force", float(force.min()), ">= 0 N")
+    if not turns.any():
+        raise InputError("roller spin", 0.0, "> 0 rad/s at some angle")
+    largest = float(force.max())
+    if largest == 0.0:
+        return 0.0
+    share = wear(force / largest, turns, exponent).mean() / turns.mean()
+    return largest * float(share) ** (1.0 / exponent)
+
+
+def rating_life(
+    normal_force: ArrayLike,
+    spin: ArrayLike,
+    dynamic_rating: float,
+    exponent: float = BALL_LIFE_EXPONENT,
+) -> RatingLife:
+    """Life that nine bearings of ten reach under the load of the cycle.
+
+    Parameters
+    ----------
+    normal_force : array (n,)   N, at positions equally spaced in time
+    spin : array (n,)           rad/s
+    dynamic_rating : float      C, N, > 0
+    exponent : float            3 for ball bearings, 10/3 for roller bearings
+
+    Returns
+    -------
+    RatingLife   infinite where nothing loads the bearing
+
+    Raises
+    ------
+    InputError
+        If the rating is not positive; see `equivalent_load`.
+
+    References
+    ----------
+    ISO 281:2007, 6.2: L10 = (C/P)^p million revolutions.
+    """
+    if not 0.0 < dynamic_rating < np.inf:
+        raise InputError("roller.bearing.C", dynamic_rating, "> 0 N")
+    mean_load = equivalent_load(normal_force, spin, exponent)
+    spin_mean = float(np.mean(np.abs(spin)))
+    revolutions = 1e6 * (dynamic_rating / mean_load) ** exponent if mean_load > 0.0 else np.inf
+    return RatingLife(mean_load, revolutions, revolutions * FULL_TURN / spin_mean / HOUR)
+
+
+def static_safety(normal_force: ArrayLike, static_rating: float) -> float:
+    """s0 = C0 / N_max; infinite where nothing loads the bearing.
+
+    Raises
+    ------
+    InputError
+        If the rating is not positive or a force is not finite.
+
+    References
+    ----------
+    ISO 76:2006; makers ask 0.5 to 2 of ball bearings in quiet running, 1.5 with shocks.
+    """
+    if not 0.0 < static_rating < np.inf:
+        raise InputError("roller.bearing.C0", static_rating, "> 0 N")
+    largest = float(np.max(np.abs(finite("normal_force", normal_force))))
+    return static_rating / largest if largest > 0.0 else np.inf
+
+
+def traction_demand(
+    normal_force: ArrayLike,
+    spin_acceleration: ArrayLike,
+    inertia: float,
+    radius: float,
+    bearing_torque: float = 0.0,
+) -> Array:
+    """Friction coefficient the contact needs to turn the roller without slip.
+
+    |I a + T_b| / (r N); infinite where the roller carries nothing yet must be turned.
+
+    Parameters
+    ----------
+    normal_force, spin_acceleration : array (n,)   N; rad/s2
+    inertia : float                                of the outer ring, kg m2, >= 0
+    radius : float                                 of the roller, m, > 0
+    bearing_torque : float                         drag of the bearing, N m
+
+    Raises
+    ------
+    InputError
+        If the inertia is negative or the radius not positive.
+    """
+    if not 0.0 <= inertia < np.inf:
+        raise InputError("roller.inertia", inertia, ">= 0 kg m2")
+    if not 0.0 < radius < np.inf:
+        raise InputError("roller.radius", radius, "> 0 m")
+    force = finite("normal_force", normal_force)
+    pull = np.abs(inertia * finite("spin_acceleration", spin_acceleration) + bearing_torque)
+    idle = np.where(pull > 0.0, np.inf, 0.0)
+    return np.divide(pull, radius * force, out=idle, where=force > 0.0)

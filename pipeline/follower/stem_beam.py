@@ -1,0 +1,151 @@
+"""The follower's stem as a beam of Hermite finite elements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from skfem import Basis, BilinearForm, ElementLineHermite, MeshLine
+from skfem.helpers import dd, ddot
+
+from camwright.geometry.arrays import Array, readonly
+from camwright.geometry.errors import InputError
+
+
+@dataclass(frozen=True)
+class Stem:
+    """A round bar that slides in the guides.
+
+    Parameters
+    ----------
+    diameter : float          m, > 0
+    elastic_modulus : float   E, Pa, > 0
+    poisson_ratio : float     used by the shear flexibility alone, 0 to 0.5
+    shear : bool              Timoshenko's beam; else Euler and Bernoulli's
+    bore : float              diameter of a hole along the bar, m; 0 for a solid one
+    length : float            from the roller's centre to the far end, m; infinite: long enough
+    """
+
+    diameter: float
+    elastic_modulus: float
+    poisson_ratio: float = 0.3
+    shear: bool = False
+    bore: float = 0.0
+    length: float = np.inf
+
+    def __post_init__(self) -> None:
+        for name, unit in (("diameter", "m"), ("elastic_modulus", "Pa")):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise InputError(f"stem.{name}", getattr(self, name), f"> 0 {unit}")
+        if not self.length > 0.0:
+            raise InputError("stem.length", self.length, "> 0 m")
+        if not 0.0 <= self.poisson_ratio <= 0.5:
+            raise InputError("stem.poisson_ratio", self.poisson_ratio, "from 0 to 0.5")
+        if not 0.0 <= self.bore < self.diameter:
+            raise InputError("stem.bore", self.bore, f">= 0 and < {self.diameter:g} m")
+
+    @classmethod
+    def from_case(cls, case: Any) -> Stem:
+        """The stem described by the follower table of a case."""
+        material = case.materials[case.follower.stem_material]
+        given = case.follower.stem_length
+        length = np.inf if given is None else given
+        return cls(case.follower.stem_diameter, material.E, material.nu, length=length)
+
+    @property
+    def bending_stiffness(self) -> float:
+        """E I, N m2."""
+        return self.elastic_modulus * np.pi / 64.0 * (self.diameter**4 - self.bore**4)
+
+    @property
+    def shear_flexibility(self) -> float:
+        """1/(kappa G A), 1/N; 0 for a beam that does not shear.
+
+        References
+        ----------
+        Cowper, J. Appl. Mech. 33 (1966) 335: the kappa of a round section, solid or hollow.
+        """
+        if not self.shear:
+            return 0.0
+        nu, hollow = self.poisson_ratio, (self.bore / self.diameter) ** 2
+        square = (1.0 + hollow) ** 2
+        kappa = (
+            6.0 * (1.0 + nu) * square / ((7.0 + 6.0 * nu) * square + (20.0 + 12.0 * nu) * hollow)
+        )
+        modulus = self.elastic_modulus / (2.0 * (1.0 + nu))
+        area = np.pi / 4.0 * (self.diameter**2 - self.bore**2)
+        return float(1.0 / (kappa * modulus * area))
+
+
+@BilinearForm
+def bending(u: Any, v: Any, _: Any) -> Any:
+    """Virtual work of unit bending stiffness, the integral of u'' v''."""
+    return ddot(dd(u), dd(v))
+
+
+@lru_cache(maxsize=1)
+def _unit_flexibility() -> Array:
+    """Deflection and slope at the end of a clamped unit element under unit force and moment."""
+    basis = Basis(MeshLine(np.array([0.0, 1.0])), ElementLineHermite())
+    end = [int(dofs[1]) for dofs in basis.nodal_dofs]
+    stiffness = bending.assemble(basis).toarray()[np.ix_(end, end)]
+    return readonly(np.linalg.inv(stiffness))
+
+
+def end_flexibility(length: ArrayLike, stem: Stem) -> Array:
+    """Deflection and slope at the free end of a cantilever under a force and a moment there.
+
+    One Hermite element is exact for end loads. The element is formed at unit length and scaled,
+    because its power basis loses digits on an element that is short against its coordinates.
+
+    Parameters
+    ----------
+    length : array (...)   m, >= 0
+
+    Returns
+    -------
+    array (..., 2, 2)   rows deflection and slope, columns force and moment
+    """
+    length = np.asarray(length, dtype=float)[..., None, None]
+    powers = np.array([[3.0, 2.0], [2.0, 1.0]])
+    flexibility = _unit_flexibility() * length**powers / stem.bending_stiffness
+    shear = np.array([[1.0, 0.0], [0.0, 0.0]]) * stem.shear_flexibility
+    return np.asarray(flexibility + shear * length)
+
+
+def stem_compliance(nodes: Array, stem: Stem) -> tuple[Array, Array]:
+    """Deflection and slope at each node under a unit force at each node; clamped at the first.
+
+    The elements form a chain that is clamped at one end, so that the nodal unknowns are
+    condensed one element at a time: an element bends under the loads beyond it, and what lies
+    beyond follows its end as a rigid body. This solves the assembled system to round-off, where
+    a factorisation would lose (span/element)^4 of it on the short elements at a guide's mouth.
+
+    Parameters
+    ----------
+    nodes : array (n,)   positions along the stem, rising, m
+    stem : Stem
+
+    Returns
+    -------
+    deflection, slope : array (n, n)   m/N, symmetric; rad/N
+
+    Raises
+    ------
+    InputError
+        If the nodes do not rise.
+    """
+    length = np.diff(nodes)
+    if not (length > 0.0).all():
+        raise InputError("stem.nodes", float(length.min()), "rising steps, > 0 m")
+    flexibility = end_flexibility(length, stem)
+    arm = nodes - nodes[1:, None]
+    beyond = (np.arange(len(nodes)) > np.arange(len(length))[:, None]).astype(float)
+    lever = np.stack([beyond, np.where(beyond > 0.0, arm, 0.0)], axis=1)
+    bent = np.einsum("eij,ejn->ein", flexibility, lever)
+    deflection = np.einsum("eim,ein->mn", lever, bent)
+    slope = np.einsum("em,en->mn", beyond, bent[:, 1])
+    return deflection, slope

@@ -1,1 +1,0 @@
-"""Whole mechanisms of the papers: valve cams, slider-crank and eccentric cam."""

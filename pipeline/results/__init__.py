@@ -1,0 +1,1 @@
+"""Run folders: records, fields, workshop files, sign-off."""

@@ -1,0 +1,111 @@
+"""The contact at one angle as an input deck, so that another program can solve it again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.errors import InputError
+from camwright.meshes.calculix_deck import DeckBody, write_deck
+from camwright.pipeline.base.tables import Table
+from camwright.pipeline.contact.certificate import SolvedPair, solve_pair
+from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.contact.elasticity.elastic_body import ElasticBody
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.run_folder import drawn_cam
+
+
+def force_at(cycle: Table, load_case: str, theta: float) -> float:
+    """Normal force (N) of a load case at any cam angle (rad), by straight lines in its table.
+
+    Raises
+    ------
+    InputError
+        If there is no such load case, or no load at the angle.
+    """
+    rows = cycle.where("load_case", load_case)
+    if not len(rows):
+        known = ", ".join(dict.fromkeys(cycle["load_case"].tolist()))
+        raise InputError("--load-case", load_case, f"one of {known}")
+    angle = np.degrees(theta % FULL_TURN)
+    force = float(np.interp(angle, rows["cam_angle_deg"], rows["normal_force_N"], period=360.0))
+    if not force > 0:
+        raise InputError("--angle", f"{angle:g} deg", "where the follower is loaded")
+    return force
+
+
+def nodal_forces(pair: ContactPair, solved: SolvedPair) -> tuple[Array, Array]:
+    """Forces (2, nodes), N, that the contact pressure puts on the nodes of cam and follower."""
+    on_cam, on_follower = (
+        pair.width * side.body.surface_forces(moved, side.surface)
+        for side, moved in zip(solved.sides, solved.solution.displacements, strict=True)
+    )
+    return on_cam, on_follower
+
+
+def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> None:
+    """Write the bodies at one angle with the pressures of the contact on their nodes.
+
+    What springs hold, as balls hold a ring, stands under their forces instead.
+    """
+    other, forces = pair.follower, nodal_forces(pair, solved)
+    load = float(np.abs(forces[1].sum(axis=1) @ solved.frame.normal))
+    bodies = {
+        name: _deck_body(side.body, held, force, moved, pair.width)
+        for name, side, held, force, moved in zip(
+            ("cam", other.name),
+            solved.sides,
+            ("bore", other.held),
+            forces,
+            solved.solution.displacements,
+            strict=True,
+        )
+    }
+    supports = f"the bore and the {other.name}'s {other.held} are held"
+    if not other.held:
+        supports = f"the bore is held; the {other.name}'s balls push as they do under the load"
+    write_deck(
+        path,
+        bodies,
+        pair.width,
+        (
+            f"contact at cam angle {np.degrees(solved.theta):.6f} deg, normal force {load:.6f} N",
+            "the contact pressure acts as consistent nodal forces along the contact normal",
+            supports,
+        ),
+    )
+
+
+def _deck_body(body: ElasticBody, held: str, forces: Array, moved: Array, width: float) -> DeckBody:
+    if body.springs is None:
+        return DeckBody(body.mesh, body.modulus, body.poisson, held, forces)
+    whole = forces + width * body.springs.forces(moved[:, :, None])[:, :, 0]
+    # Three ways of two nodes far apart across x: no force there, as all others balance.
+    x = body.mesh.points[0]
+    left, right = int(np.argmin(x)), int(np.argmax(x))
+    placed = tuple(
+        (node, component, float(moved[component, node]))
+        for node, component in ((left, 0), (left, 1), (right, 1))
+    )
+    return DeckBody(body.mesh, body.modulus, body.poisson, "", whole, placed)
+
+
+def deck(run: Path, theta: float, path: Path, load_case: str | None = None) -> SolvedPair:
+    """Solve the contact of a run at a cam angle (rad) and write it as a deck.
+
+    Raises
+    ------
+    InputError
+        If the angle carries no load.
+    """
+    cycle = run_reader.load_run(run).final.cycle
+    case, contour = drawn_cam(run)
+    name = case.load_cases[0].name if load_case is None else load_case
+    force = force_at(cycle, name, theta)
+    pair = contact_pair(case, contour)
+    solved = solve_pair(pair, theta % FULL_TURN, force)
+    write_contact_deck(path, pair, solved)
+    return solved

@@ -1,0 +1,199 @@
+"""The sign-off record of a run: its figures with error bars, verdict, evidence, every file's hash.
+
+It is drawn from the files of the run alone, so that anybody can draw it again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from camwright.pipeline.base.files import json_text, read_json
+from camwright.pipeline.results import run_reader
+
+NAME = "signoff.json"
+SCHEMA = 1
+PRESENTATION = ("figures", "exports", "inspection")
+"""Folders of what is drawn from the results, or measured later, and may come and go."""
+PRESENTATION_SUFFIXES = (".html", ".png", ".svg", ".pdf")
+LIMITATIONS = (
+    "Plane strain: the ends of the roller, its chamfers and a tilt of the axis raise the pressure"
+    " in ways two dimensions cannot see; the edge derating stands for them.",
+    "Linear elastic bodies: above first yield the stresses are those before shakedown, and no"
+    " plastic strain is known.",
+    "Frictionless contact under the certificate; traction enters by the closed form of sliding.",
+    "The roller is solid on a stiff hub unless balls and outer ring of its bearing are given; such"
+    " a ring is of one thickness, its balls have no clearance, and the contact is over a ball.",
+)
+SINGULARITIES = (
+    "Corners of the keyway and the edges of the bore: stress there grows without bound as the"
+    " mesh is refined; excluded by distance, figures away from edges are given apart.",
+    "Places where bodies are held: excluded, none lies within ten half-widths of the contact.",
+    "Ends of the roller: not in the plane model; covered by the edge derating.",
+)
+STANDING_FOR = (
+    *zip(
+        LIMITATIONS,
+        ("edge_derating", "shakedown", "shakedown_traction", "roller_radial"),
+        strict=True,
+    ),
+    *zip(SINGULARITIES, ("excluded_zone", "clear_of_holds", "edge_pressure"), strict=True),
+)
+"""Each statement with the check that fails where it would mislead."""
+
+
+def record(path: Path) -> dict[str, Any]:
+    """The sign-off record of the run in a folder.
+
+    Raises
+    ------
+    ResultError
+        If a file of the run is missing or unreadable.
+    """
+    summary = run_reader.read_summary(path)
+    trial = path / f"trial_{summary['trials']}"
+    made, checks = (
+        read_json(trial / "trial.json"),
+        read_json(trial / "6_checks.json"),
+    )
+    stops = [
+        c["id"]
+        for c in checks
+        if c.get("must_have", True) and c["status"] not in ("pass", "waived")
+    ]
+    corners = path / "corners.json"
+    return {
+        "schema": SCHEMA,
+        "case": summary["case"],
+        "case_sha256": run_reader.input_sha256(path),
+        "code": {name: summary["versions"].get(name) for name in ("camwright", "source")},
+        "environment": {
+            "platform": summary.get("platform", ""),
+            "versions": summary["versions"],
+        },
+        "verdict": "fail" if stops or not checks else "pass",
+        "binding": stops,
+        "not_evaluated": [c["id"] for c in checks if c["status"] == "not_evaluated"],
+        "waivers": [
+            {"check": c["id"], "waiver": c["waiver"], "status": c["status"]}
+            for c in checks
+            if c.get("waiver")
+        ],
+        "trial": summary["trials"],
+        "headline": summary["headline"],
+        "figures": [_figure(check) for check in checks],
+        "evidence": {
+            "mesh": made.get("mesh"),
+            "certificate": made.get("certificate", []),
+            "contact_method": made.get("contact_method"),
+            "benchmarks": summary.get("benchmarks"),
+            "corners": read_json(corners).get("tried") if corners.is_file() else None,
+            "statements": _statements(checks),
+        },
+        "limitations": list(LIMITATIONS),
+        "singularities": list(SINGULARITIES),
+        "files": hashes(path),
+        "presentation": [name for name, _ in _files(path) if is_presentation(name)],
+    }
+
+
+def _statements(checks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """What the figures leave out, each with its check and how that stands; null: none is made."""
+    status = {check["id"]: check["status"] for check in checks}
+    return [
+        {"statement": text, "check": name, "status": status.get(name)}
+        for text, name in STANDING_FOR
+    ]
+
+
+def write(path: Path) -> dict[str, Any]:
+    """Write the record into the folder of a run that is otherwise complete."""
+    from camwright.pipeline.base.files import write_atomic
+
+    whole = record(path)
+    write_atomic(path / NAME, json_text(whole) + "\n")
+    return whole
+
+
+def changes(path: Path) -> list[str]:
+    """What differs from the sign-off record, one line a file; empty when nothing does.
+
+    Raises
+    ------
+    ResultError
+        If there is no record, or it cannot be read.
+    """
+    signed = read_json(path / NAME)
+    known = signed.get("files") if isinstance(signed, dict) else None
+    if not isinstance(known, Mapping):
+        return [f"{NAME}: holds no hashes"]
+    now = hashes(path)
+    found = [f"{name}: is missing since the sign-off" for name in known if name not in now]
+    found += [f"{name}: was added since the sign-off" for name in now if name not in known]
+    found += [
+        f"{name}: was changed since the sign-off"
+        for name in known
+        if name in now and now[name] != known[name]
+    ]
+    return sorted(found) or _disagreements(signed, record(path))
+
+
+def hashes(path: Path) -> dict[str, str]:
+    """SHA-256 of every input, result and field file; not of the record, nor of presentation."""
+    return {
+        name: hashlib.sha256(file.read_bytes()).hexdigest()
+        for name, file in _files(path)
+        if name != NAME and not is_presentation(name)
+    }
+
+
+def is_presentation(name: str) -> bool:
+    """Whether a file is drawn from the results and may be drawn again."""
+    return name.startswith(tuple(f"{f}/" for f in PRESENTATION)) or name.endswith(
+        PRESENTATION_SUFFIXES
+    )
+
+
+def environment() -> str:
+    """System and processor, for the summary of a run."""
+    return f"{platform.system()} {platform.machine()}"
+
+
+def _disagreements(signed: Mapping[str, Any], drawn: Mapping[str, Any]) -> list[str]:
+    """Words of the record that its own files do not bear out.
+
+    What the program says of itself is of the version that signed, and no file of the run.
+    """
+    left_out = ("presentation", "files", "limitations", "singularities")
+    words = [
+        name
+        for name in drawn
+        if name not in left_out and not _borne_out(signed.get(name), drawn[name])
+    ]
+    return [f"{NAME}: {name} is not what the files of the run say" for name in words]
+
+
+def _borne_out(signed: Any, drawn: Any) -> bool:
+    """Whether two values agree in all that was signed; a later version may say more."""
+    if isinstance(signed, Mapping) and isinstance(drawn, Mapping):
+        return all(key in drawn and _borne_out(value, drawn[key]) for key, value in signed.items())
+    if isinstance(signed, list) and isinstance(drawn, list):
+        same = len(signed) == len(drawn)
+        return same and all(_borne_out(a, b) for a, b in zip(signed, drawn, strict=True))
+    return bool(signed == drawn)
+
+
+def _files(path: Path) -> Iterator[tuple[str, Path]]:
+    for file in sorted(path.rglob("*")):
+        name = file.relative_to(path).as_posix()
+        if file.is_file() and not any(part.startswith(".") for part in Path(name).parts):
+            yield name, file
+
+
+def _figure(check: Mapping[str, Any]) -> dict[str, Any]:
+    names = ["id", "demand", "error", "limit", "unit", "utilisation", "status", "load_case"]
+    names += ["cam_angle_deg", "source", "method", "corner", "corner_demand"]
+    return {name: check.get(name) for name in names}

@@ -1,0 +1,211 @@
+"""Convex programs with linear limits and second-order cones, solved by Clarabel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import clarabel
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.sparse import csc_array, csr_array, eye_array, vstack
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION
+
+_ACCEPTED = ("Solved", "AlmostSolved")
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Linear limits of one name: level + slopes @ x <= slack; level (m,), slopes (m, n)."""
+
+    name: str
+    level: Array
+    slopes: csr_array
+    elastic: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Norm:
+    """A ripple that is charged, bounded or both: |level + slopes @ x|, (m,) and (m, n)."""
+
+    level: Array
+    slopes: Array
+    weight: float = 1.0
+    ceiling: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """How far a step may go: |slopes @ x| <= bound; slopes (m, w) of the first unknowns."""
+
+    slopes: Array
+    bound: float
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """Solution of a convex program: x, slack and multipliers by the name of the limit."""
+
+    step: Array
+    ripple: float
+    slack: dict[str, float]
+    multipliers: dict[str, Array]
+    objective: float
+
+
+class Cones:
+    """A convex program of `size` unknowns x: a linear and quadratic cost, limits added in turn.
+
+    References
+    ----------
+    Goulart and Chen, Clarabel: an interior-point solver for conic programs (2024).
+    """
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self.cost = np.zeros(size)
+        self._quadratic = np.zeros((size, size))
+        self._linear: list[tuple[csr_array, Array]] = []
+        self._cones: list[tuple[csr_array, Array, int]] = []
+
+    def columns(self, matrix: Any, start: int) -> csr_array:
+        """A matrix (m, w) of the unknowns from `start` on, as one of them all, (m, size)."""
+        found = csr_array(matrix)
+        return csr_array(
+            (found.data, found.indices + start, found.indptr), shape=(found.shape[0], self.size)
+        )
+
+    def charge(self, slopes: ArrayLike, start: int = 0) -> None:
+        """Add slopes (w,) @ x to the cost."""
+        part = np.atleast_1d(np.asarray(slopes, dtype=float))
+        self.cost[start : start + part.size] += part
+
+    def charge_square(self, curvature: Array) -> None:
+        """Add x' H x / 2 to the cost; H (w, w), of the first unknowns, positive semidefinite."""
+        width = len(curvature)
+        self._quadratic[:width, :width] += curvature
+
+    def at_most(self, matrix: csr_array, bound: ArrayLike) -> None:
+        """matrix (m, size) @ x <= bound (m,)."""
+        self._linear.append((matrix, np.broadcast_to(bound, matrix.shape[:1])))
+
+    def norm_at_most(
+        self, slopes: Array, level: Array, variable: int | None, ceiling: float = 0.0
+    ) -> None:
+        """|level + slopes @ x| <= ceiling + x[variable]; slopes (m, w) of the first unknowns."""
+        block = np.zeros((level.size + 1, self.size))
+        if variable is not None:
+            block[0, variable] = -1.0
+        block[1:, : slopes.shape[1]] = -slopes
+        side = np.concatenate([[ceiling], level])
+        self._cones.append((csr_array(block), side, side.size))
+
+    def square_at_most(self, matrix: csr_array, room: csr_array, level: float) -> None:
+        """(matrix @ x)^2 <= level + room @ x, row by row, each (m, size)."""
+        rows = matrix.shape[0]
+        stacked = vstack([-room, -room, -2.0 * matrix], format="csr")
+        side = np.concatenate([np.full(rows, level + 1.0), np.full(rows, level - 1.0),
+                               np.zeros(rows)])  # fmt: skip
+        order = np.arange(3 * rows).reshape(3, rows).T.ravel()
+        self._cones.append((stacked[order], side[order], 3))
+
+    def solved(self) -> tuple[Array, Array, float] | None:
+        """x, the multipliers of the linear limits in turn, and the cost; None without an answer."""
+        blocks = [block for block, _ in self._linear] + [block for block, _, _ in self._cones]
+        sides = [side for _, side in self._linear] + [side for _, side, _ in self._cones]
+        linear = sum(side.size for _, side in self._linear)
+        cones = [clarabel.NonnegativeConeT(linear)]
+        for _, side, height in self._cones:
+            cones += [clarabel.SecondOrderConeT(height)] * (side.size // height)
+        settings = clarabel.DefaultSettings()
+        settings.verbose = False
+        settings.max_threads = 1
+        matrix = csc_array(vstack(blocks, format="csc"))
+        matrix.sum_duplicates()
+        found = clarabel.DefaultSolver(
+            csc_array(np.triu(self._quadratic)), self.cost, matrix, np.concatenate(sides),
+            cones, settings,
+        ).solve()  # fmt: skip
+        if str(found.status) not in _ACCEPTED:
+            return None
+        return np.asarray(found.x), np.asarray(found.z)[:linear], float(found.obj_val)
+
+
+def solved(
+    norms: Sequence[Norm],
+    rows: Sequence[Rows],
+    curvature: Array,
+    slope: Array,
+    box: Array,
+    penalty: float,
+    ripple_weight: float = 1.0,
+    reach: Reach | None = None,
+) -> Answer | None:
+    """Least ripple_weight max(weight |norm|) + x'Hx/2 + h'x + penalty (sum of slacks).
+
+    Parameters
+    ----------
+    norms : sequence of Norm   the worst of them is charged; those with a ceiling stay below it
+    rows : sequence of Rows    rows of one name share one slack, so that its penalty is exact
+    curvature, slope : arrays (n, n), (n,)   H, positive semidefinite, and h
+    box : array (2, n)         least and greatest x
+    penalty : float            of a unit of slack
+    reach : Reach              what else bounds the step; None: the box alone
+
+    Returns
+    -------
+    Answer or None   None when the program is not solved, as where the hard limits conflict
+
+    References
+    ----------
+    Fletcher, Practical Methods of Optimization (1987), sec. 14.3: the exact penalty.
+    """
+    size = slope.size
+    names = list(dict.fromkeys(row.name for row in rows if row.elastic))
+    if any(norm.ceiling is not None for norm in norms):
+        names.append(TORQUE_REDUCTION)
+    program = Cones(size + 1 + len(names))  # x, ripple, slacks
+    program.charge_square(curvature)
+    program.charge(np.concatenate([slope, [ripple_weight], np.full(len(names), penalty)]))
+    for row in rows:
+        matrix = program.columns(row.slopes, 0)
+        if row.elastic:
+            relief = csr_array(np.ones((row.level.size, 1)))
+            matrix = matrix - program.columns(relief, size + 1 + names.index(row.name))
+        program.at_most(matrix, -row.level)
+    identity = eye_array(program.size, format="csr")
+    program.at_most(identity[:size], box[1])
+    program.at_most(-identity[:size], -box[0])
+    program.at_most(-identity[size + 1 :], 0.0)
+    if reach is not None:
+        rows_of = reach.slopes.shape[0]
+        program.norm_at_most(reach.slopes, np.zeros(rows_of), None, reach.bound)
+    for norm in norms:
+        if norm.weight > 0:
+            program.norm_at_most(norm.slopes * norm.weight, norm.level * norm.weight, size)
+        if norm.ceiling is not None:
+            program.norm_at_most(norm.slopes, norm.level, program.size - 1, norm.ceiling)
+    found = program.solved()
+    if found is None:
+        return None
+    values, duals, objective = found
+    return Answer(
+        step=values[:size],
+        ripple=float(values[size]),
+        slack={name: float(values[size + 1 + k]) for k, name in enumerate(names)},
+        multipliers=_multipliers(rows, duals),
+        objective=objective,
+    )
+
+
+def _multipliers(rows: Sequence[Rows], duals: Array) -> dict[str, Array]:
+    found: dict[str, Array] = {}
+    start = 0
+    for row in rows:
+        part = duals[start : start + row.level.size]
+        found[row.name] = np.concatenate([found.get(row.name, np.zeros(0)), part])
+        start += row.level.size
+    return found

@@ -1,0 +1,115 @@
+r"""The convex part of a synthesis: friction and inertia left out, solved to its global optimum.
+
+Without them the cam torque is E', so that the ripple is convex in the coefficients. With
+q = P^2 + 2 k E the travel is linear in them, and the pressure angle asks for
+
+    |E'| <= tan(alpha) F_s r = tan(alpha) ((r0 - P/k) sqrt(q) + q/k),
+
+whose right side is concave where r0 >= P/k: with sigma <= sqrt(q) in place of the root it is a
+second-order cone, and tight where it binds. A normal force within N follows from
+q + (E'/r0)^2 <= N^2, which asks a little more than is needed, as the radius is at least r0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from camwright.geometry.arrays import Array, readonly, uniform_turn
+from camwright.pipeline.smoothing.cone_program import Cones
+from camwright.pipeline.smoothing.energy_spline import basis_matrix
+from camwright.pipeline.smoothing.ripple import ripple_of, triangle
+from camwright.pipeline.smoothing.sampled_problem import Search
+from camwright.pipeline.smoothing.synthesis_problem import COARSE_POINTS, RESERVE, Problem, thinned
+
+
+@dataclass(frozen=True, eq=False)
+class Core:
+    """The answer of the convex part: coefficients, J, and the ripple it leaves without friction."""
+
+    coefficients: Array
+    ripple: float
+
+
+def convex_start(problem: Problem) -> Core | None:
+    """Energy of least friction-free ripple within travel, pressure angle and normal force.
+
+    Parameters
+    ----------
+    problem : Problem   its spring and base radius as they are; a grid of at most 240 points
+
+    Returns
+    -------
+    Core or None   None where the problem is not convex (r0 < P/k, an offset) or has no solution
+
+    References
+    ----------
+    Boyd and Vandenberghe, Convex Optimization (2004), sec. 4.4.2: second-order cone programs;
+    Demeulenaere et al., ASME J. Mech. Des. 131 (2009) 101004: splines by convex programs.
+    """
+    machine, ratings = problem.machine, problem.ratings
+    if ratings.offset != 0.0 or machine.base_radius * machine.rate < machine.preload:
+        return None
+    points = min(problem.points, COARSE_POINTS)
+    turns = tuple(
+        replace(item, torque=thinned(item.torque, points), mass=0.0, friction_a=0.0, friction_b=0.0)
+        for item in problem.scenarios
+        if item.weight > 0
+    )
+    search = Search(replace(problem, scenarios=turns, points=points, seed=None))
+    found = _program(search).solved()
+    if found is None:
+        return None
+    count = problem.coefficients
+    return Core(readonly(search.scale * found[0][:count]), float(found[0][count]))
+
+
+def _program(search: Search) -> Cones:
+    """Unknowns: coefficients over their scale, the ripple, and sigma / P at each point."""
+    problem, machine, ratings = search.problem, search.problem.machine, search.problem.ratings
+    count, points = problem.coefficients, problem.points
+    theta = uniform_turn(points)
+    level, slope = (search.scale * basis_matrix(theta, count, order) for order in (0, 1))
+    program = Cones(count + 1 + points)
+    energy, torque = program.columns(level, 0), program.columns(slope, 0)
+    program.charge(1.0, count)
+    _ripple(search, program)
+    program.at_most(-energy, -problem.energy[0])
+    if np.isfinite(problem.energy[1]):
+        k = int(np.argmin(search.turn.energy(search.exact)[0]))
+        program.at_most(energy[[k]], problem.energy[1])
+    if ratings.travel is not None:
+        top = ratings.travel * (1.0 - RESERVE)
+        program.at_most(energy, machine.preload * top + 0.5 * machine.rate * top**2)
+    # q / P^2 = 1 + growth, and sigma / P is the unknown
+    growth = (2.0 * machine.rate / machine.preload**2) * energy
+    sigma = program.columns(csr_array(np.eye(points)), count + 1)
+    if ratings.pressure_angle is not None:
+        steep = np.tan(ratings.pressure_angle * (1.0 - RESERVE)) * machine.preload
+        by_root = machine.base_radius - machine.preload / machine.rate
+        room = steep * (by_root * sigma + (machine.preload / machine.rate) * growth)
+        for side in (1.0, -1.0):
+            program.at_most(side * torque - room, steep * machine.preload / machine.rate)
+        program.square_at_most(sigma, growth, 1.0)
+    if ratings.normal_force is not None:
+        share = (ratings.normal_force * (1.0 - RESERVE) / machine.preload) ** 2
+        sideways = torque / (machine.base_radius * machine.preload)
+        program.square_at_most(sideways, -growth, share - 1.0)
+    return program
+
+
+def _ripple(search: Search, program: Cones) -> None:
+    """The greatest weighted ripple, and the jerk of the energy in place of the lift's."""
+    problem = search.problem
+    count = problem.coefficients
+    slope = basis_matrix(search.turn.theta, count, 1).toarray() * search.scale
+    for item in problem.scenarios:
+        columns = np.column_stack([-slope / problem.gear_ratio, item.torque])
+        level, slopes = triangle(item.weight * ripple_of(problem, item, columns))
+        program.norm_at_most(slopes, level, count)
+    third = basis_matrix(search.turn.theta, count, 3).toarray() * search.scale
+    norm = float(np.linalg.norm(third @ search.exact)) / search.scale or 1.0
+    jerk = np.sqrt(problem.jerk_weight) / norm * third
+    program.charge_square(jerk.T @ jerk)

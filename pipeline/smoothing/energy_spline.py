@@ -1,0 +1,173 @@
+"""Stored energy over one cam turn as a periodic quintic B-spline, and where a design starts."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import BSpline, PPoly
+from scipy.optimize import brentq
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import spsolve
+
+from camwright.geometry.arrays import FULL_TURN, Array, finite, positive, readonly, uniform_turn
+from camwright.geometry.energy import MEAN_TOLERANCE, stored_energy
+from camwright.geometry.errors import InputError
+
+DEGREE = 5
+LEAST_COEFFICIENTS = 12
+_FIT_ANGLES = 1440
+
+
+@lru_cache(maxsize=1)
+def _pieces() -> Array:
+    """Powers of the cardinal quintic B-spline on its six parts, (part, rising power)."""
+    spline = BSpline.basis_element(np.arange(DEGREE + 2), extrapolate=False)
+    powers = PPoly.from_spline((spline.t, spline.c, spline.k)).c[::-1]
+    inside = powers[:, DEGREE:-DEGREE] if powers.shape[1] > DEGREE + 1 else powers
+    return readonly(inside.T)
+
+
+def basis_matrix(theta: ArrayLike, count: int, derivative: int = 0) -> csr_array:
+    """Values, or derivatives, of the periodic quintic B-splines, (n, count), six a row.
+
+    Parameters
+    ----------
+    theta : array (n,)   cam angle, rad
+    count : int          splines of one turn, >= 12
+    derivative : int     0 to 4, per rad
+
+    Raises
+    ------
+    InputError
+        If there are too few splines or the derivative is not continuous.
+
+    References
+    ----------
+    de Boor, A Practical Guide to Splines (1978), ch. IX.
+    """
+    values, columns = basis_rows(theta, count, derivative)
+    rows = np.repeat(np.arange(len(columns)), DEGREE + 1)
+    return csr_array((values.ravel(), (rows, columns.ravel())), shape=(len(columns), count))
+
+
+def basis_rows(theta: ArrayLike, count: int, derivative: int = 0) -> tuple[Array, NDArray[np.intp]]:
+    """The six entries that are not zero of each row of `basis_matrix`, and their columns."""
+    if not count >= LEAST_COEFFICIENTS:
+        raise InputError("smoothing.coefficients", count, f">= {LEAST_COEFFICIENTS}")
+    if derivative not in range(DEGREE):
+        raise InputError("derivative", derivative, "0, 1, 2, 3 or 4")
+    angle = np.mod(finite("theta", theta), FULL_TURN)
+    part = FULL_TURN / count
+    place = np.minimum((angle / part).astype(np.intp), count - 1)
+    step = angle / part - place
+    values = np.zeros((angle.size, DEGREE + 1))
+    for power in range(derivative, DEGREE + 1):
+        front = np.prod(np.arange(power - derivative + 1, power + 1))
+        values += front * step[:, None] ** (power - derivative) * _pieces()[:, power]
+    columns = np.mod(place[:, None] - np.arange(DEGREE + 1), count)
+    return values / part**derivative, columns
+
+
+def fitted_energy(cam_torque: ArrayLike, count: int) -> Array:
+    """Coefficients (count,) of the spline whose slope fits the torque best, least value zero.
+
+    Parameters
+    ----------
+    cam_torque : array (n,)   N m at n equal cam angles, of zero mean
+    count : int               splines of one turn, >= 12
+
+    Raises
+    ------
+    InputError
+        If the torque has a mean: what is stored in a turn must be given back in it.
+    """
+    torque = finite("cam_torque", cam_torque)
+    if not abs(torque.mean()) <= MEAN_TOLERANCE * float(np.abs(torque).max()):
+        raise InputError(
+            "cam_torque.mean", float(torque.mean()), "0 N m, or the cam does not close"
+        )
+    theta = uniform_turn(torque.size)
+    energy, _ = stored_energy(theta, torque)
+    slope, level = basis_matrix(theta, count, 1), basis_matrix(theta, count)
+    # the slope alone leaves the constant free; a little of the energy itself holds it
+    weight = 1e-6
+    normal = (slope.T @ slope + weight * (level.T @ level)).tocsc()
+    found = spsolve(normal, slope.T @ torque + weight * (level.T @ energy))
+    return readonly(found - lowest(found))
+
+
+def lowest(coefficients: Array) -> float:
+    """Least energy of the spline, J, on a grid fine beside its knots."""
+    theta = uniform_turn(max(_FIT_ANGLES, 16 * coefficients.size))
+    return float((basis_matrix(theta, coefficients.size) @ coefficients).min())
+
+
+def force_moment(energy: ArrayLike, rate: float, preload: float, base_radius: float) -> Array:
+    """Spring force times radius, F_s r, N m; concave in the energy where r0 >= P / k.
+
+    Parameters
+    ----------
+    energy : array (...)    E, J, >= 0
+    rate, preload : float   k, N/m; P, N
+    base_radius : float     r0 of the pitch curve, m
+    """
+    square = preload**2 + 2.0 * rate * np.asarray(energy, dtype=float)
+    return np.asarray((base_radius - preload / rate) * np.sqrt(square) + square / rate)
+
+
+def exact_start(
+    cam_torque: ArrayLike,
+    count: int,
+    *,
+    rate: float,
+    preload: float,
+    base_radius: float,
+    pressure_angle: float,
+    energy_max: float,
+) -> Array:
+    """The exact energy, raised until the pressure angle holds: nothing is smoothed away.
+
+    Parameters
+    ----------
+    cam_torque : array (n,)   N m at n equal cam angles, of zero mean
+    count : int               splines of one turn
+    rate, preload : float     of the spring, N/m and N, > 0
+    base_radius : float       of the pitch curve, m, > 0
+    pressure_angle : float    limit, rad
+    energy_max : float        what the spring may hold beyond its preload, J; may be infinite
+
+    Returns
+    -------
+    array (count,)   coefficients, J; where the travel leaves no room for the rise the angle
+                     asks for, the energy that uses all of the travel, scaled down to fit it
+
+    Raises
+    ------
+    InputError
+        If a value is not positive, or the torque has a mean.
+    """
+    for name, value in (("spring.rate", rate), ("spring.preload", preload),
+                        ("cam.pitch_base_radius", base_radius),
+                        ("limits.pressure_angle", pressure_angle)):  # fmt: skip
+        positive(name, value)
+    coefficients = fitted_energy(cam_torque, count)
+    theta = uniform_turn(_FIT_ANGLES)
+    energy = basis_matrix(theta, count) @ coefficients
+    slope = np.abs(basis_matrix(theta, count, 1) @ coefficients)
+
+    def excess(rise: float) -> float:
+        moment = force_moment(np.maximum(energy + rise, 0.0), rate, preload, base_radius)
+        return float((slope - np.tan(pressure_angle) * moment).max())
+
+    highest = float(energy.max())
+    if highest > energy_max:
+        return readonly(coefficients * (energy_max / highest))
+    rise = 0.0
+    if excess(0.0) > 0:
+        top = max(highest, 1e-9)
+        while excess(top) > 0:
+            top *= 2.0
+        rise = float(brentq(excess, 0.0, top, xtol=1e-12))
+    return readonly(coefficients + min(rise, energy_max - highest))

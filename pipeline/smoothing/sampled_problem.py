@@ -1,0 +1,310 @@
+"""The functions of one synthesis on one set of angles, and their linear models."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array, uniform_turn
+from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION
+from camwright.pipeline.smoothing.cone_program import Norm
+from camwright.pipeline.smoothing.constraints import (
+    Jet,
+    Mean,
+    Values,
+    delivered_torque,
+    lift_jet,
+    load_utilisations,
+    shape_utilisations,
+)
+from camwright.pipeline.smoothing.energy_spline import basis_matrix, exact_start
+from camwright.pipeline.smoothing.gradients import FREED, Function, Gradient, differentiated
+from camwright.pipeline.smoothing.grid import Grid
+from camwright.pipeline.smoothing.linear_model import Linear, Model, State, Summit
+from camwright.pipeline.smoothing.ripple import ripple_of, torque_ripple, triangle
+from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
+
+INITIAL_ENERGY = "initial_energy"
+LEAST_ENERGY = "least_energy"
+
+
+class Search:
+    """The functions of one problem on one grid; angles may be added between the points."""
+
+    def __init__(self, problem: Problem, extra: Array | None = None) -> None:
+        self.problem = problem
+        count = problem.coefficients
+        self.turn = Grid.at(uniform_turn(problem.points), count)
+        self.extra = Grid.at(np.zeros(0) if extra is None else extra, count)
+        self.exact = self._exact()
+        self.start = self.exact if problem.seed is None else problem.seed
+        self.scale = max(float(np.abs(self.exact).max()), 1e-9)
+        exact = lift_jet(self.turn.energy(self.exact), problem.machine)
+        # A step whose energy bends as much as the exact one's has the length 1 by this matrix.
+        bend = basis_matrix(self.turn.theta, count, 2) * self.scale
+        size = float(np.linalg.norm(bend @ self.exact)) / self.scale or 1.0
+        self.bend = np.asarray(np.linalg.qr(bend.toarray() / size, mode="r"))
+        self._jerk_scale = np.sqrt(problem.jerk_weight) / (float(np.linalg.norm(exact.jerk)) or 1.0)
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns: coefficients, then what is freed."""
+        return self.problem.coefficients + len(self.problem.freed)
+
+    def _exact(self) -> Array:
+        problem, machine = self.problem, self.problem.machine
+        first = max(problem.scenarios, key=lambda item: item.weight)
+        torque = problem.gear_ratio * first.torque
+        ratings = problem.ratings
+        travel = np.inf if ratings.travel is None else ratings.travel * (1.0 - RESERVE)
+        found = exact_start(
+            torque - torque.mean(),
+            problem.coefficients,
+            rate=machine.rate,
+            preload=machine.preload,
+            base_radius=machine.base_radius,
+            pressure_angle=ratings.pressure_angle or np.pi / 3,
+            energy_max=machine.preload * travel + 0.5 * machine.rate * travel**2,
+        )
+        rise = float(np.clip(0.0, problem.energy[0] - 1e-12, problem.energy[1]))
+        least = float(self.turn.energy(found)[0].min())
+        return found if least <= problem.energy[1] else found - least + rise
+
+    def _summit_angle(self, coefficients: Array) -> float:
+        """Where the lift is greatest, between the points too, rad."""
+        theta = self.turn.theta
+        energy = self.turn.energy(coefficients)[0]
+        k = int(np.argmax(energy))
+        step = theta[1]
+        before, here, after = energy[k - 1], energy[k], energy[(k + 1) % energy.size]
+        curve = before - 2.0 * here + after
+        shift = 0.0 if curve >= 0 else 0.5 * (before - after) / curve
+        angle = float(theta[k] + step * np.clip(shift, -1.0, 1.0))
+        for _ in range(2):  # Newton on E' = 0
+            _, slope, bend, _ = Grid.at(np.array([angle]), coefficients.size).energy(coefficients)
+            if bend[0] < 0:
+                angle -= float(np.clip(slope[0] / bend[0], -step, step))
+        return angle
+
+    def highest(self, coefficients: Array, machine: Machine) -> float:
+        """Greatest lift, between the points too, m."""
+        peak = Grid.at(np.array([self._summit_angle(coefficients)]), coefficients.size)
+        return float(lift_jet(peak.energy(coefficients), machine).lift[0])
+
+    def _summit(self, coefficients: Array, machine: Machine) -> Summit:
+        peak = Grid.at(np.array([self._summit_angle(coefficients)]), coefficients.size)
+        freed = bool(self.problem.freed)
+        lift = differentiated(_lift, peak.energy(coefficients), 0.0, machine, freed)["lift"]
+        return Summit(
+            float(lift.value[0]), peak.chained(lift.local)[0], peak.columns[0], lift.shared[:, 0]
+        )
+
+    def _scenarios(self, grid: Grid, machine: Machine) -> list[Scenario]:
+        """The scenarios with their corrections at the angles of a grid."""
+        theta = grid.theta + float(machine.phase)
+        return [
+            replace(item, correction=item.correction.at(theta)) for item in self.problem.scenarios
+        ]
+
+    def _functions(self, grid: Grid, machine: Machine) -> list[Function]:
+        ratings = self.problem.ratings
+        loads = [partial(_loads, item, ratings) for item in self._scenarios(grid, machine)]
+        return [partial(_shape, ratings), *loads]
+
+    def utilisations(self, coefficients: Array, machine: Machine, grid: Grid) -> dict[str, Array]:
+        """Every limit on a grid: (n,) or, for means, one number; the worst of the scenarios."""
+        jet = lift_jet(grid.energy(coefficients), machine)
+        top = self.highest(coefficients, machine)
+        found: dict[str, Array] = {}
+        for function in self._functions(grid, machine):
+            for name, value in function(jet, top, machine).items():
+                if name not in self.problem.left_out:
+                    use = value.value if isinstance(value, Mean) else value
+                    found[name] = np.maximum(found[name], use) if name in found else use
+        return found
+
+    def state(self, coefficients: Array, machine: Machine) -> State:
+        """All that the merit of a place depends on."""
+        found = self.utilisations(coefficients, machine, self.turn)
+        most = {name: float(np.max(value)) for name, value in found.items()}
+        if self.extra.theta.size:
+            more = self.utilisations(coefficients, machine, self.extra)
+            for name, value in more.items():
+                if found[name].size > 1:  # a mean of these angles would be none of the turn
+                    most[name] = max(most[name], float(np.max(value)))
+        energy = self.turn.energy(coefficients)
+        if np.isfinite(self.problem.energy[1]):
+            over = float(energy[0].min()) - self.problem.energy[1]
+            most[INITIAL_ENERGY] = 1.0 - RESERVE + over / self.scale
+        ripple = 0.0
+        for item, left in self.left(coefficients, machine):
+            ripple = max(
+                ripple, item.weight * float(np.linalg.norm(ripple_of(self.problem, item, left)))
+            )
+            if self.problem.ceiling is not None:
+                over = float(np.linalg.norm(torque_ripple(item, left))) - self.problem.ceiling
+                used = 1.0 - RESERVE + over
+                most[TORQUE_REDUCTION] = max(most.get(TORQUE_REDUCTION, used), used)
+        jerk = self._jerk_scale * lift_jet(energy, machine).jerk
+        return State(coefficients, machine, ripple, 0.5 * float(jerk @ jerk), most)
+
+    def left(self, coefficients: Array, machine: Machine) -> list[tuple[Scenario, Array]]:
+        """Each scenario whose ripple counts, and the crank torque (n,) left to it, N m."""
+        jet = lift_jet(self.turn.energy(coefficients), machine)
+        top = self.highest(coefficients, machine)
+        problem, found = self.problem, []
+        for item in self._scenarios(self.turn, machine):
+            if item.weight > 0:
+                torque = delivered_torque(jet, top, machine, item, problem.ratings.offset)
+                asked = item.torque_at(float(machine.phase))[0]
+                found.append((item, asked - torque / problem.gear_ratio))
+        return found
+
+    def model(self, state: State) -> Model:
+        """Linear and quadratic models of ripple, limits and jerk near a state."""
+        summit = self._summit(state.coefficients, state.machine)
+        energy = self.turn.energy(state.coefficients)
+        found = differentiated(_jerk, energy, 0.0, state.machine, bool(self.problem.freed))["jerk"]
+        jerk = self._jerk_scale * self._dense(found, state, summit)
+        return Model(
+            norms=self._norms(state, summit),
+            limits=self._limits(state, summit),
+            curvature=jerk.T @ jerk,
+            slope=jerk.T @ (self._jerk_scale * found.value),
+        )
+
+    def _norms(self, state: State, summit: Summit) -> list[Norm]:
+        problem, machine = self.problem, state.machine
+        energy = self.turn.energy(state.coefficients)
+        weighted = [item for item in self._scenarios(self.turn, machine) if item.weight > 0]
+        found = []
+        for item in weighted:
+            torque = partial(_torque, item, problem.ratings.offset)
+            freed = bool(problem.freed)
+            gradient = differentiated(torque, energy, summit.lift, machine, freed)["torque"]
+            asked, turning = item.torque_at(float(machine.phase))
+            left = asked - gradient.value / problem.gear_ratio
+            slopes = -self._dense(gradient, state, summit) / problem.gear_ratio
+            if "phase" in problem.freed:
+                slopes[:, problem.coefficients + list(problem.freed).index("phase")] += turning
+            columns = np.column_stack([slopes, left])
+            charged = triangle(ripple_of(problem, item, columns))
+            if problem.speed_weight == 0.0 and problem.torque_weight == 1.0:
+                found.append(Norm(*charged, item.weight, problem.ceiling))
+                continue
+            found.append(Norm(*charged, item.weight))
+            if problem.ceiling is not None:
+                bounded = triangle(torque_ripple(item, columns))
+                found.append(Norm(*bounded, weight=0.0, ceiling=problem.ceiling))
+        return found
+
+    def _dense(self, gradient: Gradient, state: State, summit: Summit) -> Array:
+        model = self._linear("", gradient, self.turn, state, summit)
+        every = np.ones(model.level.size, dtype=bool)
+        return np.asarray(model.matrix(every, self.size).toarray())
+
+    def _linear(
+        self, name: str, gradient: Gradient, grid: Grid, state: State, summit: Summit
+    ) -> Linear:
+        """The model of one limit by the scaled unknowns: coefficients, then what is freed."""
+        own = grid.chained(gradient.local)
+        columns: NDArray[np.intp] = grid.columns
+        height = gradient.value.size
+        if gradient.mean:
+            count = self.problem.coefficients
+            own = np.asarray(np.bincount(columns.ravel(), own.ravel(), count)[None], dtype=float)
+            columns = np.arange(count, dtype=np.intp)[None]
+        entries, places = [own * self.scale], [columns]
+        by_top = gradient.shared[0]
+        if by_top.any():
+            entries.append(self.scale * by_top[:, None] * summit.entries)
+            places.append(np.broadcast_to(summit.columns, (height, summit.columns.size)))
+        for number, freed in enumerate(self.problem.freed):
+            if freed in FREED:
+                k = 1 + FREED.index(freed)
+                side = gradient.shared[k] + by_top * summit.shared[k]
+                entries.append(side[:, None] * getattr(state.machine, freed))
+                places.append(np.full((height, 1), self.problem.coefficients + number))
+        level = gradient.value - 1.0 + RESERVE
+        return Linear(name, level, np.hstack(entries), np.hstack(places))
+
+    def _limits(self, state: State, summit: Summit) -> list[Linear]:
+        problem, found = self.problem, []
+        for grid in (self.turn, self.extra):
+            if not grid.theta.size:
+                continue
+            energy = grid.energy(state.coefficients)
+            for function in self._functions(grid, state.machine):
+                gradients = differentiated(
+                    function, energy, summit.lift, state.machine, bool(problem.freed)
+                )
+                for name, gradient in gradients.items():
+                    asked = name not in problem.left_out
+                    if asked and not (gradient.mean and grid is self.extra):
+                        found.append(self._linear(name, gradient, grid, state, summit))
+        return found + self._least_energy(state)
+
+    def _least_energy(self, state: State) -> list[Linear]:
+        low, high = self.problem.energy
+        energy = self.turn.energy(state.coefficients)[0]
+        entries, columns = self.turn.entries[0], self.turn.columns
+        found = [Linear(LEAST_ENERGY, (low - energy) / self.scale, -entries, columns, False)]
+        if np.isfinite(high):
+            k = int(np.argmin(energy))
+            level = (energy[[k]] - high) / self.scale
+            found.append(Linear(INITIAL_ENERGY, level, entries[[k]], columns[[k]]))
+        return found
+
+    def moved(self, state: State, step: Array) -> tuple[Array, Machine]:
+        """Coefficients and machine a step away."""
+        count, machine = self.problem.coefficients, state.machine
+        for name, part in zip(self.problem.freed, step[count:], strict=True):
+            value = getattr(machine, name) + _unit(name, machine) * float(part)
+            machine = replace(machine, **{name: value})
+        return state.coefficients + self.scale * step[:count], machine
+
+    def box(self, state: State, trust: float) -> Array:
+        """Least and greatest step within the trust region and the ranges, (2, size)."""
+        count = self.problem.coefficients
+        low, high = np.full(self.size, -trust), np.full(self.size, trust)
+        for number, (name, (least, greatest)) in enumerate(self.problem.freed.items()):
+            now, unit = getattr(state.machine, name), _unit(name, state.machine)
+            low[count + number] = max((least - now) / unit, -trust)
+            high[count + number] = min((greatest - now) / unit, trust)
+        return np.stack([low, high])
+
+
+def _unit(name: str, machine: Machine) -> float:
+    """What a step of one is of a freed quantity: all of it, or a radian."""
+    return 1.0 if name == "phase" else float(getattr(machine, name))
+
+
+def _lift(jet: Jet, _top: Values, _machine: Machine) -> Mapping[str, Values | Mean]:
+    return {"lift": jet.lift}
+
+
+def _jerk(jet: Jet, _top: Values, _machine: Machine) -> Mapping[str, Values | Mean]:
+    return {"jerk": jet.jerk}
+
+
+def _torque(
+    scenario: Scenario, offset: float, jet: Jet, top: Values, machine: Machine
+) -> Mapping[str, Values | Mean]:
+    return {"torque": delivered_torque(jet, top, machine, scenario, offset)}
+
+
+def _shape(
+    ratings: Ratings, jet: Jet, _top: Values, machine: Machine
+) -> Mapping[str, Values | Mean]:
+    return shape_utilisations(jet, machine, ratings)
+
+
+def _loads(
+    scenario: Scenario, ratings: Ratings, jet: Jet, top: Values, machine: Machine
+) -> Mapping[str, Values | Mean]:
+    return load_utilisations(jet, top, machine, ratings, scenario)

@@ -1,0 +1,1 @@
+"""Studies beside a run: inspection, two cylinders, smoothers, redesign, papers."""

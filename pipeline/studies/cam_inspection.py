@@ -1,0 +1,245 @@
+"""A measured cam: fitted to its drawing, run through the cycle, judged as the real part."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import InputError
+from camwright.geometry.measured_contour import Inspection, inspected, real_contour
+from camwright.pipeline import solver as road
+from camwright.pipeline.base.files import json_text, write_atomic
+from camwright.pipeline.base.tables import Column, Table, read_table, table
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.checks.verdict import binding, verdict
+from camwright.pipeline.contact.contact_benchmarks import benchmarks
+from camwright.pipeline.contact.contact_pair import CycleBodies
+from camwright.pipeline.cycle.certificate_angles import certified, positions_to_certify
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.cycle import Cycle, finished
+from camwright.pipeline.cycle.rolling_history import rolling_history
+from camwright.pipeline.cycle.turn import Turn
+from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.trial import Trial
+
+FOLDER = "inspection"
+BYTES_MAX = 64 << 20
+_WAVES_LISTED = 12
+
+_PLACES = (("measured_x_mm", "measured_y_mm"), ("x_mm", "y_mm"))
+_POLAR = (("polar_angle_deg", "measured_radius_mm"), ("angle_deg", "radius_mm"))
+_DEVIATION = (
+    Column("cam_angle", "deg"),
+    Column("deviation", "um"),
+    Column("form", "um"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class RealPart:
+    """What a measurement says of a part: its fit, its contour and the trial on it."""
+
+    fit: Inspection
+    contour: Contour
+    trial: Trial
+
+
+def read_measured(path: Path) -> Array:
+    """Measured surface points, (2, n), m, from a CSV file with a header.
+
+    Columns, in millimetres and degrees about the cam axis: ``measured_x_mm, measured_y_mm`` (the
+    filled inspection sheet), or ``x_mm, y_mm``, or ``polar_angle_deg, measured_radius_mm``, or
+    ``angle_deg, radius_mm``. Rows whose measured cells are empty are left out.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, too large, lacks the columns or holds what is not a number.
+    """
+    try:
+        if path.stat().st_size > BYTES_MAX:
+            raise InputError("measured", str(path), f"at most {BYTES_MAX >> 20} MiB")
+        rows = list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise InputError("measured", f"{path} ({error})", "a readable CSV file") from None
+    names = set(rows[0]) if rows else set()
+    for pair in (*_PLACES, *_POLAR):
+        if names.issuperset(pair):
+            first, second = (np.array(column) for column in _numbers(rows, pair))
+            if pair in _PLACES:
+                return np.stack([first, second]) * 1e-3
+            turned = np.radians(first)
+            return np.stack([np.cos(turned), np.sin(turned)]) * second * 1e-3
+    known = " or ".join(", ".join(pair) for pair in (*_PLACES, *_POLAR))
+    raise InputError("measured", f"columns {', '.join(sorted(map(str, names)))[:200]}", known)
+
+
+def _numbers(rows: list[dict[str, str]], pair: tuple[str, str]) -> tuple[list[float], list[float]]:
+    columns: tuple[list[float], list[float]] = ([], [])
+    for line, row in enumerate(rows, start=2):
+        cells = [(row[name] or "").strip() for name in pair]
+        if not all(cells):
+            continue
+        for column, name, cell in zip(columns, pair, cells, strict=True):
+            try:
+                value = float(cell)
+            except ValueError:
+                value = math.nan
+            if not math.isfinite(value):
+                raise InputError(f"measured, line {line}, {name}", cell[:40], "a number")
+            column.append(value)
+    return columns
+
+
+def inspect_part(
+    case: Case,
+    contour: Contour,
+    measured: Array,
+    *,
+    keep_phase: bool = False,
+    jobs: int | None = None,
+    tell: Callable[[str], None] = lambda _: None,
+) -> RealPart:
+    """Fit a measured contour, run the cycle on it, and check the real part.
+
+    Parameters
+    ----------
+    measured : array (2, n)   surface points, m
+    keep_phase : bool         the angles of the measurement are those of the keyway
+
+    Raises
+    ------
+    InputError, GeometryError
+        If the measurement is not of this cam.
+    """
+    tell("fit")
+    fit = inspected(contour, measured)
+    real = real_contour(contour, fit, keep_phase=keep_phase)
+    torques = road.engine_torques(case)
+    turns = road.turns_of(case, real, torques, case.solver.positions)
+    why = "the measured contour"
+    if not road.is_body(real):
+        cycles = tuple(finished(case, real, given, road.unknown_contact(given)) for given in turns)
+        empty = Trial(1, None, why, real.pitch.lift, real, cycles, None, ())
+        return RealPart(fit, real, road.checked(case, empty, torques))
+    pair = contact_pair(case, real)
+    mesh = road.meshed(pair, turns)
+    tell("contact")
+    bodies = CycleBodies.meshed(pair)
+    cycles = tuple(_cycle(case, real, bodies, given) for given in turns)
+    trial = Trial(1, None, why, real.pitch.lift, real, cycles, mesh, ())
+    chosen = positions_to_certify(cycles, case.solver.certificate_positions)
+    if chosen:
+        tell(f"certificate at {len(chosen)} angles")
+        points = certified(pair, cycles, chosen, jobs, lambda *_: None)
+        trial = replace(trial, certificate=points)
+    solved = benchmarks(case.contact_radius)
+    return RealPart(fit, real, road.checked(case, trial, torques, solved))
+
+
+def _cycle(case: Case, contour: Contour, bodies: CycleBodies, given: Turn) -> Cycle:
+    pair = contact_pair(case, contour)
+    contact = road.joined(dict(road.contact_chunks(pair, bodies, given, {})))
+    done = finished(case, contour, given, contact)
+    state = case.at(given.load_case)
+    speed = given.crank_speed / state.mechanism.gear_ratio
+    return replace(done, rolling=rolling_history(state, pair, bodies, given.loads, contact, speed))
+
+
+def write_inspection(run: Path, case: Case, part: RealPart, tolerance: float) -> dict[str, Any]:
+    """Write ``inspection/`` of a run: deviations, cycle, checks, and a record of them.
+
+    Returns
+    -------
+    dict    the contents of ``inspection.json``
+    """
+    folder, fit = run / FOLDER, part.fit
+    order = np.argsort(fit.theta)
+    deviation = {
+        "cam_angle": fit.theta[order],
+        "deviation": fit.deviation[order],
+        "form": fit.form(fit.theta[order]),
+    }
+    write_atomic(folder / "deviation.csv", table(_DEVIATION, deviation).to_csv())
+    write_atomic(folder / "cycle.csv", _cycle_table(case, part.trial.cycles))
+    records = [check.as_record() for check in part.trial.checks]
+    write_atomic(folder / "checks.json", json_text(records) + "\n")
+    record = {
+        "phase_deg": float(np.degrees(fit.phase)),
+        "size_um": 1e6 * fit.size,
+        "deviation_min_um": 1e6 * float(fit.deviation.min()),
+        "deviation_max_um": 1e6 * float(fit.deviation.max()),
+        "scatter_rms_um": 1e6 * fit.scatter,
+        "points": int(fit.theta.size),
+        "tolerance_um": 1e6 * tolerance,
+        "within_tolerance": bool(np.abs(fit.deviation).max() <= 0.5 * tolerance),
+        "waves_um": _waves(fit),
+        "nominal": _figures_of(run_reader.load_run(run).final.cycle),
+        "measured": _figures_of(read_table(folder / "cycle.csv", run_reader.CYCLE)),
+        "verdict": verdict(part.trial.checks),
+        "binding": list(binding(part.trial.checks)),
+    }
+    write_atomic(folder / "inspection.json", json_text(record) + "\n")
+    return record
+
+
+def _cycle_table(case: Case, cycles: tuple[Cycle, ...]) -> str:
+    tables = [cycle.columns(case.mechanism.gear_ratio) for cycle in cycles]
+    names = dict.fromkeys(name for made in tables for name in made)
+    unknown = np.full(cycles[0].theta.size, np.nan)
+    values = {name: np.concatenate([t.get(name, unknown) for t in tables]) for name in names}
+    return table(run_reader.CYCLE, values).to_csv()
+
+
+def _waves(fit: Inspection) -> dict[str, float]:
+    """Amplitudes of the largest waves by their number a turn."""
+    sizes = {k: 1e6 * fit.wave(k) for k in range(1, len(fit.cosine))}
+    largest = sorted(sizes, key=lambda k: -sizes[k])[:_WAVES_LISTED]
+    return {str(k): sizes[k] for k in sorted(largest)}
+
+
+def _figures_of(cycle: Table) -> Mapping[str, float | None]:
+    """Extremes over all load cases, nominal and real alike."""
+    wanted: dict[str, tuple[str, Callable[[Any], Any]]] = {
+        "normal_force_max_N": ("normal_force_N", np.max),
+        "normal_force_min_N": ("normal_force_N", np.min),
+        "p0_max_MPa": ("p0_fe_MPa", np.max),
+        "von_mises_max_MPa": ("von_mises_MPa", np.max),
+        "pressure_angle_max_deg": ("pressure_angle_deg", lambda v: np.abs(v).max()),
+    }
+    found: dict[str, float | None] = {}
+    for name, (header, measure) in wanted.items():
+        value = float(measure(cycle[header]))
+        found[name] = value if math.isfinite(value) else None
+    if "torque_after_Nm" in cycle:
+        found["torque_after_std_Nm"] = float(np.std(cycle["torque_after_Nm"]))
+    return found
+
+
+def lines(record: Mapping[str, Any]) -> list[str]:
+    """The record in words."""
+    side = "within" if record["within_tolerance"] else "outside"
+    text = [
+        f"phase {record['phase_deg']:.4f} deg, size {record['size_um']:+.2f} um",
+        f"deviation {record['deviation_min_um']:+.2f} to {record['deviation_max_um']:+.2f} um, "
+        f"{side} the band of {record['tolerance_um']:g} um; scatter "
+        f"{record['scatter_rms_um']:.2g} um rms",
+        "waves a turn: " + ", ".join(f"{k}: {v:.2f} um" for k, v in record["waves_um"].items()),
+    ]
+    for name, drawn in record["nominal"].items():
+        real = record["measured"].get(name)
+        if drawn is not None and real is not None:
+            text.append(f"{name}: {drawn:.5g} by the drawing, {real:.5g} on the part")
+    text.append(f"verdict on the part: {record['verdict']}")
+    if record["binding"]:
+        text.append(f"binding: {', '.join(record['binding'])}")
+    return text

@@ -1,0 +1,198 @@
+"""Friction coefficients from the decay of a pendulum or the run-down of a shaft."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import stats
+from scipy.integrate import solve_ivp
+from scipy.optimize import least_squares
+
+from camwright.geometry.arrays import Array, finite, freeze
+from camwright.geometry.errors import InputError
+
+GRAVITY = 9.80665
+ROWS_MIN = 20
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """Friction found by least squares, with confidence intervals.
+
+    viscous (N m s/rad), coulomb (N m): best value; *_interval its bounds at `confidence`;
+    residual (n,) measured less fitted, in the unit of the signal.
+    """
+
+    viscous: float
+    viscous_interval: tuple[float, float]
+    coulomb: float
+    coulomb_interval: tuple[float, float]
+    residual: Array
+    confidence: float = CONFIDENCE
+
+    def __post_init__(self) -> None:
+        freeze(self, residual=self.residual)
+
+    @property
+    def residual_rms(self) -> float:
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+
+@dataclass(frozen=True)
+class Pendulum:
+    """A body of mass m (kg) hung at the distance l (m), I_G (kg m^2) about its centre."""
+
+    mass: float
+    length: float
+    inertia: float
+
+    def __post_init__(self) -> None:
+        for name in self.__dataclass_fields__:
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise InputError(f"pendulum.{name}", getattr(self, name), "> 0")
+
+    @property
+    def total_inertia(self) -> float:
+        """m l^2 + I_G, kg m^2."""
+        return self.mass * self.length**2 + self.inertia
+
+    def swing(self, time: Array, angle: float, rate: float, viscous: float, dry: float) -> Array:
+        """theta (n,), rad: (m l^2 + I_G) theta'' + c theta' + T_c sign(theta') + m g l sin = 0."""
+        weight, inertia = self.mass * GRAVITY * self.length, self.total_inertia
+        # a sign smoothed over far less than the speeds that matter
+        creep = 1e-3 * np.sqrt(weight / inertia)
+
+        def motion(_: float, state: Array) -> list[float]:
+            drag = viscous * state[1] + dry * np.tanh(state[1] / creep)
+            return [state[1], -(drag + weight * np.sin(state[0])) / inertia]
+
+        span = (float(time[0]), float(time[-1]))
+        found = solve_ivp(
+            motion, span, [angle, rate], t_eval=time, rtol=1e-9, atol=1e-11, method="DOP853"
+        )
+        return np.asarray(found.y[0])
+
+
+def from_pendulum(
+    time: ArrayLike, angle: ArrayLike, pendulum: Pendulum, *, small: bool = False
+) -> Identified:
+    """Viscous and dry friction of a pin from a pendulum's decay (eq. A52 and a dry part).
+
+    Parameters
+    ----------
+    time : array (n,)       s, strictly increasing, n >= 20
+    angle : array (n,)      rad from hanging at rest
+    small : bool            the paper's linear equation with viscous friction only, in closed form
+
+    Raises
+    ------
+    InputError
+        For a signal that is too short or not a decaying swing.
+    """
+    at, seen = _signal(time, angle)
+    stiffness = pendulum.mass * GRAVITY * pendulum.length
+    frequency = float(np.sqrt(stiffness / pendulum.total_inertia))
+    if at[-1] - at[0] < 2.0 * 2.0 * np.pi / frequency:
+        raise InputError("decay.time", f"{at[-1] - at[0]:.4g} s", "at least two swings long")
+    start = [seen[0], float(np.gradient(seen, at)[0]), 0.01 * frequency * pendulum.total_inertia]
+
+    def closed(p: Array) -> Array:
+        decay = p[2] / (2.0 * pendulum.total_inertia)
+        turned = np.sqrt(max(frequency**2 - decay**2, 1e-300))
+        t = at - at[0]
+        sine = (p[1] + decay * p[0]) / turned * np.sin(turned * t)
+        return np.exp(-decay * t) * (p[0] * np.cos(turned * t) + sine) - seen
+
+    def numeric(p: Array) -> Array:
+        return pendulum.swing(at, p[0], p[1], abs(p[2]), abs(p[3])) - seen
+
+    if small:
+        return _fitted(closed, np.array(start), (2, None))
+    return _fitted(numeric, np.array([*start, 1e-3 * stiffness]), (2, 3))
+
+
+def from_run_down(time: ArrayLike, speed: ArrayLike, inertia: float) -> Identified:
+    """Viscous and dry friction of a shaft that runs down: I w' = -c w - T_c.
+
+    Parameters
+    ----------
+    time : array (n,)      s, strictly increasing, n >= 20
+    speed : array (n,)     rad/s, >= 0
+    inertia : float        kg m^2, > 0
+    """
+    if not 0.0 < inertia < np.inf:
+        raise InputError("inertia", inertia, "> 0 kg m^2")
+    at, seen = _signal(time, speed)
+    if not seen[0] > seen[-1] >= 0.0:
+        raise InputError(
+            "run_down.speed", float(seen[-1]), ">= 0 and below the first: running down"
+        )
+    t = at - at[0]
+
+    def miss(p: Array) -> Array:
+        # w = (w0 + T/c) exp(-c t / I) - T/c, written so that c -> 0 is no special case
+        rate = p[1] / inertia
+        grown = -np.expm1(-rate * t) / rate if abs(rate) > 1e-12 else t
+        return p[0] * np.exp(-rate * t) - p[2] / inertia * grown - seen
+
+    drop = inertia * (seen[0] - seen[-1]) / t[-1]
+    return _fitted(miss, np.array([seen[0], 0.5 * drop / seen[0], 0.5 * drop]), (1, 2))
+
+
+def read_decay(path: str | Path) -> tuple[Array, Array]:
+    """Time (s) and angle (rad) or speed (rad/s) of a CSV of two columns with a heading.
+
+    Raises
+    ------
+    InputError
+        If the file is no such table.
+    """
+    path = Path(path)
+    try:
+        table = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
+    except (OSError, ValueError) as error:
+        raise InputError(str(path), str(error), "a CSV of two columns of numbers") from None
+    if table.shape[1:] != (2,):
+        raise InputError(str(path), f"{table.shape[1]} columns", "two: time in s, rad or rad/s")
+    return table[:, 0], table[:, 1]
+
+
+def _signal(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
+    at, seen = finite("decay.time", time), finite("decay.signal", values)
+    if at.ndim != 1 or at.shape != seen.shape or at.size < ROWS_MIN:
+        raise InputError("decay", f"{at.size} rows", f"at least {ROWS_MIN} of time and signal")
+    if not (np.diff(at) > 0.0).all():
+        raise InputError("decay.time", "not increasing", "strictly increasing")
+    return at, seen
+
+
+def _fitted(
+    miss: Callable[[Array], Array], start: Array, places: tuple[int, int | None]
+) -> Identified:
+    """Least squares from a start; intervals by the linearised covariance and Student's t."""
+    scale = np.maximum(np.abs(start), 1e-6)
+    # Steps far above what an integration within `miss` leaves to chance where the speed changes
+    # its sign: a hundred times smaller ones made intervals of half their width.
+    found = least_squares(
+        miss, start, diff_step=np.full(start.size, 1e-3), x_scale=scale, xtol=1e-9, ftol=1e-9
+    )
+    if not found.success:
+        raise InputError("decay", str(found.message), "a decay that friction explains")
+    freedom = len(found.fun) - len(start)
+    slope = np.asarray(found.jac)
+    covariance = np.linalg.pinv(slope.T @ slope) * (2.0 * found.cost / freedom)
+    reach = stats.t.ppf(0.5 + 0.5 * CONFIDENCE, freedom) * np.sqrt(np.diag(covariance))
+
+    def at(place: int | None) -> tuple[float, tuple[float, float]]:
+        if place is None:
+            return 0.0, (0.0, 0.0)
+        value = abs(float(found.x[place]))
+        return value, (value - float(reach[place]), value + float(reach[place]))
+
+    viscous, dry = at(places[0]), at(places[1])
+    return Identified(*viscous, *dry, residual=-found.fun)

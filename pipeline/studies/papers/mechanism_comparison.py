@@ -1,0 +1,364 @@
+"""The command ``camwright compare-mechanisms``: slider-crank and eccentric cams of one case."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, ValidationError
+
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.eccentric import Eccentric
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Force, In, Length, Mass
+from camwright.pipeline.case.case_file import CASE_BYTES
+from camwright.pipeline.case.section import FileName, Name, Section, Text
+from camwright.pipeline.studies.papers.friction_identification import (
+    Pendulum,
+    from_pendulum,
+    from_run_down,
+    read_decay,
+)
+from camwright.pipeline.studies.papers.mechanism_sizes import OFFSET_SHARE, Workspace, workspace
+from camwright.pipeline.studies.papers.slider_crank_drive import (
+    POSITIONS,
+    DryFriction,
+    EccentricDrive,
+    HoldingSpring,
+    Losses,
+    Masses,
+    PairFriction,
+    SliderCrankDrive,
+    dry_losses,
+    stroke_efficiency,
+)
+
+Viscous = Annotated[float, In("N m s/rad", at_least=0, at_most=1e6)]
+Inertia = Annotated[float, In("kg m^2", at_least=0, at_most=1e6)]
+OptionalMass = Annotated[float, In("kg", at_least=0, at_most=1e6)]
+Ratio = Annotated[float, In(at_least=0, at_most=10)]
+
+
+class Linkage(Section):
+    """Crank or eccentricity, rod or pitch radius, offset of the slider, shaft speed."""
+
+    crank: Length
+    rod: Length
+    offset: Annotated[float, In("mm", above=-10_000, below=10_000)] = 0.0
+    speed: Annotated[float, In("rad/s", above=0, at_most=1e5)]
+
+
+class Frictions(Section):
+    """Viscous friction of shaft, pins and guide."""
+
+    shaft: Viscous
+    pin_a: Viscous
+    pin_b: Viscous
+    guide: Annotated[float, In("N s/m", at_least=0, at_most=1e9)]
+    source: Text = ""
+
+
+class Dry(Section):
+    """Coulomb friction of the guide, and of shaft and pins with their radii."""
+
+    guide: Ratio = 0.0
+    shaft: Ratio = 0.0
+    pins: Ratio = 0.0
+    shaft_radius: Length = 0.01
+    pin_radius: Length = 0.005
+    source: Text = ""
+
+    def build(self) -> DryFriction:
+        """mu times radius for what turns."""
+        pin = self.pins * self.pin_radius
+        return DryFriction(self.guide, self.shaft * self.shaft_radius, pin, pin)
+
+
+class Moving(Section):
+    """Masses of both mechanisms; the common inertia is that of what they share."""
+
+    slider: OptionalMass
+    rod: OptionalMass = 0.0
+    rod_inertia: Inertia = 0.0
+    common_inertia: Inertia = 0.0
+    source: Text = ""
+
+
+class Holding(Section):
+    """The spring that keeps the roller on the cam."""
+
+    preload: Force
+    rate: Annotated[float, In("N/m", at_least=0, at_most=1e9)]
+    source: Text = ""
+
+
+class ComparedRoller(Section):
+    """A roller of the eccentric cam, the disc that goes with it, and its creep."""
+
+    name: Name
+    radius: Length
+    mass: OptionalMass = 0.0
+    disc_mass: OptionalMass = 0.0
+    disc_inertia: Inertia = 0.0
+    traction: Ratio = 0.0
+    slide_ratio: Ratio = 0.0
+    source: Text = ""
+
+
+class Decay(Section):
+    """A measured decay to identify friction from: a pendulum's angle or a shaft's speed."""
+
+    name: Name
+    kind: Literal["pendulum", "run_down"]
+    file: FileName
+    mass: Mass | None = None
+    length: Length | None = None
+    inertia: Annotated[float, In("kg m^2", above=0, at_most=1e6)]
+
+
+class ComparisonCase(Section):
+    """A slider-crank, its eccentric cams, and what to compare them by."""
+
+    schema_version: Literal[1]
+    name: Name
+    title: Text = ""
+    notes: Text = ""
+    mechanism: Linkage
+    friction: Frictions
+    dry_friction: Dry | None = None
+    masses: Moving
+    spring: Holding
+    rollers: Annotated[
+        tuple[ComparedRoller, ...], Field(alias="roller", strict=False, min_length=1, max_length=8)
+    ]
+    slip_friction: Annotated[tuple[Ratio, ...], Field(strict=False, max_length=8)] = (0.05, 0.2)
+    decays: Annotated[tuple[Decay, ...], Field(alias="decay", strict=False, max_length=8)] = ()
+
+    @property
+    def linkage(self) -> Eccentric:
+        return Eccentric(self.mechanism.crank, self.mechanism.rod, self.mechanism.offset)
+
+    @property
+    def pair_friction(self) -> PairFriction:
+        return PairFriction(**self.friction.model_dump(exclude={"source"}))
+
+    @property
+    def holding(self) -> HoldingSpring:
+        return HoldingSpring(self.spring.preload, self.spring.rate)
+
+    def slider_crank(self) -> SliderCrankDrive:
+        moving = self.masses
+        masses = Masses(
+            slider=moving.slider,
+            rod=moving.rod,
+            rod_inertia=moving.rod_inertia,
+            common=moving.common_inertia,
+        )
+        return SliderCrankDrive(self.linkage, self.pair_friction, masses, self.holding)
+
+    def cam(self, roller: ComparedRoller) -> EccentricDrive:
+        """The eccentric cam with one of the rollers, a solid cylinder."""
+        masses = Masses(
+            slider=self.masses.slider,
+            roller=roller.mass,
+            roller_inertia=0.5 * roller.mass * roller.radius**2,
+            disc=roller.disc_mass,
+            disc_inertia=roller.disc_inertia,
+            common=self.masses.common_inertia,
+        )
+        return EccentricDrive(self.linkage, roller.radius, self.pair_friction, masses, self.holding)
+
+
+def load_comparison(path: Path) -> ComparisonCase:
+    """Read and check the case of a comparison.
+
+    Raises
+    ------
+    InputError
+        For the first thing that is wrong, by its dotted name.
+    """
+    try:
+        with path.open("rb") as file:
+            content = file.read(CASE_BYTES + 1)
+        if len(content) > CASE_BYTES:
+            raise InputError("case", str(path), f"at most {CASE_BYTES // 1024} KiB")
+        data = tomllib.loads(content.decode("utf-8-sig"))
+    except OSError as error:
+        raise InputError("case", f"{path} ({error.strerror})", "a readable file") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError("case", " ".join(str(error).split()), "UTF-8 text in TOML") from None
+    try:
+        return ComparisonCase.model_validate(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        context = first.get("ctx", {})
+        field = ".".join(str(part) for part in first["loc"]) or "case"
+        field = ".".join(filter(None, (field, context.get("unknown_key"))))
+        value = first["input"] if isinstance(first["input"], (str, int, float)) else "a table"
+        limit = context.get("limit", first["msg"])
+        raise InputError(field, value, str(limit)) from None
+
+
+def compared(path: Path) -> dict[str, Any]:
+    """Everything of the comparison as plain numbers: energies, forces, inertia, workspaces."""
+    case = load_comparison(path)
+    speed, phi = case.mechanism.speed, uniform_turn(POSITIONS)
+    rod = case.slider_crank()
+    dry = None if case.dry_friction is None else case.dry_friction.build()
+    mechanisms: list[dict[str, Any]] = [_mechanism("slider-crank", rod, speed, dry)]
+    for roller in case.rollers:
+        drive = case.cam(roller)
+        found = drive.reactions(phi, speed)
+        need = np.abs(found.traction) / np.maximum(found.normal, 1e-300)
+        mechanisms.append(
+            _mechanism(f"cam, roller {roller.name}", drive, speed, dry)
+            | {
+                "normal_force_mean_N": float(found.normal.mean()),
+                "normal_force_min_N": float(found.normal.min()),
+                "normal_force_max_N": float(found.normal.max()),
+                "traction_needed_mean": float(need.mean()),
+                "traction_needed_max": float(need.max()),
+                "sliding_loss_J": drive.sliding_loss(speed, roller.traction, roller.slide_ratio),
+                "slipping": {
+                    f"{mu:g}": _losses(drive.slipping_losses(speed, mu))
+                    for mu in case.slip_friction
+                },
+            }
+        )
+    space = workspace(case.pair_friction, speed)
+    return {
+        "case": case.name,
+        "title": case.title,
+        "speed_rad_per_s": speed,
+        "phi_deg": np.degrees(phi).tolist(),
+        "mechanisms": mechanisms,
+        "workspace": {
+            "combinations": space.combinations,
+            "big_roller_best": space.big_is_best,
+            "crank_mm": (1e3 * space.cranks).tolist(),
+            "rod_over_crank": space.ratios.tolist(),
+            "offset_over_crank": OFFSET_SHARE,
+            **{f"{name}_above_best_percent": _percent(space, of) for name, of in _RIVALS.items()},
+            "energy_big_roller_J": space.big.tolist(),
+        },
+        "identified": [_identified(decay, path.parent) for decay in case.decays],
+    }
+
+
+def _mechanism(
+    name: str, drive: SliderCrankDrive | EccentricDrive, speed: float, dry: DryFriction | None
+) -> dict[str, Any]:
+    phi = uniform_turn(POSITIONS)
+    found = drive.reactions(phi, speed)
+    return {
+        "name": name,
+        "losses_J": _losses(drive.losses(speed)),
+        "dry_losses_J": None if dry is None else _losses(dry_losses(drive, speed, dry)),
+        "efficiency_out_stroke": stroke_efficiency(drive, speed),
+        "reduced_inertia_mean_kg_m2": float(drive.reduced_inertia(phi).mean()),
+        "pin_reaction_mean_N": float(np.hypot(*found.b).mean()),
+        "motor_torque_Nm": found.motor.tolist(),
+        "reduced_inertia_kg_m2": drive.reduced_inertia(phi).tolist(),
+    }
+
+
+def _losses(found: Losses) -> dict[str, float]:
+    names = ("shaft", "guide", "pin_a", "pin_b", "sliding", "total")
+    return {name: float(getattr(found, name)) for name in names}
+
+
+def _identified(decay: Decay, folder: Path) -> dict[str, Any]:
+    name = Path(decay.file)
+    if name.is_absolute() or ".." in name.parts:
+        raise InputError("decay.file", decay.file, "a relative path in the case file's folder")
+    time, signal = read_decay(folder / name)
+    if decay.kind == "run_down":
+        found = from_run_down(time, signal, decay.inertia)
+    else:
+        if decay.mass is None or decay.length is None:
+            raise InputError("decay.mass, decay.length", "missing", "given for a pendulum")
+        found = from_pendulum(time, signal, Pendulum(decay.mass, decay.length, decay.inertia))
+    return {
+        "name": decay.name,
+        "viscous_Nms_per_rad": found.viscous,
+        "viscous_interval": list(found.viscous_interval),
+        "coulomb_Nm": found.coulomb,
+        "coulomb_interval": list(found.coulomb_interval),
+        "confidence": found.confidence,
+        "residual_rms": found.residual_rms,
+    }
+
+
+def lines(document: Mapping[str, Any]) -> Iterator[str]:
+    """The document as lines of text."""
+    yield f"{document['case']} at {document['speed_rad_per_s']:.6g} rad/s, energy of a turn in J"
+    heads = ("shaft", "guide", "pin_a", "pin_b", "sliding", "total")
+    yield f"{'':34}" + "".join(f"{head:>9}" for head in heads)
+    for found in document["mechanisms"]:
+        yield _row(found["name"], found["losses_J"])
+        if found["dry_losses_J"] is not None:
+            yield _row("  dry friction besides", found["dry_losses_J"])
+        for friction, losses in found.get("slipping", {}).items():
+            yield _row(f"  slipping at mu {friction}", losses)
+    for found in document["mechanisms"]:
+        yield (
+            f"{found['name']}: out-stroke efficiency {found['efficiency_out_stroke']:.4f}, reduced "
+            f"inertia {found['reduced_inertia_mean_kg_m2']:.5g} kg m2, mean pin reaction "
+            f"{found['pin_reaction_mean_N']:.4g} N"
+        )
+        if "traction_needed_max" in found:
+            rolls = "" if found["traction_needed_max"] < 0.1 else ": rolling is not credible"
+            yield (
+                f"  normal force {found['normal_force_mean_N']:.4g} N on average; rolling asks for "
+                f"traction {found['traction_needed_mean']:.3g} of it, "
+                f"{found['traction_needed_max']:.3g} at most{rolls}; "
+                f"creep loses {found['sliding_loss_J']:.3g} J"
+            )
+    space = document["workspace"]
+    yield (
+        f"sizes: the big roller without offset is best in {space['big_roller_best']} of "
+        f"{space['combinations']} combinations; the slider-crank lies "
+        f"{_range_of(space, 'slider_crank')} % above it, the small roller "
+        f"{_range_of(space, 'small_roller')} %"
+    )
+    yield (
+        f"with an offset of {space['offset_over_crank']:g} cranks, where the sizes allow it, above "
+        f"it: slider-crank {_range_of(space, 'slider_crank_offset')} %, "
+        f"big roller {_range_of(space, 'big_roller_offset')} %, "
+        f"small {_range_of(space, 'small_roller_offset')} %"
+    )
+    for found in document["identified"]:
+        low, high = found["viscous_interval"]
+        dry_low, dry_high = found["coulomb_interval"]
+        yield (
+            f"{found['name']}: viscous {found['viscous_Nms_per_rad']:.4g} N m s/rad "
+            f"({low:.4g} to {high:.4g}), dry {found['coulomb_Nm']:.3g} N m ({dry_low:.3g} to "
+            f"{dry_high:.3g}), {100 * found['confidence']:.0f} % confidence"
+        )
+
+
+def _row(name: str, losses: Mapping[str, float]) -> str:
+    return f"{name:34}" + "".join(f"{value:9.2f}" for value in losses.values())
+
+
+_RIVALS = {
+    "slider_crank": "slider_crank",
+    "slider_crank_offset": "slider_crank_offset",
+    "small_roller": "small",
+    "big_roller_offset": "big_offset",
+    "small_roller_offset": "small_offset",
+}
+
+
+def _percent(space: Workspace, name: str) -> list[list[float | None]]:
+    """Energy over the best one's, less one, in percent; None where the sizes do not allow it."""
+    rows = 100.0 * space.above_best(name)
+    return [[float(v) if np.isfinite(v) else None for v in row] for row in rows]
+
+
+def _range_of(space: Mapping[str, Any], name: str) -> str:
+    values = np.array(space[f"{name}_above_best_percent"], dtype=float)
+    return f"{np.nanmin(values):.1f} to {np.nanmax(values):.1f}"

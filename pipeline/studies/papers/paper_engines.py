@@ -1,0 +1,65 @@
+"""The engines of the papers as the cylinder model has them; what is tuned says so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import radians
+
+from scipy.optimize import brentq
+
+from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.torque import torque_from_cylinder
+
+IDLE_SPEED = 157.08  # rad/s, 1500 rpm
+SLOW_IDLE = 83.8  # rad/s, 800 rpm
+EFFECTIVE_INERTIA = 0.0139  # kg m2, tuned to the measured ripple
+
+# Tuned to the measured idle: intake pressure, spark, burn duration, combustion efficiency.
+GX120 = CylinderEngine(
+    bore=0.060,
+    crank_radius=0.021,
+    rod_length=0.073,
+    compression_ratio=8.5,
+    piston_mass=0.144,
+    rod_mass=0.123,
+    intake_pressure=30.5e3,
+    spark=radians(335.0),
+    burn_duration=radians(80.0),
+    combustion_efficiency=0.9,
+)
+TUNED = {
+    "intake_pressure_kPa": 30.5,
+    "spark_deg": 335.0,
+    "burn_duration_deg": 80.0,
+    "combustion_efficiency": 0.9,
+    "inertia_kg_m2": EFFECTIVE_INERTIA,
+}
+
+ENGINE_800 = replace(
+    GX120,
+    crank_radius=0.022,
+    intake_pressure=28.2e3,
+    spark=radians(345.0),
+    burn_duration=radians(65.0),
+    combustion_efficiency=0.85,
+)
+FULL_LOAD_800 = replace(
+    ENGINE_800,
+    intake_pressure=98e3,
+    spark=radians(340.0),
+    burn_duration=radians(50.0),
+    combustion_efficiency=0.95,
+    friction=0.0,
+)
+
+
+def with_peak_torque(peak: float) -> CylinderEngine:
+    """The GX120 with a faster, later burn and the intake pressure that gives a peak (N m)."""
+    fast = replace(GX120, spark=radians(342.0), burn_duration=radians(50.0))
+
+    def excess(pressure: float) -> float:
+        engine = replace(fast, intake_pressure=pressure)
+        return torque_from_cylinder(engine, IDLE_SPEED).peak - peak
+
+    found = brentq(excess, 34e3, 60e3, xtol=20.0, maxiter=12)
+    return replace(fast, intake_pressure=float(found))

@@ -1,0 +1,99 @@
+"""Published figures, what this version obtains for them, and the verdict on each."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+from typing import Any, Literal
+
+Verdict = Literal["reproduced", "not reproduced", "not decidable"]
+NOT_COMPUTED = "not computed by this version"
+
+
+@dataclass(frozen=True)
+class Target:
+    """One published figure: `value` a number, numbers, or a statement in words."""
+
+    id: str
+    paper: str
+    quantity: str
+    value: Any
+    unit: str
+    condition: str
+    kind: str  # simulated or measured, by the paper
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What was obtained for a target, and what that says, in a sentence."""
+
+    obtained: Any
+    verdict: Verdict
+    reason: str
+
+
+@dataclass(frozen=True)
+class PaperResult:
+    """Outcomes of one paper by the id of their target, and studies beyond the targets."""
+
+    outcomes: Mapping[str, Outcome]
+    studies: Mapping[str, Any] = field(default_factory=dict)
+
+
+# A paper's module gives one of these: from its targets by id to what was obtained.
+
+
+def within(obtained: float, published: float, tolerance: float, reason: str) -> Outcome:
+    """Reproduced where the figures differ by no more than a share of the published one."""
+    near = abs(obtained - published) <= tolerance * abs(published)
+    how = f"within {100 * tolerance:g} %" if near else f"more than {100 * tolerance:g} % away"
+    verdict: Verdict = "reproduced" if near else "not reproduced"
+    return Outcome(obtained, verdict, f"{how}: {reason}")
+
+
+@cache
+def _document() -> Mapping[str, Any]:
+    text = files(__package__).joinpath("targets.json").read_text(encoding="utf-8")
+    found: Mapping[str, Any] = json.loads(text)
+    return found
+
+
+def targets(paper: str | None = None) -> dict[str, Target]:
+    """Published figures by id, of one paper or of all."""
+    rows = (Target(**row) for row in _document()["targets"])
+    return {row.id: row for row in rows if paper in (None, row.paper)}
+
+
+def citations() -> dict[str, Mapping[str, Any]]:
+    """Citation and DOI of each paper."""
+    return dict(_document()["papers"])
+
+
+def row_record(target: Target, outcome: Outcome | None) -> dict[str, Any]:
+    """One row of ``validation.json``."""
+    found = outcome or Outcome(None, "not decidable", NOT_COMPUTED)
+    return {
+        "id": target.id,
+        "paper": target.paper,
+        "quantity": target.quantity,
+        "condition": target.condition,
+        "kind": target.kind,
+        "unit": target.unit,
+        "published": target.value,
+        "obtained": found.obtained,
+        "difference": _difference(target.value, found.obtained),
+        "verdict": found.verdict,
+        "reason": found.reason,
+    }
+
+
+def _difference(published: Any, obtained: Any) -> Any:
+    """Obtained less published where both are numbers, entry by entry; else null."""
+    if isinstance(published, list) and isinstance(obtained, list):
+        return [_difference(p, o) for p, o in zip(published, obtained, strict=True)]
+    numbers = (int, float)
+    both = isinstance(published, numbers) and isinstance(obtained, numbers)
+    return float(obtained) - float(published) if both else None

@@ -1,0 +1,358 @@
+"""Slider-crank and eccentric cam with roller, side by side: forces, friction, reduced inertia.
+
+Signs, roots and fractions of the paper's equations are lost in the text at hand; they are restored
+here from the mechanics and tested by power balance.
+
+References
+----------
+Energy loss comparison between kinematically equivalent mechanisms: slider-crank and eccentric cam
+(2024), equations 1 to 51, cited by number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array, freeze, uniform_turn
+from camwright.geometry.eccentric import Eccentric
+from camwright.geometry.errors import InputError
+
+POSITIONS = 720
+
+
+@dataclass(frozen=True)
+class PairFriction:
+    """Viscous friction of the pairs: shaft O, pins A and B (N m s/rad), guide (N s/m)."""
+
+    shaft: float
+    pin_a: float
+    pin_b: float
+    guide: float
+
+    def __post_init__(self) -> None:
+        for name in self.__dataclass_fields__:
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise InputError(f"friction.{name}", getattr(self, name), ">= 0")
+
+
+@dataclass(frozen=True)
+class Masses:
+    """kg and kg m^2. The rod's centre is at its middle; the roller and disc turn about theirs.
+
+    common is the inertia about the shaft of all that both mechanisms share.
+    """
+
+    slider: float
+    rod: float = 0.0
+    rod_inertia: float = 0.0
+    roller: float = 0.0
+    roller_inertia: float = 0.0
+    disc: float = 0.0
+    disc_inertia: float = 0.0
+    common: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in self.__dataclass_fields__:
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise InputError(f"masses.{name}", getattr(self, name), ">= 0")
+
+
+@dataclass(frozen=True)
+class HoldingSpring:
+    """F = preload + rate (d - least d), N (eqs 38 and 39)."""
+
+    preload: float
+    rate: float
+
+    def __post_init__(self) -> None:
+        for name in self.__dataclass_fields__:
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise InputError(f"spring.{name}", getattr(self, name), ">= 0")
+
+
+@dataclass(frozen=True, eq=False)
+class Reactions:
+    """Forces over one turn at constant or given speed, arrays (n,), SI, in the paper's axes.
+
+    o, a, b are (2, n): on the crank at O and at A, on the slider side at B as in eqs 5 to 12. For
+    the cam `a` is the contact's force on the disc. normal and traction are the contact's, zero for
+    the slider-crank; side is the guide's force; motor the torque T_m.
+    """
+
+    phi: Array
+    o: Array
+    a: Array
+    b: Array
+    normal: Array
+    traction: Array
+    side: Array
+    motor: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
+
+
+@dataclass(frozen=True)
+class Losses:
+    """Energy of one turn by pair, J (eqs 18 and 40)."""
+
+    shaft: float
+    guide: float
+    pin_a: float
+    pin_b: float
+    sliding: float = 0.0
+
+    @property
+    def total(self) -> float:
+        """All viscous pairs and, where the roller slips, its sliding; J."""
+        return self.shaft + self.guide + self.pin_a + self.pin_b + self.sliding
+
+
+@dataclass(frozen=True)
+class SliderCrankDrive:
+    """A crank with balanced or eccentric mass, a rod with its centre in the middle, a slider."""
+
+    linkage: Eccentric
+    friction: PairFriction
+    masses: Masses
+    spring: HoldingSpring
+
+    def losses(self, speed: float, count: int = POSITIONS) -> Losses:
+        """Friction energy of a turn at constant speed (rad/s), by pair (eq. 18)."""
+        phi, c = uniform_turn(count), self.friction
+        spin = self.linkage.rod_rate(phi)
+        return Losses(
+            shaft=_turn_loss(np.full(count, c.shaft), speed),
+            guide=_turn_loss(c.guide * self.linkage.height_rate(phi) ** 2, speed),
+            pin_a=_turn_loss(c.pin_a * (1.0 - spin) ** 2, speed),
+            pin_b=_turn_loss(c.pin_b * spin**2, speed),
+        )
+
+    def reduced_inertia(self, phi: Array) -> Array:
+        """I_red about the shaft (eq. 49), kg m^2."""
+        l1, angle = self.linkage.crank, self.linkage.rod_angle(phi)
+        sin, cos = np.sin(phi), np.cos(angle)
+        middle = 1.0 - sin / cos * np.sin(phi - angle) + 0.25 * sin**2 / cos**2
+        turned = self.masses.rod_inertia / self.linkage.rod**2 * sin**2 / cos**2
+        pushed = self.masses.slider * np.cos(phi - angle) ** 2 / cos**2
+        total = self.masses.rod * middle + turned + pushed
+        return np.asarray(self.masses.common + l1**2 * total)
+
+    def reactions(self, phi: Array, speed: float, acceleration: float = 0.0) -> Reactions:
+        """Newton and Euler for slider, rod and crank (eqs 5 to 12); the crank is balanced."""
+        linkage, c, m = self.linkage, self.friction, self.masses
+        l1, l2 = linkage.crank, linkage.rod
+        angle = linkage.rod_angle(phi)
+        spin = linkage.rod_rate(phi) * speed
+        spin_up = linkage.rod_rate_slope(phi) * speed**2 + linkage.rod_rate(phi) * acceleration
+        way = linkage.height_rate(phi) * speed
+        pull = linkage.height_rate_slope(phi) * speed**2
+        pull = pull + linkage.height_rate(phi) * acceleration
+        sin1, cos1, sin2, cos2 = np.sin(phi), np.cos(phi), np.sin(angle), np.cos(angle)
+
+        # eqs 8 and 9: the rod's middle moves as the crank pin and half the rod turning
+        x = acceleration * l1 * cos1 - speed**2 * l1 * sin1
+        x = m.rod * (x - 0.5 * l2 * (spin_up * sin2 + spin**2 * cos2))
+        y = acceleration * l1 * sin1 + speed**2 * l1 * cos1
+        y = m.rod * (y + 0.5 * l2 * (spin_up * cos2 - spin**2 * sin2))
+        torque_a, torque_b = c.pin_a * (speed - spin), c.pin_b * spin
+
+        b_x = -c.guide * way - _held(self.spring, linkage, phi) - m.slider * pull
+        a_x = b_x - x
+        # eq. 10 with R_yA = R_yB - y
+        turning = m.rod_inertia * spin_up - torque_a + torque_b
+        b_y = 0.5 * (y + (2.0 * turning / l2 + (a_x + b_x) * sin2) / cos2)
+        a_y = b_y - y
+        motor = m.common * acceleration + c.shaft * speed + torque_a
+        motor = motor - l1 * (a_x * cos1 + a_y * sin1)
+        zero = np.zeros_like(phi)
+        a = np.stack([a_x, a_y])
+        return Reactions(phi, -a, a, np.stack([b_x, b_y]), zero, zero, b_y, motor)
+
+
+@dataclass(frozen=True)
+class EccentricDrive:
+    """An eccentric disc that moves a roller on a slider; the roller rolls without slip."""
+
+    linkage: Eccentric
+    roller_radius: float
+    friction: PairFriction
+    masses: Masses
+    spring: HoldingSpring
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.roller_radius < self.linkage.rod:
+            limit = f"> 0 m and < {self.linkage.rod:g} m, the pitch radius"
+            raise InputError("roller.radius", self.roller_radius, limit)
+
+    def rolling_way(self, phi: Array) -> Array:
+        """|I13 J|, of the contact over the roller per radian (eq. 35), m/rad."""
+        side = self.linkage.height_rate(phi) - self.linkage.offset
+        return np.asarray(np.hypot(self.linkage.height(phi), side) - self.roller_radius)
+
+    def losses(self, speed: float, count: int = POSITIONS) -> Losses:
+        """Friction energy of a turn at constant speed (rad/s), rolling without slip (eq. 40)."""
+        phi, c = uniform_turn(count), self.friction
+        spin = self.rolling_way(phi) / self.roller_radius
+        return Losses(
+            shaft=_turn_loss(np.full(count, c.shaft), speed),
+            guide=_turn_loss(c.guide * self.linkage.height_rate(phi) ** 2, speed),
+            pin_a=0.0,
+            pin_b=_turn_loss(c.pin_b * spin**2, speed),
+        )
+
+    def reduced_inertia(self, phi: Array) -> Array:
+        """I_red about the shaft (eqs 50 and 51), kg m^2."""
+        m, spin = self.masses, self.rolling_way(phi) / self.roller_radius
+        pushed = (m.roller + m.slider) * self.linkage.height_rate(phi) ** 2
+        own = m.common + m.disc_inertia + m.disc * self.linkage.crank**2
+        return np.asarray(own + m.roller_inertia * spin**2 + pushed)
+
+    def reactions(self, phi: Array, speed: float, acceleration: float = 0.0) -> Reactions:
+        """Newton and Euler for slider, roller and disc (eqs 25 to 31), without slip."""
+        way, c, m = self.rolling_way(phi), self.friction, self.masses
+        d1, d2 = self.linkage.height_rate(phi), self.linkage.height_rate_slope(phi)
+        d, side = self.linkage.height(phi), d1 - self.linkage.offset
+        spin = way * speed / self.roller_radius
+        way_slope = (d * d1 + side * d2) / np.hypot(d, side)
+        spin_up = (way_slope * speed**2 + way * acceleration) / self.roller_radius
+        traction = (c.pin_b * spin + m.roller_inertia * spin_up) / self.roller_radius
+        return self._with_traction(phi, speed, acceleration, traction)
+
+    def push(self, phi: Array, speed: float, acceleration: float = 0.0) -> Array:
+        """Axial force that slider, roller, guide and spring ask of the cam, N."""
+        d1, d2 = self.linkage.height_rate(phi), self.linkage.height_rate_slope(phi)
+        inertia = (self.masses.slider + self.masses.roller) * (d2 * speed**2 + d1 * acceleration)
+        held = _held(self.spring, self.linkage, phi)
+        return np.asarray(inertia + self.friction.guide * d1 * speed + held)
+
+    def _with_traction(
+        self, phi: Array, speed: float, acceleration: float, traction: Array
+    ) -> Reactions:
+        linkage, m, r = self.linkage, self.masses, self.roller_radius
+        angle, d, offset = linkage.rod_angle(phi), linkage.height(phi), linkage.offset
+        sin2, cos2 = np.sin(angle), np.cos(angle)
+        normal = (self.push(phi, speed, acceleration) + traction * sin2) / cos2
+        on_roller = np.stack([normal * cos2 - traction * sin2, normal * sin2 + traction * cos2])
+        d1, d2 = linkage.height_rate(phi), linkage.height_rate_slope(phi)
+        b_x = m.roller * (d2 * speed**2 + d1 * acceleration) - on_roller[0]
+        b = np.stack([b_x, -on_roller[1]])
+        lever = np.stack([
+            acceleration * np.cos(phi) - speed**2 * np.sin(phi),
+            acceleration * np.sin(phi) + speed**2 * np.cos(phi),
+        ])  # fmt: skip
+        o = on_roller + m.disc * linkage.crank * lever
+        own = m.common + m.disc_inertia + m.disc * linkage.crank**2
+        motor = normal * (d * sin2 + offset * cos2) - traction * (r - d * cos2 + offset * sin2)
+        motor = motor + own * acceleration + self.friction.shaft * speed
+        return Reactions(phi, o, -on_roller, b, normal, traction, b[1], motor)
+
+    def traction_needed(self, phi: Array, speed: float) -> Array:
+        """|F_t| / F_n that rolling without slip asks for."""
+        found = self.reactions(phi, speed)
+        return np.abs(found.traction) / found.normal
+
+    def sliding_loss(
+        self,
+        speed: float,
+        friction: float,
+        slide_ratio: float,
+        normal_force: float | None = None,
+        count: int = POSITIONS,
+    ) -> float:
+        """mu F_n SRR v over a turn, J (eqs 41 and 42): v is the rolling speed of eq. 35.
+
+        A creep beside the no-slip kinematics; it is small and is not part of the total. Without
+        a mean `normal_force` (N), as the paper takes it, F_n is that of every angle.
+        """
+        phi = uniform_turn(count)
+        normal = self.reactions(phi, speed).normal if normal_force is None else normal_force
+        power = friction * normal * slide_ratio * self.rolling_way(phi) * speed
+        return float(np.mean(power) * FULL_TURN / speed)
+
+    def slipping_losses(self, speed: float, friction: float, count: int = POSITIONS) -> Losses:
+        """Friction energy of a turn when the traction is limited to mu F_n, J.
+
+        Where rolling asks for no more the roller rolls; elsewhere the pin is driven by mu F_n
+        alone, and the rest of the rolling speed slides. The roller's inertia is left out.
+        """
+        phi, c, r = uniform_turn(count), self.friction, self.roller_radius
+        angle, surface = self.linkage.rod_angle(phi), self.rolling_way(phi) * speed
+        load = self.push(phi, speed)
+        normal = load / (np.cos(angle) - friction * np.sin(angle))
+        rolled = surface / r
+        spin = rolled if c.pin_b == 0.0 else np.minimum(rolled, friction * normal * r / c.pin_b)
+        slid = friction * normal * (surface - spin * r)
+        rolling = self.losses(speed, count)
+        turn = FULL_TURN / speed
+        return Losses(
+            shaft=rolling.shaft,
+            guide=rolling.guide,
+            pin_a=0.0,
+            pin_b=float(np.mean(c.pin_b * spin**2) * turn),
+            sliding=float(np.mean(slid) * turn),
+        )
+
+
+def stroke_efficiency(drive: SliderCrankDrive | EccentricDrive, speed: float) -> float:
+    """Work put into the spring over the out-stroke, over that of the motor, at constant speed."""
+    phi = uniform_turn(7200)
+    out = drive.linkage.height_rate(phi) > 0.0
+    held = _held(drive.spring, drive.linkage, phi) * drive.linkage.height_rate(phi)
+    return float(np.sum(held[out]) / np.sum(drive.reactions(phi, speed).motor[out]))
+
+
+@dataclass(frozen=True)
+class DryFriction:
+    """Coulomb friction of the pairs: guide (-); shaft and pins mu times radius, m."""
+
+    guide: float = 0.0
+    shaft: float = 0.0
+    pin_a: float = 0.0
+    pin_b: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in self.__dataclass_fields__:
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise InputError(f"dry_friction.{name}", getattr(self, name), ">= 0")
+
+
+def dry_losses(drive: SliderCrankDrive | EccentricDrive, speed: float, dry: DryFriction) -> Losses:
+    """Coulomb friction energy of a turn by pair, J: mu |R| times the way rubbed.
+
+    With the reactions of the viscous mechanism: what dry friction changes in them is of second
+    order in mu and left out.
+    """
+    phi = uniform_turn(POSITIONS)
+    found, linkage = drive.reactions(phi, speed), drive.linkage
+    if isinstance(drive, SliderCrankDrive):
+        spin = linkage.rod_rate(phi)
+        pin_a = _rubbed(dry.pin_a, found.a, 1.0 - spin)
+    else:
+        spin, pin_a = drive.rolling_way(phi) / drive.roller_radius, 0.0
+    return Losses(
+        shaft=_rubbed(dry.shaft, found.o, np.ones_like(phi)),
+        guide=_rubbed(dry.guide, found.side[None], linkage.height_rate(phi)),
+        pin_a=pin_a,
+        pin_b=_rubbed(dry.pin_b, found.b, spin),
+    )
+
+
+def _rubbed(friction: float, force: Array, way: Array) -> float:
+    """mu |F| |ds/dphi| over a turn, J; force (1 or 2, n), way (n,) in m or rad per radian."""
+    size = np.sqrt(np.sum(force**2, axis=0))
+    return float(np.mean(friction * size * np.abs(way)) * FULL_TURN)
+
+
+def _held(spring: HoldingSpring, linkage: Eccentric, phi: Array) -> Array:
+    travel = linkage.height(phi) - linkage.height_base
+    return np.asarray(spring.preload + spring.rate * travel)
+
+
+def _turn_loss(damping: Array, speed: float) -> float:
+    """Energy of a turn of torques `damping` times speed^2 over speed, J."""
+    if not 0.0 < speed < np.inf:
+        raise InputError("speed", speed, "> 0 rad/s")
+    return float(np.mean(damping) * speed * FULL_TURN)

@@ -1,0 +1,85 @@
+"""Cheap bounds: what ripple a spring and a roller must leave at least, before any cam is drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.smoothing.cone_program import Norm, Rows, solved
+from camwright.pipeline.smoothing.constraints import Scenario
+from camwright.pipeline.smoothing.energy_spline import basis_matrix
+from camwright.pipeline.smoothing.synthesis_problem import thinned
+
+IN_HAND = 0.05  # of the ripple, for friction and inertia, which the bound does not know
+_COEFFICIENTS, _POINTS = 36, 144
+
+
+@dataclass(frozen=True, eq=False)
+class RippleBound:
+    """Least ripple left by a spring that can hold a given energy at most.
+
+    Torque is the slope of the stored energy, so the closest slope of any E(psi) between nothing
+    and the greatest energy bounds what every cam leaves, friction and inertia aside. The problem
+    is convex: one program an energy, exact for the splines of the turn.
+
+    Parameters
+    ----------
+    torque : array (n,)   engine torque over a cam turn, crank N m
+    gear_ratio : float
+    """
+
+    torque: Array
+    gear_ratio: float
+
+    def __call__(self, energy: float) -> float:
+        """Ripple left over that without a cam, 0 to 1, at the greatest energy (J)."""
+        if not energy > 0.0:
+            return 1.0
+        theta = uniform_turn(_POINTS)
+        engine = thinned(self.torque, _POINTS)
+        engine = engine - engine.mean()
+        scale = float(np.linalg.norm(engine))
+        level = basis_matrix(theta, _COEFFICIENTS)
+        slope = basis_matrix(theta, _COEFFICIENTS, 1).toarray()
+        norm = Norm(engine / scale, -slope * (energy / (self.gear_ratio * scale)))
+        one = np.ones(_POINTS)
+        rows = [Rows("least", 0.0 * one, csr_array(-level), elastic=False),
+                Rows("most", -one, csr_array(level), elastic=False)]  # fmt: skip
+        none, box = np.zeros(_COEFFICIENTS), np.full((2, _COEFFICIENTS), 10.0)
+        box[0] *= -1.0
+        found = solved([norm], rows, np.diag(none), none, box, 1.0)
+        if found is None:
+            raise ResultError("redesign: the bound on the ripple was not solved")
+        return found.ripple
+
+
+def bearable_force(card: BearingCard, case: Case) -> float:
+    """Greatest normal force (N) that a roller bears: static rating and outer ring."""
+    static = card.C0 / case.limits.roller_static_safety
+    return static if card.radial_limit is None else min(static, card.radial_limit)
+
+
+def bearable_energy(force: float, rate: float, preload: float, relief: float) -> float:
+    """Energy (J) at which the spring's push is all that the roller bears, at full lift.
+
+    relief is the share of the spring force that the follower's inertia may take off there.
+    """
+    push = force / (1.0 - relief)
+    return max(0.0, (push**2 - preload**2) / (2.0 * rate))
+
+
+def relief_of(scenarios: tuple[Scenario, ...], jump: float | None) -> float:
+    """Share of the spring force that inertia takes off in the slowest load case, at most.
+
+    The limit on jump holds at the fastest; inertia falls with the square of the speed.
+    """
+    speeds = [item.cam_speed for item in scenarios]
+    fastest = max(speeds)
+    share = 1.0 if jump is None else jump
+    return min(0.9, share * (min(speeds) / fastest) ** 2) if fastest > 0 else 0.0

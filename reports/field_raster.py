@@ -1,0 +1,124 @@
+"""Pictures of fields: a raster set in axes, and the flat drawing used where nothing renders."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from matplotlib.tri import Triangulation
+
+from camwright.geometry.arrays import Array
+from camwright.reports.figure_svg import COLOURS, style
+from camwright.reports.figures import SERIES
+
+_ABOVE, _GAP = 1.25, 0.1  # inches
+
+
+@dataclass(frozen=True, eq=False)
+class Above:
+    """Curves on the horizontal axis of a raster: label, places (n,), values (n,); first filled."""
+
+    title: str
+    curves: tuple[tuple[str, Array, Array], ...]
+
+
+def framed(
+    image: Array, extent: tuple[float, float, float, float], labels: tuple[str, str], title: str,
+    colour_map: Any, clim: tuple[float, float], log: bool, bar: tuple[float, str] | None,
+    notes: tuple[tuple[str, float], ...] = (), above: Above | None = None,
+) -> bytes:  # fmt: skip
+    """A rendered raster (rows, columns, 3) inside axes, with colour bar and scale bar, as PNG."""
+    with style("picture"):
+        width = 6.4
+        tall = (extent[3] - extent[2]) / (extent[1] - extent[0])
+        inner = width - 0.62 - 1.05
+        height = inner * tall + 0.46 + 0.16 + (0.0 if above is None else _ABOVE + _GAP)
+        canvas = Figure(figsize=(width, height))
+        ax = canvas.add_axes((0.62 / width, 0.46 / height, inner / width, inner * tall / height))
+        ax.imshow(image, extent=extent, interpolation="antialiased", aspect="equal")
+        ax.set_xlabel(labels[0], labelpad=2)
+        ax.set_ylabel(labels[1], labelpad=2)
+        colour_axes = canvas.add_axes(
+            ((0.62 + inner + 0.14) / width, 0.46 / height, 0.14 / width, inner * tall / height)
+        )
+        norm = LogNorm(*clim) if log else Normalize(*clim)
+        colour_bar = canvas.colorbar(ScalarMappable(norm, colour_map), cax=colour_axes)
+        colour_bar.set_label(title)
+        colour_bar.outline.set_linewidth(0.6)
+        if log:
+            colour_bar.ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            colour_bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+            colour_bar.ax.yaxis.set_minor_locator(NullLocator())
+        for words, height_share in notes:
+            ax.annotate(words, (0.02, height_share), xycoords="axes fraction", color="white",
+                        va="top" if height_share > 0.5 else "bottom", fontsize=9)  # fmt: skip
+        if bar is not None:
+            _scale_bar(ax, extent, bar)
+        if above is not None:
+            low = 0.46 + inner * tall + _GAP
+            place = (0.62 / width, low / height, inner / width, _ABOVE / height)
+            _draw_above(canvas.add_axes(place), (extent[0], extent[1]), above)
+        stream = io.BytesIO()
+        canvas.savefig(
+            stream, format="png", dpi=190, facecolor="white", metadata={"Software": None}
+        )
+    return stream.getvalue()
+
+
+def _draw_above(ax: Axes, span: tuple[float, float], above: Above) -> None:
+    for number, (label, places, values) in enumerate(above.curves):
+        colour = COLOURS[SERIES[number]]
+        ax.plot(places, values, color=colour, dashes=(4, 3) if number else (), label=label)
+        if not number:
+            ax.fill_between(places, values, color=colour, alpha=0.22, linewidth=0)
+    ax.set(xlim=span, ylabel=above.title)
+    ax.set_ylim(bottom=0.0)
+    ax.tick_params(labelbottom=False)
+    ax.grid(visible=True)
+    ax.legend(loc="upper right", frameon=False)
+
+
+def _scale_bar(ax: Axes, extent: tuple[float, float, float, float], bar: tuple[float, str]) -> None:
+    length, words = bar
+    x0 = extent[0] + 0.04 * (extent[1] - extent[0])
+    y0 = extent[2] + 0.05 * (extent[3] - extent[2])
+    ax.plot([x0, x0 + length], [y0, y0], color="black", linewidth=2.2, solid_capstyle="butt")
+    ax.annotate(
+        words, (x0, y0), xytext=(0, 4), textcoords="offset points", va="bottom", ha="left",
+        color="black", fontsize=8,
+        bbox={"facecolor": "white", "alpha": 0.85, "linewidth": 0, "pad": 1.2},
+    )  # fmt: skip
+    ax.set_xlim(extent[0], extent[1])
+    ax.set_ylim(extent[2], extent[3])
+
+
+def triangles_picture(
+    points: Array, triangles: Array, values: Array, window: tuple[float, float, float, float],
+    clim: tuple[float, float], log: bool, colour_map: Any,
+) -> Array:  # fmt: skip
+    """A raster of a field on triangles, for machines that cannot render in three dimensions.
+
+    `points` (2, n), `triangles` (3, m), `values` (n,); `window` is xmin, xmax, ymin, ymax.
+    """
+    tall = (window[3] - window[2]) / (window[1] - window[0])
+    canvas = Figure(figsize=(6.0, 6.0 * tall), dpi=200, facecolor="white")
+    agg = FigureCanvasAgg(canvas)
+    ax = canvas.add_axes((0.0, 0.0, 1.0, 1.0))
+    ax.axis("off")
+    norm = LogNorm(*clim) if log else Normalize(*clim)
+    shown = np.clip(values, *clim)
+    mesh: Any = Triangulation(points[0], points[1], triangles.T)
+    paint: Any = ax.tripcolor
+    paint(mesh, shown, norm=norm, cmap=colour_map, shading="gouraud")
+    ax.set_xlim(window[0], window[1])
+    ax.set_ylim(window[2], window[3])
+    agg.draw()
+    return np.asarray(agg.buffer_rgba())[..., :3]

@@ -1,0 +1,175 @@
+"""The pressure in both guides as a picture: over the turn, round the bore, in the worst slice."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.projections.polar import PolarAxes
+from matplotlib.ticker import FuncFormatter, NullLocator
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ResultError
+from camwright.reports.figure_svg import COLOURS, style
+
+FILE = "5_bushes.npz"
+COLOUR_MAP = "viridis"
+_FIELDS = ("along_mm", "line_N_per_mm", "row", "slices_mm", "round_deg", "pressure_MPa")
+_DECADES = 3.0
+_ROWS = 201
+_LOBE = 0.75  # of the bore's radius, in the cross-section
+
+
+@dataclass(frozen=True, eq=False)
+class Bush:
+    """One guide.
+
+    along (k,) mm from its middle, away from the roller; angle (n,) deg and line (n, k) N/mm, its
+    push on the stem over the turn of a load case; round (m,) deg from the line of action and
+    pressure (s, m) MPa in the bore at slices (s,) mm, at the worst angle, deg, of load case
+    `worst_case`.
+    """
+
+    name: str
+    along: Array
+    angle: Array
+    line: Array
+    slices: Array
+    round: Array
+    pressure: Array
+    worst_angle: float
+    worst_case: str
+
+    @property
+    def peak(self) -> float:
+        """MPa; not a number where no slice has a solution."""
+        return float(np.nanmax(self.pressure)) if np.isfinite(self.pressure).any() else np.nan
+
+    @property
+    def slice(self) -> int:
+        """Number of the slice with the greatest pressure."""
+        return int(np.argmax(np.nan_to_num(self.pressure).max(axis=1)))
+
+
+def read_bushes(path: Path, load_case: str) -> tuple[Bush, Bush]:
+    """Guides A and B; the turn is that of the load case, the worst that of all.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be read or lacks the load case.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as entry:
+            cases, angle = entry["load_case"], entry["cam_angle_deg"]
+            found = {side: {n: entry[f"{side}_{n}"] for n in _FIELDS} for side in "AB"}
+    except (OSError, ValueError, EOFError, KeyError) as error:
+        raise ResultError(f"{path}: {error}") from None
+    rows = cases == load_case
+    if not rows.any():
+        raise ResultError(f"{path}: nothing of load case {load_case}")
+    a, b = (
+        Bush(
+            side, one["along_mm"], angle[rows], one["line_N_per_mm"][rows], one["slices_mm"],
+            one["round_deg"], one["pressure_MPa"], float(angle[int(one["row"])]),
+            str(cases[int(one["row"])]),
+        ) for side, one in found.items()
+    )  # fmt: skip
+    return a, b
+
+
+def drawn(bushes: tuple[Bush, Bush]) -> bytes:
+    """PNG of both guides, one above the other."""
+    with style("bush-pressure"):
+        canvas = Figure(figsize=(7.6, 5.4), layout="constrained")
+        grid = canvas.add_gridspec(2, 3, width_ratios=(1.25, 1.25, 0.8))
+        for number, bush in enumerate(bushes):
+            _over_the_turn(canvas, canvas.add_subplot(grid[number, 0]), bush)
+            norm = Normalize(0.0, bush.peak if bush.peak > 0 else 1.0)
+            _unrolled(canvas, canvas.add_subplot(grid[number, 1]), bush, norm)
+            _across(canvas.add_subplot(grid[number, 2], projection="polar"), bush, norm)
+        stream = io.BytesIO()
+        canvas.savefig(
+            stream, format="png", dpi=150, facecolor="white", metadata={"Software": None}
+        )
+    return stream.getvalue()
+
+
+def _over_the_turn(canvas: Figure, ax: Axes, bush: Bush) -> None:
+    fine = np.linspace(bush.along[0], bush.along[-1], _ROWS)
+    push = np.stack([np.interp(fine, bush.along, np.abs(line)) for line in bush.line], axis=1)
+    top = float(push.max()) or 1.0
+    shown = ax.pcolormesh(
+        bush.angle, fine, np.maximum(push, top * 10**-_DECADES), cmap=COLOUR_MAP,
+        shading="nearest", norm=LogNorm(top * 10**-_DECADES, top), rasterized=True,
+    )  # fmt: skip
+    ax.axvline(bush.worst_angle, color="white", linewidth=0.9, dashes=(3, 3))
+    ax.set(xlabel="cam angle, deg", ylabel="along the guide, mm", xlim=(0, 360),
+           xticks=np.arange(0, 361, 90))  # fmt: skip
+    ax.set_title(f"guide {bush.name}: push over the turn", fontsize=8.5, loc="left")
+    bar = canvas.colorbar(shown, ax=ax, label="N/mm (logarithmic)", pad=0.01)
+    bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    bar.ax.yaxis.set_minor_locator(NullLocator())
+
+
+def _unrolled(canvas: Figure, ax: Axes, bush: Bush, norm: Normalize) -> None:
+    """The bore laid flat, as much of it as is pressed on, cut open on the side that is not."""
+    pressure = np.nan_to_num(bush.pressure)
+    angle = bush.round
+    if angle[int(np.argmax(pressure[bush.slice]))] ** 2 > 90.0**2:
+        half = angle.size // 2
+        angle, pressure = angle + 180.0, np.roll(pressure[:, :-1], half, axis=1)
+        pressure = np.hstack([pressure, pressure[:, :1]])
+    shown = ax.pcolormesh(
+        angle, bush.slices, pressure, cmap=COLOUR_MAP, norm=norm, shading="nearest", rasterized=True
+    )
+    ax.set(xlabel="round the bore, deg", xlim=_pressed(angle, pressure.max(axis=0)),
+           ylim=_pressed(bush.slices, pressure.max(axis=1)))  # fmt: skip
+    ax.set_title(f"in the bore at {bush.worst_angle:g}° of the cam", fontsize=8.5, loc="left")
+    canvas.colorbar(shown, ax=ax, label="MPa", pad=0.01)
+
+
+def _pressed(places: Array, pressure: Array) -> tuple[float, float]:
+    """The stretch that carries pressure, and a tenth of it more to either side."""
+    on = places[pressure > 0]
+    if not on.size:
+        return float(places[0]), float(places[-1])
+    more = max(0.1 * float(np.ptp(on)), 0.02 * float(np.ptp(places)))
+    return max(float(on[0]) - more, float(places[0])), min(float(on[-1]) + more, float(places[-1]))
+
+
+def _across(ax: Any, bush: Bush, norm: Normalize) -> None:
+    """The slice with the greatest pressure, drawn outwards from the bore."""
+    polar: PolarAxes = ax
+    polar.set_theta_zero_location("N")
+    angle, pressure = np.radians(bush.round), np.nan_to_num(bush.pressure[bush.slice])
+    reach = 1.0 + _LOBE * pressure / norm.vmax
+    pieces = [
+        [(angle[k], 1.0), (angle[k], reach[k]), (angle[k + 1], reach[k + 1]), (angle[k + 1], 1.0)]
+        for k in range(angle.size - 1) if pressure[k] + pressure[k + 1] > 0
+    ]  # fmt: skip
+    shades = colormaps[COLOUR_MAP](
+        norm([p for p in (pressure[:-1] + pressure[1:]) / 2 if p > 0])
+    )  # fmt: skip
+    polar.add_collection(
+        PolyCollection(pieces, facecolors=shades, edgecolors="face", linewidths=0.2)
+    )
+    round_ = np.linspace(0, 2 * np.pi, 181)
+    polar.fill(round_, np.ones_like(round_), color=COLOURS["steel"])
+    polar.plot(round_, np.ones_like(round_), color=COLOURS["ink"], linewidth=0.9)
+    polar.set_ylim(0, 1.0 + 1.05 * _LOBE)
+    polar.set_yticks([])
+    polar.set_xticks(np.radians([0, 90, 180, 270]), ["0°", "90°", "180°", "-90°"])
+    polar.tick_params(pad=-4)
+    polar.spines["polar"].set_visible(False)
+    polar.grid(visible=False)
+    polar.set_title(f"slice at {bush.slices[bush.slice]:.3g} mm", fontsize=8.5)
+    polar.text(0.0, 0.0, f"{bush.peak:.3g}\nMPa", ha="center", va="center", fontsize=9)

@@ -1,0 +1,72 @@
+"""Pictures of an inspected cam, from its files alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from camwright.pipeline.base.tables import Table, read_table
+from camwright.pipeline.results.run_reader import CYCLE, load_run
+
+_EXAGGERATED = 0.12
+"""Of the mean radius: how large the greatest deviation is drawn on the part."""
+
+
+def draw(run: Path, tolerance_um: float) -> Path:
+    """Draw ``inspection/deviation.png``: deviation over the turn and on the part, force, pressure.
+
+    Returns
+    -------
+    Path    the picture
+    """
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib.figure import Figure
+
+    folder = run / "inspection"
+    deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv", CYCLE)
+    nominal = load_run(run).final
+    figure = Figure(figsize=(10, 8), layout="constrained")
+    over_turn = figure.add_subplot(2, 2, 1)
+    _deviation(over_turn, deviation, tolerance_um)
+    _part(figure.add_subplot(2, 2, 2), nominal.contour, deviation)
+    state = str(nominal.cycle["load_case"][0])
+    for place, header, label in ((3, "normal_force_N", "normal force, N"),
+                                 (4, "p0_fe_MPa", "peak contact pressure, MPa")):  # fmt: skip
+        axes = figure.add_subplot(2, 2, place)
+        for table, name, style in ((nominal.cycle, "drawing", "--"), (real, "measured", "-")):
+            rows = table.where("load_case", state)
+            axes.plot(rows["cam_angle_deg"], rows[header], style, lw=1, label=name)
+        axes.set(xlabel="cam angle, deg", ylabel=label, xlim=(0, 360))
+        axes.legend()
+    path = folder / "deviation.png"
+    figure.savefig(path, dpi=120, metadata={"Software": "camwright"})
+    return path
+
+
+def _deviation(axes: object, deviation: Table, tolerance_um: float) -> None:
+    from matplotlib.axes import Axes
+
+    assert isinstance(axes, Axes)  # noqa: S101 - tells the type checker
+    axes.plot(deviation["cam_angle_deg"], deviation["deviation_um"], ".", ms=2, label="measured")
+    axes.plot(deviation["cam_angle_deg"], deviation["form_um"], lw=1, label="form")
+    for side in (-0.5, 0.5):
+        axes.axhline(side * tolerance_um, ls="--", lw=0.8, color="tab:red")
+    axes.set(xlabel="cam angle, deg", ylabel="deviation, µm", xlim=(0, 360))
+    axes.legend()
+
+
+def _part(axes: object, contour: Table, deviation: Table) -> None:
+    from matplotlib.axes import Axes
+
+    assert isinstance(axes, Axes)  # noqa: S101 - tells the type checker
+    x, y = contour["contour_x_mm"], contour["contour_y_mm"]
+    form = np.interp(contour["cam_angle_deg"], deviation["cam_angle_deg"], deviation["form_um"],
+                     period=360.0)  # fmt: skip
+    greatest = float(np.abs(form).max())
+    scale = _EXAGGERATED * float(np.hypot(x, y).mean()) / greatest if greatest > 0 else 0.0
+    axes.plot(x, y, "--", lw=0.8)
+    axes.plot(x + scale * form * contour["normal_x"], y + scale * form * contour["normal_y"], lw=1)
+    axes.set(xlabel="x, mm", ylabel=f"y, mm (deviation x {1e3 * scale:.3g})", aspect="equal")

@@ -1,0 +1,122 @@
+"""Figures of a comparison of mechanisms, from its document alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure as Canvas
+
+from camwright.reports.figure_svg import COLOURS, style
+
+_PAIRS = {
+    "shaft": ("shaft", "blue"),
+    "guide": ("guide", "green"),
+    "pin_a": ("pin A", "orange"),
+    "pin_b": ("pin B", "vermillion"),
+    "sliding": ("sliding", "purple"),
+}
+_DPI = 150
+
+
+def draw(document: Mapping[str, Any], out: Path) -> tuple[Path, ...]:
+    """Energies by pair, torque and reduced inertia over a turn, both workspaces; PNG files."""
+    out.mkdir(parents=True, exist_ok=True)
+    space = document["workspace"]
+    drawn = {
+        "energies": _energies(document),
+        "turn": _turn(document),
+        "workspace_slider_crank": _maps(
+            space,
+            "above the best cam, %",
+            ("slider_crank", "no offset"),
+            ("slider_crank_offset", "offset"),
+        ),
+        "workspace_eccentric_cam": _maps(
+            space,
+            "above the best cam, %",
+            ("small_roller", "small roller, no offset"),
+            ("big_roller_offset", "big roller, offset"),
+            ("small_roller_offset", "small roller, offset"),
+        ),
+    }
+    paths = []
+    for name, canvas in drawn.items():
+        path = out / f"{name}.png"
+        with style(name):
+            canvas.savefig(path, dpi=_DPI, facecolor=COLOURS["card"])
+        paths.append(path)
+    return tuple(paths)
+
+
+def _energies(document: Mapping[str, Any]) -> Canvas:
+    rows = []
+    for found in document["mechanisms"]:
+        rows.append((found["name"], found["losses_J"]))
+        rows += [(f"slipping, mu {mu}", losses) for mu, losses in found.get("slipping", {}).items()]
+    with style("energies"):
+        canvas = Canvas(figsize=(6.4, 0.9 + 0.36 * len(rows)), layout="constrained")
+        axes = canvas.add_subplot()
+        at = np.arange(len(rows))[::-1]
+        left = np.zeros(len(rows))
+        for pair, (name, colour) in _PAIRS.items():
+            width = np.array([losses[pair] for _, losses in rows])
+            axes.barh(at, width, left=left, height=0.6, color=COLOURS[colour], label=name)
+            left = left + width
+        for place, total in zip(at, left, strict=True):
+            axes.text(total, place, f" {total:.1f}", va="center")
+        axes.set_yticks(at, [name for name, _ in rows])
+        axes.set_xlabel("friction energy of a turn, J")
+        axes.set_xlim(0, 1.12 * left.max())
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.legend(frameon=False, ncols=5, loc="lower left", bbox_to_anchor=(0, 1))
+    return canvas
+
+
+def _turn(document: Mapping[str, Any]) -> Canvas:
+    with style("turn"):
+        canvas = Canvas(figsize=(6.4, 4.6), layout="constrained")
+        upper, lower = canvas.subplots(2, 1, sharex=True)
+        strokes = ("-", "--", ":", "-.")
+        for k, found in enumerate(document["mechanisms"]):
+            look = {"linestyle": strokes[k % 4], "color": list(COLOURS.values())[k % 6]}
+            upper.plot(document["phi_deg"], found["motor_torque_Nm"], label=found["name"], **look)
+            lower.plot(document["phi_deg"], found["reduced_inertia_kg_m2"], **look)
+        upper.set_ylabel("motor torque, N m")
+        lower.set_ylabel("reduced inertia, kg m²")
+        lower.set_xlabel("crank angle, deg")
+        lower.set_xticks(range(0, 361, 60))
+        upper.legend(frameon=False, ncols=3, loc="lower left", bbox_to_anchor=(0, 1))
+        for axes in (upper, lower):
+            axes.spines[["top", "right"]].set_visible(False)
+            axes.grid(visible=True)
+    return canvas
+
+
+def _maps(space: Mapping[str, Any], label: str, *wanted: tuple[str, str]) -> Canvas:
+    """One workspace: a panel each for what is above the best, white where sizes forbid it."""
+    crank, ratio = np.array(space["crank_mm"]), np.array(space["rod_over_crank"])
+    tables = [np.array(space[f"{name}_above_best_percent"], dtype=float) for name, _ in wanted]
+    with style(label):
+        canvas = Canvas(figsize=(6.4, 0.8 + 2.2 * len(wanted)), layout="constrained")
+        panels = canvas.subplots(len(wanted), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, table, (name, title) in zip(panels, tables, wanted, strict=True):
+            # A scale of its own for each: an offset costs the big roller a tenth of the others.
+            mesh = axes.pcolormesh(crank, ratio, table.T, shading="nearest", cmap="cividis")
+            canvas.colorbar(mesh, ax=axes, label=label)
+            known = table[np.isfinite(table)]
+            offset = f" of {space['offset_over_crank']:g} cranks" if "offset" in name else ""
+            axes.set_title(
+                f"{title}{offset}: {known.min():.1f} to {known.max():.1f} % in {known.size} of "
+                f"{table.size} combinations",
+                fontsize="medium",
+            )
+            forbidden = ~np.isfinite(table).any(axis=0)
+            if forbidden.any():
+                axes.text(crank.mean(), ratio[forbidden].mean(), "the sizes leave no room for it",
+                          ha="center", va="center", color=COLOURS["muted"])  # fmt: skip
+            axes.set_ylabel("rod over crank")
+        panels[-1].set_xlabel("crank or eccentricity, mm; rod: pitch radius of the cam")
+    return canvas

@@ -1,0 +1,87 @@
+"""The recorded view of a turn, ``fields/turn.npz``: what film and scene show of the bodies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ResultError
+
+FILE = Path("fields") / "turn.npz"
+_NAMES = (
+    *("position", "cam_angle_deg", "cam_mm", "cam_MPa", "follower_mm", "follower_triangles"),
+    *("follower_origin_mm", "follower_turn_deg", "follower_MPa"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class TurnView:
+    """Von Mises stress, MPa, of both bodies at f cam angles, of one load case.
+
+    position (f,) rows of the load case's turn; angle (f,) deg; cam (2, stations, layers) mm in
+    the cam's frame, the surface first and the bore last, cam_stress (f, stations, layers);
+    follower (2, n) mm in its own frame with triangles (6, m) and follower_stress (f, n); origin
+    (f, 2) mm and turn (f,) rad place that frame in the cam's.
+    """
+
+    load_case: str
+    position: Any
+    angle: Array
+    cam: Array
+    cam_stress: Array
+    follower: Array
+    triangles: Any
+    follower_stress: Array
+    origin: Array
+    turn: Array
+
+    @property
+    def is_roller(self) -> bool:
+        """Whether the follower's body has a hole in its middle, as a roller has."""
+        return bool(np.hypot(*self.follower).min() > 0.05 * np.hypot(*self.follower).max())
+
+    @property
+    def to_lab(self) -> Array:
+        """Turn (f,), rad, from the cam's frame to one in which the follower moves along +y."""
+        return 0.5 * np.pi - np.radians(self.angle)
+
+    def lab_origin(self) -> Array:
+        """Origin (2, f), mm, of the follower's frame where the follower moves along +y."""
+        cosine, sine = np.cos(self.to_lab), np.sin(self.to_lab)
+        x, y = self.origin.T
+        return np.stack([cosine * x - sine * y, sine * x + cosine * y])
+
+    def arc(self) -> Array:
+        """Length of the contour, mm, from the first angle to each (f,), straight between points."""
+        surface = self.cam[:, :, 0]
+        steps = np.hypot(*np.diff(surface, axis=1, append=surface[:, :1]))
+        along = np.r_[0.0, np.cumsum(steps)]
+        return np.interp(self.angle, np.linspace(0.0, 360.0, along.size), along)
+
+
+def read_turn_view(folder: Path) -> TurnView:
+    """The view of the run in a folder.
+
+    Raises
+    ------
+    ResultError
+        If the run has none, such as one of an earlier version, or it cannot be read.
+    """
+    path = folder / FILE
+    if not path.is_file():
+        raise ResultError(f"{path}: no such file; run the case again to have it")
+    try:
+        with np.load(path, allow_pickle=False) as entry:
+            found = {name: entry[name] for name in (*_NAMES, "load_case")}
+    except (OSError, ValueError, EOFError, KeyError) as error:
+        raise ResultError(f"{path}: {error}") from None
+    return TurnView(
+        str(found["load_case"]), found["position"], found["cam_angle_deg"], found["cam_mm"],
+        found["cam_MPa"].astype(float), found["follower_mm"], found["follower_triangles"],
+        found["follower_MPa"].astype(float), found["follower_origin_mm"],
+        np.radians(found["follower_turn_deg"]),
+    )  # fmt: skip

@@ -1,0 +1,147 @@
+"""One turn of the cam as a sheet draws it, and what its figures are made from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base import units
+from camwright.reports.figures import SERIES, AngleFigure, Curve, Figure, LimitLine, Panel
+from camwright.reports.report_tables import in_unit
+
+Columns = Mapping[str, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Turn:
+    """One load case of the final trial, with what is needed to draw it.
+
+    Parameters
+    ----------
+    columns : mapping     columns of 5_cycle.csv, rows of the load case drawn
+    others : tuple        the same for every load case, this one included
+    lift, contour : mapping    columns of 2_lift.csv and 3_contour.csv
+    torque : mapping or None   columns of 1_torque.csv
+    checks : sequence     records of 6_checks.json
+    case : mapping        case.toml as read
+    speed : mapping or None    columns of 1_speed.csv
+    balance : mapping     of trial.json; empty in runs that had none
+    """
+
+    columns: Columns
+    others: tuple[Columns, ...]
+    lift: Columns
+    contour: Columns
+    torque: Columns | None
+    checks: Sequence[Mapping[str, Any]]
+    case: Mapping[str, Any]
+    load_case: str = ""
+    speed: Columns | None = None
+    balance: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def counter_hole(self) -> tuple[float, float, float, bool] | None:
+        """Middle, radius, mm, and whether it is drilled; None where there is none."""
+        names = ("hole_x_mm", "hole_y_mm", "hole_diameter_mm")
+        values = [self.balance.get(name) for name in names]
+        if not all(isinstance(value, (int, float)) for value in values):
+            return None
+        x, y, diameter = (float(value) for value in values if value is not None)
+        return x, y, 0.5 * diameter, bool(self.balance.get("hole_drilled"))
+
+    @property
+    def crank(self) -> Array:
+        return self.columns["crank_angle_deg"]
+
+    @property
+    def gear_ratio(self) -> float:
+        ratio = self.case.get("mechanism", {}).get("gear_ratio", 2.0)
+        return float(ratio) if isinstance(ratio, (int, float)) and ratio > 0 else 2.0
+
+    @property
+    def worst(self) -> int:
+        """Row of the greatest contact pressure."""
+        pressure = self.columns.get("p0_fe_MPa", self.columns.get("normal_force_N"))
+        if pressure is None or not np.isfinite(pressure).any():
+            return 0
+        return int(np.nanargmax(pressure))
+
+    @property
+    def rolls(self) -> bool:
+        """Whether the follower has a roller; else a face slides on the cam."""
+        return "place_on_face_mm" not in self.columns
+
+    @property
+    def follower_name(self) -> str:
+        """What of the follower touches the cam."""
+        return "roller" if self.rolls else "face"
+
+    @property
+    def half_width(self) -> float:
+        """Half-width of the contact at the worst angle, mm; Hertz's where there is no other."""
+        for name in ("half_width_fe_mm", "half_width_hertz_mm"):
+            values = self.columns.get(name)
+            if values is not None and values[self.worst] > 0:
+                return float(values[self.worst])
+        raise ResultError("the cycle has no half-width at its worst angle")
+
+    def length(self, *path: str, unit: str = "mm") -> float | None:
+        """A value of the case file in the given unit; None when absent."""
+        value: Any = self.case
+        for key in path:
+            value = value.get(key) if isinstance(value, Mapping) else None
+        try:
+            return units.parse(value, unit, ".".join(path)) / units.factor(unit)
+        except InputError:
+            return None
+
+    def bound(self, check_id: str) -> float | None:
+        """The limit of a check as recorded; None when it has none."""
+        for check in self.checks:
+            if check.get("id") == check_id and isinstance(check.get("limit"), (int, float)):
+                return float(check["limit"])
+        return None
+
+    def limit(self, label: str, unit: str, check_id: str) -> tuple[LimitLine, ...]:
+        """The limit of a check as a line in the panel's unit; none when it does not fit."""
+        given = self.bound(check_id)
+        of = next((c for c in self.checks if c.get("id") == check_id), {})
+        value = None if given is None else in_unit(given, str(of.get("unit", "")), unit)
+        return () if value is None or not np.isfinite(value) else (LimitLine(value, label),)
+
+
+def curves_of(
+    turn: Turn, *wanted: tuple[str, str], dashed: Sequence[int] = ()
+) -> tuple[Curve, ...]:
+    """Curves for (column, label) pairs; columns the run lacks are left out."""
+    made = []
+    for number, (column, label) in enumerate(wanted):
+        values = turn.columns.get(column)
+        if values is None or not np.isfinite(values).any():
+            continue
+        band = None
+        if len(turn.others) > 1 and number not in dashed:
+            stack = [other[column] for other in turn.others if other[column].size == values.size]
+            band = (np.min(stack, axis=0), np.max(stack, axis=0))
+        made.append(Curve(label, values, SERIES[number % len(SERIES)], number in dashed, band))
+    return tuple(made)
+
+
+def angle_figure(
+    turn: Turn, figure_id: str, title: str, caption: str, *panels: Panel, mark: bool = True,
+    crank: Array | None = None,
+) -> Figure | None:  # fmt: skip
+    """An angle figure of the panels that have curves; None when none has."""
+    full = tuple(panel for panel in panels if panel.curves)
+    if not full:
+        return None
+    return AngleFigure(
+        figure_id, title, caption, turn.crank if crank is None else crank, full, turn.gear_ratio,
+        strokes=turn.gear_ratio == 2.0 and turn.torque is not None,
+        worst=float(turn.crank[turn.worst]) if mark else None,
+    )  # fmt: skip

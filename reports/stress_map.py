@@ -1,0 +1,136 @@
+"""The map of a turn as pictures: greatest stress under the contour, in its place and unrolled."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ResultError
+from camwright.reports.figure_svg import COLOURS, FIGURE_WIDTH, style
+
+FILE = "5_envelope.npz"
+MAPS = (("von_mises_MPa", "von Mises"), ("shear_range_MPa", "range of shear along the surface"))
+_ROWS = 200
+
+
+def read_envelope(path: Path, load_case: str) -> dict[str, Array]:
+    """Arrays of one load case from ``5_envelope.npz``, by their names without the load case.
+
+    Raises
+    ------
+    ResultError
+        If the file cannot be read or lacks the load case.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as entry:
+            found = {
+                name.removeprefix(f"{load_case}."): entry[name]
+                for name in entry.files
+                if name.startswith(f"{load_case}.")
+            }
+    except (OSError, ValueError, EOFError) as error:
+        raise ResultError(f"{path}: {error}") from None
+    missing = {"cam_angle_deg", "depth_mm", *(name for name, _ in MAPS)} - set(found)
+    if missing:
+        raise ResultError(f"{path}: no {', '.join(sorted(missing))} for load case {load_case}")
+    return found
+
+
+def unrolled(values: Array, depth: Array, levels: Array) -> Array:
+    """Values (n, k) at depths (n, k) of each station, at common levels (m,): (m, n).
+
+    Not a number below what a station knows.
+    """
+    rows = [np.interp(levels, at, of, right=np.nan) for of, at in zip(values, depth, strict=True)]
+    return np.stack(rows, axis=1)
+
+
+def drawn(envelope: dict[str, Array]) -> bytes:
+    """PNG of the maps above one another: cam angle across, depth downwards."""
+    angle, depth = envelope["cam_angle_deg"], envelope["depth_mm"]
+    levels = np.linspace(0.0, float(np.nanmax(depth)), _ROWS)
+    with style("envelope"):
+        canvas = Figure(figsize=(FIGURE_WIDTH, 3.6), layout="constrained")
+        for ax, (name, title) in zip(canvas.subplots(2, sharex=True), MAPS, strict=True):
+            shown = ax.pcolormesh(
+                angle, levels, unrolled(envelope[name], depth, levels), cmap="viridis",
+                shading="nearest", vmin=0.0, rasterized=True,
+            )  # fmt: skip
+            ax.invert_yaxis()
+            ax.set_ylabel("depth, mm")
+            ax.set_title(title, fontsize=9, loc="left")
+            canvas.colorbar(shown, ax=ax, label="MPa", pad=0.01)
+        ax.set_xlabel("cam angle, deg")
+        ax.set_xticks(np.arange(0, 361, 45))
+        return _png(canvas)
+
+
+def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Array) -> bytes:
+    """PNG of the map of von Mises stress in its place along the contour, depths enlarged.
+
+    The contour (2, n), mm, and its outward normals (2, n) belong to cam angles (n,), deg.
+    """
+    at = envelope["cam_angle_deg"]
+    place, up = (_between(at, angle, part) for part in (contour, normal))
+    depth, values = envelope["depth_mm"], envelope["von_mises_MPa"]
+    radius = np.hypot(*place)
+    scale = _enlarged(0.25 * float(radius.min()) / float(np.nanmax(depth)))
+    band = place[:, :, None] - up[:, :, None] * scale * depth
+    closed, shown = (np.concatenate([v, v[..., :1, :]], axis=-2) for v in (band, values))
+    found = worst(envelope, "von_mises_MPa")
+    station = int(np.argmin(np.abs(at - found[1])))
+    with style("envelope-around"):
+        canvas = Figure(figsize=(FIGURE_WIDTH, 4.7), layout="constrained")
+        ax = canvas.add_subplot()
+        mesh = ax.pcolormesh(
+            *closed, shown, cmap="viridis", shading="gouraud", vmin=0.0, rasterized=True
+        )
+        ax.plot(*closed[:, :, 0], color=COLOURS["ink"], linewidth=0.8)
+        for mark in range(0, 360, 45):
+            here = int(np.argmin(np.abs(at - mark)))
+            x, y = place[:, here] + 0.09 * radius.max() * up[:, here]
+            ax.text(x, y, f"{mark}°", ha="center", va="center", fontsize=8, color=COLOURS["muted"])
+        x, y = place[:, station] - scale * found[2] * up[:, station]
+        ax.annotate(
+            f"{found[0]:.4g} MPa\nat {found[1]:g}°, {found[2]:.2g} mm deep",
+            (x, y), (0.0, 0.0), ha="center", va="center",
+            arrowprops={"arrowstyle": "-", "color": COLOURS["ink"], "linewidth": 0.8},
+        )  # fmt: skip
+        far = 0.15 * radius.max()
+        span = [(part.min() - far, part.max() + far) for part in place]
+        ax.set(aspect="equal", xlabel="x, mm", ylabel="y, mm", xlim=span[0], ylim=span[1])
+        ax.set_title(f"depths drawn {scale:g} times as large", fontsize=8.5, loc="left")
+        canvas.colorbar(mesh, ax=ax, label="greatest von Mises stress of the turn, MPa", pad=0.01)
+        return _png(canvas)
+
+
+def _between(at: Array, angle: Array, values: Array) -> Array:
+    """Values (2, n) at angles (n,), deg, of one turn, at other angles: (2, m)."""
+    return np.stack([np.interp(at, angle, part, period=360.0) for part in values])
+
+
+def _enlarged(wanted: float) -> float:
+    """The round number next below: 1, 2 or 5 times a power of ten."""
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step for step in (1.0, 2.0, 5.0) if step * power <= wanted) * power)
+
+
+def _png(canvas: Figure) -> bytes:
+    stream = io.BytesIO()
+    canvas.savefig(stream, format="png", dpi=150, facecolor="white", metadata={"Software": None})
+    return stream.getvalue()
+
+
+def worst(envelope: dict[str, Array], name: str) -> tuple[float, float, float]:
+    """Greatest value of a map, MPa, with its cam angle in deg and depth in mm."""
+    values = envelope[name]
+    station, level = np.unravel_index(int(np.nanargmax(values)), values.shape)
+    return (
+        float(values[station, level]),
+        float(envelope["cam_angle_deg"][station]),
+        float(envelope["depth_mm"][station, level]),
+    )

@@ -1,0 +1,125 @@
+"""The verdict in plain sentences, drawn from the checks of the final trial."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from camwright.reports.report_tables import check_rows, sorted_checks, utilisation, words
+
+Check = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the run decided.
+
+    `sentence` counts the checks, `governing` describes the one nearest to or farthest beyond
+    its limit, `binding` are titles of required checks that do not hold, `missing` of those that
+    could not be evaluated, `stopped` says why the trials ended, clause by clause.
+    """
+
+    passed: bool
+    sentence: str
+    governing: str
+    binding: tuple[str, ...]
+    stopped: tuple[str, ...]
+    missing: tuple[str, ...] = ()
+
+    @property
+    def word(self) -> str:
+        return "PASS" if self.passed else "FAIL"
+
+
+def verdict(said: str, checks: Sequence[Check], binding: Sequence[str], stopped: str) -> Verdict:
+    """The verdict in words.
+
+    Parameters
+    ----------
+    said : str             what the run recorded, "pass" or "fail"
+    checks : sequence      records of the final trial
+    binding : sequence     ids of the checks that bind
+    stopped : str          why there are no more trials
+
+    A pass needs the recorded word, at least one check, and no required check that fails or is
+    not evaluated.
+    """
+    required = [c for c in checks if c.get("must_have", True)]
+    failed = [c for c in required if c["status"] == "fail"]
+    missing = [c for c in required if c["status"] == "not_evaluated"]
+    passed = said == "pass" and bool(checks) and not failed and not missing
+    titles = {str(c["id"]): str(c["title"]) for c in checks}
+    unknown = {str(c["id"]): str(c["title"]) for c in missing}
+    clauses = (clause for clause in stopped.split("; ") if clause)
+    return Verdict(
+        passed,
+        _sentence(checks, required, failed, missing),
+        governing(checks),
+        tuple(titles.get(n, words(n)) for n in map(str, binding) if n not in unknown),
+        tuple(clause for clause in clauses if not _names_all(clause, unknown.values())),
+        tuple(unknown.values()),
+    )
+
+
+def _names_all(clause: str, titles: Collection[str]) -> bool:
+    """Whether a clause only lists what is listed already."""
+    return len(titles) > 1 and all(title in clause for title in titles)
+
+
+def _sentence(
+    checks: Sequence[Check], required: Sequence[Check], failed: Sequence[Check],
+    missing: Sequence[Check],
+) -> str:  # fmt: skip
+    if not checks:
+        return "No check was evaluated, and what is not evaluated does not pass."
+    held = sum(c["status"] == "pass" for c in required)
+    parts = [f"{held} of {_count(required, 'required check')} {_verb(held, 'holds', 'hold')}"]
+    if failed:
+        parts.append(f"{len(failed)} {_verb(len(failed), 'fails', 'fail')}")
+    if missing:
+        parts.append(f"{len(missing)} could not be evaluated, which counts as failing")
+    waived = [c for c in required if c["status"] == "waived"]
+    if waived:
+        parts.append(f"{len(waived)} {_verb(len(waived), 'is', 'are')} waived")
+    optional = [c for c in checks if not c.get("must_have", True)]
+    exceeded = sum(c["status"] == "fail" for c in optional)
+    unknown = sum(c["status"] == "not_evaluated" for c in optional)
+    sentence = ", ".join(parts) + "."
+    if exceeded or unknown:
+        told = [f"{exceeded} beyond {_verb(exceeded, 'its', 'their')} limit"] if exceeded else []
+        told += [f"{unknown} not evaluated"] if unknown else []
+        sentence += f" Of {_count(optional, 'optional check')}: {', '.join(told)}."
+    return sentence
+
+
+def governing(checks: Sequence[Check]) -> str:
+    """The required check of greatest utilisation, in words; empty when none is evaluated."""
+    required = [c for c in sorted_checks(checks) if c.get("must_have", True)]
+    open_ones = [c for c in required if c["status"] in ("fail", "pass")]
+    known = [c for c in open_ones if utilisation(c) is not None]
+    if not known:
+        return ""
+    row = check_rows([max(known, key=lambda c: utilisation(c) or 0.0)])[0]
+    place = f", load case {row.load_case}" if row.load_case else ""
+    angle = f", cam angle {row.where}" if row.where else ""
+    return (
+        f"{row.title}{place}{angle}: {row.demand} where the limit is {row.limit}"
+        f" (utilisation {row.utilisation})."
+    )
+
+
+def governing_load_case(checks: Sequence[Check], names: Sequence[str]) -> str:
+    """The load case to draw: that of the governing check, else the first."""
+    for check in sorted_checks(checks):
+        if check["status"] in ("fail", "pass") and check.get("load_case") in names:
+            return str(check["load_case"])
+    return names[0]
+
+
+def _count(items: Sequence[Any], one: str) -> str:
+    return f"{len(items)} {one}{'' if len(items) == 1 else 's'}"
+
+
+def _verb(count: int, one: str, many: str) -> str:
+    return one if count == 1 else many

@@ -1,0 +1,171 @@
+"""The order of the packages: imports point down, and every module named as text is there."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import re
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+FOLDERS = ("geometry", "meshes", "pipeline", "reports")
+# Lowest first; a module imports only from its own package and from those above it in this list.
+ORDER = (
+    "geometry",
+    "meshes",
+    "pipeline.base",
+    "pipeline.engine",
+    "pipeline.contact.elasticity",
+    "pipeline.contact",
+    "pipeline.follower",
+    "pipeline.case",
+    "pipeline.case.cards",
+    "pipeline.cycle",
+    "pipeline.checks",
+    "pipeline.smoothing",
+    "pipeline.results",
+    "pipeline",
+    "pipeline.studies",
+    "pipeline.studies.redesign",
+    "pipeline.studies.papers",
+    "reports",
+    "pipeline.commands",
+    "pipeline.cli",
+)
+# Packages of one floor: the case reads its cards, and a card is a table of a case.
+RANK = {name: place for place, name in enumerate(ORDER)} | {
+    "pipeline.case.cards": ORDER.index("pipeline.case"),
+    "pipeline.studies.redesign": ORDER.index("pipeline.studies"),
+    "pipeline.studies.papers": ORDER.index("pipeline.studies"),
+}
+FLAT_MAX, PACKAGE_MAX = 6, 34
+NAMED_AS_TEXT = re.compile(r"(?:camwright\.)?(?:geometry|meshes|pipeline|reports)(?:\.[a-z_0-9]+)+")
+
+
+@cache
+def modules() -> dict[str, Path]:
+    """Files by dotted name, without the import name before it."""
+    found = {}
+    for folder in FOLDERS:
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            parts = path.relative_to(ROOT).with_suffix("").parts
+            found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
+
+
+def package(name: str) -> str:
+    """The package of a module as `ORDER` has it."""
+    known = [each for each in ORDER if name == each or name.startswith(f"{each}.")]
+    return max(known, key=len)
+
+
+@cache
+def imports() -> frozenset[tuple[str, str, int]]:
+    """Importer, imported and line; those in functions and type blocks included."""
+    found = set()
+    for name, path in modules().items():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            for target in _targets(node):
+                if target in modules() and target != name:
+                    found.add((name, target, node.lineno))  # type: ignore[attr-defined]
+    return frozenset(found)
+
+
+def _targets(node: ast.AST) -> Iterator[str]:
+    if isinstance(node, ast.Import):
+        named = [alias.name for alias in node.names]
+    elif isinstance(node, ast.ImportFrom):
+        assert node.level == 0, "imports are absolute"
+        whole = [f"{node.module}.{alias.name}" for alias in node.names]
+        named = [each if _own(each) in modules() else str(node.module) for each in whole]
+    else:
+        return
+    for each in named:
+        assert each.split(".")[0] not in FOLDERS, f"{each}: the import name is camwright"
+        yield _own(each)
+
+
+def _own(name: str) -> str:
+    return name.removeprefix("camwright.")
+
+
+def test_no_import_points_upward() -> None:
+    upward = [
+        f"{name}, line {line}: {target}"
+        for name, target, line in sorted(imports())
+        if RANK[package(name)] < RANK[package(target)]
+    ]
+    assert upward == []
+
+
+def test_reports_read_results_and_draw_nothing_else() -> None:
+    below = ("geometry", "pipeline.base", "pipeline.results", "reports")
+    other = {(n, t) for n, t, _ in imports() if package(n) == "reports" and package(t) not in below}
+    assert sorted(other) == []
+
+
+def test_no_circle_of_modules() -> None:
+    left = {name: set() for name in modules()}
+    for name, target, _ in imports():
+        left[name].add(target)
+    while free := [name for name, needs in left.items() if not needs]:
+        for name in free:
+            del left[name]
+        for needs in left.values():
+            needs.difference_update(free)
+    assert sorted(left) == []
+
+
+def test_every_module_is_in_a_known_package() -> None:
+    for name, path in modules().items():
+        assert package(name) == name or path.name != "__init__.py", f"{name} is not in ORDER"
+
+
+def test_no_file_name_stands_twice() -> None:
+    names = Counter(path.name for path in modules().values() if path.name != "__init__.py")
+    assert [name for name, count in names.items() if count > 1] == []
+
+
+@pytest.mark.parametrize("name", ORDER)
+def test_a_package_can_be_overlooked(name: str) -> None:
+    own = [each for each in modules() if package(each) == name and each != name]
+    assert len(own) <= (FLAT_MAX if name == "pipeline" else PACKAGE_MAX), own
+
+
+def test_every_module_named_as_text_is_there() -> None:
+    """A name in a string or a docstring that no longer resolves guards nothing."""
+    wrong = []
+    places = [ROOT / "tests", ROOT / "benchmarks", *(ROOT / folder for folder in FOLDERS)]
+    for path in sorted(file for place in places for file in place.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                wrong += [
+                    f"{path.relative_to(ROOT)}, line {node.lineno}: {text}"
+                    for text in NAMED_AS_TEXT.findall(node.value)
+                    if not _resolves(text)
+                ]
+    assert wrong == []
+
+
+def _resolves(text: str) -> bool:
+    """Whether a dotted name is a module, or a name in one."""
+    name = _own(text)
+    head, _, tail = name.rpartition(".")
+    if name in modules():
+        return True
+    return head in modules() and bool(
+        re.search(rf"^(?:class |def )?{tail}\b", modules()[head].read_text(), re.MULTILINE)
+    )
+
+
+def test_installing_puts_one_name_into_an_environment() -> None:
+    assert importlib.util.find_spec("camwright") is not None
+    elsewhere = [place for place in sys.path if Path(place or ".").resolve() != ROOT]
+    for folder in FOLDERS:
+        assert not any((Path(place) / folder / "__init__.py").is_file() for place in elsewhere)
