@@ -21,16 +21,12 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.certificate import certificate_point, solve_pair
-from camwright.pipeline.contact.contact_pair import (
-    ContactPair,
-    CycleBodies,
-    elastic_body,
-    pair_history,
-)
+from camwright.pipeline.contact.contact_pair import ContactPair, elastic_body
 from camwright.pipeline.contact.contact_patch import contact_patch
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import RollerBody
 from camwright.pipeline.contact.full_contact import ContactSide, solve_contact
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 
 POSITIONS = 720
 ANGLES = 8
@@ -79,7 +75,7 @@ def main() -> None:
     pair, theta, force = balancing_cam()
     _, template = cpu(lambda: contact_patch(0.3))
     bodies, meshing = cpu(lambda: CycleBodies.meshed(pair))
-    history, cycle = cpu(lambda: pair_history(pair, bodies, theta, force))
+    history, cycle = cpu(lambda: two_scale_history(pair, bodies, theta, force))
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     spread, full, given = 0.0, [], []
     for k in SAMPLED:

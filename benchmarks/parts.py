@@ -15,11 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case_file import load_case_file
-from camwright.pipeline.cycle.cycle import finished
-from camwright.pipeline.cycle.turn import turn
-from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.cycle.part_loads import part_loads
+from camwright.pipeline.cycle.turn import Turn, turn
+from camwright.pipeline.smoothing.required_lift import cam_lift
 
 ROOT = Path(__file__).resolve().parent.parent
 POSITIONS = 720
@@ -40,19 +41,18 @@ def seconds(work: Callable[[], object]) -> float:
 def main() -> int:
     positions = int(sys.argv[1]) if len(sys.argv) > 1 else POSITIONS
     case = load_case_file(ROOT / "cases" / "gx120.toml")
-    name, torques = case.load_cases[0].name, road.engine_torques(case)
-    lift = road.designed_lift(case, torques, Smoother.from_case(case.smoothing))
-    contour = road.cam_contour(case, lift)
+    machine, torques = machines(case)[0], engine_torques(case)
+    contour = case.contour(cam_lift(case, torques))
     random = np.random.default_rng(0)
     matrix, right = random.normal(size=(1000, 1000)), random.normal(size=1000)
     unit = seconds(lambda: np.linalg.solve(matrix, right))
 
-    def turned() -> road.Turn:
-        return turn(case, contour, torques[name], name, positions)
+    def turned() -> Turn:
+        return turn(machine, contour, torques[machine.load_case], positions)
 
-    given = turned()
-    contact = road.unknown_contact(given)
-    loads, parts = seconds(turned), seconds(lambda: finished(case, contour, given, contact))
+    loaded = turned()
+    loads = seconds(turned)
+    parts = seconds(lambda: part_loads(loaded, contour, machine.contact_width))
     ratio = (loads + parts) / unit
     print(f"{positions} positions: loads and guides {loads:.3f} s, parts {parts:.3f} s")
     print(f"{ratio:.0f} dense solutions of {1e3 * unit:.1f} ms, budget {BUDGET:.0f}")

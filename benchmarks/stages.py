@@ -22,7 +22,7 @@ def main() -> None:
         summary = run_case(case, out, positions=positions, progress=Silent(), present=build)
     print(f"{case.name}, {positions} positions, {summary['trials']} trials")
     for stage, seconds in summary["timings_s"].items():
-        print(f"{stage:>12} {seconds:8.2f} s")
+        print(f"{stage:>18} {seconds:8.2f} s")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import Delaunay
 
-RATE, PRELOAD, PITCH_BASE, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044
+RATE, PRELOAD, PRIME_RADIUS, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044
 MODULUS, MASS, SPEED = 113.2e9, 0.175, 78.54
 BORE, HUB = 0.010, 0.0025
 
@@ -40,7 +40,7 @@ preload = "242 N"
 travel_max = "45 mm"
 
 [cam]
-pitch_base_radius = "50 mm"
+prime_radius = "50 mm"
 offset = "0 mm"
 width = "5 mm"
 bore_radius = "10 mm"
@@ -160,7 +160,7 @@ def turn(positions: int) -> dict[str, np.ndarray]:
 
 def shape(t: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Pitch curve, contour and curvature of the synthetic lift."""
-    rho, d1, d2, theta = PITCH_BASE + t["lift"], t["d1"], t["d2"], t["theta"]
+    rho, d1, d2, theta = PRIME_RADIUS + t["lift"], t["d1"], t["d2"], t["theta"]
     speed = np.hypot(rho, d1)
     kappa = (rho**2 + 2 * d1**2 - rho * d2) / speed**3
     alpha = np.arctan2(d1, rho)
@@ -264,7 +264,7 @@ def checks() -> list[dict[str, Any]]:
               source="s0 = C0/P0, ISO 76"),
         check(id="contact_force_margin", title="Least contact force", demand=-0.1, limit=0.2,
               unit="-", utilisation=None, status="fail", sense="at_least", must_have=False),
-        check(id="bush_pv_B", title="Pressure times speed in guide B", demand=1.9, limit=0.1,
+        check(id="guide_pv_B", title="PV value in guide B", demand=1.9, limit=0.1,
               unit="MPa m/s", utilisation=19.0, status="waived",
               waiver="prototype, J. Silva, 2026-01-15"),
         check(id="torque_reduction", title="Torque ripple removed", demand=0.53, limit=0.4,

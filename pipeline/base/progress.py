@@ -46,6 +46,9 @@ class Silent:
     def note(self, text: str) -> None: ...
 
 
+SILENT = Silent()
+
+
 class Lines:
     """Plain lines, one a stage and one every ten seconds with the time that remains."""
 

@@ -1,10 +1,27 @@
-"""Quantities of an input: SI floats read from text with a unit, within bounds."""
+"""Quantities of an input: SI floats read from text with a unit, within bounds.
+
+A bound stands once, beside the field it belongs to: a case file's text is read by it, and a value
+built in Python is held to it.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cache
 from math import inf, isfinite
-from typing import TYPE_CHECKING, Annotated, Any
+from types import MappingProxyType, UnionType
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    ClassVar,
+    Literal,
+    NamedTuple,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
@@ -16,9 +33,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class In:
-    """Marks a float field: read from a unit string into SI, bounds in the unit shown.
+    """Marks a float field: written with a unit, held in SI; bounds in the unit written.
 
-    With no unit it is a pure number, written bare.
+    Without a unit it is a pure number, written bare.
     """
 
     unit: str = ""
@@ -28,21 +45,21 @@ class In:
     at_most: float = inf
 
     def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
+        self, source: type[float], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         from pydantic_core import PydanticCustomError, core_schema
 
-        def read(given: object) -> float:
+        def read(value: object) -> float:
             try:
-                return self.read(given)
+                return self.read(value)
             except InputError as error:
                 limit = {"limit": error.limit}
                 raise PydanticCustomError("limit", "must be {limit}", limit) from None
 
         return core_schema.no_info_plain_validator_function(read)
 
-    def read(self, given: object) -> float:
-        """The value in SI.
+    def read(self, value: object) -> float:
+        """SI value of a number as a case file has it.
 
         Raises
         ------
@@ -50,32 +67,177 @@ class In:
             If it is no finite number with a unit of this dimension, or out of bounds; the field
             is left empty.
         """
-        value = self._number(given)
+        number = self._number(value)
+        if not self.holds(number):
+            raise InputError("", value, self.limit)
+        return number
+
+    def require(self, field: str, value: object) -> None:
+        """Refuse a value in SI that is out of bounds.
+
+        Raises
+        ------
+        InputError
+            Naming the field, the value in the unit written, and the bounds; NaN included.
+        """
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise InputError(field, _text(value), "a number in SI")
+        if not self.holds(value):
+            shown = units.shown(value, self.unit) if self.unit and isfinite(value) else value
+            raise InputError(field, shown, self.limit)
+
+    def holds(self, value: float) -> bool:
+        """Whether a value in SI is finite and within the bounds."""
+        low, high, least, most = self._bounds
+        return isfinite(value) and low < value < high and least <= value <= most
+
+    @property
+    def limit(self) -> str:
+        """The bounds in words, such as ``> 0 and <= 1e+04 mm``."""
         shown = [f"> {self.above:g}"] if self.above > -inf else []
         shown += [f">= {self.at_least:g}"] if self.at_least > -inf else []
         shown += [f"< {self.below:g}"] if self.below < inf else []
         shown += [f"<= {self.at_most:g}"] if self.at_most < inf else []
-        inside = self._si(self.above) < value < self._si(self.below) and self._si(
-            self.at_least
-        ) <= value <= self._si(self.at_most)
-        if not inside:
-            raise InputError("", given, f"{' and '.join(shown)} {self.unit}".rstrip())
-        return value
+        return f"{' and '.join(shown) or 'finite'} {self.unit}".rstrip()
 
-    def _number(self, given: object) -> float:
+    def _number(self, value: object) -> float:
         if self.unit:
-            return units.parse(given, self.unit, "")
-        if isinstance(given, bool) or not isinstance(given, (int, float)):
-            raise InputError("", given, "a number without a unit")
-        value = float(given) if abs(given) < 1e308 else inf
-        if not isfinite(value):
-            raise InputError("", given, "finite")
+            return units.parse(value, self.unit, "")
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise InputError("", value, "a number without a unit")
+        number = float(value) if abs(value) < 1e308 else inf
+        if not isfinite(number):
+            raise InputError("", value, "finite")
+        return number
+
+    @property
+    def _bounds(self) -> tuple[float, float, float, float]:
+        """Above, below, least and greatest in SI."""
+        return _bounds_in_si(self)
+
+
+@cache
+def _bounds_in_si(quantity: In) -> tuple[float, float, float, float]:
+    def si(bound: float) -> float:
+        if not isfinite(bound) or bound == 0.0 or not quantity.unit:
+            return bound
+        return units.parse(f"{bound!r} {quantity.unit}", quantity.unit, "")
+
+    return si(quantity.above), si(quantity.below), si(quantity.at_least), si(quantity.at_most)
+
+
+@dataclass(frozen=True)
+class Count:
+    """Marks an int field: a whole number within bounds."""
+
+    at_least: int
+    at_most: int
+
+    def __get_pydantic_core_schema__(
+        self, source: type[int], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        from pydantic_core import core_schema
+
+        return core_schema.int_schema(ge=self.at_least, le=self.at_most, strict=True)
+
+    def read(self, value: object) -> int:
+        """A whole number as a case file has it, as `In.read` does."""
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise InputError("", value, "a whole number")
+        self.require("", value)
         return value
 
-    def _si(self, bound: float) -> float:
-        if not isfinite(bound) or not self.unit:
-            return bound
-        return units.parse(f"{bound!r} {self.unit}", self.unit, "")
+    def require(self, field: str, value: object) -> None:
+        """Refuse a value out of bounds, as `In.require` does."""
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise InputError(field, _text(value), "a whole number")
+        if not self.at_least <= value <= self.at_most:
+            raise InputError(field, value, f">= {self.at_least} and <= {self.at_most}")
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """Words that a field may hold."""
+
+    words: tuple[str, ...]
+
+    def require(self, field: str, value: object) -> None:
+        """Refuse what is none of the words."""
+        if value not in self.words:
+            raise InputError(field, _text(value), " or ".join(f'"{word}"' for word in self.words))
+
+
+def _text(value: object) -> str:
+    return "missing" if value is None else str(value)
+
+
+class Part:
+    """Base of the frozen dataclasses that describe a part of the machine, values in SI.
+
+    A part is a table of a case file and a value of the physics at once: its annotations (`In`,
+    `Count`) give unit and bounds of both. `table` names it in messages; the fields of `labels`
+    are set by the reader and stand in no table.
+
+    Raises
+    ------
+    InputError
+        On making, for the first value out of its bounds; NaN included.
+    """
+
+    table: ClassVar[str] = ""
+    labels: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        for name, rule in _rules_of(type(self)).items():
+            value = getattr(self, name)
+            if value is not None or not rule.optional:
+                rule.mark.require(f"{self.table}.{name}".lstrip("."), value)
+
+
+class _Rule(NamedTuple):
+    """What a field may hold, besides None where it is optional."""
+
+    mark: In | Count | OneOf
+    optional: bool = False
+
+
+_RULES: dict[type[Part], Mapping[str, _Rule]] = {}  # read once
+
+
+def _rules_of(part: type[Part]) -> Mapping[str, _Rule]:
+    if part not in _RULES:
+        hints = get_type_hints(part, include_extras=True)
+        rules = {
+            field.name: rule
+            for field in fields(part)  # type: ignore[arg-type]
+            if (rule := _rule_of(hints[field.name])) is not None
+        }
+        _RULES[part] = MappingProxyType(rules)
+    return _RULES[part]
+
+
+def _rule_of(hint: object) -> _Rule | None:
+    """The rule of a type hint; looks through ``X | None``, not into tuples."""
+    for mark in getattr(hint, "__metadata__", ()):
+        if isinstance(mark, (In, Count)):
+            return _Rule(mark)
+    if get_origin(hint) is Literal:
+        return _Rule(OneOf(get_args(hint)))
+    if get_origin(hint) in (Union, UnionType):
+        for inner in get_args(hint):
+            rule = _rule_of(inner)
+            if rule is not None:
+                return rule._replace(optional=True)
+    return None
+
+
+def marks_of(part: type[Part]) -> Mapping[str, In | Count]:
+    """Units and bounds of a part's number fields by name."""
+    return {
+        name: rule.mark
+        for name, rule in _rules_of(part).items()
+        if isinstance(rule.mark, (In, Count))
+    }
 
 
 Length = Annotated[float, In("mm", above=0, at_most=10_000)]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from decimal import Decimal, InvalidOperation
 from functools import lru_cache
-from math import isfinite
+from math import degrees, isfinite
 from typing import Any
 
 from camwright.geometry.errors import InputError
@@ -155,3 +155,30 @@ def column(name: str, unit: str) -> str:
         for part in unit.split("/")
     )
     return "_".join([name, above, *(word for part in below for word in ("per", part))])
+
+
+COUNTS = ("crossings", "checks", "waivers")
+_PURE = ("", "-", "degC", *COUNTS)  # a Celsius temperature is a number of degrees
+_ZERO_CELSIUS = 273.15
+
+
+def in_unit(value: float, unit: str) -> float:
+    """A value in SI in the unit of a record; also ``%``, ``-``, ``degC`` and counted things."""
+    if unit in _PURE:
+        return value
+    if unit == "deg":
+        return degrees(value)
+    if unit == "%":
+        return 100.0 * value
+    return value / factor(unit)
+
+
+def celsius(temperature: float) -> float:
+    """Celsius temperature, degC, of a temperature in K."""
+    return temperature - _ZERO_CELSIUS
+
+
+def shown(value: float, unit: str, digits: int = 4) -> str:
+    """A value in SI as a reader sees it, such as ``12.5 mm``."""
+    number = f"{in_unit(value, unit):.{digits}g}"
+    return f"{number} {unit}" if unit not in ("", "-") else number

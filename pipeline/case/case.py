@@ -4,29 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, PrivateAttr, ValidationError
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
+from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import hash_inputs
-from camwright.pipeline.case.engine_section import Crankshaft, Engine, engine_files
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.case.engine_section import Engine, engine_files
 from camwright.pipeline.case.error_text import first_error
 from camwright.pipeline.case.lift_section import GivenLift, LiftTable
-from camwright.pipeline.case.parts_section import (
-    Cam,
-    Camshaft,
-    Face,
-    Follower,
-    Guides,
-    Material,
-    Oil,
-    Roller,
-    Spring,
-    ValveTrain,
-)
+from camwright.pipeline.case.limits import TOOL_RADIUS, Limits
+from camwright.pipeline.case.parts_section import Follower, ValveTrain
 from camwright.pipeline.case.requirements_section import (
-    Limits,
     LoadCase,
     Mechanism,
     Smoothing,
@@ -34,11 +26,22 @@ from camwright.pipeline.case.requirements_section import (
     Tolerances,
     Waiver,
 )
-from camwright.pipeline.case.section import Name, Section, Text
-from camwright.pipeline.case.toml_text import to_toml
-from camwright.pipeline.case.workshop_section import FORM_TOLERANCE, Shop, ShopOrder
+from camwright.pipeline.case.section import Name, Section, Table, Text, named
+from camwright.pipeline.case.toml_text import tables_of, to_toml
+from camwright.pipeline.case.workshop_section import FORM_TOLERANCE, Workshop, WorkshopOrder
+from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.contact.oil_film import Lubricant
+from camwright.pipeline.engine.crankshaft import Crankshaft
+from camwright.pipeline.follower.camshaft_loads import Camshaft
+from camwright.pipeline.follower.flat_face import FlatFace
+from camwright.pipeline.follower.guide_reactions import GuidePair
+from camwright.pipeline.follower.roller import Roller
+from camwright.pipeline.follower.spring import Spring
 
 INPUTS = "inputs"
+Materials = Annotated[
+    dict[Name, Table[Material]], Field(min_length=1, max_length=64), AfterValidator(named)
+]
 
 
 class Case(Section):
@@ -49,23 +52,23 @@ class Case(Section):
     title: Text = ""
     notes: Text = ""
     engine: Engine | None = None
-    crankshaft: Crankshaft | None = None
+    crankshaft: Table[Crankshaft] | None = None
     lift: GivenLift | None = None
     mechanism: Mechanism = Mechanism()
-    spring: Spring
-    cam: Cam
-    camshaft: Camshaft | None = None
+    spring: Table[Spring]
+    cam: Table[CamBody]
+    camshaft: Table[Camshaft] | None = None
     valve_train: ValveTrain | None = None
-    roller_given: Annotated[Roller | None, Field(alias="roller")] = None
+    roller_given: Annotated[Table[Roller] | None, Field(alias="roller")] = None
     follower: Follower
-    guides: Guides
-    lubricant: Oil | None = None
-    materials: Annotated[dict[Name, Material], Field(min_length=1, max_length=64)]
+    guides: Table[GuidePair]
+    lubricant: Table[Lubricant] | None = None
+    materials: Materials
     smoothing: Smoothing = Smoothing()
     limits: Limits = Limits()
     solver: Solver = Solver()
     tolerances: Tolerances = Tolerances()
-    shop: Shop = Shop()
+    workshop: Workshop = Workshop()
     waivers: Annotated[tuple[Waiver, ...], Field(strict=False, max_length=64)] = ()
     load_cases: Annotated[
         tuple[LoadCase, ...], Field(alias="load_case", strict=False, min_length=1, max_length=64)
@@ -79,7 +82,15 @@ class Case(Section):
 
         Included files are named as they are kept in a run folder, ``inputs/NAME``.
         """
-        return to_toml(self, {name: kept_as(name) for _, name in includes(self)})
+        return to_toml(self, self._kept)
+
+    def tables(self) -> dict[str, Any]:
+        """The resolved case as the tables of a case file, included files as in `to_toml`."""
+        return tables_of(self, self._kept)
+
+    @property
+    def _kept(self) -> dict[str, str]:
+        return {name: kept_as(name) for _, name in includes(self)}
 
     @property
     def included(self) -> Mapping[str, bytes]:
@@ -99,13 +110,6 @@ class Case(Section):
         except ValidationError as error:
             raise first_error(error, "solver") from None
         return self.model_copy(update={"solver": solver})
-
-    def at(self, load_case: str) -> Case:
-        """The case as one of its load cases has it: with the preload of that state."""
-        own = next(state.preload for state in self.load_cases if state.name == load_case)
-        if own is None:
-            return self
-        return self.model_copy(update={"spring": self.spring.model_copy(update={"preload": own})})
 
     def path(self, name: str) -> Path:
         """Where an included file lies; `name` as the case file has it."""
@@ -129,20 +133,19 @@ class Case(Section):
         return self.roller_given
 
     @property
-    def facing(self) -> Roller | Face:
+    def facing(self) -> Roller | FlatFace:
         """The part of the follower that touches the cam."""
         return self.roller if self.follower.face is None else self.follower.face
 
-    @property
-    def facing_field(self) -> str:
-        """Dotted name of that part's table."""
-        return "roller" if self.follower.face is None else "follower.face"
+    def contour(self, lift: Lift) -> Contour:
+        """Cam contour that moves the follower by a lift."""
+        return self.facing.contour(lift, self.cam)
 
     @property
     def base_circle(self) -> float:
         """Radius of the cam's surface where the lift is zero, m."""
         inset = 0.0 if self.roller_given is None else self.roller_given.radius
-        return self.cam.pitch_base_radius - inset
+        return self.cam.prime_radius - inset
 
     @property
     def contact_radius(self) -> float:
@@ -152,21 +155,17 @@ class Case(Section):
     @property
     def largest_tool(self) -> float | None:
         """Radius of the tool that must fit concave flanks, m: the limit's, else the workshop's."""
-        limit = self.limits.tool_radius
-        return self.shop.tool_radius if limit is None else limit
+        limit = self.limits[TOOL_RADIUS]
+        return self.workshop.tool_radius if limit is None else limit
 
     @property
-    def workshop(self) -> ShopOrder:
+    def workshop_order(self) -> WorkshopOrder:
         """Tables, tool, tolerance band and chord error of the workshop files."""
-        shop = self.shop
+        shop = self.workshop
         tool = self.largest_tool if shop.tool_radius is None else shop.tool_radius
         given = self.cam.profile_tolerance
         band = FORM_TOLERANCE if given is None else given
-        return ShopOrder(shop.table_step, tool, band, shop.chord_error)
-
-    def material(self, name: str) -> Material:
-        """The card of a material that the case names."""
-        return self.materials[name]
+        return WorkshopOrder(shop.table_step, tool, band, shop.chord_error)
 
 
 def includes(case: Case) -> Iterator[tuple[str, str]]:

@@ -8,19 +8,24 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import inside
+from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.cards.card_filling import filled
 from camwright.pipeline.case.case import Case, includes, kept_as
 from camwright.pipeline.case.consistency import check_sections
 from camwright.pipeline.case.error_text import first_error
-from camwright.pipeline.case.given_lift import contour_of, given_lift
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.renamed_keys import with_new_keys
+from camwright.pipeline.case.section import Table, named
 
 CASE_BYTES = 256 * 1024
 INCLUDE_BYTES = 16 * 1024 * 1024
 SCHEMA_VERSION = 1
+_CARD = TypeAdapter(Table[Material])
+_REFUSED = Material(E=1.0, nu=0.0, yield_strength=1.0, density=1.0, source="refused")
 
 
 def load_case_file(path: str | Path) -> Case:
@@ -45,18 +50,30 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
     case._folder = folder
     case._included = MappingProxyType(_read_includes(case, folder))
     if case.lift is not None and case.follower.face is not None:
-        contour_of(case, given_lift(case))  # refuses a face that the contact runs off
+        case.follower.face.contour(given_lift(case), case.cam)  # refuses a face too narrow
     return case
 
 
 def case_of(data: Mapping[str, Any], folder: Path | None = None) -> Case:
     """A case from its tables, cards of `folder` filled in; files it includes are not read."""
+    tables = filled(with_new_keys(data), folder)
     try:
-        case = Case.model_validate(filled(data, folder))
+        case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})
     except ValidationError as error:
         raise first_error(error) from None
     check_sections(case)
     return case
+
+
+def _cards(tables: object) -> dict[str, Material]:
+    """Material cards by name; a card that is refused stands for itself until `Case` refuses it."""
+    found = {}
+    for name, table in tables.items() if isinstance(tables, dict) else ():
+        try:
+            found[name] = _CARD.validate_python(table)
+        except ValidationError:
+            found[name] = _REFUSED
+    return named(found)
 
 
 def _parse_toml(content: str | bytes) -> dict[str, Any]:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cylinder_section import Cylinder
 from camwright.pipeline.case.engine_section import PressureTable, SpeedTable, VoltageTable
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
-from camwright.pipeline.case.parts_section import Cam, Roller
+from camwright.pipeline.case.limits import TOOL_RADIUS
+from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.follower.roller import Roller
 
 if TYPE_CHECKING:
     from camwright.pipeline.case.case import Case
@@ -82,11 +83,11 @@ def _check_road(case: Case) -> None:
 def _check_film(case: Case) -> None:
     if case.lubricant is None or case.lubricant.film == "smooth":
         return
-    names = (case.cam.material, case.facing.material)
+    cards = (case.cam.material, case.facing.material)
     needed = {
         "cam.roughness": case.cam.roughness,
-        f"{case.facing_field}.roughness": case.facing.roughness,
-        **{f"materials.{name}.hardness": case.material(name).hardness for name in names},
+        f"{case.facing.table}.roughness": case.facing.roughness,
+        **{f"materials.{card.name}.hardness": card.hardness for card in cards},
     }
     for field, value in needed.items():
         if value is None:
@@ -100,8 +101,8 @@ def _check_geometry(case: Case) -> None:
     _require(
         "cam.offset",
         cam.offset,
-        abs(cam.offset) < cam.pitch_base_radius,
-        "smaller than cam.pitch_base_radius",
+        abs(cam.offset) < cam.prime_radius,
+        "smaller than cam.prime_radius",
     )
     _require(
         "cam.bore_radius",
@@ -109,9 +110,9 @@ def _check_geometry(case: Case) -> None:
         cam.bore_radius < surface,
         f"< {surface:.6g} m, the base circle of the surface",
     )
-    tool, largest = case.shop.tool_radius, case.limits.tool_radius
+    tool, largest = case.workshop.tool_radius, case.limits[TOOL_RADIUS]
     if tool is not None and largest is not None:
-        _require("shop.tool_radius", tool, tool <= largest, "<= limits.tool_radius")
+        _require("workshop.tool_radius", tool, tool <= largest, "<= limits.tool_radius")
     if cam.keyway is not None:
         reach = cam.bore_radius + cam.keyway.depth
         _require(
@@ -126,10 +127,6 @@ def _check_geometry(case: Case) -> None:
             cam.keyway.width < 1.8 * cam.bore_radius,
             "< 1.8 bore radii",
         )
-    guides = case.guides
-    reach = 0.5 * (guides.a.length + guides.b.length)
-    apart = guides.spacing > reach
-    _require("guides.spacing", guides.spacing, apart, f"> {reach:.6g} m, half of both lengths")
     for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
         _require(
             f"guides.{side}.diameter",
@@ -139,9 +136,9 @@ def _check_geometry(case: Case) -> None:
         )
 
 
-def _check_roller(cam: Cam, roller: Roller) -> None:
+def _check_roller(cam: CamBody, roller: Roller) -> None:
     radius, width = roller.radius, roller.width
-    _require("roller.radius", radius, radius < cam.pitch_base_radius, "< cam.pitch_base_radius")
+    _require("roller.radius", radius, radius < cam.prime_radius, "< cam.prime_radius")
     _require("roller.hub_radius", roller.hub_radius, roller.hub_radius < radius, "< roller.radius")
     half = "< half of roller.width"
     _require("roller.chamfer", roller.chamfer, 2 * roller.chamfer < width, half)
@@ -155,29 +152,7 @@ def _require(field: str, value: float, holds: bool, limit: str) -> None:
         raise InputError(field, f"{value:.6g} m", limit)
 
 
-def _shaft_materials(case: Case) -> Iterator[tuple[str, str]]:
-    """Field and name of every material of the camshaft and its gear."""
-    shaft = case.camshaft
-    if shaft is not None and shaft.material is not None:
-        yield "camshaft.material", shaft.material
-    if shaft is not None and shaft.gear is not None:
-        yield "camshaft.gear.material", shaft.gear.material
-
-
 def _check_names(case: Case) -> None:
-    known = ", ".join(sorted(case.materials))
-    pin = None if case.roller_given is None else case.roller_given.pin
-    for field, name in (
-        ("cam.material", case.cam.material),
-        (f"{case.facing_field}.material", case.facing.material),
-        ("follower.stem_material", case.follower.stem_material),
-        ("guides.a.material", case.guides.a.material),
-        ("guides.b.material", case.guides.b.material),
-        *(() if pin is None else (("roller.pin.material", pin.material),)),
-        *_shaft_materials(case),
-    ):
-        if name not in case.materials:
-            raise InputError(field, name, f"one of the materials: {known}")
     seen: set[str] = set()
     for k, load_case in enumerate(case.load_cases):
         if load_case.name.casefold() in seen:

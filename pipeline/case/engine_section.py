@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Angle, GasPressure, In, Share
 from camwright.pipeline.case.cylinder_section import CrankDrive, Cylinder, EngineKind, TorqueTable
-from camwright.pipeline.case.section import FileName, Section, Text
+from camwright.pipeline.case.section import FileName, Section
 
 if TYPE_CHECKING:
     from camwright.pipeline.engine.cylinder import CylinderEngine
@@ -120,21 +120,6 @@ Engine = Annotated[
     TorqueTable | Cylinder | PressureTable | SpeedTable | VoltageTable, Field(discriminator="kind")
 ]
 KINDS = ("cylinder", "table", "pressure", "speed", "voltage")
-
-
-class Crankshaft(Section):
-    """What turns with the crank and what it drives; needed for the speed, not for the cam.
-
-    `inertia` is that of the engine with its flywheel, reciprocating masses left out where the
-    engine states them; `mechanism_inertia` that of the turning parts of the mechanism, at the
-    crank. The load follows the speed to the power of `load_exponent`.
-    """
-
-    inertia: Annotated[float, In("kg m^2", above=0, at_most=1e6)]
-    mechanism_inertia: Annotated[float, In("kg m^2", at_least=0, at_most=1e6)] = 0.0
-    load_exponent: Annotated[float, In(at_least=0, at_most=4)] = 0.0
-    measured_speed_std: Annotated[float, In("rad/s", above=0, at_most=1e3)] | None = None
-    source: Text = ""
 
 
 def engine_files(engine: Engine | None) -> Iterator[tuple[str, str]]:

@@ -38,7 +38,9 @@ def first_error(error: ValidationError, section: str = "") -> InputError:
     first, others = found[0], len(found) - 1
     context = dict(first.get("ctx", {}))
     field, value = f"{section}.{_dotted(first['loc'])}".strip("."), first["input"]
-    if "unknown_key" in context:
+    if "field" in context:
+        field, value = f"{field}.{context['field']}", context["value"]
+    elif "unknown_key" in context:
         field = f"{field}.{context['unknown_key']}".lstrip(".")
         value = "unknown key"
     elif first["type"] == "missing":

@@ -5,13 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camwright.geometry.arrays import FULL_TURN
-from camwright.geometry.contour import Contour
 from camwright.geometry.eccentric import Eccentric, face_lift
 from camwright.geometry.errors import InputError
-from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.lift_fit import FittedLift, fitted_lift, lift_through
-from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.lift_section import (
     LiftEccentric,
     LiftPoints,
@@ -27,7 +24,7 @@ if TYPE_CHECKING:
 
 def eccentric_of(case: Case, given: LiftEccentric) -> Eccentric:
     """The eccentric disc of a case: the lowest place of its roller is the pitch base radius."""
-    rod = case.cam.pitch_base_radius + given.eccentricity
+    rod = case.cam.prime_radius + given.eccentricity
     return Eccentric(given.eccentricity, rod, case.cam.offset)
 
 
@@ -57,22 +54,6 @@ def given_lift(case: Case) -> Lift:
         return fit.lift
     trace = read_trace(case.path(given.file), "lift", period=FULL_TURN)
     return Lift.from_samples(trace.angle, trace.values)
-
-
-def contour_of(case: Case, lift: Lift) -> Contour:
-    """The cam that moves the follower of a case so, whatever its kind.
-
-    Raises
-    ------
-    InputError
-        For a roller or an offset beyond the base radius, or a face that the contact runs off.
-    """
-    base, offset = case.cam.pitch_base_radius, case.cam.offset
-    if case.follower.face is None:
-        return Contour(PitchCurve(lift, base, offset), case.roller.radius)
-    contour = FlatFaceContour(FacePath(lift, base, offset))
-    contour.require_face(case.follower.face.width)
-    return contour
 
 
 def lift_origin(case: Case) -> str:

@@ -31,6 +31,20 @@ CRANKING = 10.0
 NO_HEAT = 1e-9
 
 
+def engine_torques(case: Case) -> dict[str, Torque]:
+    """Engine torque of each load case by name; empty for a case that starts at the lift.
+
+    An engine that stands has only the torque its load case names, or that of being started.
+    """
+    if case.engine is None:
+        return {}
+    return {
+        state.name: engine_torque(case, state)
+        for state in case.load_cases
+        if _has_torque(case, state)
+    }
+
+
 def engine_torque(case: Case, state: LoadCase) -> Torque:
     """Torque of the engine in one load case.
 
@@ -53,7 +67,7 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
     raise InputError("engine", "missing", "given")
 
 
-def has_torque(case: Case, state: LoadCase) -> bool:
+def _has_torque(case: Case, state: LoadCase) -> bool:
     """Whether an engine gives torque in a load case: not one that stands, unless it is started."""
     started = isinstance(case.engine, Cylinder) and not state.fired
     return state.speed > 0 or state.torque is not None or started

@@ -1,4 +1,4 @@
-"""What is asked of a design: smoothing, limits, tolerances, load cases, the solver's settings."""
+"""What is asked of a design: smoothing, tolerances, load cases, the solver's settings."""
 
 from __future__ import annotations
 
@@ -6,20 +6,16 @@ import datetime as dt
 from math import radians
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, Field, field_validator, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import (
     Duration,
-    Fraction,
     GasPressure,
     In,
     Length,
     Preload,
-    Pressure,
     Rate,
-    Residual,
-    Safety,
 )
 from camwright.pipeline.case.section import (
     FileName,
@@ -27,8 +23,6 @@ from camwright.pipeline.case.section import (
     Section,
     Text,
     printable,
-    refusal,
-    suggestion,
 )
 
 
@@ -42,7 +36,7 @@ class Mechanism(Section):
     compensation: Annotated[float, In(above=0, at_most=1)] = 1.0
 
 
-FreeName = Literal["initial_energy", "spring_rate", "preload", "pitch_base_radius", "phase"]
+FreeName = Literal["initial_energy", "spring_rate", "preload", "prime_radius", "phase"]
 Phase = Annotated[float, In("deg", at_least=-180, at_most=180)]
 
 
@@ -74,7 +68,7 @@ class Smoothing(Section):
     free: Annotated[tuple[FreeName, ...], Field(strict=False)] = ("initial_energy",)
     spring_rate_range: Annotated[tuple[Rate, Rate], Field(strict=False)] | None = None
     preload_range: Annotated[tuple[Preload, Preload], Field(strict=False)] | None = None
-    pitch_base_radius_range: Annotated[tuple[Length, Length], Field(strict=False)] | None = None
+    prime_radius_range: Annotated[tuple[Length, Length], Field(strict=False)] | None = None
     phase_range: Annotated[tuple[Phase, Phase], Field(strict=False)] | None = None
     coefficients: Annotated[int, Field(ge=12, le=240)] = 96
     starts: Annotated[int, Field(ge=1, le=40)] = 4
@@ -100,78 +94,6 @@ class Smoothing(Section):
         if self.points * self.spacing > radians(720.0) + 1e-9:
             raise InputError("smoothing.points", self.points, "<= 720 deg over smoothing.spacing")
         return self
-
-
-class Limits(Section):
-    """What the checks compare with; a safety above 1 asks for more than the bare limit."""
-
-    closure: Annotated[float, In("mm", above=0, at_most=1)] = 1e-9
-    pressure_angle: Annotated[float, In("deg", above=0, below=90)] = radians(30.0)
-    curvature_ratio: Annotated[float, In(at_least=1, at_most=100)] = 1.5
-    undercut_factor: Annotated[float, In(above=0, below=1)] = 0.3
-    # The depth no cam is ground to.
-    second_contact_depth: Annotated[float, In("mm", above=0, at_most=1)] = 1e-6
-    tool_radius: Length | None = None
-    curvature_rate: Annotated[float, In("1/m/rad", above=0, at_most=1e9)] | None = None
-    # Outside over inside radius of the ring about the bore.
-    minimum_wall: Annotated[float, In(at_least=1, at_most=100)] = 1.75
-    contact_safety: Safety = 1.0
-    yield_safety: Safety = 1.0
-    shakedown_safety: Safety = 1.0
-    contact_force_margin: Annotated[float, In(above=0, below=1)] = 0.2
-    jump: Safety = 1.0
-    overspeed: Annotated[float, In("rpm", above=0, below=20_000)] | None = None
-    jump_speed: Annotated[float, In(at_least=1, at_most=100)] = 1.3
-    clearance: Annotated[float, In("mm", above=0, at_most=1000)] = 0.001
-    cam_radius: Length | None = None
-    target_life: Annotated[float, In("h", above=0, at_most=1e6)] | None = None
-    edge_factor: Annotated[float, In(at_least=1, at_most=5)] = 1.3
-    waviness: Annotated[float, In(above=0, at_most=1)] = 0.2
-    chord_share: Fraction = 0.25
-    jam_index: Annotated[float, In(above=0, below=1)] = 0.5
-    roller_static_safety: Safety = 1.0
-    roller_life: Annotated[float, In("h", above=0, at_most=1e6)] | None = None
-    roller_speed_share: Fraction = 0.7
-    pin_share: Fraction = 0.6
-    spring_fatigue: Safety = 1.2
-    spring_solid: Annotated[float, In(above=0, at_most=10)] = 0.1
-    spring_surge: Annotated[float, In(above=0, at_most=1e4)] = 13.0
-    key_pressure: Pressure = 100e6
-    bore_pressure: Pressure = 100e6
-    key_shear: Pressure = 60e6
-    shaft_safety: Safety = 1.5
-    shaft_bearing_life: Annotated[float, In("h", above=0, at_most=1e6)] | None = None
-    gear_bending_safety: Safety = 1.4
-    gear_contact_safety: Safety = 1.0
-    unbalance: Annotated[float, In("mm/s", above=0, at_most=1e4)] | None = None
-    film_ratio: Annotated[float, In(above=0, at_most=100)] = 1.0
-    skid: Annotated[float, In(above=0, at_most=1)] = 0.5
-    fatigue_safety: Safety = 1.0
-    case_safety: Safety = 1.0
-    case_depth_ratio: Safety = 2.0
-    bore_safety: Safety = 1.0
-    viscosity_ratio: Safety = 1.0
-    wear_depth: Length = 5e-5
-    # Of the swing: a jump spreads over a few samples, a smooth law does not.
-    acceleration_step: Fraction = 0.2
-    guide_length: Safety = 2.0
-    torque_reduction: Annotated[float, In(above=0, below=1)] = 0.4
-    speed_reduction: Annotated[float, In(above=0, below=1)] | None = None
-    energy_closure: Residual = 1e-9
-    friction_balance: Residual = 1e-6
-    equilibrium: Residual = 1e-9
-    complementarity: Residual = 1e-9
-    mesh_uncertainty: Annotated[float, In(above=0, at_most=1)] = 0.03
-    sources: dict[str, Text] = Field(default_factory=dict)
-
-    @field_validator("sources")
-    @classmethod
-    def _name_limits(cls, given: dict[str, str]) -> dict[str, str]:
-        known = [name for name in cls.model_fields if name != "sources"]
-        for key in given:
-            if key not in known:
-                raise refusal(f"a known limit{suggestion(key, known)}", unknown_key=key)
-        return given
 
 
 class Solver(Section):

@@ -1,23 +1,34 @@
-"""Base of all sections of a case file, and the texts and names they accept."""
+"""Base of all sections of a case file, and the texts, names and parts they accept."""
 
 from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
-from typing import Annotated, Any
+from collections.abc import Iterable, Mapping
+from dataclasses import MISSING, dataclass, fields, replace
+from types import UnionType
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
     Field,
+    GetCoreSchemaHandler,
+    ValidationInfo,
+    create_model,
     model_validator,
 )
-from pydantic_core import PydanticCustomError
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.quantities import Part
 
 SAFE_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9_-])?")
 _ALLOWED = "\n\t\u200c\u200d\u200e\u200f"
+
+PartType = TypeVar("PartType", bound=Part)
 
 
 def refusal(limit: str, **context: str) -> PydanticCustomError:
@@ -43,11 +54,7 @@ def _safe_name(name: str) -> str:
 
 
 Name = Annotated[str, AfterValidator(_safe_name)]
-
-
 Text = Annotated[str, Field(max_length=10_000), AfterValidator(printable)]
-
-
 FileName = Annotated[str, Field(min_length=1, max_length=200), AfterValidator(printable)]
 
 
@@ -71,3 +78,100 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     """What may have been meant, else what is known."""
     close = difflib.get_close_matches(word, list(known), n=1)
     return f"; did you mean {close[0]}?" if close else f": {', '.join(known)}"
+
+
+@dataclass(frozen=True)
+class FromTable:
+    """Marks a field whose table is read into a `Part`, by the units and bounds of its fields."""
+
+    def __get_pydantic_core_schema__(
+        self, source: type[Part], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        def made(section: Section) -> Part:
+            try:
+                return part_of(source, section)
+            except InputError as error:
+                raise refusal(error.limit, field=error.field, value=str(error.value)) from None
+
+        schema = handler.generate_schema(section_of(source))
+        return core_schema.no_info_after_validator_function(made, schema)
+
+
+Table = Annotated[PartType, FromTable()]
+"""A field that holds a `Part` and is written as a table."""
+
+
+def part_of(part: type[PartType], section: Section) -> PartType:
+    """The part that its section describes.
+
+    Raises
+    ------
+    InputError
+        If values of it do not fit together, by the name of a field within the table.
+    """
+    values = {name: getattr(section, name) for name in type(section).model_fields}
+    try:
+        return part(**values)
+    except InputError as error:
+        field = error.field.removeprefix(f"{part.table}.")
+        raise InputError(field, error.value, error.limit) from None
+
+
+_SECTIONS: dict[type[Part], type[Section]] = {}  # each made once
+
+
+def section_of(part: type[Part]) -> type[Section]:
+    """The section of a case file that describes a part; its fields in the order of the part's."""
+    if part not in _SECTIONS:
+        _SECTIONS[part] = _section_made_of(part)
+    return _SECTIONS[part]
+
+
+def _section_made_of(part: type[Part]) -> type[Section]:
+    hints = get_type_hints(part, include_extras=True)
+    described: dict[str, Any] = {}
+    for field in fields(part):  # type: ignore[arg-type]
+        if field.name in part.labels:
+            continue
+        default = ... if field.default is MISSING else field.default
+        described[field.name] = (_in_section(hints[field.name]), default)
+    return create_model(part.__name__, __base__=Section, __doc__=part.__doc__, **described)
+
+
+def _in_section(hint: Any) -> Any:
+    """The type of a part's field as a section reads it."""
+    if hint is str:
+        return Text
+    if hint is Material:
+        return Annotated[Material, MaterialName()]
+    if isinstance(hint, type) and issubclass(hint, Part):
+        return Annotated[hint, FromTable()]
+    if get_origin(hint) in (Union, UnionType):
+        return Union[tuple(_in_section(each) for each in get_args(hint))]  # noqa: UP007
+    if get_origin(hint) is tuple:
+        entries: Any = tuple.__class_getitem__((_in_section(get_args(hint)[0]), ...))
+        return Annotated[entries, Field(strict=False)]
+    return hint
+
+
+@dataclass(frozen=True)
+class MaterialName:
+    """Marks a field that names a material of the case and holds its card."""
+
+    def __get_pydantic_core_schema__(
+        self, source: type[Material], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        def card(name: str, info: ValidationInfo) -> Material:
+            known: Mapping[str, Material] = (info.context or {}).get("materials", {})
+            if name not in known:
+                raise refusal(f"one of the materials: {', '.join(sorted(known))}")
+            return known[name]
+
+        return core_schema.with_info_after_validator_function(
+            card, handler.generate_schema(Annotated[str, AfterValidator(_safe_name)])
+        )
+
+
+def named(cards: dict[str, Material]) -> dict[str, Material]:
+    """Material cards that know the names of their tables."""
+    return {name: replace(card, name=name) for name, card in cards.items()}

@@ -56,7 +56,7 @@ preload = "400 N"                    # at the smallest cam radius
 # catalogue = "shipped"              # or a file: puts in the lightest spring for travel_max
 
 [cam]
-pitch_base_radius = "60 mm"          # smallest radius of the roller's CENTRE
+prime_radius = "60 mm"          # smallest radius of the roller's CENTRE
 width = "10 mm"
 bore_radius = "10 mm"
 material = "hardened_steel"
@@ -159,8 +159,8 @@ positions = 72                       # per cam turn; 720 for the real answer
 max_trials = 3                       # lifts tried, each gentler than the last
 certificate_positions = 1            # angles solved again on ever finer meshes
 
-# --- What the files in shop/ are written for
-[shop]
+# --- What the files in workshop/ are written for
+[workshop]
 table_step = "0.5 deg"               # between the rows of the contour's table, 0.1 to 1 deg
 # tool_radius = "10 mm"              # cutter or grinding wheel; left out: that of the roller
 # chord_error = "1 um"               # of the drawing's polyline

@@ -14,8 +14,8 @@ FORM_TOLERANCE = 20e-6
 """m: band of the inspection sheet where the case states no profile tolerance."""
 
 
-class Shop(Section):
-    """What the files of ``shop/`` are written for.
+class Workshop(Section):
+    """What the files of ``workshop/`` are written for.
 
     table_step : rad        between the rows of its tables
     tool_radius : m         of the cutter or grinding wheel; the roller's, or base circle's, if none
@@ -28,7 +28,7 @@ class Shop(Section):
 
 
 @dataclass(frozen=True)
-class ShopOrder:
+class WorkshopOrder:
     """Step of the tables, rad; tool, tolerance band of the form, chord error, m.
 
     A tool of the roller's radius, or the base circle's, is taken where none is given: it fits

@@ -1,246 +1,226 @@
-"""Limits on the shape of the cam, held over the continuous turn and not at samples only."""
+"""Shape of the cam, over the continuous turn and not at samples only."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN
-from camwright.geometry.extrema import greatest
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.extremes import TrialEvidence, rollers_only
+from camwright.geometry.extrema import Extremum
+from camwright.geometry.extrema import greatest as greatest_of
+from camwright.pipeline.case.limits import (
+    ACCELERATION_STEP,
+    CLOSURE,
+    CURVATURE_RATE,
+    CURVATURE_RATIO,
+    MINIMUM_WALL,
+    PRESSURE_ANGLE,
+    SECOND_CONTACT_DEPTH,
+    TOOL_RADIUS,
+    UNDERCUT_FACTOR,
+)
+from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.cycle.solution import Solution
 
 RESTING = 1e-9  # swing of s'' over the lift, 1/rad^2, of a cam that is round
 TOOL_ALLOWANCE = 1.1  # a hollow is ground by a wheel at least a tenth smaller
 
 
-def closure(evidence: TrialEvidence) -> Check:
-    """The lift ends its turn where it began."""
-    return Check(
-        id="closure",
-        title="Lift closes after one turn",
-        demand=float(evidence.contour.pitch.lift.closure),
-        limit=evidence.case.limits.closure,
-        unit="m",
-        source=evidence.source("closure", "fundamental law of cam design, Norton (2009) ch. 2"),
-        method="difference of the lift at the two ends of the turn, as its source gave it",
-    )
+def _place(theta: float) -> Extreme:
+    """Cam angle of a demand; nowhere where it is not finite."""
+    return Extreme(np.nan, "", float(np.mod(theta, FULL_TURN)) if np.isfinite(theta) else None)
 
 
-def acceleration_step(evidence: TrialEvidence) -> Check:
-    """The acceleration has no step: what is left between samples shrinks with their distance."""
-    lift = evidence.contour.pitch.lift
+def _at(extremum: Extremum) -> Extreme:
+    return _place(float(extremum.theta))
+
+
+@check(
+    CLOSURE,
+    title="Lift closure over one turn",
+    unit="m",
+    method="difference of the lift at the two ends of the turn, as its source gave it",
+    forecast=True,
+    moved_by_tolerance=False,
+)
+def closure(solution: Solution) -> Demand:
+    """Difference of the lift at the two ends of the turn, m."""
+    lift = solution.contour.pitch.lift
+    return Demand(float(lift.closure), solution.machine.limits[CLOSURE])
+
+
+@check(
+    ACCELERATION_STEP,
+    title="Acceleration step / acceleration swing",
+    method="greatest difference of s'' between neighbouring samples of the lift over its swing:"
+    " a step does not shrink with their distance",
+    lift_can_help=True,
+    forecast=True,
+    moved_by_tolerance=False,
+)
+def acceleration_step(solution: Solution) -> Demand:
+    """Greatest step of the acceleration between samples over its swing."""
+    lift = solution.contour.pitch.lift
     bend = np.asarray(lift(lift.theta, 2), dtype=float)
     steps = np.abs(np.diff(bend, append=bend[:1]))
     worst, swing = int(np.argmax(steps)), float(np.ptp(bend))
-    return Check(
-        id="acceleration_step",
-        title="Step of the acceleration over its swing",
+    return Demand(
         # Rest, and the round-off of it, has no step.
-        demand=0.0 if swing <= RESTING * lift.highest.value else float(steps[worst] / swing),
-        limit=evidence.case.limits.acceleration_step,
-        unit="-",
-        cam_angle_deg=_degrees(float(lift.theta[worst])),
-        source=evidence.source(
-            "acceleration_step", "finite jerk, fundamental law of cam design, Norton (2009) ch. 2"
-        ),
-        method=f"greatest difference of s'' between {len(lift.theta)} neighbouring samples of the"
-        " lift over all of its swing: a jump stays, a slope does not",
-        lift_can_help=True,
+        0.0 if swing <= RESTING * lift.highest.value else float(steps[worst] / swing),
+        solution.machine.limits[ACCELERATION_STEP],
+        _place(float(lift.theta[worst])),
+        note=f"{len(lift.theta)} samples",
     )
 
 
-@rollers_only
-def pressure_angle(evidence: TrialEvidence) -> Check:
-    """Greatest angle between the contact normal and the follower's axis."""
-    value, theta = evidence.contour.pitch.pressure_angle_max()
-    limit = float(np.rad2deg(evidence.case.limits.pressure_angle))
-    return Check(
-        id="pressure_angle",
-        title="Pressure angle",
-        demand=float(np.rad2deg(abs(value))),
-        limit=round(limit, 9),  # 30, not 29.9...96
-        unit="deg",
-        cam_angle_deg=_degrees(theta),
-        source=evidence.source(
-            "pressure_angle", "30 deg for a translating follower, Rothbart (2004) ch. 6"
-        ),
-        method="greatest |atan((s' - e)/d)| of the pitch curve, refined between samples",
-        lift_can_help=True,
+@check(
+    PRESSURE_ANGLE,
+    title="Pressure angle",
+    method="greatest |atan((s' - e)/d)| of the pitch curve, refined between samples",
+    lift_can_help=True,
+    forecast=True,
+    needs="roller",
+)
+def pressure_angle(solution: Solution) -> Demand:
+    """Greatest angle between contact normal and follower axis, rad."""
+    extremum = solution.contour.pitch.pressure_angle_max()
+    allowed = solution.machine.limits[PRESSURE_ANGLE]
+    return Demand(float(abs(extremum.value)), allowed, _at(extremum))
+
+
+@check(
+    CURVATURE_RATIO,
+    title="Minimum convex pitch radius / roller radius",
+    method="least radius of curvature of the convex pitch curve, refined between samples",
+    lift_can_help=True,
+    forecast=True,
+    needs="roller",
+)
+def curvature_ratio(solution: Solution) -> Demand:
+    """Least convex radius of the pitch curve over the roller radius."""
+    contour = solution.contour
+    extremum = contour.pitch.least_convex_radius()
+    ratio = float(extremum.value / contour.roller_radius)
+    return Demand(ratio, solution.machine.limits[CURVATURE_RATIO], _at(extremum))
+
+
+@check(
+    UNDERCUT_FACTOR,
+    id="undercut",
+    title="Undercut factor",
+    method="least 1 - roller radius x pitch curvature, refined between samples",
+    lift_can_help=True,
+    forecast=True,
+)
+def undercut(solution: Solution) -> Demand:
+    """Undercut factor: 1 - r kappa, of a face (r + s + s'')/(r + s)."""
+    least = solution.contour.undercut()
+    return Demand(
+        float(least.factor),
+        solution.machine.limits[UNDERCUT_FACTOR],
+        _place(float(least.theta)),
+        method=""
+        if solution.machine.face is None
+        else "least radius of curvature over the face's height, refined between samples",
     )
 
 
-@rollers_only
-def curvature_ratio(evidence: TrialEvidence) -> Check:
-    """Least convex radius of the pitch curve beside that of the roller."""
-    value, theta = evidence.contour.pitch.least_convex_radius()
-    return Check(
-        id="curvature_ratio",
-        title="Least convex pitch radius over roller radius",
-        demand=float(value / evidence.contour.roller_radius),
-        limit=evidence.case.limits.curvature_ratio,
-        unit="-",
-        sense="at_least",
-        cam_angle_deg=_degrees(theta),
-        source=evidence.source("curvature_ratio", "1.5 to 3 roller radii, Norton (2009) ch. 7"),
-        method="least radius of curvature of the convex pitch curve, refined between samples",
-        lift_can_help=True,
-    )
+@check(
+    title="Contour self-intersections",
+    unit="crossings",
+    source="a contour that crosses itself is cut away",
+    method="crossings of the contour with itself, between samples too",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+)
+def self_intersection(solution: Solution) -> Demand:
+    """Number of crossings of the contour with itself."""
+    crossings = solution.contour.self_intersections()
+    return Demand(float(len(crossings)), 0.0, _place(crossings[0][0]) if crossings else None)
 
 
-def undercut(evidence: TrialEvidence) -> Check:
-    """What the offset by the roller leaves of the pitch curve's arc, or a face of its height."""
-    found = evidence.contour.undercut()
-    if evidence.rolls:
-        factor, default = "1 - r kappa", "1 - r kappa > 0, a cusp at zero, Rothbart (2004) ch. 6"
-        method = "least 1 - roller radius x pitch curvature, refined between samples"
-    else:
-        factor, default = "(r + s + s'')/(r + s)", "r + s + s'' > 0, Norton (2009) ch. 7"
-        method = "least radius of curvature over the face's height, refined between samples"
-    return Check(
-        id="undercut",
-        title=f"Undercut factor {factor}",
-        demand=float(found.factor),
-        limit=evidence.case.limits.undercut_factor,
-        unit="-",
-        sense="at_least",
-        cam_angle_deg=_degrees(found.theta),
-        source=evidence.source("undercut_factor", default),
-        method=method,
-        lift_can_help=True,
-    )
+@check(
+    SECOND_CONTACT_DEPTH,
+    id="second_contact",
+    title="Interference of the {follower} away from its contact",
+    method="depth of the follower in contour parts away from its contact",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+)
+def second_contact(solution: Solution) -> Demand:
+    """Depth of the follower in contour parts away from its contact, m."""
+    extremum = solution.contour.clearance()
+    depth = float(np.maximum(0.0, -extremum.value))  # NaN stays, nothing in sight is no depth
+    return Demand(depth, solution.machine.limits[SECOND_CONTACT_DEPTH], _at(extremum))
 
 
-def self_intersection(evidence: TrialEvidence) -> Check:
-    """The contour crosses itself nowhere."""
-    crossings = evidence.contour.self_intersections()
-    return Check(
-        id="self_intersection",
-        title="Contour crosses itself",
-        demand=float(len(crossings)),
-        limit=0.0,
-        unit="crossings",
-        cam_angle_deg=_degrees(crossings[0][0]) if crossings else None,
-        source="a contour that crosses itself is cut away",
-        method="crossings of the contour with itself, found between samples too",
-        lift_can_help=True,
-    )
-
-
-def second_contact(evidence: TrialEvidence) -> Check:
-    """The follower touches the cam in one place only."""
-    value, theta = evidence.contour.clearance()
-    return Check(
-        id="second_contact",
-        title=f"{evidence.facing_name.capitalize()} cuts into another part of the cam",
-        demand=1e3 * float(np.maximum(0.0, -value)),  # NaN stays, nothing in sight is no depth
-        limit=1e3 * evidence.case.limits.second_contact_depth,
-        unit="mm",
-        cam_angle_deg=_degrees(theta),
-        source=evidence.source(
-            "second_contact_depth", "one contact at a time, Rothbart (2004) ch. 6"
-        ),
-        method=f"depth of the {evidence.facing_name} in contour parts away from its contact",
-        lift_can_help=True,
-    )
-
-
-@rollers_only
-def concave_radius(evidence: TrialEvidence) -> Check | None:
-    """Room for the tool in the hollow flanks; a cam without a hollow asks for none."""
-    value, theta = evidence.contour.pitch.curvature_min()
-    if value >= 0:
+@check(
+    TOOL_RADIUS,
+    id="concave_radius",
+    title="Minimum concave radius",
+    method="least concave pitch radius plus the roller radius, refined between samples",
+    lift_can_help=True,
+    forecast=True,
+    needs="roller",
+)
+def concave_radius(solution: Solution) -> Demand | None:
+    """Least concave radius of the contour, m; None for a convex cam."""
+    contour, tool = solution.contour, solution.case.largest_tool
+    extremum = contour.pitch.curvature_min()
+    if extremum.value >= 0:
         return None
-    tool = evidence.case.largest_tool
-    return Check(
-        id="concave_radius",
-        title="Least hollow radius of the contour",
-        demand=1e3 * float(evidence.contour.roller_radius - 1.0 / value),
-        limit=None if tool is None else 1e3 * TOOL_ALLOWANCE * tool,
-        unit="mm",
-        sense="at_least",
-        cam_angle_deg=_degrees(theta),
-        source=evidence.source(
-            "tool_radius", "hollow at least a tenth above the tool radius, Rothbart (2004) ch. 6"
-        ),
-        method="least concave pitch radius plus the roller radius, refined between samples",
-        lift_can_help=True,
+    return Demand(
+        float(contour.roller_radius - 1.0 / extremum.value),
+        None if tool is None else TOOL_ALLOWANCE * tool,
+        _at(extremum),
         note="" if tool is not None else "no tool radius is given",
     )
 
 
-def curvature_rate(evidence: TrialEvidence) -> Check | None:
-    """How fast the contour's curvature changes; a case that gives no bound asks for none."""
-    limit, contour = evidence.case.limits.curvature_rate, evidence.contour
-    if limit is None:
+@check(
+    CURVATURE_RATE,
+    title="Rate of change of contour curvature",
+    method="greatest change of curvature per radian of cam angle, refined between samples",
+    lift_can_help=True,
+    forecast=True,
+)
+def curvature_rate(solution: Solution) -> Demand | None:
+    """Greatest change of the contour's curvature, 1/(m rad); None without a bound."""
+    allowed, contour = solution.machine.limits[CURVATURE_RATE], solution.contour
+    if allowed is None:
         return None
     count = contour.pitch.lift.search_count
-    worst = greatest(lambda theta: np.abs(contour.curvature_slope(theta)), count)
-    return Check(
-        id="curvature_rate",
-        title="Change of the contour's curvature",
-        demand=float(worst.value),
-        limit=limit,
-        unit="1/m/rad",
-        cam_angle_deg=_degrees(worst.theta),
-        source=evidence.source("curvature_rate", "bound of the case, for grinding and for wear"),
-        method="greatest change of curvature per radian of cam angle, refined between samples",
-        lift_can_help=True,
-    )
+    worst = greatest_of(lambda theta: np.abs(contour.curvature_slope(theta)), count)
+    return Demand(float(worst.value), allowed, _at(worst))
 
 
-def minimum_wall(evidence: TrialEvidence) -> Check:
-    """The ring of steel about the bore and its keyway."""
-    cam = evidence.case.cam
-    contour = evidence.contour
-    keyway = cam.keyway
-    # The key's far edge may point at the lowest place of the contour; assume it does.
-    inside = cam.bore_radius + (keyway.depth if keyway is not None else 0.0)
-    outside, theta = contour.radius_min()
-    return Check(
-        id="minimum_wall",
-        title="Least contour radius over bore radius with keyway",
-        demand=float(outside / inside),
-        limit=evidence.case.limits.minimum_wall,
-        unit="-",
-        sense="at_least",
-        cam_angle_deg=_degrees(theta),
-        source=evidence.source("minimum_wall", "hub of 1.75 shaft diameters, common practice"),
-        method="least contour radius over bore radius plus keyway depth",
-    )
-
-
-def spring_travel(evidence: TrialEvidence) -> Check:
-    """The spring is not driven solid."""
-    travel = evidence.case.spring.travel_max
-    lift = evidence.contour.pitch.lift
-    return Check(
-        id="spring_travel",
-        title="Lift against spring travel",
-        demand=1e3 * float(lift.highest.value),
-        limit=None if travel is None else 1e3 * float(travel),
-        unit="mm",
-        cam_angle_deg=_degrees(lift.highest.theta),
-        source="travel of the spring as given in the case",
-        method="greatest lift, between samples too",
-        lift_can_help=True,
-        note="" if travel is not None else "no spring travel is given",
-    )
-
-
-CHECKS = (
-    closure,
-    acceleration_step,
-    pressure_angle,
-    curvature_ratio,
-    undercut,
-    self_intersection,
-    second_contact,
-    concave_radius,
-    curvature_rate,
-    minimum_wall,
-    spring_travel,
+@check(
+    MINIMUM_WALL,
+    title="Minimum contour radius / bore radius with keyway",
+    method="least contour radius over bore radius plus keyway depth",
+    forecast=True,
 )
+def minimum_wall(solution: Solution) -> Demand:
+    """Least contour radius over the radius of bore and keyway.
+
+    The key's far edge may point at the lowest place of the contour; it is assumed to.
+    """
+    outside = solution.contour.radius_min()
+    ratio = float(outside.value / solution.machine.cam.held_radius)
+    return Demand(ratio, solution.machine.limits[MINIMUM_WALL], _at(outside))
 
 
-def _degrees(theta: float) -> float | None:
-    return float(np.rad2deg(np.mod(theta, FULL_TURN))) if np.isfinite(theta) else None
+@check(
+    title="Lift vs. spring travel",
+    unit="mm",
+    source="travel of the spring as given in the case",
+    method="greatest lift, between samples too",
+    lift_can_help=True,
+    forecast=True,
+    moved_by_tolerance=False,
+)
+def spring_travel(solution: Solution) -> Demand:
+    """Greatest lift, m, beside the travel of the spring."""
+    travel, highest = solution.machine.spring.travel_max, solution.contour.pitch.lift.highest
+    note = "" if travel is not None else "no spring travel is given"
+    return Demand(float(highest.value), travel, _at(highest), note=note)

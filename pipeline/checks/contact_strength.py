@@ -1,134 +1,169 @@
-"""Limits on the material under the follower."""
+"""Strength of the material under the contact: endurance, yield, shakedown."""
 
 from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.extremes import TrialEvidence, greatest
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.limits import (
+    CONTACT_SAFETY,
+    EDGE_FACTOR,
+    SHAKEDOWN_SAFETY,
+    TARGET_LIFE,
+    YIELD_SAFETY,
+)
+from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.extremes import Extreme, greatest
 from camwright.pipeline.contact import hertz
-
-if TYPE_CHECKING:
-    from camwright.pipeline.case.parts_section import Material
+from camwright.pipeline.cycle.solution import Solution
 
 PSI = 6894.757293168  # Pa
 SHAKEDOWN = 4.0  # p0 / k, free rolling line contact
 FIRST_YIELD = 1.79  # p0 / Y, von Mises, line contact, nu = 0.3
 
 
-def contact_pressure(evidence: TrialEvidence) -> Check:
-    """Greatest contact pressure against the endurance of the softer body."""
-    name, material = softer(evidence)
-    worst = greatest(evidence, lambda cycle: cycle.contact.p0)
-    endurance = material.endurance_pressure
-    safety = evidence.case.limits.contact_safety
-    limit = None if endurance is None else 1e-6 * endurance / safety
-    return Check(
-        id="contact_pressure",
-        title="Contact pressure against surface endurance",
-        demand=1e-6 * worst.value,
-        limit=limit,
-        unit="MPa",
-        source=evidence.source("contact_safety", f"surface endurance of {name}", material.source),
-        method="greatest contact pressure by finite elements over the turn, softer body",
-        lift_can_help=True,
-        note="" if limit is not None else f"the card of {name} gives no endurance pressure",
-        **worst.place,
-    )
+def peak_pressure(solution: Solution) -> Extreme:
+    """Greatest contact pressure of the turn, Pa."""
+    return greatest(solution.cycles, lambda cycle: cycle.contact.p0)
 
 
-def first_yield(evidence: TrialEvidence) -> Check:
-    """Greatest von Mises stress against yield; a rolling contact may live above it."""
-    name, material = softer(evidence)
-    worst = greatest(evidence, lambda cycle: cycle.contact.von_mises)
-    yields = 1e-6 * material.yield_strength
-    return Check(
-        id="first_yield",
-        title="Von Mises stress below the surface against yield",
-        demand=1e-6 * worst.value,
-        limit=yields / evidence.case.limits.yield_safety,
-        unit="MPa",
-        source=evidence.source(
-            "yield_safety",
-            f"yield of {name}; p0 = 1.79 Y, Johnson (1985) sec. 6.1",
-            material.source,
-        ),
-        method="greatest von Mises stress by finite elements over the turn, softer body",
-        must_have=False,
-        lift_can_help=True,
-        note=f"first yield at a contact pressure of {FIRST_YIELD * yields:.4g} MPa; "
-        "above it the material may shake down",
-        **worst.place,
-    )
+def pressure_allowables(machine: Machine, turns: float) -> dict[str, float]:
+    """Peak pressure allowed by each check, Pa, by its id; a check without its data is left out.
 
-
-def shakedown(evidence: TrialEvidence) -> Check:
-    """Greatest contact pressure against the limit of elastic shakedown."""
-    name, material = softer(evidence)
-    worst = greatest(evidence, lambda cycle: cycle.contact.p0)
-    shear_yield = material.yield_strength / math.sqrt(3.0)
-    return Check(
-        id="shakedown",
-        title="Contact pressure against shakedown",
-        demand=1e-6 * worst.value,
-        limit=1e-6 * SHAKEDOWN * shear_yield / evidence.case.limits.shakedown_safety,
-        unit="MPa",
-        source=evidence.source(
-            "shakedown_safety",
-            f"p0 <= 4.0 k, free rolling, Johnson (1985) sec. 9.2; k = Y/sqrt(3) of {name}",
-            material.source,
-        ),
-        method="greatest contact pressure by finite elements over the turn, softer body",
-        lift_can_help=True,
-        note="without traction; sliding at the surface lowers the limit",
-        **worst.place,
-    )
-
-
-def softer(evidence: TrialEvidence) -> tuple[str, Material]:
-    """Name and card of the body, cam or follower, that yields first."""
-    case = evidence.case
-    names = (case.cam.material, evidence.facing.material)
-    cards = [(name, case.materials[name]) for name in names]
-    return min(cards, key=lambda card: card[1].yield_strength)
-
-
-def contact_pressure_at_life(evidence: TrialEvidence) -> Check:
-    """Greatest contact pressure against the endurance at the life asked for."""
-    case = evidence.case
-    name = case.cam.material
-    card, life = case.materials[name], case.limits.target_life
+    Parameters
+    ----------
+    turns : float   cam turns of the target life at the fastest load case
+    """
+    limits, follower, softer = machine.limits, machine.follower, machine.softer
+    shear_yield = softer.yield_strength / math.sqrt(3.0) / limits[SHAKEDOWN_SAFETY]
+    allowed = {"shakedown": SHAKEDOWN * shear_yield}
+    if follower.friction is not None:
+        allowed["shakedown_traction"] = shakedown_factor(follower.friction) * shear_yield
+    if softer.endurance_pressure is not None:
+        endurance = softer.endurance_pressure / limits[CONTACT_SAFETY]
+        allowed["contact_pressure"] = endurance
+        allowed["edge_pressure"] = endurance / applied_edge_factor(machine)
+    card = machine.cam.material
     slope, intercept = card.endurance_slope, card.endurance_intercept
-    worst = greatest(evidence, lambda cycle: cycle.contact.p0)
-    limit = None
-    if slope is not None and intercept is not None and life is not None:
-        turns = life * max(map(evidence.cam_speed, evidence.cycles)) / FULL_TURN
-        bears = pressure_at_life(turns, slope, intercept, _contact_modulus(evidence))
-        limit = bears / case.limits.contact_safety
-    missing = [text for value, text in (
-        (life, "no target life is asked for"),
-        (slope, f"the card of {name} gives no slope of endurance"),
-    ) if value is None]  # fmt: skip
-    return Check(
-        id="contact_pressure_at_life",
-        title="Contact pressure against surface endurance at the target life",
-        demand=1e-6 * worst.value,
-        limit=None if limit is None else 1e-6 * limit,
-        unit="MPa",
-        source=evidence.source(
-            "target_life", "log10 K = (B - log10 n)/A, Rothbart (2004) eq. 9.15", card.source
-        ),
-        method="greatest contact pressure by finite elements; every turn loads each place once,"
-        " all turns as bad as the worst load case",
-        lift_can_help=True,
-        note="; ".join(missing),
-        **worst.place,
+    if limits[TARGET_LIFE] is not None and slope is not None and intercept is not None:
+        at_life = pressure_at_life(turns, slope, intercept, machine.contact_modulus)
+        allowed["contact_pressure_at_life"] = at_life / limits[CONTACT_SAFETY]
+    return allowed
+
+
+def applied_edge_factor(machine: Machine) -> float:
+    """Edge factor on the plane pressure; 1 where the follower is crowned."""
+    return 1.0 if machine.follower.crowned else machine.limits[EDGE_FACTOR]
+
+
+def life_turns(machines: tuple[Machine, ...]) -> float:
+    """Cam turns in the target life at the fastest load case; 0 without a target life."""
+    life = machines[0].limits[TARGET_LIFE] or 0.0
+    return life * max(machine.cam_speed for machine in machines) / FULL_TURN
+
+
+def _allowed(solution: Solution, name: str) -> float | None:
+    turns = life_turns(solution.machines)
+    return pressure_allowables(solution.machine, turns).get(name)
+
+
+@check(
+    CONTACT_SAFETY,
+    id="contact_pressure",
+    title="Peak contact pressure vs. endurance limit",
+    unit="MPa",
+    sense="at_most",
+    method="greatest contact pressure over the turn; endurance of the softer body",
+    lift_can_help=True,
+    forecast=True,
+    error="contact",
+)
+def contact_pressure(solution: Solution) -> Demand:
+    """Peak contact pressure, Pa, beside the endurance of the softer body."""
+    worst, softer = peak_pressure(solution), solution.machine.softer
+    allowed = _allowed(solution, "contact_pressure")
+    return Demand(
+        worst.value,
+        allowed,
+        worst,
+        note="" if allowed is not None else _no_endurance(solution),
+        figures=(f"{softer.name}: {softer.source}",),
     )
+
+
+@check(
+    YIELD_SAFETY,
+    id="first_yield",
+    title="Subsurface von Mises stress vs. yield strength",
+    unit="MPa",
+    method="greatest von Mises stress over the turn; yield strength of the softer body",
+    must_have=False,
+    lift_can_help=True,
+    forecast=True,
+    error="contact",
+)
+def first_yield(solution: Solution) -> Demand:
+    """Greatest von Mises stress, Pa; a rolling contact may live above first yield."""
+    softer = solution.machine.softer
+    worst = greatest(solution.cycles, lambda cycle: cycle.contact.von_mises)
+    onset = shown(FIRST_YIELD * softer.yield_strength, "MPa")
+    return Demand(
+        worst.value,
+        softer.yield_strength / solution.machine.limits[YIELD_SAFETY],
+        worst,
+        note=f"first yield at a contact pressure of {onset}; above it the material may shake down",
+        figures=(f"{softer.name}: {softer.source}",),
+    )
+
+
+@check(
+    SHAKEDOWN_SAFETY,
+    id="shakedown",
+    title="Peak contact pressure vs. shakedown limit",
+    unit="MPa",
+    method="greatest contact pressure over the turn; 4.0 k, free rolling, k = Y/sqrt(3) of the"
+    " softer body",
+    lift_can_help=True,
+    forecast=True,
+    error="contact",
+)
+def shakedown(solution: Solution) -> Demand:
+    """Peak contact pressure, Pa, beside the limit of elastic shakedown."""
+    worst, softer = peak_pressure(solution), solution.machine.softer
+    return Demand(
+        worst.value,
+        _allowed(solution, "shakedown"),
+        worst,
+        note="without traction; sliding at the surface lowers the limit",
+        figures=(f"{softer.name}: {softer.source}",),
+    )
+
+
+@check(
+    TARGET_LIFE,
+    id="contact_pressure_at_life",
+    title="Peak contact pressure vs. endurance limit at target life",
+    unit="MPa",
+    method="greatest contact pressure over the turn; every turn loads each place once, all turns"
+    " in the worst load case",
+    lift_can_help=True,
+    error="contact",
+)
+def contact_pressure_at_life(solution: Solution) -> Demand:
+    """Peak contact pressure, Pa, beside the endurance at the target life."""
+    machine, worst = solution.machine, peak_pressure(solution)
+    card, missing = machine.cam.material, []
+    if machine.limits[TARGET_LIFE] is None:
+        missing.append("no target life is given")
+    if card.endurance_slope is None:
+        missing.append(f"the card of {card.name} gives no slope of endurance")
+    allowed = _allowed(solution, "contact_pressure_at_life")
+    return Demand(worst.value, allowed, worst, note="; ".join(missing), figures=(card.source,))
 
 
 def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: float) -> float:
@@ -147,56 +182,53 @@ def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: flo
     return math.sqrt(factor * modulus / math.pi)
 
 
-def edge_pressure(evidence: TrialEvidence) -> Check:
-    """Pressure at the ends of the line contact, which a plane model cannot see."""
-    name, material = softer(evidence)
-    limits, endurance = evidence.case.limits, material.endurance_pressure
-    factor = 1.0 if evidence.facing.crowned else limits.edge_factor
-    worst = greatest(evidence, lambda cycle: cycle.contact.p0)
-    return Check(
-        id="edge_pressure",
-        title=f"Pressure at the {evidence.facing_name}'s ends against surface endurance",
-        demand=1e-6 * factor * worst.value,
-        limit=None if endurance is None else 1e-6 * endurance / limits.contact_safety,
-        unit="MPa",
-        source=evidence.source(
-            "edge_factor",
-            f"derate 1.3 to 2 or crown the {evidence.facing_name}, shop practice: verify",
-            f"{name}: {material.source}",
-        ),
-        method=f"greatest contact pressure times {factor}; two dimensions cannot see the ends",
-        lift_can_help=True,
-        note="" if endurance is not None else f"the card of {name} gives no endurance pressure",
-        **worst.place,
+@check(
+    EDGE_FACTOR,
+    id="edge_pressure",
+    title="Edge pressure of the {follower} vs. endurance limit",
+    unit="MPa",
+    method="greatest contact pressure times the edge factor; plane strain has no ends",
+    lift_can_help=True,
+    error="contact",
+)
+def edge_pressure(solution: Solution) -> Demand:
+    """Pressure at the ends of the line contact, Pa, by a factor on the plane pressure."""
+    worst, machine = peak_pressure(solution), solution.machine
+    softer, factor = machine.softer, applied_edge_factor(machine)
+    endurance = softer.endurance_pressure
+    safety = machine.limits[CONTACT_SAFETY]
+    return Demand(
+        factor * worst.value,
+        None if endurance is None else endurance / safety,
+        worst,
+        note="" if endurance is not None else _no_endurance(solution),
+        figures=(f"{softer.name}: {softer.source}",),
+        method=f"greatest contact pressure times {factor:g}; plane strain has no ends",
     )
 
 
-def shakedown_traction(evidence: TrialEvidence) -> Check:
-    """Contact pressure against elastic shakedown with the follower sliding."""
-    name, material = softer(evidence)
-    friction = evidence.facing.friction
-    worst = greatest(evidence, lambda cycle: cycle.contact.p0)
-    limit = None
-    if friction is not None:
-        shear_yield = material.yield_strength / math.sqrt(3.0)
-        limit = shakedown_factor(friction) * shear_yield / evidence.case.limits.shakedown_safety
-    return Check(
-        id="shakedown_traction",
-        title="Contact pressure against shakedown under sliding",
-        demand=1e-6 * worst.value,
-        limit=None if limit is None else 1e-6 * limit,
-        unit="MPa",
-        source=evidence.source(
-            "shakedown_safety",
-            f"greatest shear along the surface <= k, Johnson (1985) sec. 9.2; k of {name}",
-            material.source,
-        ),
-        method="greatest contact pressure by finite elements; traction of full sliding",
-        lift_can_help=True,
+@check(
+    SHAKEDOWN_SAFETY,
+    id="shakedown_traction",
+    title="Peak contact pressure vs. shakedown limit with sliding",
+    unit="MPa",
+    method="greatest contact pressure over the turn; traction of full sliding, greatest shear"
+    " along the surface <= k of the softer body",
+    lift_can_help=True,
+    error="contact",
+)
+def shakedown_traction(solution: Solution) -> Demand:
+    """Peak contact pressure, Pa, beside the limit of shakedown under full sliding."""
+    worst, softer = peak_pressure(solution), solution.machine.softer
+    kind = solution.machine.follower
+    return Demand(
+        worst.value,
+        _allowed(solution, "shakedown_traction"),
+        worst,
         note=""
-        if friction is not None
-        else f"no friction of the {evidence.facing_name} on the cam is given",
-        **worst.place,
+        if kind.friction is not None
+        else f"no friction of the {kind.word} on the cam is given",
+        figures=(f"{softer.name}: {softer.source}",),
     )
 
 
@@ -204,8 +236,8 @@ def shakedown_traction(evidence: TrialEvidence) -> Check:
 def shakedown_factor(friction: float) -> float:
     """p0/k at the limit of elastic shakedown of a sliding line contact: 4 without friction.
 
-    Residual stress may take every share of the stress but the shear along the surface, which
-    therefore must stay within the yield in shear: the limit is 1/max|tau_xz| at p0 = 1.
+    Residual stress can carry every stress component but the shear along the surface, which must
+    therefore stay within the shear yield strength: the limit is 1/max|tau_xz| at p0 = 1.
 
     References
     ----------
@@ -216,16 +248,5 @@ def shakedown_factor(friction: float) -> float:
     return 1.0 / float(shear.max())
 
 
-def _contact_modulus(evidence: TrialEvidence) -> float:
-    case = evidence.case
-    cam, other = case.materials[case.cam.material], case.materials[evidence.facing.material]
-    return hertz.contact_modulus(cam.E, cam.nu, other.E, other.nu)
-
-
-CHECKS = (contact_pressure, first_yield, shakedown)
-SIGNED = (
-    contact_pressure_at_life,
-    edge_pressure,
-    shakedown_traction,
-)
-"""What a sign-off asks for besides; a look ahead does without."""
+def _no_endurance(solution: Solution) -> str:
+    return f"the card of {solution.machine.softer.name} gives no endurance pressure"

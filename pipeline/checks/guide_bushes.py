@@ -1,139 +1,162 @@
-"""Limits of the two bushes that guide the stem."""
+"""The two guides of the stem: pressure, PV value, temperature, length."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Literal
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.units import celsius, shown
+from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.extremes import TrialEvidence, Worst, cited, greatest, worst_case
-from camwright.pipeline.follower.guide_friction import NYLON_PV
+from camwright.pipeline.checks.check import Declaration, Demand, check
+from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.part_loads import PartLoads
+from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.follower.guide_friction import NYLON_PV, GuideHeat
+from camwright.pipeline.follower.guide_reactions import Guide
 
-if TYPE_CHECKING:
-    from camwright.pipeline.case.parts_section import Guide
-    from camwright.pipeline.cycle.cycle import Cycle
-
-
-def bush_pressure_a(evidence: TrialEvidence) -> Check:
-    """Greatest mean pressure in guide A."""
-    return _pressure(evidence, "A", evidence.case.guides.a)
+Side = Literal["A", "B"]
 
 
-def bush_pressure_b(evidence: TrialEvidence) -> Check:
-    """Greatest mean pressure in guide B."""
-    return _pressure(evidence, "B", evidence.case.guides.b)
+def guide_of(cycle: Cycle, side: Side) -> Guide:
+    """Guide A or B of a load case."""
+    guides = cycle.machine.guides
+    return guides.a if side == "A" else guides.b
 
 
-def bush_pv_a(evidence: TrialEvidence) -> Check:
-    """Pressure times sliding speed in guide A, mean over the turn."""
-    return _pv(evidence, "A", evidence.case.guides.a)
+def heat_of(parts: PartLoads, side: Side) -> GuideHeat:
+    """Friction heat of guide A or B."""
+    return parts.heat_a if side == "A" else parts.heat_b
 
 
-def bush_pv_b(evidence: TrialEvidence) -> Check:
-    """Pressure times sliding speed in guide B, mean over the turn."""
-    return _pv(evidence, "B", evidence.case.guides.b)
+def _guide(solution: Solution, side: Side) -> Guide:
+    guides = solution.machine.guides
+    return guides.a if side == "A" else guides.b
 
 
-def _pressure(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
-    worst = greatest(
-        evidence, lambda cycle: demands.bush_pressure(_reaction(cycle, side), _area(guide))
-    )
-    limit = guide.pressure_limit
-    return Check(
-        id=f"bush_pressure_{side}",
+def _reaction(cycle: Cycle, side: Side) -> Array:
+    return cycle.guides.reaction_a if side == "A" else cycle.guides.reaction_b
+
+
+def _guide_pressure(side: Side) -> Declaration:
+    @check(
+        id=f"guide_pressure_{side}",
         title=f"Bearing pressure in guide {side}",
-        demand=1e-6 * worst.value,
-        limit=None if limit is None else 1e-6 * limit,
         unit="MPa",
-        source=guide.source or f"{guide.material} bush",
-        method="greatest reaction by finite elements over diameter x length",
+        method="greatest reaction over diameter x length",
         lift_can_help=True,
-        note="; ".join(
-            ([] if limit is not None else [f"no pressure limit is given for guide {side}"])
-            + _explained(evidence, side, guide, worst)
-        ),
-        **worst.place,
+        forecast=True,
+        error="guides",
     )
+    def pressure(solution: Solution) -> Demand:
+        """Greatest mean pressure in a guide, Pa."""
+        guide = _guide(solution, side)
+        worst = greatest(
+            solution.cycles,
+            lambda c: demands.bush_pressure(_reaction(c, side), guide.projected_area),
+        )
+        missing = [] if guide.pressure_limit is not None else [_no_limit("pressure", side)]
+        return Demand(
+            worst.value,
+            guide.pressure_limit,
+            worst,
+            note="; ".join([*missing, _contributions(solution, side, worst)]),
+            source=_maker(guide),
+        )
+
+    return pressure
 
 
-def _explained(evidence: TrialEvidence, side: str, guide: Guide, worst: Worst) -> list[str]:
-    """What of the pressure at its worst is of point supports, of length and of clearance."""
-    cycle = next(each for each in evidence.cycles if each.load_case == worst.load_case)
-    if cycle.parts is None:
-        return []
+def _no_limit(quantity: str, side: Side) -> str:
+    return f"no {quantity} limit is given for guide {side}"
+
+
+def _maker(guide: Guide) -> str:
+    return guide.source or f"{guide.material.name} bush"
+
+
+def _contributions(solution: Solution, side: Side, worst: Extreme) -> str:
+    """Contributions of point supports, of length and of clearance to the greatest pressure."""
+    if solution.coarse:
+        return ""
+    cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
     share, guides = cycle.parts.shares.reaction_a, cycle.guides
-    on_points = guides.statics_a if side == "A" else guides.statics_b
-    k = int(np.argmax(np.abs(_reaction(cycle, side))))
-    unit = 1e-6 * np.sign(_reaction(cycle, side)[k]) / _area(guide)
+    statics = guides.statics_a if side == "A" else guides.statics_b
+    reaction = _reaction(cycle, side)
+    k = int(np.argmax(np.abs(reaction)))
+    per_newton = np.sign(reaction[k]) / guide_of(cycle, side).projected_area
     points, length, clearance = (
-        unit * each[k] for each in (on_points, share.by_length, share.by_clearance)
+        shown(float(per_newton * each[k]), "MPa", 3)
+        for each in (statics, share.by_length, share.by_clearance)
     )
-    shares = f"{length:+.2g} by length, {clearance:+.2g} by clearance"
-    return [f"{points:.3g} MPa on point supports, {shares}"]
+    return f"{points} on point supports, {length} from length, {clearance} from clearance"
 
 
-def mean_pv(cycle: Cycle, side: str, guide: Guide) -> float:
+def mean_pv(cycle: Cycle, side: Side) -> float:
     """Pressure times sliding speed in guide A or B, mean over the turn, Pa m/s."""
     guides = cycle.guides
     load = guides.rubbing_load_a if side == "A" else guides.rubbing_load_b
-    return float(np.mean(demands.bush_pv(load, cycle.loads.velocity, _area(guide))))
+    area = guide_of(cycle, side).projected_area
+    return float(np.mean(demands.bush_pv(load, cycle.loads.velocity, area)))
 
 
-def _pv_of_reaction(cycle: Cycle, side: str, guide: Guide) -> float:
-    """The same by the reaction, in which pushes of opposite sides cancel though both rub."""
-    pv = demands.bush_pv(np.abs(_reaction(cycle, side)), cycle.loads.velocity, _area(guide))
-    return float(np.mean(pv))
+def _pv_of_reaction(cycle: Cycle, side: Side) -> float:
+    """The same by the reaction, in which loads of opposite sides cancel though both rub."""
+    load, area = np.abs(_reaction(cycle, side)), guide_of(cycle, side).projected_area
+    return float(np.mean(demands.bush_pv(load, cycle.loads.velocity, area)))
 
 
-def _pv(evidence: TrialEvidence, side: str, guide: Guide) -> Check:
-    worst = worst_case(evidence, lambda cycle: mean_pv(cycle, side, guide))
-    limit = pv_limit(guide)
-    alone = worst_case(evidence, lambda cycle: _pv_of_reaction(cycle, side, guide))
-    return Check(
-        id=f"bush_pv_{side}",
-        title=f"Pressure times speed in guide {side}",
-        demand=1e-6 * worst.value,
-        limit=None if limit is None else 1e-6 * limit,
+def _guide_pv(side: Side) -> Declaration:
+    @check(
+        id=f"guide_pv_{side}",
+        title=f"PV value in guide {side}",
         unit="MPa m/s",
-        source=_pv_source(guide),
-        method="mean |R v| over the turn by finite elements over diameter x length;"
-        " R sums the pushes of both sides of the bore",
+        method="mean |R v| over the turn over diameter x length; R sums the loads of both sides"
+        " of the bore",
         lift_can_help=True,
-        note="; ".join(
-            ([] if limit is not None else [f"no PV limit is given for guide {side}"])
-            + _lubrication_asked(guide, worst.value)
-            + [f"{1e-6 * alone.value:.3g} by what is left of both sides, the reaction"]
-        ),
-        **worst.place,
+        forecast=True,
+        error="guides",
     )
+    def pv(solution: Solution) -> Demand:
+        """Pressure times sliding speed in a guide, mean over the turn, Pa m/s."""
+        guide = _guide(solution, side)
+        worst = worst_case(solution.cycles, lambda cycle: mean_pv(cycle, side))
+        alone = worst_case(solution.cycles, lambda cycle: _pv_of_reaction(cycle, side))
+        limit = pv_limit(guide)
+        notes = [] if limit is not None else [_no_limit("PV", side)]
+        notes += _lubrication(guide, worst.value)
+        notes.append(f"{shown(alone.value, 'MPa m/s', 3)} by the net reaction")
+        return Demand(worst.value, limit, worst, note="; ".join(notes), source=_pv_source(guide))
+
+    return pv
 
 
 def pv_limit(guide: Guide) -> float | None:
-    """The limit given, or else that of nylon in the state of lubrication given, Pa m/s."""
+    """PV limit of a guide, or that of nylon in its state of lubrication, Pa m/s."""
     state = _graded_state(guide)
     return guide.pv_limit if state is None else NYLON_PV[state]
 
 
 def _pv_source(guide: Guide) -> str:
     state = _graded_state(guide)
-    if state is not None:
-        words = state.replace("_", " ")
-        graded = f"nylon, {words}: Mott, table 16-1, and a bush maker's graded limits: verify"
-        return cited(graded, guide.source)
-    return guide.source or f"{guide.material} bush"
+    if state is None:
+        return _maker(guide)
+    words = state.replace("_", " ")
+    graded = f"nylon, {words}: Mott, table 16-1, and a bush maker's graded limits: verify"
+    return "; ".join(each for each in (graded, guide.source) if each)
 
 
 def _graded_state(guide: Guide) -> str | None:
-    """The lubrication whose graded limit holds; None where the guide has one of its own."""
+    """Lubrication whose graded limit holds; None where the guide has a limit of its own."""
     graded = guide.pv_limit is None and _is_nylon(guide)
     return guide.lubrication if graded else None
 
 
-def _lubrication_asked(guide: Guide, demand: float) -> list[str]:
-    """The least lubrication in which nylon carries a PV (Pa m/s); nothing of another material."""
+def _lubrication(guide: Guide, demand: float) -> list[str]:
+    """Least lubrication in which nylon carries a PV (Pa m/s); nothing of another material."""
     if not _is_nylon(guide):
         return []
     states = [state.replace("_", " ") for state, limit in NYLON_PV.items() if demand <= limit]
@@ -141,38 +164,97 @@ def _lubrication_asked(guide: Guide, demand: float) -> list[str]:
 
 
 def _is_nylon(guide: Guide) -> bool:
-    return "nylon" in guide.material.lower()
+    return "nylon" in guide.material.name.lower()
 
 
-def _reaction(cycle: Cycle, side: str) -> Array:
-    return cycle.guides.reaction_a if side == "A" else cycle.guides.reaction_b
+def _guide_edge_pressure(side: Side) -> Declaration:
+    @check(
+        id=f"guide_edge_pressure_{side}",
+        title=f"Edge pressure in guide {side}",
+        unit="MPa",
+        method="pin in a hole with clearance, bush in a rigid housing, where the beam's line"
+        " pressure is greatest; yield strength of the bush",
+        must_have=False,
+        lift_can_help=True,
+        error="guides",
+    )
+    def edge(solution: Solution) -> Demand:
+        """Greatest pressure of the stem in a bore, Pa."""
+        card = _guide(solution, side).material
+        worst = greatest(solution.cycles, lambda cycle: _edge(cycle.parts, side))
+        source = f"yield strength of {card.name}: {card.source}"
+        return Demand(worst.value, card.yield_strength, worst, source=source)
+
+    return edge
 
 
-def _area(guide: Guide) -> float:
-    return guide.diameter * guide.length
+def _edge(parts: PartLoads, side: Side) -> Array:
+    return parts.bush_peak_a if side == "A" else parts.bush_peak_b
 
 
-def guide_length(evidence: TrialEvidence) -> Check:
-    """Distance of the guides beside the greatest overhang."""
-    case = evidence.case
-    overhang = case.follower.overhang_at_max_lift + evidence.contour.pitch.lift.highest.value
-    spread = case.guides.spacing + 0.5 * (case.guides.a.length + case.guides.b.length)
-    return Check(
-        id="guide_length",
-        title="Guided length over the greatest overhang",
-        demand=spread / overhang,
-        limit=case.limits.guide_length,
-        unit="-",
-        sense="at_least",
-        source=evidence.source(
-            "guide_length", "bearing length at least twice the overhang, Rothbart (2004) ch. 6"
-        ),
-        method="outer ends of the two guides over the overhang at the least lift",
+def _guide_temperature(side: Side) -> Declaration:
+    @check(
+        id=f"guide_temperature_{side}",
+        title=f"Temperature of guide {side}",
+        unit="degC",
+        method="friction heat through the bush's wall (or the thermal resistance given), an"
+        " estimate",
         must_have=False,
         lift_can_help=True,
     )
+    def temperature(solution: Solution) -> Demand:
+        """Steady temperature of a bush, degC."""
+        guide = _guide(solution, side)
+        card = guide.material
+        worst = worst_case(solution.cycles, lambda c: celsius(heat_of(c.parts, side).temperature))
+        limit = card.temperature_limit
+        notes = _hottest(solution, side, worst.value)
+        if guide.thermal_resistance is None and card.conductivity is None:
+            notes.append("no thermal resistance and no conductivity are given")
+        if limit is None:
+            notes.append(f"no temperature limit of {card.name} is given")
+        return Demand(
+            worst.value,
+            None if limit is None else celsius(limit),
+            worst,
+            note="; ".join(notes),
+            source=f"{card.name}: {card.source}",
+        )
+
+    return temperature
 
 
-CHECKS = (bush_pressure_a, bush_pressure_b, bush_pv_a, bush_pv_b)
-SIGNED = (guide_length,)
-"""What a sign-off asks for besides; a look ahead does without."""
+def _hottest(solution: Solution, side: Side, nominal: float) -> list[str]:
+    """Temperature at the greatest friction, where it exceeds the nominal one (degC)."""
+    ambient, hot = solution.machine.guides.ambient_temperature, []
+    for cycle in solution.cycles:
+        heat, worst = heat_of(cycle.parts, side), cycle.parts.friction.greatest
+        friction = worst.friction_force_a if side == "A" else worst.friction_force_b
+        power = float(np.mean(friction * np.abs(worst.velocity)))
+        if heat.mean_power > 0.0:
+            rise = (heat.temperature - ambient) * power / heat.mean_power
+            hot.append(celsius(ambient + rise))
+    hottest = max(hot, default=np.nan)
+    return [f"{shown(hottest, 'degC', 3)} at the greatest friction"] if hottest > nominal else []
+
+
+guide_pressure_a, guide_pressure_b = _guide_pressure("A"), _guide_pressure("B")
+guide_pv_a, guide_pv_b = _guide_pv("A"), _guide_pv("B")
+guide_edge_pressure_a, guide_edge_pressure_b = _guide_edge_pressure("A"), _guide_edge_pressure("B")
+guide_temperature_a, guide_temperature_b = _guide_temperature("A"), _guide_temperature("B")
+
+
+@check(
+    GUIDE_LENGTH,
+    title="Guided length / maximum overhang",
+    method="outer ends of the two guides over the overhang at the least lift",
+    must_have=False,
+    lift_can_help=True,
+    moved_by_tolerance=False,
+)
+def guide_length(solution: Solution) -> Demand:
+    """Distance of the outer ends of the guides over the greatest overhang."""
+    machine, guides = solution.machine, solution.machine.guides
+    overhang = machine.overhang_at_max_lift + solution.contour.pitch.lift.highest.value
+    spread = guides.spacing + 0.5 * (guides.a.length + guides.b.length)
+    return Demand(spread / overhang, machine.limits[GUIDE_LENGTH])

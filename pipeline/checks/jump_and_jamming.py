@@ -1,184 +1,193 @@
-"""Limits on the forces that keep the follower on the cam and free in its guides."""
+"""Forces that keep the follower on the cam and free in its guides."""
 
 from __future__ import annotations
-
-import math
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.limits import (
+    CONTACT_FORCE_MARGIN,
+    JAM_INDEX,
+    JUMP,
+    JUMP_SPEED,
+    OVERSPEED,
+)
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.extremes import TrialEvidence, greatest, least
-
-if TYPE_CHECKING:
-    from camwright.pipeline.cycle.cycle import Cycle
-
-RPM = 30.0 / math.pi
+from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.extremes import greatest, least
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.elastic_response import ElasticHistory
+from camwright.pipeline.cycle.solution import Solution
 
 
-def contact_margin(evidence: TrialEvidence) -> dict[str, Any]:
-    """What every check of the least contact force over the preload is held against."""
-    return {
-        "limit": evidence.case.limits.contact_force_margin,
-        "unit": "-",
-        "sense": "at_least",
-        "source": evidence.source(
-            "contact_force_margin", "0.2 to 0.3 of the preload at the highest speed, Norton (2009)"
-        ),
-    }
+@check(
+    CONTACT_FORCE_MARGIN,
+    title="Minimum contact force / preload",
+    method="least normal force over the turn, guide friction and inertia included",
+    lift_can_help=True,
+    forecast=True,
+)
+def contact_force_margin(solution: Solution) -> Demand:
+    """Least contact force over the preload."""
+    worst = least(solution.cycles, lambda c: c.loads.normal_force / c.machine.spring.preload)
+    return Demand(worst.value, solution.machine.limits[CONTACT_FORCE_MARGIN], worst)
 
 
-def jam_limit(evidence: TrialEvidence) -> dict[str, Any]:
-    """What every jam index is held against."""
-    return {
-        "limit": evidence.case.limits.jam_index,
-        "unit": "-",
-        "source": evidence.source(
-            "jam_index", "locks at 1, Rothbart (2004) eq. 6.8; half of it held"
-        ),
-    }
-
-
-def contact_force_margin(evidence: TrialEvidence) -> Check:
-    """Least contact force beside the preload."""
-    worst = least(evidence, lambda cycle: cycle.loads.normal_force / evidence.preload(cycle))
-    return Check(
-        id="contact_force_margin",
-        title="Least contact force over preload",
-        demand=worst.value,
-        **contact_margin(evidence),
-        method="least normal force over the turn, guide friction and inertia included",
-        lift_can_help=True,
-        **worst.place,
-    )
-
-
-def jump(evidence: TrialEvidence) -> Check:
-    """Share of the spring force that the follower's inertia takes away from the contact."""
+@check(
+    JUMP,
+    title="Unloading inertia force / spring force",
+    method="greatest -m w^2 s'' / F_s over the turn; the jump speed is w / sqrt of it",
+    lift_can_help=True,
+    forecast=True,
+)
+def jump(solution: Solution) -> Demand:
+    """Share of the spring force that the follower's inertia takes from the contact."""
     worst = greatest(
-        evidence,
+        solution.cycles,
         lambda cycle: np.maximum(
             demands.unloading(cycle.loads.inertia_force, cycle.loads.spring_force), 0.0
         ),
     )
-    return Check(
-        id="jump",
-        title="Unloading inertia over spring force",
-        demand=worst.value,
-        limit=evidence.case.limits.jump,
-        unit="-",
-        source=evidence.source(
-            "jump", "F_s + m w^2 s'' > 0, follower jump, Norton (2009) and Rothbart (2004)"
-        ),
-        method="greatest -m w^2 s'' / F_s over the turn; the jump speed is w / sqrt of it",
-        lift_can_help=True,
-        **worst.place,
-    )
+    return Demand(worst.value, solution.machine.limits[JUMP], worst)
 
 
-def jam_index(evidence: TrialEvidence) -> Check:
-    """How near the guides are to locking on the rise."""
+@check(
+    JAM_INDEX,
+    title="Jam index",
+    method="greatest friction of both guides over the cam's axial push on the rise, the guides"
+    " with their length and clearance",
+    lift_can_help=True,
+    forecast=True,
+)
+def jam_index(solution: Solution) -> Demand:
+    """Friction of the guides over the axial push on the rise."""
     worst = greatest(
-        evidence,
-        lambda cycle: demands.jam_outward(cycle.loads.lift_slope, cycle.loads.jam_index),
+        solution.cycles, lambda c: demands.jam_outward(c.loads.lift_slope, c.loads.jam_index)
     )
-    return Check(
-        id="jam_index",
-        title="Jam index",
-        demand=worst.value,
-        **jam_limit(evidence),
-        method="greatest friction of both guides over the cam's axial push on the way out, the"
-        " guides with their length and clearance",
-        lift_can_help=True,
-        note=_on_points(evidence),
-        **worst.place,
+    # On point supports c |tan alpha| with c = (mu_A (a + b) + mu_B a) / b.
+    statics = greatest(
+        solution.cycles,
+        lambda c: demands.jam_outward(c.loads.lift_slope, c.loads.jam_index_statics),
     )
+    note = f"{statics.value:.3g} on point supports"
+    return Demand(worst.value, solution.machine.limits[JAM_INDEX], worst, note=note)
 
 
-def _on_points(evidence: TrialEvidence) -> str:
-    """The same on point supports, c |tan alpha| with c = (mu_A (a + b) + mu_B a) / b."""
-    worst = greatest(
-        evidence,
-        lambda cycle: demands.jam_outward(cycle.loads.lift_slope, cycle.loads.jam_index_statics),
-    )
-    return f"{worst.value:.3g} on point supports"
-
-
-def jump_speed(evidence: TrialEvidence) -> Check:
-    """Crank speed at which the follower leaves the cam, against the over-speed."""
-    worst = least(evidence, _jump_speed)
-    factor = evidence.case.limits.jump_speed
-    over, note = _overspeed(evidence)
-    return Check(
-        id="jump_speed",
-        title="Crank speed of the first jump",
-        demand=RPM * worst.value,
-        limit=RPM * factor * over,
-        unit="rpm",
-        sense="at_least",
-        source=evidence.source(
-            "jump_speed", f"{factor} times the over-speed, Norton (2009), Rothbart (2004): verify"
-        ),
-        method="least w sqrt(F_s / (-m w^2 s'')) where the follower slows, friction-free",
-        lift_can_help=True,
-        note=note,
-        load_case="",
-        cam_angle_deg=worst.cam_angle_deg,
-        error_share=worst.error_share,
+@check(
+    JAM_INDEX,
+    id="jam_index_friction_max",
+    title="Jam index at maximum friction",
+    method="greatest friction of both guides over the axial push on the rise, at the greatest"
+    " friction of both guides",
+    lift_can_help=True,
+)
+def jam_index_friction_max(solution: Solution) -> Demand:
+    """Jam index at the greatest friction of both guides."""
+    bounded = solution.machine.friction.bounded
+    worst = greatest(solution.cycles, lambda cycle: cycle.parts.friction.jam_index_max)
+    return Demand(
+        worst.value if bounded else None,
+        solution.machine.limits[JAM_INDEX],
+        worst,
+        note="" if bounded else "no greatest friction is given for both guides",
     )
 
 
-def contact_at_overspeed(evidence: TrialEvidence) -> Check:
-    """Least contact force at the over-speed beside the preload."""
-    over, note = _overspeed(evidence)
+@check(
+    JUMP_SPEED,
+    title="Follower jump speed of the crank",
+    unit="rpm",
+    method="least w sqrt(F_s / (-m w^2 s'')) where the follower decelerates, frictionless",
+    lift_can_help=True,
+)
+def jump_speed(solution: Solution) -> Demand:
+    """Crank speed at which the follower leaves the cam, rad/s."""
+    worst = least(solution.cycles, _jump_speed)
+    over, note = _overspeed(solution)
+    allowed = solution.machine.limits[JUMP_SPEED] * over
+    return Demand(worst.value, allowed, worst._replace(load_case=""), note=note)
+
+
+@check(
+    CONTACT_FORCE_MARGIN,
+    id="contact_at_overspeed",
+    title="Minimum contact force / preload at overspeed",
+    method="least spring force plus m w^2 s'' at the overspeed, frictionless",
+    lift_can_help=True,
+)
+def contact_at_overspeed(solution: Solution) -> Demand:
+    """Least contact force at the overspeed over the preload."""
+    over, note = _overspeed(solution)
 
     def force(cycle: Cycle) -> Array:
-        scale = (over / cycle.crank_speed) ** 2
-        loads = cycle.loads
-        return np.asarray(
-            demands.force_left(
-                loads.spring_force, scale * loads.inertia_force, evidence.preload(cycle)
-            )
-        )
+        scale, loads = (over / cycle.machine.crank_speed) ** 2, cycle.loads
+        preload = cycle.machine.spring.preload
+        inertia = scale * loads.inertia_force
+        return np.asarray(demands.force_left(loads.spring_force, inertia, preload))
 
-    worst = least(evidence, force)
-    return Check(
-        id="contact_at_overspeed",
-        title="Least contact force over preload at the over-speed",
-        demand=worst.value,
-        **contact_margin(evidence),
-        method="least spring force plus m w^2 s'' at the over-speed, friction-free",
-        lift_can_help=True,
-        note=note,
-        load_case="",
-        cam_angle_deg=worst.cam_angle_deg,
-        error_share=worst.error_share,
+    worst = least(solution.cycles, force)._replace(load_case="")
+    return Demand(worst.value, solution.machine.limits[CONTACT_FORCE_MARGIN], worst, note=note)
+
+
+@check(
+    CONTACT_FORCE_MARGIN,
+    id="elastic_contact",
+    title="Minimum contact force / preload with elastic stem",
+    method="one mass on the stem's stiffness, frictionless",
+    must_have=False,
+    lift_can_help=True,
+)
+def elastic_contact(solution: Solution) -> Demand:
+    """Least contact force of the follower on its elastic stem over the preload."""
+    worst = least(
+        solution.cycles,
+        lambda c: c.parts.elastic.response.contact_force / c.machine.spring.preload,
+    )
+    histories = [cycle.parts.elastic for cycle in solution.cycles]
+    methods = "; ".join(dict.fromkeys(history.method for history in histories))
+    return Demand(
+        worst.value,
+        solution.machine.limits[CONTACT_FORCE_MARGIN],
+        worst,
+        note=_flights(histories),
+        method=f"one mass on the stem's stiffness, frictionless: {methods}",
+    )
+
+
+def _flights(histories: list[ElasticHistory]) -> str:
+    """Number of losses of contact in a turn, and the highest flight."""
+    flights = [flight for history in histories for flight in history.flights]
+    if not flights:
+        return ""
+    high = max(flights, key=lambda flight: flight.height)
+    lift_off, landing = (np.degrees(angle) % 360.0 for angle in (high.jump, high.landing))
+    force = max(history.force_max for history in histories)
+    return (
+        f"{len(flights)} losses of contact in a turn; the highest flight starts at"
+        f" {lift_off:.1f} deg and ends at {landing:.1f} deg, {shown(high.height, 'mm', 3)} high,"
+        f" with {shown(high.landing_speed, 'm/s', 3)}; greatest impact force {shown(force, 'N')}"
     )
 
 
 def _jump_speed(cycle: Cycle) -> Array:
-    """Crank speed (n,), rad/s, at which each place of the turn lets go; a NaN stays."""
+    """Crank speed (n,), rad/s, at which the follower leaves each place; a NaN stays."""
     pull = -cycle.loads.inertia_force
     slows = pull > 0
     ratio = np.sqrt(cycle.loads.spring_force / np.where(slows, pull, 1.0))
     free = np.where(np.isnan(pull), np.nan, np.inf)
-    return np.where(slows, cycle.crank_speed * ratio, free)
+    return np.where(slows, cycle.machine.crank_speed * ratio, free)
 
 
-def _overspeed(evidence: TrialEvidence) -> tuple[float, str]:
-    """Over-speed of the crank, rad/s, and what to say of it."""
-    over = evidence.case.limits.overspeed
-    fastest = max(cycle.crank_speed for cycle in evidence.cycles)
-    if over is not None and over >= fastest:
-        return over, ""
-    return fastest, "no over-speed is given: that of the fastest load case"
+def overspeed(machines: tuple[Machine, ...]) -> float:
+    """Overspeed of the crank, rad/s: the given one, at least that of the fastest load case."""
+    fastest = max(machine.crank_speed for machine in machines)
+    return max(machines[0].limits[OVERSPEED] or fastest, fastest)
 
 
-CHECKS = (contact_force_margin, jump, jam_index)
-SIGNED = (
-    jump_speed,
-    contact_at_overspeed,
-)
-"""What a sign-off asks for besides; a look ahead does without."""
+def _overspeed(solution: Solution) -> tuple[float, str]:
+    """Overspeed of the crank, rad/s, and a note where it is not given."""
+    over = overspeed(solution.machines)
+    given = solution.machine.limits[OVERSPEED] == over
+    return over, "" if given else "no overspeed is given: that of the fastest load case"

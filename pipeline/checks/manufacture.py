@@ -1,119 +1,154 @@
-"""Limits of what the shop makes: table, waves and form of the contour, timing of the gears."""
+"""Space and manufacture: clearances, waviness, chord error, phase."""
 
 from __future__ import annotations
-
-from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.extremes import TrialEvidence, Worst, greatest, worst_case
-from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION, cycles_of_ripple
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.limits import (
+    CAM_RADIUS,
+    CHORD_SHARE,
+    GUIDE_GAP,
+    TORQUE_REDUCTION,
+    WAVINESS,
+)
+from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
+from camwright.pipeline.checks.torque_balance import cycles_of_ripple
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.solution import Solution
 
-if TYPE_CHECKING:
-    from camwright.pipeline.cycle.cycle import Cycle
+
+@check(
+    GUIDE_GAP,
+    title="Gap between guide A and cam or {follower}",
+    method="guide's face less the greatest contour radius, and less the follower, at full lift",
+    lift_can_help=True,
+)
+def guide_gap(solution: Solution) -> Demand:
+    """Gap between guide A and the nearest part of cam and follower, m."""
+    machine, contour = solution.machine, solution.contour
+    pitch = contour.pitch
+    mouth = machine.overhang_at_max_lift - 0.5 * machine.guides.a.length
+    highest = pitch.height_base + pitch.lift.highest.value + mouth
+    over_cam = highest - contour.radius_max().value
+    gap = float(np.minimum(over_cam, mouth - machine.follower.extent))
+    note = "the positions of spring and frame are not in the case"
+    return Demand(gap, machine.limits[GUIDE_GAP], note=note)
 
 
-def profile_waviness(evidence: TrialEvidence) -> Check:
-    """Force of the follower riding over the contour's waves beside the contact force."""
-    case = evidence.case
-    band, length = case.cam.profile_tolerance, case.cam.waviness_length
-    mass = case.follower.mass
+@check(
+    CAM_RADIUS,
+    title="Maximum cam radius",
+    method="greatest radius of the contour, refined between samples",
+    lift_can_help=True,
+)
+def cam_radius(solution: Solution) -> Demand:
+    """Greatest radius of the cam, m, beside the space for it."""
+    largest, allowed = solution.contour.radius_max(), solution.machine.limits[CAM_RADIUS]
+    return Demand(
+        float(largest.value),
+        allowed,
+        Extreme(float(largest.value), "", float(np.mod(largest.theta, FULL_TURN))),
+        note="" if allowed is not None else "no space for the cam is given",
+    )
+
+
+@check(
+    WAVINESS,
+    id="profile_waviness",
+    title="Waviness force / contact force",
+    method="m delta (2 pi v/lambda)^2, waves that fill the profile tolerance",
+)
+def profile_waviness(solution: Solution) -> Demand:
+    """Force of the follower riding over the contour's waves over the contact force."""
+    cam = solution.machine.cam
+    band, length = cam.profile_tolerance, cam.waviness_length
 
     def force(cycle: Cycle) -> Array:
-        along = evidence.cam_speed(cycle) * _path(evidence, cycle.theta)
+        along = cycle.cam_speed * np.abs(cycle.contour.speed(cycle.theta))
         # A wave that fills the band of the tolerance has half of it as amplitude.
-        added = mass * 0.5 * (band or 0.0) * (FULL_TURN * along / length) ** 2
+        amplitude = 0.5 * (band or 0.0)
+        added = cycle.machine.mass * amplitude * (FULL_TURN * along / length) ** 2
         nominal = cycle.loads.normal_force
         held = nominal > 0
         share = np.where(held, added / np.where(held, nominal, 1.0), np.inf)
         return np.where(np.isnan(nominal), np.nan, share)
 
-    worst = greatest(evidence, force) if band is not None else Worst(np.nan, "", None)
-    return Check(
-        id="profile_waviness",
-        title="Force of the contour's waves over the contact force",
-        demand=worst.value,
-        limit=case.limits.waviness,
-        unit="-",
-        source=evidence.source("waviness", "10 to 20 % of the force, Rothbart (2004) sec. 10.4"),
-        method=f"m delta (2 pi v/lambda)^2, waves that fill the profile tolerance,"
-        f" {1e3 * length:g} mm long",
-        note="" if band is not None else "no profile tolerance is given",
-        **worst.place,
+    worst = greatest(solution.cycles, force) if band is not None else NOWHERE
+    return Demand(
+        worst.value,
+        solution.machine.limits[WAVINESS],
+        worst,
+        note=f"waves of {shown(length, 'mm')}" if band is not None else _NO_BAND,
     )
 
 
-def chord_error(evidence: TrialEvidence) -> Check:
-    """What straight lines between the points of the shop's contour table miss of it."""
-    tolerance, share = evidence.case.cam.profile_tolerance, evidence.case.limits.chord_share
-    theta = evidence.case.workshop.theta
-    contour = evidence.contour
+_NO_BAND = "no profile tolerance is given"
+
+
+@check(
+    CHORD_SHARE,
+    id="chord_error",
+    title="Chord error of the contour table",
+    unit="um",
+    method="greatest step^2/(8 rho) between the points of workshop/contour.csv",
+    moved_by_tolerance=False,
+)
+def chord_error(solution: Solution) -> Demand:
+    """Distance of the chords of the workshop's contour table from the contour, m."""
+    limits, tolerance = solution.machine.limits, solution.machine.cam.profile_tolerance
+    theta, contour = solution.case.workshop_order.theta, solution.contour
     points = contour.points(theta)
     step = np.hypot(*(np.roll(points, -1, axis=1) - points))
     bend = np.abs(1.0 / contour.radius_of_curvature(theta))
     sag = step**2 * np.maximum(bend, np.roll(bend, -1)) / 8.0
     worst = int(np.argmax(sag))
-    return Check(
-        id="chord_error",
-        title="Chord error of the contour's table",
-        demand=1e6 * float(sag[worst]),
-        limit=None if tolerance is None else 1e6 * share * tolerance,
-        unit="um",
-        cam_angle_deg=float(np.rad2deg(theta[worst])),
-        source=evidence.source("chord_share", "a quarter of the profile tolerance, geometry"),
-        method=f"greatest step^2/(8 rho) between the {theta.size} points of shop/contour.csv",
-        note="" if tolerance is not None else "no profile tolerance is given",
+    return Demand(
+        float(sag[worst]),
+        None if tolerance is None else limits[CHORD_SHARE] * tolerance,
+        Extreme(float(sag[worst]), "", float(theta[worst])),
+        note=f"{theta.size} points" if tolerance is not None else _NO_BAND,
     )
 
 
-def phase_tolerance(evidence: TrialEvidence) -> Check | None:
-    """Ripple still taken away when key and gear stand as far off as they may."""
-    running = cycles_of_ripple(evidence)
+@check(
+    TORQUE_REDUCTION,
+    id="phase_tolerance",
+    title="Torque ripple reduction at phase tolerance",
+    method="the engine's torque early and late by the phase tolerance, the worse",
+    must_have=False,
+    moved_by_tolerance=False,
+)
+def phase_tolerance(solution: Solution) -> Demand | None:
+    """Ripple reduction at the ends of the phase tolerance of key and gear."""
+    running = cycles_of_ripple(solution)
     if not running:
         return None
-    phase, ratio = evidence.case.tolerances.phase, evidence.case.mechanism.gear_ratio
-    worst = worst_case(
-        replace(evidence, cycles=running),
-        lambda cycle: _reduction(cycle, phase, ratio),
-        at_least=True,
-    )
-    return Check(
-        id="phase_tolerance",
-        title="Torque ripple taken away at the end of the phase tolerance",
-        demand=worst.value if phase > 0 else None,
-        limit=evidence.case.limits.torque_reduction,
-        unit="-",
-        sense="at_least",
-        source=evidence.source(TORQUE_REDUCTION, "least value asked for by the case"),
-        method=f"the engine's torque {np.rad2deg(phase):g} deg of crank early and late, the worse",
-        must_have=False,
-        note="" if phase > 0 else "no phase tolerance is given",
-        **worst.place,
+    phase = solution.case.tolerances.phase
+    worst = worst_case(running, lambda cycle: _reduction(cycle, phase), at_least=True)
+    return Demand(
+        worst.value if phase > 0 else None,
+        solution.machine.limits[TORQUE_REDUCTION],
+        worst,
+        note=f"{shown(phase, 'deg')} of crank" if phase > 0 else "no phase tolerance is given",
     )
 
 
-def _reduction(cycle: Cycle, phase: float, ratio: float) -> float:
-    before = np.asarray(cycle.torque_before, dtype=float)
-    taken = before - np.asarray(cycle.residual_torque, dtype=float)
+def _reduction(cycle: Cycle, phase: float) -> float:
+    before, after = cycle.turn.torque_before, cycle.turn.torque_after
+    if before is None or after is None:
+        return np.nan
     ripple = float(np.std(before))
     if not ripple > 0:
         return float(np.nan)
     # As many periods as the cycle holds: a shift is exact in its harmonics.
     waves = np.fft.rfft(before)
-    order = np.arange(waves.size)
+    order, taken = np.arange(waves.size), before - after
+    turned = phase / cycle.machine.gear_ratio
     left = [
-        np.std(np.fft.irfft(waves * np.exp(-1j * order * late / ratio), before.size) - taken)
-        for late in (-phase, phase)
+        np.std(np.fft.irfft(waves * np.exp(-1j * order * late), before.size) - taken)
+        for late in (-turned, turned)
     ]
     return float(1.0 - np.max(left) / ripple)
-
-
-def _path(evidence: TrialEvidence, theta: Array) -> Array:
-    """Way of the contact along the contour per radian (n,), m."""
-    return np.abs(evidence.contour.speed(theta))
-
-
-CHECKS = (profile_waviness, chord_error, phase_tolerance)

@@ -1,11 +1,12 @@
-"""Every check of a trial, waivers applied."""
+"""The list of checks, and the checks of a solution."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from types import ModuleType
 
+from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.checks import (
     cam_shape,
     camshaft_strength,
@@ -16,111 +17,118 @@ from camwright.pipeline.checks import (
     manufacture,
     part_strength,
     plane_strain_validity,
-    proof,
     roller_bearing,
-    room,
     solution_verification,
     spring_strength,
-    surface,
     surface_durability,
+    torque_balance,
     wear_and_grease,
 )
-from camwright.pipeline.checks import torque_balance as function
-from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.check import (
+    Check,
+    Declaration,
+    Demand,
+    check,
+    in_order,
+    made_from_others,
+)
 from camwright.pipeline.checks.error_bars import with_error_bars
-from camwright.pipeline.checks.extremes import TrialEvidence
-from camwright.pipeline.checks.verdict import in_order
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import Solution
 
-if TYPE_CHECKING:
-    from camwright.pipeline.case.requirements_section import Waiver
-
-CheckFunction = Callable[[TrialEvidence], Check | None]
-
-DESIGN: tuple[CheckFunction, ...] = (
-    *function.CHECKS,
-    *cam_shape.CHECKS,
-    *jump_and_jamming.CHECKS,
-    *contact_strength.CHECKS,
-    *roller_bearing.CHECKS,
-    *guide_bushes.CHECKS,
+MODULES: tuple[ModuleType, ...] = (
+    torque_balance,
+    cam_shape,
+    jump_and_jamming,
+    contact_strength,
+    surface_durability,
+    roller_bearing,
+    guide_bushes,
+    spring_strength,
+    part_strength,
+    camshaft_strength,
+    flat_face_sliding,
+    wear_and_grease,
+    manufacture,
+    plane_strain_validity,
+    solution_verification,
 )
-"""Limits on the design itself."""
+"""Modules of checks, in the order of the calculation: a check declared in one is in the list."""
 
-SLOW = (cam_shape.self_intersection, cam_shape.second_contact)
-"""Searches over all pairs of places: too slow to foresee a cam not yet chosen."""
-
-ALL: tuple[CheckFunction, ...] = (
-    *DESIGN,
-    *surface_durability.CHECKS,
-    *flat_face_sliding.CHECKS,
-    *solution_verification.CHECKS,
+CHECKS: tuple[Declaration, ...] = tuple(
+    each for module in MODULES for each in vars(module).values() if isinstance(each, Declaration)
 )
+FORECAST = tuple(each for each in CHECKS if each.forecast)
+"""Checks of the design that are quick, to forecast a smoother."""
+TOLERANCED = tuple(each for each in CHECKS if each.moved_by_tolerance and not each.evidence)
+"""Checks of the design whose demand differs at a corner of the tolerances."""
+PREVIEW_MARK = "preview: "
+# A waiver that fits no check, or one of the evidence, which stands or falls by itself.
+WAIVERS_WITHOUT_EFFECT = check(
+    id="waivers_without_effect",
+    title="Waivers without effect",
+    unit="waivers",
+    source="a waiver names a check of the design; a wrong number cannot be accepted",
+    method="names of the case's waivers against the ids of its checks",
+    must_have=False,
+)(made_from_others)
+TOLERANCE_CORNERS = check(
+    id="tolerance_corners",
+    title="Checks that pass at the nominal and fail at a tolerance corner",
+    unit="checks",
+    source="tolerances of the case; one at a time and a seeded sample",
+    method="closed forms at the corners; one that cannot be solved counts as a check",
+    must_have=False,
+)(made_from_others)
+UNSIGNED = check(
+    id="signed_off",
+    title="Finite elements, certificate and error bars",
+    unit="-",
+    sense="at_least",
+    source="a sign-off needs a certified solution by finite elements",
+    method="none: the solution is not certified",
+)(made_from_others)
+MADE_FROM_OTHERS = (WAIVERS_WITHOUT_EFFECT, TOLERANCE_CORNERS, UNSIGNED)
 
 
-SIGNED: tuple[CheckFunction, ...] = (
-    *jump_and_jamming.SIGNED,
-    *contact_strength.SIGNED,
-    *room.CHECKS,
-    *roller_bearing.SIGNED,
-    *guide_bushes.SIGNED,
-    *surface.CHECKS,
-    *camshaft_strength.CHECKS,
-    *manufacture.CHECKS,
-)
-"""What a sign-off asks for besides."""
+def checks_of(
+    solution: Solution, declarations: Iterable[Declaration] = CHECKS
+) -> tuple[Check, ...]:
+    """The checks of a solution, with error bars and waivers: not evaluated first, then by falling
+    utilisation.
 
-PROOF: tuple[CheckFunction, ...] = (*plane_strain_validity.CHECKS, *proof.CHECKS)
-"""What the plane model leaves out; meshes and benchmarks behind the figures of a trial."""
-
-PARTS: tuple[CheckFunction, ...] = (
-    *part_strength.CHECKS,
-    *spring_strength.CHECKS,
-    *wear_and_grease.CHECKS,
-)
-"""Limits of the parts around the cam, which only a trial with its cycles tells of."""
-
-
-def all_checks(trial: TrialEvidence) -> tuple[Check, ...]:
-    """Every check of a trial: not evaluated first, then by falling utilisation.
-
-    A check that does not apply, such as the torque reduction of a cam without an engine, is
-    left out.
+    A check that does not apply, such as the torque reduction of a cam without an engine, is left
+    out; so is one that the solution's tier cannot judge.
     """
-    found = checked_by(trial, (*ALL, *PROOF, *SIGNED, *PARTS))
-    known = {check.id for check in found if not check.evidence} | {"tolerance_corners"}
-    idle = [waiver.check for waiver in trial.case.waivers if waiver.check not in known]
-    return in_order((*found, _idle_waivers(idle))) if idle else found
+    made = [one for one in (declared(solution) for declared in declarations) if one is not None]
+    return in_order(waived(with_error_bars(solution, made), solution.case.waivers))
 
 
-def _idle_waivers(names: Sequence[str]) -> Check:
-    """A waiver that fits no check, or one of the evidence, which stands or falls by itself."""
-    return Check(
-        id="idle_waivers",
-        title="Waivers of no effect",
-        demand=float(len(names)),
-        limit=0.0,
-        unit="waivers",
-        source="a waiver names a check of the design; a wrong number cannot be accepted",
-        method="names of the case's waivers against the ids of its checks",
-        must_have=False,
-        note=", ".join(names),
-    )
+def all_checks(solution: Solution) -> tuple[Check, ...]:
+    """Every check of a solution, and one for waivers without effect.
+
+    Unless the solution is certified one more, never evaluated, says so: it cannot pass.
+    """
+    made = checks_of(solution)
+    if not solution.final:
+        note = "camwright run solves and certifies the case"
+        made = (UNSIGNED.judged(solution.machine, Demand(None, 1.0, note=note)), *made)
+    if solution.tier < Tier.FINITE_ELEMENTS:
+        return in_order(replace(one, method=PREVIEW_MARK + one.method) for one in made)
+    known = {one.id for one in made if not one.evidence} | {TOLERANCE_CORNERS.id}
+    idle = [waiver.check for waiver in solution.case.waivers if waiver.check not in known]
+    if idle:
+        demand = Demand(float(len(idle)), 0.0, note=", ".join(idle))
+        made = (*made, WAIVERS_WITHOUT_EFFECT.judged(solution.machine, demand))
+    return in_order(made)
 
 
-def design_checks(trial: TrialEvidence) -> tuple[Check, ...]:
-    """The checks of the design that are quick; of closed-form cycles, without parts and rolling."""
-    return checked_by(trial, (function for function in DESIGN if function not in SLOW))
+def without_sign_off(checks: Iterable[Check]) -> tuple[Check, ...]:
+    """The checks without the one that says a solution is not certified."""
+    return tuple(one for one in checks if one.id != UNSIGNED.id)
 
 
 def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, ...]:
     """The checks, each with the waiver the case has for it; the evidence cannot be waived."""
     texts = {w.check: f"{w.name}, {w.date}: {w.reason}" for w in waivers}
-    return tuple(
-        check if check.evidence else replace(check, waiver=texts.get(check.id)) for check in checks
-    )
-
-
-def checked_by(trial: TrialEvidence, functions: Iterable[CheckFunction]) -> tuple[Check, ...]:
-    """The checks that some functions find, with error bars and waivers, in order."""
-    found = [check for check in (function(trial) for function in functions) if check is not None]
-    return in_order(waived(with_error_bars(trial, found), trial.case.waivers))
+    return tuple(one if one.evidence else replace(one, waiver=texts.get(one.id)) for one in checks)

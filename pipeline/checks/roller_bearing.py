@@ -1,141 +1,139 @@
-"""Limits of the roller's bearing."""
+"""The roller's bearing: static rating, life, speed, outer ring."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.extremes import (
-    TrialEvidence,
-    cited,
-    greatest,
-    rollers_only,
-    worst_case,
-)
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.limits import ROLLER_LIFE, ROLLER_SPEED_SHARE, ROLLER_STATIC_SAFETY
+from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.roller_motion import rating_life, roller_motion, static_safety
-
-if TYPE_CHECKING:
-    from camwright.pipeline.cycle.cycle import Cycle
-
-RPM = 30.0 / np.pi
+from camwright.pipeline.follower.roller_parts import Bearing
 
 
-def _spin(evidence: TrialEvidence, cycle: Cycle) -> Array:
+def bearing_of(solution: Solution) -> Bearing:
+    """Bearing of the roller.
+
+    Raises
+    ------
+    InputError
+        Under a flat face; a check of the bearing declares that it needs a roller.
+    """
+    roller = solution.machine.roller
+    if roller is None:
+        raise InputError("roller", "missing", "given for a check of its bearing")
+    return roller.bearing
+
+
+def spin(cycle: Cycle) -> Array:
     """Speed of the roller on its pin, rad/s, (n,)."""
-    contour = evidence.contour
-    speed = evidence.cam_speed(cycle)
-    return roller_motion(contour.pitch, contour.roller_radius, speed, cycle.theta).spin
+    contour = cycle.contour
+    return roller_motion(contour.pitch, contour.roller_radius, cycle.cam_speed, cycle.theta).spin
 
 
-def _life(evidence: TrialEvidence, cycle: Cycle) -> float:
-    """L10, hours; NaN without a rating or a force, infinite for a roller at rest."""
-    rating, force = evidence.case.roller.bearing.C, cycle.loads.normal_force
+def _force(solution: Solution) -> Extreme:
+    return greatest(solution.cycles, lambda cycle: cycle.loads.normal_force)
+
+
+@check(
+    ROLLER_STATIC_SAFETY,
+    id="roller_static",
+    title="Static safety factor of the roller bearing",
+    method="static rating over the greatest normal force",
+    lift_can_help=True,
+    forecast=True,
+    needs="roller",
+)
+def roller_static(solution: Solution) -> Demand:
+    """Static safety s0 of the bearing."""
+    bearing, worst = bearing_of(solution), _force(solution)
+    rating = bearing.C0
+    rated = rating is not None and worst.value > 0
+    return Demand(
+        static_safety(worst.value, rating) if rated and rating is not None else None,
+        solution.machine.limits[ROLLER_STATIC_SAFETY],
+        worst,
+        note="" if rating is not None else f"no static rating is given for {bearing.name}",
+        figures=(f"{bearing.name}: {bearing.source}",),
+    )
+
+
+@check(
+    ROLLER_LIFE,
+    title="L10 rating life of the roller bearing",
+    method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force",
+    lift_can_help=True,
+    forecast=True,
+    needs="roller",
+)
+def roller_life(solution: Solution) -> Demand:
+    """Rating life of the bearing over the turn, s."""
+    bearing, target = bearing_of(solution), solution.machine.limits[ROLLER_LIFE]
+    worst = worst_case(solution.cycles, lambda c: _life(c, bearing.C), at_least=True)
+    missing = ["no dynamic rating is given"] if bearing.C is None else []
+    missing += ["no life is required"] if target is None else []
+    return Demand(
+        worst.value,
+        target,
+        worst,
+        note="; ".join(missing),
+        figures=(f"{bearing.name}: {bearing.source}".rstrip(": "),),
+    )
+
+
+def _life(cycle: Cycle, rating: float | None) -> float:
+    """L10, s; NaN without a rating or a force."""
+    force = cycle.loads.normal_force
     if rating is None or not np.isfinite(force).all():
         return np.nan
-    spin = _spin(evidence, cycle)
-    return rating_life(force, spin, rating).hours if spin.any() else np.inf
+    return rating_life(force, spin(cycle), rating).seconds
 
 
-@rollers_only
-def roller_static(evidence: TrialEvidence) -> Check:
-    """Static safety s0 of the bearing."""
-    bearing = evidence.case.roller.bearing
-    rating = bearing.C0
-    worst = greatest(evidence, lambda cycle: cycle.loads.normal_force)
-    return Check(
-        id="roller_static",
-        title="Static safety of the roller bearing",
-        demand=static_safety(worst.value, rating)
-        if rating is not None and worst.value > 0
-        else None,
-        limit=evidence.case.limits.roller_static_safety,
-        unit="-",
-        sense="at_least",
-        source=evidence.source(
-            "roller_static_safety", "s0 = C0/P0, ISO 76", f"{bearing.name}: {bearing.source}"
-        ),
-        method="static rating over the greatest normal force",
-        lift_can_help=True,
-        note="" if rating is not None else f"no static rating is given for {bearing.name}",
-        **worst.place,
+@check(
+    ROLLER_SPEED_SHARE,
+    id="roller_speed",
+    title="Roller speed vs. limiting speed",
+    unit="rpm",
+    method="rolling without slip: w (|dP/dtheta| - r) / r",
+    lift_can_help=True,
+    forecast=True,
+    needs="roller",
+)
+def roller_speed(solution: Solution) -> Demand:
+    """Greatest speed of the roller on its pin, rad/s."""
+    bearing, share = bearing_of(solution), solution.machine.limits[ROLLER_SPEED_SHARE]
+    worst = greatest(solution.cycles, lambda cycle: np.abs(spin(cycle)))
+    allowed = None if bearing.speed_limit is None else share * bearing.speed_limit
+    return Demand(
+        worst.value,
+        allowed,
+        worst,
+        note="" if allowed is not None else f"no limiting speed is given for {bearing.name}",
+        figures=(bearing.source,),
     )
 
 
-@rollers_only
-def roller_life(evidence: TrialEvidence) -> Check:
-    """Rating life of the bearing over the turn."""
-    bearing = evidence.case.roller.bearing
-    rating, target = bearing.C, evidence.case.limits.roller_life
-
-    worst = worst_case(evidence, lambda cycle: _life(evidence, cycle), at_least=True)
-    missing = [
-        text
-        for value, text in ((rating, "no dynamic rating"), (target, "no life is asked for"))
-        if value is None
-    ]
-    return Check(
-        id="roller_life",
-        title="Rating life L10 of the roller bearing",
-        demand=worst.value,
-        limit=None if target is None else target / 3600.0,
-        unit="h",
-        sense="at_least",
-        source=evidence.source(
-            "roller_life", "ISO 281", f"{bearing.name}: {bearing.source}".rstrip(": ")
-        ),
-        method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force",
-        lift_can_help=True,
-        note="; ".join(missing),
-        **worst.place,
-    )
-
-
-@rollers_only
-def roller_speed(evidence: TrialEvidence) -> Check:
-    """Roller speed against the share of the bearing's limiting speed."""
-    bearing = evidence.case.roller.bearing
-    share, ceiling = evidence.case.limits.roller_speed_share, bearing.speed_limit
-    limit = None if ceiling is None else RPM * share * ceiling
-    worst = greatest(evidence, lambda cycle: np.abs(_spin(evidence, cycle)))
-    return Check(
-        id="roller_speed",
-        title="Speed of the roller",
-        demand=RPM * worst.value,
-        limit=limit,
-        unit="rpm",
-        source=evidence.source("roller_speed_share", "share of the maker's limit", bearing.source),
-        method="rolling without slip: w (|dP/dtheta| - r) / r",
-        lift_can_help=True,
-        note="" if limit is not None else f"no limiting speed is given for {bearing.name}",
-        **worst.place,
-    )
-
-
-@rollers_only
-def roller_radial(evidence: TrialEvidence) -> Check:
-    """Greatest force on the roller against what its outer ring bears unsupported."""
-    bearing = evidence.case.roller.bearing
-    limit = bearing.radial_limit
-    worst = greatest(evidence, lambda cycle: cycle.loads.normal_force)
-    return Check(
-        id="roller_radial",
-        title="Force on the roller against the rating of its outer ring",
-        demand=worst.value,
-        limit=limit,
-        unit="N",
-        source=cited("F_r,max of a track roller", f"{bearing.name}: {bearing.source}"),
-        method="greatest normal force over the turn",
-        lift_can_help=True,
+@check(
+    title="Roller force vs. maximum radial load of the outer ring",
+    unit="N",
+    source="F_r,max of a track roller",
+    method="greatest normal force over the turn",
+    lift_can_help=True,
+    needs="roller",
+)
+def roller_radial(solution: Solution) -> Demand:
+    """Greatest force on the roller, N, beside the rating of its unsupported outer ring."""
+    bearing, worst = bearing_of(solution), _force(solution)
+    return Demand(
+        worst.value,
+        bearing.radial_limit,
+        worst,
         note=""
-        if limit is not None
+        if bearing.radial_limit is not None
         else f"{bearing.name} has no rating for an outer ring without a housing",
-        **worst.place,
+        figures=(f"{bearing.name}: {bearing.source}",),
     )
-
-
-CHECKS = (roller_static, roller_life, roller_speed)
-SIGNED = (roller_radial,)
-"""What a sign-off asks for besides; a look ahead does without."""

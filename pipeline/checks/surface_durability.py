@@ -1,167 +1,274 @@
-"""Limits of the rolling surface: grip, oil film, fatigue, hardened case."""
+"""Durability of the running surface: traction, oil film, fatigue, case depth."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from math import inf
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.extremes import (
-    TrialEvidence,
-    cam_card,
-    greatest,
-    least,
-    rollers_only,
-    worst_case,
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.case.limits import (
+    CASE_DEPTH_RATIO,
+    CASE_SAFETY,
+    FATIGUE_SAFETY,
+    FILM_RATIO,
+    TRACTION_SHARE,
 )
+from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.contact_strength import peak_pressure
+from camwright.pipeline.checks.extremes import greatest, least, worst_case
+from camwright.pipeline.contact.rolling_envelope import Envelope
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.solution import Solution
 
-if TYPE_CHECKING:
-    from camwright.pipeline.case.parts_section import Material
-    from camwright.pipeline.contact.rolling_envelope import Envelope
-    from camwright.pipeline.cycle.cycle import Cycle
+CASE_CARBURISED = 1500e6  # Pa, quality MQ
 
 
-@rollers_only
-def roller_grip(evidence: TrialEvidence) -> Check:
-    """Tangential force that rolling asks for against friction."""
-    friction = evidence.case.roller.friction
-    worst = greatest(evidence, _demand)
-    return Check(
-        id="roller_grip",
-        title="Grip that keeps the roller rolling",
-        demand=worst.value,
-        limit=None if friction is None else evidence.case.limits.skid * friction,
-        unit="-",
-        source=evidence.source(
-            "skid", "half of friction, Rothbart, Cam Design Handbook (2004), eq. 10.7: verify"
-        ),
-        method="(roller inertia + bearing drag) over roller radius and normal force",
-        must_have=False,
-        lift_can_help=True,
+@check(
+    TRACTION_SHARE,
+    id="traction_demand",
+    title="Traction demand vs. friction limit",
+    method="(roller inertia + bearing drag) over roller radius and normal force",
+    must_have=False,
+    lift_can_help=True,
+    needs="roller",
+)
+def traction_demand(solution: Solution) -> Demand:
+    """Tangential over normal force of rolling without slip."""
+    machine = solution.machine
+    worst, friction = greatest(solution.cycles, _traction), machine.follower.friction
+    return Demand(
+        worst.value,
+        None if friction is None else machine.limits[TRACTION_SHARE] * friction,
+        worst,
         note="" if friction is not None else "no friction of the roller on the cam is given",
-        **worst.place,
     )
 
 
-def film_ratio(evidence: TrialEvidence) -> Check:
-    """Least film over roughness."""
-    case = evidence.case
-    worst = least(evidence, _lambda)
-    missing = [
-        text
-        for value, text in (
-            (case.lubricant, "no lubricant"),
-            (case.cam.roughness, "no roughness of the cam"),
-            (evidence.facing.roughness, f"no roughness of the {evidence.facing_name}"),
-        )
-        if value is None
-    ]
-    return Check(
-        id="film_ratio",
-        title="Oil film over roughness",
-        demand=worst.value,
-        limit=case.limits.film_ratio,
-        unit="-",
-        sense="at_least",
-        source=evidence.source(
-            "film_ratio",
-            "below 1 boundary, 1 to 3 mixed, above 3 full film",
-            "" if case.lubricant is None else case.lubricant.source,
-        ),
-        method="least film of Dowson and Higginson (1966) where loaded, over the rms roughness",
-        must_have=False,
+@check(
+    FILM_RATIO,
+    title="Lambda ratio (film thickness / roughness)",
+    method="least film of Dowson and Higginson (1966) where loaded, over the rms roughness",
+    must_have=False,
+)
+def film_ratio(solution: Solution) -> Demand:
+    """Least film thickness over roughness."""
+    machine = solution.machine
+    oil, kind = machine.lubricant, machine.follower
+    worst, missing = least(solution.cycles, _lambda), []
+    if oil is None:
+        missing.append("no lubricant")
+    if machine.cam.roughness is None:
+        missing.append("no roughness of the cam")
+    if kind.roughness is None:
+        missing.append(f"no roughness of the {kind.word}")
+    return Demand(
+        worst.value,
+        machine.limits[FILM_RATIO],
+        worst,
         note=f"{', '.join(missing)} is given" if missing else "",
-        **worst.place,
+        figures=() if oil is None else (oil.source,),
     )
 
 
-def surface_fatigue(evidence: TrialEvidence) -> Check:
-    """Crossland's stress as the follower passes against the limit in torsion."""
-    worst = worst_case(evidence, lambda cycle: _of_map(cycle, _crossland))
-    return Check(
-        id="surface_fatigue",
-        title="Fatigue below the surface of the cam",
-        demand=1e-6 * worst.value,
-        **torsion_limit(evidence, "Crossland (1956)"),
-        method="root of J2's amplitude plus weighted hydrostatic stress, the load swept along "
-        "the contour",
-        must_have=False,
-        lift_can_help=True,
-        **worst.place,
-    )
-
-
-def torsion_limit(evidence: TrialEvidence, author: str) -> dict[str, Any]:
-    """The limit in torsion of the cam's material, against which an author's stress is held."""
-    name, card = cam_card(evidence)
-    torsion, safety = card.fatigue_torsion, evidence.case.limits.fatigue_safety
+def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) -> Demand:
+    """A fatigue stress beside the limit in torsion of the cam's material, Pa."""
+    worst = worst_case(solution.cycles, lambda cycle: measure(cycle.rolling.envelope))
+    card = solution.machine.cam.material
+    torsion, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
     known = torsion is not None and card.fatigue_bending is not None
-    return {
-        "limit": 1e-6 * torsion / safety if known and torsion else None,
-        "unit": "MPa",
-        "source": evidence.source("fatigue_safety", f"{author}; limits of {name}", card.source),
-        "note": "" if known else f"the card of {name} gives no fatigue limits",
-    }
+    return Demand(
+        worst.value,
+        torsion / safety if known and torsion else None,
+        worst,
+        note="" if known else f"the card of {card.name} gives no fatigue limits",
+        figures=(f"{card.name}: {card.source}",),
+    )
 
 
-def hardened_case(evidence: TrialEvidence) -> Check:
-    """Von Mises stress over the yield strength there is at its depth."""
-    name, card = cam_card(evidence)
+@check(
+    FATIGUE_SAFETY,
+    id="surface_fatigue",
+    title="Subsurface fatigue, Crossland criterion",
+    unit="MPa",
+    method="Crossland (1956): root of J2's amplitude plus weighted hydrostatic stress, the load"
+    " swept along the contour",
+    must_have=False,
+    lift_can_help=True,
+    error="contact",
+)
+def surface_fatigue(solution: Solution) -> Demand:
+    """Crossland's stress of the load's passage, Pa."""
+    return _torsion_demand(solution, lambda map_: _greatest_of(map_.crossland))
+
+
+@check(
+    FATIGUE_SAFETY,
+    id="dang_van",
+    title="Subsurface fatigue, Dang Van criterion",
+    unit="MPa",
+    method="Dang Van (1993): shear amplitude plus weighted hydrostatic stress, no credit for"
+    " compression (Desimone 2006), the load swept along the contour",
+    must_have=False,
+    lift_can_help=True,
+    error="contact",
+)
+def dang_van(solution: Solution) -> Demand:
+    """Dang Van's stress of the load's passage, Pa."""
+    return _torsion_demand(solution, lambda map_: _greatest_of(map_.dang_van))
+
+
+@check(
+    CASE_SAFETY,
+    id="hardened_case",
+    title="Subsurface stress vs. strength of case and core",
+    method="greatest von Mises stress over the yield strength at its depth, which falls linearly"
+    " from surface to core over the case depth",
+    must_have=False,
+    lift_can_help=True,
+    error="contact",
+)
+def hardened_case(solution: Solution) -> Demand:
+    """Von Mises stress over the yield strength at its depth."""
+    card = solution.machine.cam.material
     known = card.case_depth is not None and card.core_yield_strength is not None
     worst = worst_case(
-        evidence, lambda cycle: _of_map(cycle, lambda map_: _use_of_strength(map_, card))
+        solution.cycles, lambda cycle: _use_of_strength(cycle.rolling.envelope, card)
     )
-    return Check(
-        id="hardened_case",
-        title="Strength of case and core below the surface",
-        demand=worst.value if known else None,
-        limit=1.0 / evidence.case.limits.case_safety,
-        unit="-",
-        source=evidence.source("case_safety", f"yield of case and core of {name}", card.source),
-        method="greatest von Mises stress over the yield strength at its depth, which falls "
-        "evenly from surface to core over the case depth",
-        must_have=False,
-        lift_can_help=True,
-        note="" if known else f"the card of {name} gives no case depth or no core",
-        **worst.place,
+    return Demand(
+        worst.value if known else None,
+        1.0 / solution.machine.limits[CASE_SAFETY],
+        worst,
+        note="" if known else f"the card of {card.name} gives no case depth or no core",
+        figures=(f"{card.name}: {card.source}",),
     )
 
 
-def _demand(cycle: Cycle) -> Array:
-    """Demand on grip (n,) where loaded; NaN where it is not known."""
-    rolling = cycle.rolling
-    if rolling is None or rolling.traction_demand is None:
+@check(
+    CASE_DEPTH_RATIO,
+    id="case_depth",
+    title="Effective case depth / depth of maximum shear",
+    method="effective depth of the card over the greatest depth of tau_max over the turn",
+    must_have=False,
+    lift_can_help=True,
+)
+def case_depth(solution: Solution) -> Demand:
+    """Depth of the hardened case over that of the greatest shear."""
+    card = solution.machine.cam.material
+    depth, worst = card.case_depth, greatest(solution.cycles, lambda c: c.contact.tau_depth)
+    loaded = worst.value > 0 or np.isnan(worst.value)
+    return Demand(
+        float(depth / worst.value) if depth is not None and loaded else None,
+        solution.machine.limits[CASE_DEPTH_RATIO],
+        worst,
+        note="" if depth is not None else f"the card of {card.name} gives no case depth",
+        figures=(card.source,),
+    )
+
+
+@check(
+    title="Peak contact pressure vs. Buckingham estimate",
+    unit="MPa",
+    source="2.76 HB - 70 MPa at 1e8 cycles, Buckingham, Shigley ch. 6: verify",
+    method="greatest contact pressure over the turn; an estimate for steel without a hardened case",
+    must_have=False,
+    lift_can_help=True,
+    error="contact",
+)
+def pressure_by_hardness(solution: Solution) -> Demand | None:
+    """Peak contact pressure, Pa, beside Buckingham's estimate; None for a hardened surface."""
+    card = solution.machine.cam.material
+    if card.case_depth is not None or card.treatment not in (None, "through_hardened"):
+        return None
+    worst = peak_pressure(solution)
+    allowed = None if card.hardness is None else buckingham(card.hardness)
+    return Demand(
+        worst.value,
+        allowed,
+        worst,
+        note="" if allowed is not None else f"the card of {card.name} gives no hardness",
+        figures=(card.source,),
+    )
+
+
+@check(
+    title="Peak contact pressure vs. gear flank allowable",
+    unit="MPa",
+    source="ISO 6336-5, quality MQ, recalled: verify",
+    method="greatest contact pressure over the turn; a comparison",
+    must_have=False,
+    lift_can_help=True,
+    error="contact",
+)
+def pressure_by_gear_limits(solution: Solution) -> Demand:
+    """Peak contact pressure, Pa, beside that of gear flanks of such steel, for comparison."""
+    worst, card = peak_pressure(solution), solution.machine.cam.material
+    allowed = gear_limit(card)
+    return Demand(
+        worst.value,
+        allowed,
+        worst,
+        note=""
+        if allowed is not None
+        else f"the card of {card.name} gives no treatment or no hardness",
+        figures=(card.source,),
+    )
+
+
+def buckingham(hardness: float) -> float:
+    """Contact pressure (Pa) that steel of a Brinell hardness bears 1e8 times; >= 0.
+
+    References
+    ----------
+    Shigley's Mechanical Engineering Design, ch. 6, after Buckingham: 2.76 HB - 70 MPa.
+    """
+    return max(2.76e6 * hardness - 70e6, 0.0)
+
+
+def gear_limit(card: Material) -> float | None:
+    """Allowable contact stress (Pa) of gear flanks of such steel; None where it is unknown.
+
+    References
+    ----------
+    ISO 6336-5, MQ, recalled (verify): carburised 1500 MPa; induction 0.541 HV + 882 MPa;
+    through-hardened alloy steel 1.313 HV + 373 MPa.
+    """
+    if card.treatment == "case_hardened":
+        return CASE_CARBURISED
+    lines = {"induction_hardened": (0.541e6, 882e6), "through_hardened": (1.313e6, 373e6)}
+    if card.treatment is None or card.hardness is None:
+        return None
+    slope, start = lines[card.treatment]
+    return slope * card.hardness + start
+
+
+def _traction(cycle: Cycle) -> Array:
+    """Traction demand (n,) where loaded; NaN where it is not known."""
+    demand = cycle.rolling.traction_demand
+    if demand is None:
         return np.full(cycle.theta.size, np.nan)
-    return np.where(np.isnan(rolling.traction_demand), 0.0, rolling.traction_demand)
+    return np.where(np.isnan(demand), 0.0, demand)
 
 
 def _lambda(cycle: Cycle) -> Array:
-    """Lambda ratio (n,), beyond all bounds where there is no load; NaN where it is not known."""
-    film = None if cycle.rolling is None else cycle.rolling.film
+    """Lambda ratio (n,), infinite where there is no load; NaN where it is not known."""
+    film = cycle.rolling.film
     ratio = None if film is None else film.ratio
     if ratio is None:
         return np.full(cycle.theta.size, np.nan)
-    return np.where(np.isnan(ratio), np.inf, ratio)
+    return np.where(np.isnan(ratio), inf, ratio)
 
 
-def _of_map(cycle: Cycle, measure: Callable[[Envelope], float]) -> float:
-    return np.nan if cycle.rolling is None else measure(cycle.rolling.envelope)
+def _greatest_of(map_: Array | None) -> float:
+    return np.nan if map_ is None else float(map_.max())
 
 
-def _crossland(found: Envelope) -> float:
-    return np.nan if found.crossland is None else float(found.crossland.max())
-
-
-def _use_of_strength(found: Envelope, card: Material) -> float:
+def _use_of_strength(map_: Envelope, card: Material) -> float:
     depth, core = card.case_depth, card.core_yield_strength
     if depth is None or core is None:
         return np.nan
-    inward = np.clip(found.depth / depth, 0.0, 1.0)
+    inward = np.clip(map_.depth / depth, 0.0, 1.0)
     strength = card.yield_strength + (core - card.yield_strength) * inward
-    return float((found.von_mises / strength).max())
-
-
-CHECKS = (roller_grip, film_ratio, surface_fatigue, hardened_case)
+    return float((map_.von_mises / strength).max())

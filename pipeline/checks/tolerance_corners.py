@@ -1,4 +1,4 @@
-"""The final cam at the corners of its tolerances, by closed forms: which corner governs a check.
+"""The final cam at the corners of its tolerances, by closed forms: the corner that governs a check.
 
 Every tolerance goes to both ends alone, then a seeded sample takes them all at once. The cam is
 the one that was designed; friction, spring, masses, phase and contour are those of the corner. The
@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -17,58 +16,19 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
-from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.parts_section import Guide
-from camwright.pipeline.checks import (
-    cam_shape,
-    flat_face_sliding,
-    manufacture,
-    part_strength,
-    surface_durability,
-    torque_balance,
-)
-from camwright.pipeline.checks import guide_bushes as guides
-from camwright.pipeline.checks import spring_strength as spring
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.extremes import TrialEvidence
-from camwright.pipeline.checks.registry import DESIGN, PARTS, SIGNED, CheckFunction, checked_by
-from camwright.pipeline.cycle.ahead import foreseen_cycle
-from camwright.pipeline.cycle.crank_speed import rubbing_of, speed_ripple
+from camwright.pipeline.case.machine import Corner, Machine, machines
+from camwright.pipeline.checks.check import Check, Demand
+from camwright.pipeline.checks.registry import TOLERANCE_CORNERS, TOLERANCED, checks_of
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import solved_turns
 from camwright.pipeline.cycle.turn import Turn, turn
 from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.follower.guide_friction import FrictionRange
 
 POSITIONS = 90
-"""Angles a turn: a corner asks for the ratio of two demands, not for either."""
-UNMOVED: tuple[CheckFunction, ...] = (
-    *(torque_balance.energy_closure, torque_balance.friction_balance),
-    *(cam_shape.closure, cam_shape.acceleration_step),
-    *(cam_shape.self_intersection, cam_shape.second_contact),
-    *(cam_shape.spring_travel, guides.guide_length, part_strength.cam_unbalance),
-    *spring.CHECKS,
-    *(manufacture.chord_error, manufacture.phase_tolerance),
-)
-"""Checks whose demand no tolerance moves, or which stand at the end of their own already."""
-TRIED: tuple[CheckFunction, ...] = tuple(
-    check
-    for check in (*DESIGN, *surface_durability.CHECKS, *flat_face_sliding.CHECKS, *SIGNED, *PARTS)
-    if check not in UNMOVED
-)
-
-
-@dataclass(frozen=True)
-class Corner:
-    """Where in its tolerances a case stands: factors on the nominal; phase rad, profile m."""
-
-    name: str
-    friction_a: float = 1.0
-    friction_b: float = 1.0
-    rate: float = 1.0
-    preload: float = 1.0
-    mass: float = 1.0
-    inertia: float = 1.0
-    phase: float = 0.0
-    profile: float = 0.0
+"""Angles a turn: a corner gives the ratio of two demands, not either."""
 
 
 @dataclass(frozen=True)
@@ -109,46 +69,67 @@ def outcomes(case: Case, torques: Mapping[str, Torque], contour: Contour) -> tup
     )
 
 
-def governed(checks: Sequence[Check], found: Sequence[Outcome]) -> tuple[Check, ...]:
+def governed(
+    machine: Machine, checks: Sequence[Check], tried: Sequence[Outcome]
+) -> tuple[Check, ...]:
     """The checks with the corner where each is worst and its demand there.
 
-    Last stands a check of its own: how many that pass at the nominal fail at a corner.
+    The last is a check of its own: how many pass at the nominal and fail at a corner.
     """
-    if len(found) < 2:
+    if len(tried) < 2:
         return tuple(checks)
-    named = tuple(_governed(check, found) for check in checks)
-    return (*named, _robust(named, found))
+    named = tuple(_governed(one, tried) for one in checks)
+    return (*named, _robust(machine, named, tried))
 
 
-def record(case: Case, found: Sequence[Outcome]) -> dict[str, Any]:
+def _robust(machine: Machine, checks: Sequence[Check], tried: Sequence[Outcome]) -> Check:
+    """How many governed checks pass at the nominal and fail at a corner."""
+    refused = [f"{one.corner.name}: {one.refused}" for one in tried if one.refused]
+    lost = [
+        one.id
+        for one in checks
+        if one.must_have
+        and one.status == "pass"
+        and one.corner_demand is not None
+        and replace(one, demand=one.corner_demand).status == "fail"
+    ]
+    demand = Demand(
+        float(len(lost) + len(refused)),
+        0.0,
+        note=", ".join((*lost, *refused)),
+        method=f"closed forms at {len(tried) - 1} corners; one that cannot be solved counts as a"
+        " check",
+    )
+    return TOLERANCE_CORNERS.judged(machine, demand)
+
+
+def corners_record(case: Case, tried: Sequence[Outcome]) -> dict[str, object]:
     """Contents of ``corners.json``."""
     return {
         "seed": case.tolerances.seed,
-        "tried": len(found) - 1,
+        "tried": len(tried) - 1,
         "positions": POSITIONS,
         "method": "closed forms on the final cam; demands scale the nominal figures of the run",
         "corners": [
             {**asdict(one.corner), "demands": _plain(one.demands), "refused": one.refused}
-            for one in found
+            for one in tried
         ],
     }
 
 
 def _plain(demands: Mapping[str, float]) -> dict[str, float | None]:
-    """As JSON holds them: a demand beyond all bounds is null."""
-    return {name: value if np.isfinite(value) else None for name, value in demands.items()}
+    """As JSON holds them, in the units of the checks: a demand beyond all bounds is null."""
+    units = {declared.id: declared.unit for declared in TOLERANCED}
+    return {
+        name: in_unit(value, units[name]) if np.isfinite(value) else None
+        for name, value in demands.items()
+    }
 
 
 def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
     """Bounds of the fields of `Corner` by what moves together; nothing of no width."""
     tolerances, spring = case.tolerances, case.spring
-    share = tolerances.friction
-
-    def friction(guide: Guide) -> tuple[float, float]:
-        nominal = guide.friction or 1.0
-        low = 1.0 - share if guide.friction_min is None else guide.friction_min / nominal
-        high = 1.0 + share if guide.friction_max is None else guide.friction_max / nominal
-        return low, high
+    friction = FrictionRange.of(case.guides, tolerances.friction)
 
     def around(tolerance: float) -> tuple[float, float]:
         return 1.0 - tolerance, 1.0 + tolerance
@@ -157,8 +138,8 @@ def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
     inertia = 0.0 if case.crankshaft is None else tolerances.inertia
     found: dict[str, dict[str, tuple[float, float]]] = {
         "friction": {
-            "friction_a": friction(case.guides.a),
-            "friction_b": friction(case.guides.b),
+            "friction_a": friction.factors(0),
+            "friction_b": friction.factors(1),
         },
         "spring rate": {"rate": around(spring.rate_tolerance)},
         "preload": {"preload": around(spring.preload_tolerance)},
@@ -178,67 +159,25 @@ def _outcome(
     case: Case, torques: Mapping[str, Torque], contour: Contour, corner: Corner
 ) -> Outcome:
     try:
-        at, shape = applied(case, corner), _shape(contour, corner)
+        shape = _shape(contour, corner)
         turns = tuple(
-            _turned(
-                turn(at, shape, torques.get(state.name), state.name, POSITIONS, ahead=True),
-                at,
-                corner,
-            )
-            for state in at.load_cases
+            _phased(_turn(state, shape, torques, corner), corner) for state in machines(case)
         )
-        cycles = tuple(foreseen_cycle(at, shape, given) for given in turns)
-        rubbing = rubbing_of(cycles, corner.phase / case.mechanism.gear_ratio)
-        speed = speed_ripple(at, torques, _early(shape.pitch, case, corner.phase), rubbing)
-        trial = TrialEvidence(case=at, contour=shape, cycles=cycles, speed_ripple=speed)
-        checks = checked_by(trial, TRIED)
+        advance = corner.phase / case.mechanism.gear_ratio
+        solved = solved_turns(
+            case, shape, turns, Tier.PREVIEW, torques, body=True,
+            speed_contour=_early(shape, advance), advance=advance,
+        )  # fmt: skip
+        checks = checks_of(solved, TOLERANCED)
     except CamError as error:
         return Outcome(corner, {}, str(error))
-    known = {c.id: float(c.demand) for c in checks if c.demand is not None}
+    known = {one.id: float(one.demand) for one in checks if one.demand is not None}
     return Outcome(corner, {name: value for name, value in known.items() if not np.isnan(value)})
 
 
-def applied(case: Case, corner: Corner) -> Case:
-    """The case at a corner of its tolerances; the contour is not the case's to change.
-
-    The bounds of a guide's friction stay what they are: jamming is judged at their worst.
-    """
-    spring, guides, shaft = case.spring, case.guides, case.crankshaft
-    # A cam that stands proud by some hundredths presses the spring by as much more.
-    more = spring.rate * corner.rate * corner.profile
-    states = tuple(
-        state
-        if state.preload is None
-        else state.model_copy(update={"preload": state.preload * corner.preload + more})
-        for state in case.load_cases
-    )
-    preload = spring.preload * corner.preload + more
-    return case.model_copy(
-        update={
-            "load_cases": states,
-            "crankshaft": shaft
-            and shaft.model_copy(update={"inertia": shaft.inertia * corner.inertia}),
-            "spring": spring.model_copy(
-                update={"rate": spring.rate * corner.rate, "preload": preload}
-            ),
-            "follower": case.follower.model_copy(update={"mass": case.follower.mass * corner.mass}),
-            "guides": guides.model_copy(
-                update={
-                    "a": _rubbing(guides.a, corner.friction_a),
-                    "b": _rubbing(guides.b, corner.friction_b),
-                }
-            ),
-        }
-    )
-
-
-def _rubbing(guide: Guide, factor: float) -> Guide:
-    friction, low, high = guide.friction * factor, guide.friction_min, guide.friction_max
-    bounds = {
-        "friction_min": None if low is None else min(low, friction),
-        "friction_max": None if high is None else max(high, friction),
-    }
-    return guide.model_copy(update={"friction": friction, **bounds})
+def _turn(state: Machine, shape: Contour, torques: Mapping[str, Torque], corner: Corner) -> Turn:
+    at, torque = state.at_corner(corner), torques.get(state.load_case)
+    return turn(at, shape, torque, POSITIONS, coarse=True)
 
 
 def _shape(contour: Contour, corner: Corner) -> Contour:
@@ -246,60 +185,35 @@ def _shape(contour: Contour, corner: Corner) -> Contour:
     return replace(contour, pitch=replace(pitch, base_radius=pitch.base_radius + corner.profile))
 
 
-def _early(pitch: PitchCurve, case: Case, phase: float) -> PitchCurve:
-    """The cam `phase` (rad of crank) early against the engine."""
-    if phase == 0.0:
-        return pitch
-    lift = pitch.lift
-    moved = np.maximum(lift(lift.theta + phase / case.mechanism.gear_ratio), 0.0)
-    return replace(pitch, lift=Lift(lift.theta, moved))
+def _early(contour: Contour, advance: float) -> Contour:
+    """The cam `advance` (rad of its own) early against the engine."""
+    if advance == 0.0:
+        return contour
+    lift = contour.pitch.lift
+    moved = np.maximum(lift(lift.theta + advance), 0.0)
+    return replace(contour, pitch=replace(contour.pitch, lift=Lift(lift.theta, moved)))
 
 
-def _turned(given: Turn, case: Case, corner: Corner) -> Turn:
+def _phased(each: Turn, corner: Corner) -> Turn:
     """The turn with the engine's torque `phase` (rad of crank) late against the cam."""
-    before = given.torque_before
+    before, ratio = each.torque_before, each.machine.gear_ratio
     if before is None or corner.phase == 0.0:
-        return given
-    ratio = case.mechanism.gear_ratio
+        return each
     theta = uniform_turn(before.size)
     late = np.interp(theta - corner.phase / ratio, theta, before, period=2.0 * np.pi)
-    return replace(given, torque_before=late, residual_torque=late - given.loads.cam_torque / ratio)
+    return replace(each, torque_before=late, torque_after=late - each.loads.cam_torque / ratio)
 
 
-def _governed(check: Check, found: Sequence[Outcome]) -> Check:
-    nominal = found[0]
-    here = nominal.demands.get(check.id)
-    if check.demand is None or here is None:
-        return check
-    sign = 1.0 if check.sense == "at_most" else -1.0
-    known = [one for one in found if check.id in one.demands]
-    worst = max(known, key=lambda one: sign * one.demands[check.id])
+def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
+    nominal = tried[0]
+    here = nominal.demands.get(one.id)
+    if one.demand is None or here is None:
+        return one
+    sign = 1.0 if one.sense == "at_most" else -1.0
+    known = [outcome for outcome in tried if one.id in outcome.demands]
+    worst = max(known, key=lambda outcome: sign * outcome.demands[one.id])
     if worst is nominal:
-        return replace(check, corner="nominal", corner_demand=check.demand)
-    there = worst.demands[check.id]
-    demand = check.demand * there / here if here and np.isfinite(here) else there
-    return replace(check, corner=worst.corner.name, corner_demand=float(demand))
-
-
-def _robust(checks: Sequence[Check], found: Sequence[Outcome]) -> Check:
-    refused = [f"{one.corner.name}: {one.refused}" for one in found if one.refused]
-    lost = [
-        c.id
-        for c in checks
-        if c.must_have
-        and c.status == "pass"
-        and c.corner_demand is not None
-        and replace(c, demand=c.corner_demand).status == "fail"
-    ]
-    return Check(
-        id="tolerance_corners",
-        title="Checks that pass at the nominal and fail at a corner",
-        demand=float(len(lost) + len(refused)),
-        limit=0.0,
-        unit="checks",
-        source="tolerances of the case; one at a time and a seeded sample",
-        method=f"closed forms at {len(found) - 1} corners; one without an answer counts as a check",
-        must_have=False,
-        lift_can_help=False,
-        note=", ".join((*lost, *refused)),
-    )
+        return replace(one, corner="nominal", corner_demand=one.demand)
+    there = worst.demands[one.id]
+    demand = one.demand * there / here if here and np.isfinite(here) else there
+    return replace(one, corner=worst.corner.name, corner_demand=float(demand))

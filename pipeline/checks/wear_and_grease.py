@@ -1,63 +1,56 @@
-"""Limits of what runs for long: grease of the bearing, growth and wear of the guides.
+"""Long running: grease of the roller bearing, expansion and wear of the guides.
 
-Each is made where the case has its data, and left out (None) where it has none of them.
+Each check applies where the case has its data, and is left out (None) where it has none.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.extremes import TrialEvidence, cited, rollers_only, worst_case
-from camwright.pipeline.checks.guide_bushes import mean_pv
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.limits import TARGET_LIFE, VISCOSITY_RATIO, WEAR_DEPTH
+from camwright.pipeline.checks.check import Declaration, Demand, check
+from camwright.pipeline.checks.extremes import worst_case
+from camwright.pipeline.checks.guide_bushes import Side, heat_of, mean_pv
+from camwright.pipeline.checks.roller_bearing import bearing_of, spin
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_reactions import WALL_SHARE
-from camwright.pipeline.follower.roller_motion import roller_motion
 
-if TYPE_CHECKING:
-    from camwright.pipeline.case.parts_section import Guide
-    from camwright.pipeline.cycle.cycle import Cycle
-
-ROOM = 293.15  # K, at which play is measured
-RPM = 30.0 / np.pi
+ROOM = 293.15  # K, at which the clearance is measured
 STANDS = 1.0  # rpm of the roller, below which nothing is greased by motion
-HOURS = 3600.0
 
 
-@rollers_only
-def bearing_lubrication(evidence: TrialEvidence) -> Check | None:
-    """Viscosity of the bearing's oil over that it needs; None where it is not given."""
-    bearing = evidence.case.roller.bearing
+@check(
+    VISCOSITY_RATIO,
+    id="bearing_lubrication",
+    title="Viscosity ratio of the roller bearing",
+    method="viscosity given over v1 at the mean speed of the roller, where it turns",
+    must_have=False,
+    needs="roller",
+)
+def bearing_lubrication(solution: Solution) -> Demand | None:
+    """Viscosity of the bearing's oil over the rated one; None where it is not given."""
+    bearing = bearing_of(solution)
     viscosity, ring, pitch = bearing.viscosity, bearing.ring, bearing.pitch_diameter
     if viscosity is None:
         return None
     if pitch is None and ring is not None:
         pitch = ring.pitch_diameter
-    contour = evidence.contour
 
     def ratio(cycle: Cycle) -> float:
-        motion = roller_motion(
-            contour.pitch, contour.roller_radius, evidence.cam_speed(cycle), cycle.theta
-        )
-        speed = RPM * float(np.mean(np.abs(motion.spin)))
+        speed = in_unit(float(np.mean(np.abs(spin(cycle)))), "rpm")
         if pitch is None or np.isnan(speed):
             return np.nan
         return np.inf if speed < STANDS else viscosity / rated_viscosity(speed, pitch)
 
-    worst = worst_case(evidence, ratio, at_least=True)
-    return Check(
-        id="bearing_lubrication",
-        title="Viscosity ratio of the roller bearing",
-        demand=worst.value,
-        limit=evidence.case.limits.viscosity_ratio,
-        unit="-",
-        sense="at_least",
-        source=evidence.source("viscosity_ratio", "kappa = v/v1 >= 1, ISO 281", bearing.source),
-        method="viscosity given over v1 at the mean speed of the roller, where it turns",
-        must_have=False,
+    worst = worst_case(solution.cycles, ratio, at_least=True)
+    return Demand(
+        worst.value,
+        solution.machine.limits[VISCOSITY_RATIO],
+        worst,
         note="" if pitch is not None else "no pitch diameter of the bearing is given",
-        **worst.place,
+        figures=(bearing.source,),
     )
 
 
@@ -73,76 +66,67 @@ def rated_viscosity(speed: float, pitch_diameter: float) -> float:
     return float(1e-6 * slow / np.sqrt(1e3 * pitch_diameter))
 
 
-def bush_growth_a(evidence: TrialEvidence) -> Check | None:
-    """Growth of bush A and stem over the play between them."""
-    return _growth(evidence, "A", evidence.case.guides.a)
-
-
-def bush_growth_b(evidence: TrialEvidence) -> Check | None:
-    """Growth of bush B and stem over the play between them."""
-    return _growth(evidence, "B", evidence.case.guides.b)
-
-
-def _growth(evidence: TrialEvidence, side: str, guide: Guide) -> Check | None:
-    case, parts = evidence.case, evidence.parts
-    bush = case.material(guide.material)
-    expansion, of_stem = bush.expansion, case.material(case.follower.stem_material).expansion or 0.0
-    if expansion is None or parts is None:
-        return None
-
-    def growth(cycle: Cycle) -> float:
-        heat = parts[cycle].heat_a if side == "A" else parts[cycle].heat_b
-        warmer = heat.temperature - ROOM
-        wall = 2.0 * WALL_SHARE * guide.diameter * (expansion * warmer + bush.swelling)
-        return float(wall + guide.diameter * of_stem * warmer)
-
-    worst = worst_case(evidence, growth)
-    return Check(
-        id=f"bush_growth_{side}",
-        title=f"Growth of bush and stem in guide {side} over the play",
-        demand=1e3 * worst.value,
-        limit=1e3 * guide.clearance,
+def _guide_expansion(side: Side) -> Declaration:
+    @check(
+        id=f"guide_expansion_{side}",
+        title=f"Thermal and moisture expansion vs. clearance in guide {side}",
         unit="mm",
-        source=cited("no seizure when hot and wet, bush makers", bush.source),
-        method="wall of a quarter of the bore swells inwards, in a housing that does not give, at"
-        " the bush's running temperature",
+        source="no seizure when hot and wet, bush makers",
+        method="wall of a quarter of the bore swells inwards, in a rigid housing, at the bush's"
+        " running temperature",
         must_have=False,
         lift_can_help=True,
-        note="the bush's temperature is not known" if np.isnan(worst.value) else "",
-        **worst.place,
     )
+    def expansion(solution: Solution) -> Demand | None:
+        """Expansion of bush and stem, m, beside the clearance between them."""
+        guides = solution.machine.guides
+        guide = guides.a if side == "A" else guides.b
+        bush, stem = guide.material, solution.case.follower.stem_material
+        coefficient, of_stem = bush.expansion, stem.expansion or 0.0
+        if coefficient is None:
+            return None
+
+        def growth(cycle: Cycle) -> float:
+            warmer = heat_of(cycle.parts, side).temperature - ROOM
+            swelling = coefficient * warmer + bush.swelling
+            wall = 2.0 * WALL_SHARE * guide.diameter * swelling
+            return float(wall + guide.diameter * of_stem * warmer)
+
+        worst = worst_case(solution.cycles, growth)
+        note = "the bush's temperature is not known" if np.isnan(worst.value) else ""
+        return Demand(worst.value, guide.clearance, worst, note=note, figures=(bush.source,))
+
+    return expansion
 
 
-def guide_wear_a(evidence: TrialEvidence) -> Check | None:
-    """Depth worn off guide A over the target life."""
-    return _wear(evidence, "A", evidence.case.guides.a)
-
-
-def guide_wear_b(evidence: TrialEvidence) -> Check | None:
-    """Depth worn off guide B over the target life."""
-    return _wear(evidence, "B", evidence.case.guides.b)
-
-
-def _wear(evidence: TrialEvidence, side: str, guide: Guide) -> Check | None:
-    rate, life = guide.wear_rate, evidence.case.limits.target_life
-    if rate is None:
-        return None
-    worst = worst_case(evidence, lambda cycle: mean_pv(cycle, side, guide))
-    return Check(
+def _guide_wear(side: Side) -> Declaration:
+    @check(
+        WEAR_DEPTH,
         id=f"guide_wear_{side}",
-        title=f"Wear of guide {side} over the target life",
-        demand=None if life is None else 1e3 * rate * worst.value * life,
-        limit=1e3 * evidence.case.limits.wear_depth,
-        unit="mm",
-        source=evidence.source(
-            "wear_depth", "0.05 mm, shop practice: verify; Archard (1953)", guide.source
-        ),
-        method="wear rate times mean pressure times way, all the life in the worst load case",
+        title=f"Wear depth of guide {side} at target life",
+        method="wear rate times mean pressure times sliding distance, all the life in the worst"
+        " load case",
         must_have=False,
         lift_can_help=True,
-        note="" if life is not None else "no target life is asked for",
-        **worst.place,
     )
+    def wear(solution: Solution) -> Demand | None:
+        """Wear depth of a guide over the target life, m; None without a wear rate."""
+        guides, limits = solution.machine.guides, solution.machine.limits
+        guide = guides.a if side == "A" else guides.b
+        rate, life = guide.wear_rate, limits[TARGET_LIFE]
+        if rate is None:
+            return None
+        worst = worst_case(solution.cycles, lambda cycle: mean_pv(cycle, side))
+        return Demand(
+            None if life is None else rate * worst.value * life,
+            limits[WEAR_DEPTH],
+            worst,
+            note="" if life is not None else "no target life is given",
+            figures=(guide.source,),
+        )
+
+    return wear
 
 
-CHECKS = (bearing_lubrication, bush_growth_a, bush_growth_b, guide_wear_a, guide_wear_b)
+guide_expansion_a, guide_expansion_b = _guide_expansion("A"), _guide_expansion("B")
+guide_wear_a, guide_wear_b = _guide_wear("A"), _guide_wear("B")

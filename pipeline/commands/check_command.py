@@ -1,4 +1,4 @@
-"""The verdict of a run, or a look ahead at a case's."""
+"""The verdict of a run, or a preview of a case."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def check(
         Path | None, typer.Option("--baseline", metavar="DIR", help="Compare with an earlier run.")
     ] = None,
     only: Annotated[
-        list[str] | None, typer.Option("--only", help='Ids or patterns such as "bush_*".')
+        list[str] | None, typer.Option("--only", help='Ids or patterns such as "guide_*".')
     ] = None,
     fail_on: Annotated[
         str, typer.Option("--fail-on", help="must, open (also not evaluated), any, never.")
@@ -32,7 +32,7 @@ def check(
 ) -> int:
     """Verdict of a finished run, from its folder alone: exit 0 passed, 1 failed, 2 error.
 
-    Of a case file: its checks by closed forms, a look ahead that never passes.
+    Of a case file: a preview by closed forms, which never passes.
     """
     from camwright.pipeline.results.check_report import failing, selected
     from camwright.pipeline.results.check_report import junit as junit_text
@@ -87,16 +87,15 @@ def _checked_run(folder: Path) -> dict[str, Any]:
 
 def _checked_case(path: Path) -> dict[str, Any]:
     from camwright.pipeline.case.case_file import load_case_file
-    from camwright.pipeline.checks.verdict import binding
-    from camwright.pipeline.preview import closed_form_checks
+    from camwright.pipeline.preview import preview_case
 
     case = load_case_file(path)
-    checks = closed_form_checks(case)
+    trial = preview_case(case)
     return {
         "case": case.name,
         "input_sha256": case.sha256,
         "verdict": "fail",
-        "binding": list(binding(checks)),
-        "look_ahead": True,
-        "checks": [one.as_record() for one in checks],
+        "binding": list(trial.binding),
+        "preview": True,
+        "checks": [one.as_record() for one in trial.checks],
     }

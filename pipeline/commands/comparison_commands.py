@@ -26,7 +26,7 @@ def compare(
 ) -> int:
     """Every smoother on the same case, by closed forms: ripple left, forces, verdict."""
     from camwright.pipeline.case.case_file import load_case_file
-    from camwright.pipeline.solver import engine_torques
+    from camwright.pipeline.case.load_case_torque import engine_torques
     from camwright.pipeline.studies.smoother_comparison import compared
     from camwright.reports import smoother_page
 

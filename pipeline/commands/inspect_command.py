@@ -44,12 +44,12 @@ def inspect(
         raise InputError("--tolerance", tolerance, "> 0 um")
     points = cam_inspection.read_measured(measured)
     case, contour = drawn_cam(folder)
-    band = case.workshop.tolerance if asked is None else asked
+    band = case.workshop_order.tolerance if asked is None else asked
     with progress_shown() as progress:
         part = cam_inspection.inspect_part(
-            case, contour, points, keep_phase=keep_phase, jobs=jobs, tell=progress.stage
+            case, contour, points, keep_phase=keep_phase, jobs=jobs, progress=progress
         )
-    record = cam_inspection.write_inspection(folder, case, part, band)
+    record = cam_inspection.write_inspection(folder, part, band)
     picture = draw(folder, 1e6 * band)
     if as_json:
         show_json(record)

@@ -49,6 +49,7 @@ def run(
     if not (resume and _finished(out, design.sha256)):
         from camwright.pipeline.results.run_folder import set_aside
         from camwright.pipeline.run import run_case
+        from camwright.pipeline.studies.papers.valve_train import valve_record
         from camwright.reports.sections import build
 
         old = set_aside(out, design) if replace else nullcontext()
@@ -61,6 +62,7 @@ def run(
                 resume=resume,
                 progress=progress,
                 present=build,
+                also=valve_record,
             )
     from camwright.pipeline.results.run_reader import read_verdict
 

@@ -72,7 +72,7 @@ def show(document: dict[str, Any], folder: Path | None) -> None:
         for line in lines(document["changes"]):
             stdout.print(f"baseline: {line}", markup=False)
     if folder is None:
-        stdout.print(f"verdict: {document['verdict']}, a look ahead by closed forms", markup=False)
+        stdout.print(f"verdict: {document['verdict']}, preview by closed forms", markup=False)
     else:
         count = document["trials"]
         trials = f"{count} trial{'s' if count > 1 else ''}"

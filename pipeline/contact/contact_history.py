@@ -5,9 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array, readonly
+from camwright.geometry.arrays import Array, freeze
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
+from camwright.pipeline.contact.tiers import Tier
+
+TWO_SCALE = "two-scale finite elements: contact patch and bodies"
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,7 +22,8 @@ class ContactHistory:
     (largest shear in the plane) and von_mises in the cam, Pa, with their depths, m;
     tau_any_plane the largest shear on any plane, more than tau_max for nu below about 0.25;
     residual_equilibrium, residual_complementarity, relative; pressure (n, k) Pa at the places
-    pressure_xi (n, k) m along the contact's tangent, straight lines between them; method in words.
+    pressure_xi (n, k) m along the contact's tangent, straight lines between them. tier is None,
+    and every quantity NaN, where the contour is no body.
     """
 
     line_load: Array
@@ -36,12 +41,44 @@ class ContactHistory:
     residual_complementarity: Array
     pressure: Array
     pressure_xi: Array
-    method: str
+    tier: Tier | None
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            if field.name != "method":
-                object.__setattr__(self, field.name, readonly(getattr(self, field.name)))
+        freeze(self, **self.arrays)
+
+    @property
+    def arrays(self) -> dict[str, Array]:
+        """Its quantities by name."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "tier"}
+
+    @property
+    def unsolved(self) -> NDArray[np.bool_]:
+        """Where the surfaces are not locally flat (bool): wider than a tenth of the radius."""
+        return np.asarray(np.isnan(self.p0))
+
+    @property
+    def method(self) -> str:
+        """How it was solved, in words."""
+        if self.tier is None:
+            return "none: the contour is no body"
+        if self.tier is Tier.PREVIEW:
+            return "closed form: Hertz line contact"
+        count = int(self.unsolved.sum())
+        note = (
+            f"; no answer at {count} angles, where the half-width is more than a tenth of the "
+            "relative radius and the surfaces are not locally flat"
+        )
+        return TWO_SCALE + (note if count else "")
+
+    @classmethod
+    def unknown(cls, count: int) -> ContactHistory:
+        """NaN at every angle: the contact of a contour that is no body."""
+        values = np.full(count, np.nan)
+        names = [f.name for f in fields(cls) if f.name != "tier"]
+        known = dict.fromkeys(names, values) | dict.fromkeys(
+            ("pressure", "pressure_xi"), values[:, None]
+        )
+        return cls(**known, tier=None)
 
     @property
     def p0_difference(self) -> Array:

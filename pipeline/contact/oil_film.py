@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite, freeze, positive
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import In, Part
 
 UNVERIFIED = (
     "regression of Masjedi and Khonsari (2012) as recalled, not checked against the paper: verify"
@@ -23,16 +25,19 @@ _RANGE = {  # of the fit, to its order of magnitude: verify
 }
 
 
-@dataclass(frozen=True)
-class Lubricant:
-    """Viscosity (Pa s) at the inlet's temperature, pressure-viscosity coefficient (1/Pa)."""
+@dataclass(frozen=True, kw_only=True)
+class Lubricant(Part):
+    """Oil in the contact of cam and follower, at the temperature of the inlet.
 
-    viscosity: float
-    pressure_viscosity: float
+    film "mixed" adds the film of rough surfaces by a regression whose source is unverified.
+    """
 
-    def __post_init__(self) -> None:
-        for name in ("viscosity", "pressure_viscosity"):
-            positive(f"lubricant.{name}", getattr(self, name))
+    table: ClassVar[str] = "lubricant"
+
+    viscosity: Annotated[float, In("mPa s", above=0, at_most=1e5)]
+    pressure_viscosity: Annotated[float, In("1/GPa", above=0, at_most=1000)]
+    film: Literal["smooth", "mixed"] = "smooth"
+    source: str = ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -168,6 +168,12 @@ class Envelope:
         given = {n: getattr(self, n) for n in self.__dataclass_fields__}
         freeze(self, **{n: values for n, values in given.items() if values is not None})
 
+    @classmethod
+    def unknown(cls) -> Envelope:
+        """NaN at one station: of a contour that is no body."""
+        nan = np.full((1, 1), np.nan)
+        return cls(nan[0], nan[0], nan, nan, nan, nan, nan, nan)
+
     def worst(self, name: str) -> tuple[float, float, float]:
         """Greatest value of a map, Pa, and its place: theta rad, depth m."""
         values = getattr(self, name)

@@ -10,7 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
-from camwright.pipeline.case.case import Case
+from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.follower.camshaft_loads import (
     CounterHole,
     Unbalance,
@@ -71,36 +71,33 @@ class Balance:
         }
 
 
-def balance(case: Case, contour: Contour) -> Balance:
-    """Unbalance of the cam with bore and keyway, and the hole that takes it away."""
-    cam, found = case.cam, _unbalance(case, contour)
-    asked = cam.counter_hole
-    wall = WALL if asked is None else asked.wall
+def balance(cam: CamBody, contour: Contour) -> Balance:
+    """Unbalance of the cam with bore and keyway, and the hole that removes it."""
+    made, order = _unbalance(cam, contour), cam.counter_hole
+    wall = WALL if order is None else order.wall
     depth = 0.0 if cam.keyway is None else cam.keyway.depth
     hole, missed = None, ""
-    for search in (counter_hole,) if found.balanced else (counter_hole, greatest_hole):
+    for search in (counter_hole,) if made.balanced else (counter_hole, greatest_hole):
         try:
-            hole = search(contour, found, cam.bore_radius, wall, depth)
+            hole = search(contour, made, cam.bore_radius, wall, depth)
             break
         except GeometryError as error:
             missed = str(error)
-    density = case.material(cam.material).density
-    return Balance(found, hole, missed, asked is not None, density * cam.width)
+    return Balance(made, hole, missed, order is not None, cam.material.density * cam.width)
 
 
-def _unbalance(case: Case, contour: Contour) -> Unbalance:
-    cam = case.cam
-    density = case.material(cam.material).density
+def _unbalance(cam: CamBody, contour: Contour) -> Unbalance:
+    density = cam.material.density
     return unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density)
 
 
-def unbalance_force(case: Case, contour: Contour, cam_speed: float, theta: Array) -> Array:
-    """What the cam as made throws at its shaft, (2, n), N, as `rotating_force` has it."""
-    drilled = case.cam.counter_hole is not None
-    made = balance(case, contour).as_made if drilled else _unbalance(case, contour)
+def unbalance_force(cam: CamBody, contour: Contour, cam_speed: float, theta: Array) -> Array:
+    """Centrifugal force of the cam as made on its shaft, (2, n), N; see `rotating_force`."""
+    drilled = cam.counter_hole is not None
+    made = balance(cam, contour).as_made if drilled else _unbalance(cam, contour)
     return rotating_force(made, cam_speed, theta)
 
 
-def drilled_hole(case: Case, contour: Contour) -> CounterHole | None:
-    """The hole the shop drills; None where the case asks for none or none fits."""
-    return None if case.cam.counter_hole is None else balance(case, contour).hole
+def drilled_hole(cam: CamBody, contour: Contour) -> CounterHole | None:
+    """The hole as drilled; None where none is ordered or none fits."""
+    return None if cam.counter_hole is None else balance(cam, contour).hole

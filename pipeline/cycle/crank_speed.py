@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import pi
-from typing import Any
 
 import numpy as np
 
@@ -13,10 +12,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import CamError
 from camwright.geometry.periodic_spline import periodic_quintic
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.cylinder_section import Cylinder
-from camwright.pipeline.case.engine_section import PressureTable
-from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.engine.crankshaft import (
     CrankMotion,
     Inertia,
@@ -137,157 +133,111 @@ def speed_study(
 
 
 def study_of(
-    case: Case, torque: Torque, speed: float, pitch: PitchCurve, rubbing: Rubbing | None = None
+    machine: Machine, torque: Torque, pitch: PitchCurve, rubbing: Rubbing | None = None
 ) -> SpeedStudy | None:
-    """The study of one load case; None where the case tells nothing of its crankshaft.
+    """Crank speed of one load case; None without a crankshaft.
 
-    The guides rub per side force as `rubbing` tells; without it, as point supports.
-
-    Where the engine states its reciprocating masses they are part of J(theta), and the torque
-    of their inertia at constant speed is taken out.
+    The guides rub per side force as `rubbing` gives it; without it, as point supports. Where the
+    engine states its reciprocating masses they are part of J(theta), and the torque of their
+    inertia at constant speed is taken out.
     """
-    shaft = case.crankshaft
+    shaft = machine.crankshaft
     if shaft is None:
         return None
     values, varying = torque.total, np.zeros(torque.theta_crank.size)
-    if isinstance(case.engine, (Cylinder, PressureTable)) and "inertia" in torque.components:
+    if torque.varying_inertia is not None:
         values = values - torque.components["inertia"]
-        varying = case.engine.build().reciprocating_inertia(torque.theta_crank)
+        varying = torque.varying_inertia
     return speed_study(
         values,
         Inertia(shaft.inertia, varying),
-        speed,
+        machine.speed,
         pitch,
-        replace(FollowerSystem.from_case(case), rubbing=rubbing),
-        gear_ratio=case.mechanism.gear_ratio,
+        replace(machine.system, rubbing=rubbing),
+        gear_ratio=machine.gear_ratio,
         mechanism_inertia=shaft.mechanism_inertia,
         load=Load(shaft.load_exponent),
     )
 
 
-def rubbing_of(turns: Iterable[Any], early: float = 0.0) -> dict[str, Rubbing]:
-    """How the guides rub in each load case of these turns, of a cam `early` (rad of its own)."""
-    found = {turn.load_case: turn.loads.rubbing for turn in turns}
-    return {name: replace(each, theta=each.theta - early) for name, each in found.items()}
-
-
-def cam_speed(
-    case: Case,
-    torque: Torque | None,
-    speed: float,
-    pitch: PitchCurve,
-    rubbing: Rubbing,
+def driven_cam_speed(
+    machine: Machine, torque: Torque | None, pitch: PitchCurve, rubbing: Rubbing
 ) -> Array:
     """Speed of the cam at the angles of `rubbing`, equal parts of a turn, rad/s.
 
-    That of the crank with the cam at work, where the case tells its inertia; constant where it
-    does not, or where engine and inertia contradict each other.
+    That of the crank with the cam at work, where there are a torque and a crankshaft; constant
+    without them, or where engine and inertia contradict each other.
     """
-    steady = np.full(rubbing.theta.size, speed / case.mechanism.gear_ratio)
-    if torque is None:
+    steady = np.full(rubbing.theta.size, machine.cam_speed)
+    if torque is None or not machine.speed > 0:
         return steady
     try:
-        study = study_of(case, torque, speed, pitch, rubbing)
+        study = study_of(machine, torque, pitch, rubbing)
     except CamError:
         return steady
     if study is None:
         return steady
-    return periodic_quintic(study.after.speed)(rubbing.theta) / case.mechanism.gear_ratio
-
-
-def speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:
-    """Contents of ``speed`` in ``run.json`` for one load case; radius (m) of the cam."""
-    found: dict[str, Any] = {}
-    for name in ("before", "inertia_alone", "after"):
-        motion: CrankMotion = getattr(study, name)
-        ripple = motion.statistics
-        found[name] = {
-            "mean_rad_per_s": ripple.mean,
-            "std_rad_per_s": ripple.std,
-            "p2p_rad_per_s": ripple.peak_to_peak,
-            "fluctuation": ripple.fluctuation,
-            "minimum_rad_per_s": ripple.minimum,
-            "minimum_crank_angle_deg": float(np.degrees(ripple.minimum_angle)),
-            "maximum_rad_per_s": ripple.maximum,
-            "maximum_crank_angle_deg": float(np.degrees(ripple.maximum_angle)),
-            "load_mean_Nm": float(motion.load_torque.mean()),
-            "closure": motion.closure,
-        }
-    disc, rim = study.flywheel_masses(radius)
-    return found | {
-        "flywheel_for_the_same_std": {
-            "added_inertia_kg_m2": study.added_inertia,
-            "outer_radius_mm": 1e3 * radius,
-            "disc_mass_kg": disc,
-            "rim_mass_kg": rim,
-        }
-    }
+    return periodic_quintic(study.after.speed)(rubbing.theta) / machine.gear_ratio
 
 
 def speed_ripple(
-    case: Case,
+    machines: Iterable[Machine],
     torques: Mapping[str, Torque],
     pitch: PitchCurve,
     rubbing: Mapping[str, Rubbing],
 ) -> dict[str, tuple[float, float]]:
-    """Std of the crank speed (rad/s) of each running load case: engine alone, with the cam.
+    """Std of the crank speed, rad/s, of each running load case: engine alone, with the cam.
 
-    In each load case the guides rub as `rubbing` tells. Empty where the case tells nothing of its
-    crankshaft; a load case that stalls is NaN.
+    Empty without a crankshaft; a load case that stalls is NaN.
     """
-    found: dict[str, tuple[float, float]] = {}
-    for state in case.load_cases:
-        if case.crankshaft is None or state.name not in torques or not state.speed > 0:
+    ripple: dict[str, tuple[float, float]] = {}
+    for machine in machines:
+        name = machine.load_case
+        if machine.crankshaft is None or name not in torques or not machine.speed > 0:
             continue
         try:
-            study = study_of(
-                case.at(state.name),
-                torques[state.name],
-                state.speed,
-                pitch,
-                rubbing.get(state.name),
-            )
+            study = study_of(machine, torques[name], pitch, rubbing.get(name))
         except CamError:
             study = None
         if study is None:
-            found[state.name] = (np.nan, np.nan)
+            ripple[name] = (np.nan, np.nan)
         else:
-            found[state.name] = (study.before.statistics.std, study.after.statistics.std)
-    return found
+            ripple[name] = (study.before.statistics.std, study.after.statistics.std)
+    return ripple
 
 
 def consistency(
-    case: Case,
-    state: LoadCase,
+    machine: Machine,
     torque: Torque,
     pitch: PitchCurve,
     study: SpeedStudy | None,
-    asked: Array | None = None,
+    *,
+    demand: Array | None = None,
     rubbing: Rubbing | None = None,
+    measured: bool = False,
 ) -> tuple[Finding, ...]:
-    """What the inputs of a case say of one another in one of its states.
+    """Agreement of inertia, power, energy and work with what the other inputs imply.
 
-    `asked` (n,) is the crank torque the cam was drawn to take there, N m about its mean; without
-    it, as where limits shape the lift, power and energy have nothing to agree with. What was
-    measured of the speed belongs to the first state.
+    Parameters
+    ----------
+    demand : array (n,)   crank torque the cam was drawn to take, N m about its mean; None where
+                          limits shape the lift: power and energy then have nothing to agree with
+    measured : bool       the measured speed belongs to this load case
     """
-    case = case.at(state.name)
-    ratio = case.mechanism.gear_ratio
-    system = replace(FollowerSystem.from_case(case), rubbing=rubbing)
+    ratio, shaft = machine.gear_ratio, machine.crankshaft
+    system = replace(machine.system, rubbing=rubbing)
     theta = uniform_turn(torque.theta_crank.size)
-    loads = follower_loads(pitch, system, state.speed / ratio, theta)
-    found = []
-    if asked is not None:
-        stroke = pitch.lift.stroke
-        stored = stroke * (system.preload + 0.5 * system.spring_rate * stroke)
-        found.append(ratio_finding(asked, loads.spring_force * loads.lift_slope, ratio))
-        found.append(energy_finding(asked, stored))
+    loads = follower_loads(pitch, system, machine.speed / ratio, theta)
+    findings = []
+    if demand is not None:
+        stored = machine.spring.energy(pitch.lift.stroke)
+        findings.append(ratio_finding(demand, loads.spring_force * loads.lift_slope, ratio))
+        findings.append(energy_finding(demand, stored))
     if study is not None:
         taken = -4.0 * pi * float(study.after.mechanism_torque.mean())
-        found.append(work_finding(loads.friction_loss, taken))
-    shaft = case.crankshaft
-    measured = None if shaft is None else shaft.measured_speed_std
-    if shaft is not None and measured is not None and state.name == case.load_cases[0].name:
+        findings.append(work_finding(loads.friction_loss, taken))
+    std = None if shaft is None else shaft.measured_speed_std
+    if shaft is not None and std is not None and measured:
         balanced = torque.without_mean().total
-        found.append(inertia_finding(shaft.inertia, balanced, state.speed, measured))
-    return tuple(found)
+        findings.append(inertia_finding(shaft.inertia, balanced, machine.speed, std))
+    return tuple(findings)

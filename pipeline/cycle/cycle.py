@@ -1,46 +1,99 @@
-"""Loads, contact and guide reactions at every angle of one cam turn."""
+"""Loads, contact, rolling and part loads over one cam turn."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
-from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.outer_ring import outer_ring
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
-from camwright.pipeline.contact.contact_pair import closed_form_history
-from camwright.pipeline.cycle.contact_setup import contact_pair, contact_width
-from camwright.pipeline.cycle.part_loads import PartsHistory, parts_history
-from camwright.pipeline.cycle.rolling_history import RollingHistory
+from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.contact.two_scale import CycleBodies
+from camwright.pipeline.cycle.part_loads import PartLoads, part_loads
+from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
+from camwright.pipeline.follower.follower_forces import Loads
+from camwright.pipeline.follower.guide_reactions import GuideReactions
 
 
 @dataclass(frozen=True, eq=False)
-class Cycle(Turn):
-    """A turn with its contact; radii (n,) of curvature in m, signed."""
+class Cycle:
+    """A turn with its contact, and what follows from both.
 
-    pressure_angle: Array
-    pitch_radius: Array
-    contour_radius: Array
+    bodies are the meshed bodies of the contact; None in a preview, where the contact is that of
+    half-planes, and under a contour that is no body, where it is unknown. Rolling and part loads
+    are computed when first read. None inside them means that the machine has no such part.
+    """
+
+    turn: Turn
+    contour: Contour
+    pair: ContactPair
+    bodies: CycleBodies | None
     contact: ContactHistory
-    rolling: RollingHistory | None = None
-    parts: PartsHistory | None = None
 
-    def columns(self, gear_ratio: float) -> Mapping[str, Array]:
+    @property
+    def machine(self) -> Machine:
+        """The machine in this load case."""
+        return self.turn.machine
+
+    @property
+    def load_case(self) -> str:
+        """Name of the load case."""
+        return self.turn.machine.load_case
+
+    @property
+    def theta(self) -> Array:
+        """Cam angles (n,), rad."""
+        return self.turn.theta
+
+    @property
+    def loads(self) -> Loads:
+        """Forces on the follower."""
+        return self.turn.loads
+
+    @property
+    def guides(self) -> GuideReactions:
+        """Reactions of the guides."""
+        return self.turn.guides
+
+    @property
+    def cam_speed(self) -> float:
+        """Mean cam speed, rad/s."""
+        return self.turn.machine.cam_speed
+
+    @cached_property
+    def rolling(self) -> RollingHistory:
+        """Traction, creep, film, fatigue and bore stress over the turn; NaN for no body."""
+        if self.contact.tier is None:
+            return RollingHistory.unknown(self.theta.size)
+        return rolling_history(self.machine, self.pair, self.bodies, self.loads, self.contact)
+
+    @cached_property
+    def parts(self) -> PartLoads:
+        """Loads of guides, stem, spring, pin, key and shaft over the turn.
+
+        Where an elastic follower leaves the cam, a preview does not follow its flights.
+        """
+        flights = self.contact.tier is not Tier.PREVIEW
+        return part_loads(self.turn, self.contour, self.pair.width, flights=flights)
+
+    def columns(self) -> Mapping[str, Array]:
         """SI values by the names of the columns of ``5_cycle.csv``."""
-        loads, contact, guides = self.loads, self.contact, self.guides
+        turn, loads, contact, guides = self.turn, self.loads, self.contact, self.guides
         found = {
             "load_case": np.full(self.theta.size, self.load_case),
             "cam_angle": self.theta,
-            "crank_angle": gear_ratio * self.theta,
+            "crank_angle": self.machine.gear_ratio * self.theta,
             "lift": loads.lift,
-            "pressure_angle": self.pressure_angle,
-            "pitch_radius": self.pitch_radius,
-            "contour_radius_of_curvature": self.contour_radius,
+            "pressure_angle": loads.pressure_angle,
+            "pitch_radius": self.contour.pitch.radius_of_curvature(self.theta),
+            "contour_radius_of_curvature": self.contour.radius_of_curvature(self.theta),
             "normal_force": loads.normal_force,
             "line_load": contact.line_load,
             "p0_hertz": contact.p0_hertz,
@@ -64,56 +117,24 @@ class Cycle(Turn):
             "friction_B": loads.friction_force_b,
             "jam_index": loads.jam_index,
             "jam_index_statics": loads.jam_index_statics,
-            "cam_speed": self.cam_speed,
+            "cam_speed": turn.cam_speed,
             "velocity": loads.velocity,
             "cam_torque": loads.cam_torque,
             "residual_equilibrium": contact.residual_equilibrium,
             "residual_complementarity": contact.residual_complementarity,
             "residual_guide_force": guides.force_residual,
             "residual_guide_moment": guides.moment_residual,
-            "residual_friction": self.friction_residual,
+            "residual_friction": turn.friction_residual,
             "stem_slope_A": guides.slope_a,
             "stem_slope_B": guides.slope_b,
             "roller_deflection": guides.roller_deflection,
         }
-        if self.torque_before is not None and self.residual_torque is not None:
-            found |= {"torque_before": self.torque_before, "torque_after": self.residual_torque}
+        if turn.torque_before is not None and turn.torque_after is not None:
+            found |= {"torque_before": turn.torque_before, "torque_after": turn.torque_after}
         # Another plane bears more shear only where the Poisson ratio is small: then it is told.
         # The peaks of the two fields are fitted apart and agree within 0.3 % where they are one.
         if (contact.tau_any_plane > 1.01 * contact.tau_max).any():
             found["tau_any_plane"] = contact.tau_any_plane
-        found |= {} if self.rolling is None else self.rolling.columns()
-        return found | ({} if self.parts is None else dict(self.parts.columns()))
-
-
-def finished(
-    case: Case,
-    contour: Contour,
-    given: Turn,
-    contact: ContactHistory,
-    ahead: bool = False,
-    flights: bool = True,
-) -> Cycle:
-    """The cycle of a turn whose contact is solved; a look ahead asks nothing of the parts.
-
-    Nor does one that wants the parts without following the follower where it flies.
-    """
-    parts = None
-    if not ahead:
-        ring = outer_ring(case, contact_width(case))
-        parts = parts_history(case.at(given.load_case), contour, given, ring, flights)
-    return Cycle(
-        **{item.name: getattr(given, item.name) for item in fields(Turn)},
-        pressure_angle=given.loads.pressure_angle,
-        pitch_radius=contour.pitch.radius_of_curvature(given.theta),
-        contour_radius=contour.radius_of_curvature(given.theta),
-        contact=contact,
-        parts=parts,
-    )
-
-
-def closed_form_cycle(case: Case, contour: Contour, given: Turn) -> Cycle:
-    """The cycle by closed forms in the contact and without parts, for a look ahead."""
-    pair = contact_pair(case, contour)
-    history = closed_form_history(pair, given.theta, given.loads.normal_force)
-    return finished(case, contour, given, history, ahead=True)
+        if contact.tier is not None:
+            found |= self.rolling.columns()
+        return found | dict(self.parts.columns())

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import PeriodicPolynomial, periodic_quintic
-from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.follower.elastic_follower import (
     ElasticFollower,
     Response,
@@ -17,7 +15,6 @@ from camwright.pipeline.follower.elastic_follower import (
     periodic_response,
 )
 from camwright.pipeline.follower.follower_flight import Flight, bounce
-from camwright.pipeline.follower.stem_beam import Stem
 
 BOUNCE_TURNS = 1.0
 
@@ -41,38 +38,38 @@ class ElasticHistory:
         freeze(self, deflection=self.deflection)
 
 
-def elastic_follower(case: Case) -> ElasticFollower:
-    """The follower on its stem: a stiffness given, or E A/l of the stem up to guide B."""
-    given, stem = case.follower, Stem.from_case(case)
-    length = given.overhang_at_max_lift + case.guides.spacing
-    stiffness = given.stiffness
-    if stiffness is None:
-        stiffness = stem.elastic_modulus * 0.25 * np.pi * stem.diameter**2 / length
+def elastic_follower(machine: Machine) -> ElasticFollower:
+    """The follower's mass on its elastic stem."""
     return ElasticFollower.with_damping_ratio(
-        given.mass, stiffness, case.spring.rate, case.spring.preload, given.damping_ratio
+        machine.mass,
+        machine.axial_stiffness,
+        machine.spring.rate,
+        machine.spring.preload,
+        machine.damping_ratio,
     )
 
 
 def elastic_history(
-    case: Case, lift: Lift, at: Array, cam_speed: Array, flights_too: bool = True
+    machine: Machine, lift: Lift, at: Array, cam_speed: Array, *, flights: bool = True
 ) -> ElasticHistory:
-    """The elastic follower at equal angles of a turn; its flights cost the most by far.
+    """Response of the elastic follower at equal angles of a turn.
 
     Parameters
     ----------
     lift : Lift
     at : array (n,)          the lift at these angles, m
     cam_speed : array (n,)   rad/s
+    flights : bool           follow the follower where it leaves the cam, by far the costliest part
     """
-    follower = elastic_follower(case)
+    follower = elastic_follower(machine)
     response = periodic_response(at, cam_speed, follower)
-    flights: tuple[Flight, ...] = ()
+    lost: tuple[Flight, ...] = ()
     force = float(response.contact_force.max())
-    if response.lost and flights_too:
+    if response.lost and flights:
         start = (float(response.position[0]), float(response.velocity[0]))
         jump = bounce(lift, _law(cam_speed), follower, BOUNCE_TURNS, start)
-        flights, force = jump.flights, float(jump.contact_force.max())
-    return ElasticHistory(response, at - response.position, flights, force, _method(cam_speed))
+        lost, force = jump.flights, float(jump.contact_force.max())
+    return ElasticHistory(response, at - response.position, lost, force, _method(cam_speed))
 
 
 def _law(cam_speed: Array) -> float | PeriodicPolynomial:

@@ -9,11 +9,11 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
-from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.parts_section import Guide
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.pin_in_hole import Conforming, pin_in_hole
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import bush_pair
+from camwright.pipeline.follower.guide_reactions import Guide
 
 ANGLES = 721
 """Angles round the bore, from half a turn before the line of action to half a turn beyond."""
@@ -27,7 +27,7 @@ _LOADS, _LEAST = 8, 0.01
 _SHARES = np.sin(np.linspace(0.0, 0.5 * np.pi, 65))  # densest where the pressure falls
 
 
-def bush_arrays(case: Case, cycles: Sequence[Cycle]) -> Mapping[str, Any]:
+def bush_arrays(cycles: Sequence[Cycle]) -> Mapping[str, Any]:
     """Arrays of ``5_bushes.npz``.
 
     Returns
@@ -43,7 +43,8 @@ def bush_arrays(case: Case, cycles: Sequence[Cycle]) -> Mapping[str, Any]:
         "load_case": np.repeat([c.load_case for c in cycles], [c.theta.size for c in cycles]),
         "cam_angle_deg": np.degrees(np.concatenate([c.theta for c in cycles])),
     }
-    for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
+    machine = cycles[0].machine
+    for side, guide in (("a", machine.guides.a), ("b", machine.guides.b)):
         lines = np.concatenate([getattr(c.guides, f"line_pressure_{side}") for c in cycles], axis=1)
         row = int(np.argmax(np.abs(lines).max(axis=0)))
         knots = getattr(cycles[0].guides, f"knots_{side}")
@@ -56,7 +57,7 @@ def bush_arrays(case: Case, cycles: Sequence[Cycle]) -> Mapping[str, Any]:
             f"{name}_row": np.array(row),
             f"{name}_slices_mm": _MM * slices,
             f"{name}_round_deg": np.degrees(_round()),
-            f"{name}_pressure_MPa": _MPA * bore_pressure(case, guide, pushes),
+            f"{name}_pressure_MPa": _MPA * bore_pressure(machine, guide, pushes),
         }
     return found
 
@@ -70,7 +71,7 @@ def loaded_length(knots: Array, line: Array) -> Array:
     return np.linspace(*ends, SLICES)
 
 
-def bore_pressure(case: Case, guide: Guide, pushes: Array) -> Array:
+def bore_pressure(machine: Machine, guide: Guide, pushes: Array) -> Array:
     """Pressure (k, m), Pa, round the bore under pushes (k,), N/m, of a guide on its stem.
 
     Each slice of the guide is a pin in a hole of its own; a negative push is that of the other
@@ -84,7 +85,7 @@ def bore_pressure(case: Case, guide: Guide, pushes: Array) -> Array:
         return pressure
     loads = float(size.max()) * np.geomspace(_LEAST, 1.0, _LOADS)
     try:
-        solved = [_slice(case, guide, float(load)) for load in loads]
+        solved = [_slice(machine, guide, float(load)) for load in loads]
     except ContactError:
         pressure[size > 0] = np.nan
         return pressure
@@ -103,9 +104,9 @@ def bore_pressure(case: Case, guide: Guide, pushes: Array) -> Array:
     return pressure
 
 
-def _slice(case: Case, guide: Guide, load: float) -> Conforming:
-    pin, bush = bush_pair(case, guide)
-    radius, clearance = 0.5 * case.follower.stem_diameter, 0.5 * guide.clearance
+def _slice(machine: Machine, guide: Guide, load: float) -> Conforming:
+    pin, bush = bush_pair(machine, guide)
+    radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
     return pin_in_hole(load, radius, clearance, pin, bush, _KNOTS)
 
 

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
-from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.oil_film import (
     LineFilm,
-    Lubricant,
     MixedFilm,
     lambda_ratio,
     minimum_film,
@@ -67,33 +66,33 @@ class FilmHistory:
 
 
 def film_history(
-    case: Case, contact: ContactHistory, contact_modulus: float, entrainment: Array
+    machine: Machine, contact: ContactHistory, entrainment: Array
 ) -> FilmHistory | None:
-    """The film at entrainment speeds (n,) m/s; None where the case names no lubricant."""
-    oil = case.lubricant
+    """Oil film at entrainment speeds (n,), m/s; None without a lubricant."""
+    oil, modulus = machine.lubricant, machine.contact_modulus
     if oil is None:
         return None
     groups = LineFilm.of(
         contact.line_load,
         contact.relative_radius,
-        contact_modulus,
+        modulus,
         entrainment,
-        Lubricant(oil.viscosity, oil.pressure_viscosity),
+        oil,
     )
     thickness = minimum_film(groups)
-    cam, other = case.cam.roughness, case.facing.roughness
+    cam, other = machine.cam.roughness, machine.follower.roughness
     if cam is None or other is None:
         return FilmHistory(thickness)
     ratio = lambda_ratio(thickness, cam, other)
     if oil.film == "smooth":
         return FilmHistory(thickness, ratio)
     mixed, refusal = mixed_film_where_it_holds(
-        groups, float(np.hypot(cam, other)), BRINELL * _softer(case), contact_modulus
+        groups, float(np.hypot(cam, other)), BRINELL * _softer(machine), modulus
     )
     return FilmHistory(thickness, ratio, mixed, refusal)
 
 
-def _softer(case: Case) -> float:
-    """Brinell hardness of the softer surface; the case has seen to it that both are known."""
-    cards = (case.material(case.cam.material), case.material(case.facing.material))
+def _softer(machine: Machine) -> float:
+    """Brinell hardness of the softer surface; a case with a mixed film has both."""
+    cards = (machine.cam.material, machine.follower.material)
     return min(card.hardness for card in cards if card.hardness is not None)

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.contour import Contour
-from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.outer_ring import OuterRing
-from camwright.pipeline.case.parts_section import Guide
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
 from camwright.pipeline.contact.pin_in_hole import peak_pressure
 from camwright.pipeline.cycle.cam_balance import unbalance_force
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
-from camwright.pipeline.follower.bearing_ring import pin_bending_stress
+from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.camshaft_loads import (
-    Camshaft,
     Reversal,
+    ShaftLoads,
     key_stress,
     shaft_loads,
     torque_reversals,
@@ -35,17 +32,13 @@ from camwright.pipeline.follower.guide_friction import (
     friction_bounds,
     guide_heat,
 )
-from camwright.pipeline.follower.guide_reactions import WALL_SHARE, GuidePair
-from camwright.pipeline.follower.roller_motion import roller_motion
-from camwright.pipeline.follower.spring import HelicalSpring, case_spring, surge_force
-from camwright.pipeline.follower.stem_beam import Stem
-
-if TYPE_CHECKING:
-    from camwright.pipeline.cycle.turn import Turn
+from camwright.pipeline.follower.guide_reactions import WALL_SHARE, Guide
+from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motion
+from camwright.pipeline.follower.spring import surge_force
 
 
 @dataclass(frozen=True, eq=False)
-class PartsHistory:
+class PartLoads:
     """One turn; arrays (n,) SI, None where the case does not describe the part.
 
     bush_peak_* are the pressures of the stem in the bore where the line pressure is greatest.
@@ -116,163 +109,130 @@ class PartsHistory:
         return known | dict(self.shares.columns())
 
 
-def parts_history(
-    case: Case,
-    contour: Contour,
-    given: Turn,
-    ring: OuterRing | None = None,
-    flights: bool = True,
-) -> PartsHistory:
-    """All parts of a turn at equal angles, of a case at its load case."""
-    loads, guides = given.loads, given.guides
-    cam_speed = given.crank_speed / case.mechanism.gear_ratio
-    friction, shares = _guided(case, contour, given, cam_speed)
-    spring = case_spring(case)
-    shaft = _shaft(case, contour, loads, cam_speed)
-    amplitude, mean, correction = _ring(case, contour, loads, ring)
-    spin, spin_acceleration = _spin(case, contour, loads, cam_speed)
-    return PartsHistory(
-        bush_peak_a=_bush_peak(case, case.guides.a, guides.line_pressure_max_a),
-        bush_peak_b=_bush_peak(case, case.guides.b, guides.line_pressure_max_b),
+def part_loads(
+    turn: Turn, contour: Contour, contact_width: float, *, flights: bool = True
+) -> PartLoads:
+    """Loads of all parts over a turn.
+
+    Parameters
+    ----------
+    contact_width : float   of the line contact, m
+    flights : bool          follow an elastic follower where it leaves the cam
+    """
+    machine, loads, guides = turn.machine, turn.loads, turn.guides
+    friction, shares = _friction_bounds(turn, contour)
+    spring, shaft = machine.spring.design, _shaft(machine, contour, loads)
+    amplitude, mean, correction = _ring(machine, contour, loads, contact_width)
+    motion, pair = _roller_motion(machine, contour, loads), machine.guides
+    pin = None if machine.roller is None else machine.roller.pin_stress_per_newton
+    return PartLoads(
+        bush_peak_a=_bush_peak(machine, pair.a, guides.line_pressure_max_a),
+        bush_peak_b=_bush_peak(machine, pair.b, guides.line_pressure_max_b),
         rubbing_load_a=guides.rubbing_load_a,
         rubbing_load_b=guides.rubbing_load_b,
-        heat_a=_heat(case, case.guides.a, guides.rubbing_load_a, loads.velocity),
-        heat_b=_heat(case, case.guides.b, guides.rubbing_load_b, loads.velocity),
+        heat_a=_heat(machine, 0, guides.rubbing_load_a, loads.velocity),
+        heat_b=_heat(machine, 1, guides.rubbing_load_b, loads.velocity),
         friction=friction,
         viscous_force=loads.viscous_force,
         shares=shares,
         elastic=elastic_history(
-            case, contour.pitch.lift, loads.lift, given.cam_speed, flights_too=flights
+            machine, contour.pitch.lift, loads.lift, turn.cam_speed, flights=flights
         ),
-        reversals=torque_reversals(loads.theta, loads.cam_torque, _drag(case)),
-        bore_pressure=loads.normal_force / (2.0 * case.cam.bore_radius * case.cam.width),
-        key_pressure=_key(case, loads),
-        shaft_bearing_1=None if shaft is None else shaft[0],
-        shaft_bearing_2=None if shaft is None else shaft[1],
+        reversals=torque_reversals(
+            loads.theta,
+            loads.cam_torque,
+            0.0 if machine.camshaft is None else machine.camshaft.drag,
+        ),
+        bore_pressure=loads.normal_force / (2.0 * machine.cam.bore_radius * machine.cam.width),
+        key_pressure=_key_pressure(machine, loads),
+        shaft_bearing_1=None if shaft is None else shaft.load_1,
+        shaft_bearing_2=None if shaft is None else shaft.load_2,
         spring_stress=None if spring is None else spring.stress(loads.spring_force),
-        surge_force=None if spring is None else _surge(spring, loads, cam_speed),
-        pin_stress=_pin(case, loads),
-        roller_spin=spin,
-        roller_spin_acceleration=spin_acceleration,
+        surge_force=None
+        if spring is None
+        else surge_force(loads.lift, machine.cam_speed, spring.rate, spring.surge_frequency),
+        pin_stress=None if pin is None else pin * loads.normal_force,
+        roller_spin=None if motion is None else motion.spin,
+        roller_spin_acceleration=None if motion is None else motion.spin_acceleration,
         ring_amplitude=amplitude,
         ring_mean=mean,
         ring_correction=correction,
     )
 
 
-def bush_pair(case: Case, guide: Guide) -> tuple[Pin, Bush]:
+def bush_pair(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:
     """Stem and bore of a guide as the bodies of a pin in a hole."""
-    stem, bush = case.material(case.follower.stem_material), case.material(guide.material)
-    return Pin(stem.E, stem.nu), Bush(bush.E, bush.nu, 2.0 * WALL_SHARE)
+    stem, bush = machine.stem, guide.material
+    return Pin(stem.elastic_modulus, stem.poisson_ratio), Bush(bush.E, bush.nu, 2.0 * WALL_SHARE)
 
 
-def _bush_peak(case: Case, guide: Guide, line_pressure: Array) -> Array:
-    radius, clearance = 0.5 * case.follower.stem_diameter, 0.5 * guide.clearance
-    peak, _ = peak_pressure(line_pressure, radius, clearance, *bush_pair(case, guide))
+def _bush_peak(machine: Machine, guide: Guide, line_pressure: Array) -> Array:
+    radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
+    peak, _ = peak_pressure(line_pressure, radius, clearance, *bush_pair(machine, guide))
     return peak
 
 
-def _heat(case: Case, guide: Guide, rubbing: Array, velocity: Array) -> GuideHeat:
-    resistance, conductivity = guide.thermal_resistance, case.material(guide.material).conductivity
+def _heat(machine: Machine, side: int, rubbing: Array, velocity: Array) -> GuideHeat:
+    guide = machine.guides.both[side][1]
+    resistance, conductivity = guide.thermal_resistance, guide.material.conductivity
     if resistance is None and conductivity is not None:
         resistance = bush_resistance(guide.diameter, guide.length, conductivity)
-    ambient = case.guides.ambient_temperature
-    return guide_heat(rubbing, velocity, guide.friction, resistance, ambient)
+    ambient = machine.guides.ambient_temperature
+    return guide_heat(rubbing, velocity, machine.friction.nominal[side], resistance, ambient)
 
 
-def _guided(
-    case: Case, contour: Contour, given: Turn, cam_speed: float
-) -> tuple[FrictionBounds, GuideShares]:
+def _friction_bounds(turn: Turn, contour: Contour) -> tuple[FrictionBounds, GuideShares]:
     """The turn at the bounds of friction, and its guides beside point supports."""
-    a, b, pitch = case.guides.a, case.guides.b, contour.pitch
-    system, stem, pair = (
-        FollowerSystem.from_case(case), Stem.from_case(case), GuidePair.from_case(case)
-    )  # fmt: skip
-    knots = given.guides.knots_a.size
-
-    def bound(guide: Guide, value: float | None) -> float:
-        return guide.friction if value is None else value
+    machine, pitch, speed = turn.machine, contour.pitch, turn.machine.cam_speed
+    system, stem, pair = machine.system, machine.stem, machine.guides
+    knots = turn.guides.knots_a.size
 
     def solved(rubbing: FollowerSystem) -> Loads:
         if rubbing == system:
-            return given.loads
-        return guided_loads(pitch, rubbing, stem, pair, cam_speed, given.theta, knots).loads
+            return turn.loads
+        return guided_loads(pitch, rubbing, stem, pair, speed, turn.theta, knots).loads
 
-    least = (bound(a, a.friction_min), bound(b, b.friction_min))
-    greatest = (bound(a, a.friction_max), bound(b, b.friction_max))
     return (
-        friction_bounds(solved, system, least, greatest),
-        guide_shares(pitch, system, stem, pair, cam_speed, given.loads, given.guides),
+        friction_bounds(solved, system, machine.friction),
+        guide_shares(pitch, system, stem, pair, speed, turn.loads, turn.guides),
     )
 
 
-def _drag(case: Case) -> float:
-    return 0.0 if case.camshaft is None else case.camshaft.drag
-
-
-def _key(case: Case, loads: Loads) -> Array | None:
+def _key_pressure(machine: Machine, loads: Loads) -> Array | None:
     """Pressure on the flank in the cam: the keyway's depth is half the key's height."""
-    key = case.cam.keyway
+    cam = machine.cam
+    key = cam.keyway
     if key is None:
         return None
-    diameter = 2.0 * case.cam.bore_radius
-    return key_stress(
-        loads.cam_torque, diameter, key.width, 2.0 * key.depth, case.cam.width
-    ).pressure
+    diameter = 2.0 * cam.bore_radius
+    return key_stress(loads.cam_torque, diameter, key.width, 2.0 * key.depth, cam.width).pressure
 
 
-def _shaft(
-    case: Case, contour: Contour, loads: Loads, cam_speed: float
-) -> tuple[Array, Array] | None:
-    given = case.camshaft
-    if given is None:
+def _shaft(machine: Machine, contour: Contour, loads: Loads) -> ShaftLoads | None:
+    if machine.camshaft is None:
         return None
-    thrown = unbalance_force(case, contour, cam_speed, loads.theta)
-    found = shaft_loads(
-        loads.axial_force,
-        loads.tangential_force,
-        loads.cam_torque,
-        Camshaft.of(given),
-        thrown,
-    )
-    return found.load_1, found.load_2
+    thrown = unbalance_force(machine.cam, contour, machine.cam_speed, loads.theta)
+    forces = (loads.axial_force, loads.tangential_force, loads.cam_torque)
+    return shaft_loads(*forces, machine.camshaft, thrown)
 
 
-def _surge(spring: HelicalSpring, loads: Loads, cam_speed: float) -> Array:
-    return surge_force(loads.lift, cam_speed, spring.rate, spring.surge_frequency)
-
-
-def _pin(case: Case, loads: Loads) -> Array | None:
-    per_newton = pin_stress_per_newton(case)
-    return None if per_newton is None else per_newton * loads.normal_force
-
-
-def pin_stress_per_newton(case: Case) -> float | None:
-    """Bending of the roller's pin under a newton of contact force, Pa; None without a pin."""
-    pin = None if case.roller_given is None else case.roller.pin
-    if pin is None:
+def _roller_motion(machine: Machine, contour: Contour, loads: Loads) -> RollerMotion | None:
+    """Motion of a roller that does not slip; None under a flat face."""
+    if machine.roller is None:
         return None
-    overhung = pin.mounting == "overhung"
-    return float(pin_bending_stress(1.0, pin.diameter, case.roller.width, pin.span, overhung))
-
-
-def _spin(
-    case: Case, contour: Contour, loads: Loads, cam_speed: float
-) -> tuple[Array | None, Array | None]:
-    """Speed and acceleration of a roller that does not slip, against the follower."""
-    if case.roller_given is None:
-        return None, None
-    motion = roller_motion(contour.pitch, contour.roller_radius, cam_speed, loads.theta)
-    return motion.spin, motion.spin_acceleration
+    return roller_motion(contour.pitch, machine.roller.radius, machine.cam_speed, loads.theta)
 
 
 def _ring(
-    case: Case, contour: Contour, loads: Loads, ring: OuterRing | None
+    machine: Machine, contour: Contour, loads: Loads, contact_width: float
 ) -> tuple[Array | None, Array | None, Array | None]:
-    if ring is None:
+    """Stress amplitude and mean of the outer ring, and its change of p0 between balls."""
+    roller = machine.roller
+    ring = None if roller is None else roller.ring(contact_width, machine.spring.preload)
+    if roller is None or ring is None:
         return None, None, None
     force, curvature = loads.normal_force, contour.curvature(loads.theta)
-    radius = 1.0 / (1.0 / case.roller.radius + curvature)
+    radius = 1.0 / (1.0 / roller.radius + curvature)
     bending = ring.bending
     return (
         bending.stress_amplitude * force,

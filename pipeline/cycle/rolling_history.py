@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, freeze, uniform_turn
-from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.bore_stress import BoreStress, bore_stress
 from camwright.pipeline.contact.contact_history import ContactHistory
-from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies
-from camwright.pipeline.contact.oil_film import entrainment_speed
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.rolling_envelope import (
     STATIONS,
     Envelope,
@@ -22,11 +21,11 @@ from camwright.pipeline.contact.rolling_envelope import (
     swept,
 )
 from camwright.pipeline.contact.tangential_patch import rolling_increase
-from camwright.pipeline.contact.traction import Drag, RollingContact, ring_inertia, rolling_contact
+from camwright.pipeline.contact.traction import RollingContact
+from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.oil_film_history import FilmHistory, film_history
-from camwright.pipeline.follower.flat_face_motion import FaceSliding, face_motion
-from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads, follower_loads
-from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motion
+from camwright.pipeline.follower.flat_face_motion import FaceSliding
+from camwright.pipeline.follower.follower_forces import Loads, follower_loads
 
 # Of the contact angles, every so many tell what the real body adds.
 _THINNED = 4
@@ -60,6 +59,11 @@ class RollingHistory:
         if self.traction_demand is not None:
             freeze(self, traction_demand=self.traction_demand)
 
+    @classmethod
+    def unknown(cls, count: int) -> RollingHistory:
+        """NaN at every angle: of a contour that is no body."""
+        return cls(np.full(count, np.nan), None, Envelope.unknown())
+
     def columns(self) -> Mapping[str, Array]:
         """SI values by the names of the columns of ``5_cycle.csv``."""
         found = {"shear_range": self.shear_range}
@@ -88,140 +92,53 @@ class RollingHistory:
 
 
 def rolling_history(
-    case: Case,
+    machine: Machine,
     pair: ContactPair,
     bodies: CycleBodies | None,
     loads: Loads,
     contact: ContactHistory,
-    cam_speed: float,
 ) -> RollingHistory:
-    """The turn at the angles of its loads, cam speed rad/s.
+    """Rolling or sliding over a turn at the angles of its loads.
 
-    Without the meshed bodies it is a look ahead, on half-planes and with nothing of the bore.
+    Without the meshed bodies the stresses are those of half-planes, and there is no bore stress.
     """
-    contour, theta, normal_force = pair.contour, loads.theta, np.asarray(loads.normal_force)
-    ride = _slid if case.follower.face is not None else _rolled
-    found = ride(case, pair, theta, normal_force, contact, cam_speed)
+    contour, theta, force = pair.contour, loads.theta, np.asarray(loads.normal_force)
+    follower = machine.follower
+    motion = follower.motion(contour, contact, force, theta, machine.cam_speed)
     shear = mises = None
-    if found.carried is not None and case.facing.friction is not None:
-        more = rolling_increase(pair.cam.poisson, case.facing.friction, found.carried)
+    if motion.traction_share is not None and follower.friction is not None:
+        more = rolling_increase(pair.cam.poisson, follower.friction, motion.traction_share)
         shear, mises = contact.tau_max * more[0], contact.von_mises * more[1]
     reach = rolling_pass(pair.cam.poisson).shear_range.max()
+    bore = None
+    if bodies is not None:
+        points, normals = contour.points(theta), contour.normal(theta)
+        bore = bore_stress(bodies.cam, points, normals, contact.line_load)
     return RollingHistory(
         shear_range=reach * contact.p0,
-        bore=None
-        if bodies is None
-        else bore_stress(
-            bodies.cam, contour.points(theta), contour.normal(theta), contact.line_load
-        ),
-        envelope=_envelope(case, pair, bodies, loads, contact, cam_speed),
-        traction_demand=found.demand,
-        sliding=found.sliding,
-        contact=found.contact,
+        bore=bore,
+        envelope=_envelope(machine, pair, bodies, loads, contact),
+        traction_demand=motion.traction_demand,
+        sliding=motion.sliding,
+        contact=motion.rolling,
         tau_max=shear,
         von_mises=mises,
-        film=film_history(case, contact, pair.contact_modulus, found.entrainment),
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _Ride:
-    """How the surfaces pass, (n,): entrainment m/s; carried, traction over friction times load."""
-
-    entrainment: Array
-    carried: Array | None = None
-    demand: Array | None = None
-    contact: RollingContact | None = None
-    sliding: FaceSliding | None = None
-
-
-def _rolled(
-    case: Case,
-    pair: ContactPair,
-    theta: Array,
-    normal_force: Array,
-    contact: ContactHistory,
-    cam_speed: float,
-) -> _Ride:
-    contour, given = pair.contour, case.roller.friction
-    motion = roller_motion(contour.pitch, contour.roller_radius, cam_speed, theta)
-    # Without friction given the roller holds: a limit that nothing reaches.
-    driven = _driven(case, motion, normal_force, contact, cam_speed, given or np.inf)
-    loaded = normal_force > 0
-    demand = np.abs(driven.demand) / np.where(loaded, normal_force, np.nan)
-    if given is None:
-        return _Ride(entrainment_speed(motion.rolling_speed), demand=demand)
-    carried = driven.force / np.where(loaded, given * normal_force, 1.0)
-    return _Ride(
-        entrainment_speed(motion.rolling_speed, driven.slip),
-        carried=np.clip(np.abs(carried), 0.0, 1.0),
-        demand=demand,
-        contact=driven,
-    )
-
-
-def _slid(
-    case: Case,
-    pair: ContactPair,
-    theta: Array,
-    normal_force: Array,
-    contact: ContactHistory,
-    cam_speed: float,
-) -> _Ride:
-    motion = face_motion(pair.contour.pitch, cam_speed, theta)
-    friction = case.follower.face_friction
-    return _Ride(
-        motion.entrainment,
-        carried=(normal_force > 0).astype(float),
-        sliding=FaceSliding.of(motion, contact.p0, normal_force, friction, cam_speed),
-    )
-
-
-def _driven(
-    case: Case,
-    motion: RollerMotion,
-    normal_force: Array,
-    contact: ContactHistory,
-    cam_speed: float,
-    friction: float,
-) -> RollingContact:
-    roller = case.roller
-    inertia = roller.inertia
-    if inertia is None:
-        density = case.material(roller.material).density
-        inertia = ring_inertia(roller.radius, roller.hub_radius, roller.width, density)
-    return rolling_contact(
-        normal_force,
-        motion.spin,
-        motion.rolling_speed,
-        contact.half_width,
-        contact.relative_radius,
-        drag=Drag(
-            inertia=inertia,
-            friction=min(friction, 1e6),
-            torque=roller.bearing.drag_torque or 0.0,
-            bearing_friction=roller.bearing.friction or 0.0,
-            pin_radius=roller.hub_radius,
-        ),
-        radius=roller.radius,
-        period=FULL_TURN / cam_speed,
+        film=film_history(machine, contact, motion.entrainment),
     )
 
 
 def _envelope(
-    case: Case,
+    machine: Machine,
     pair: ContactPair,
     bodies: CycleBodies | None,
     loads: Loads,
     contact: ContactHistory,
-    cam_speed: float,
 ) -> Envelope:
     """The map at stations of its own, under the loads there."""
     stations, theta = uniform_turn(STATIONS), loads.theta
-    system = replace(FollowerSystem.from_case(case), rubbing=loads.rubbing)
-    there = follower_loads(pair.contour.pitch, system, cam_speed, stations)
-    card = case.material(case.cam.material)
-    limits = None
+    system = replace(machine.system, rubbing=loads.rubbing)
+    there = follower_loads(pair.contour.pitch, system, machine.cam_speed, stations)
+    card, limits = machine.cam.material, None
     if card.fatigue_torsion is not None and card.fatigue_bending is not None:
         limits = FatigueLimits(card.fatigue_torsion, card.fatigue_bending)
     load = np.maximum(there.normal_force, 0.0) / pair.width
@@ -240,12 +157,10 @@ def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load
     return np.stack([along, np.zeros_like(along), np.zeros_like(along)])
 
 
-def envelope_arrays(turns: Mapping[str, RollingHistory | None]) -> dict[str, Array]:
+def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:
     """Arrays of ``5_envelope.npz`` by load case: a row per station, a column per depth."""
     found = {}
     for load_case, turn in turns.items():
-        if turn is None:
-            continue
         map_ = turn.envelope
         found[f"{load_case}.cam_angle_deg"] = np.degrees(map_.theta)
         found[f"{load_case}.arc_mm"] = _MM * map_.arc
@@ -257,9 +172,9 @@ def envelope_arrays(turns: Mapping[str, RollingHistory | None]) -> dict[str, Arr
     return found
 
 
-def rolling_record(turns: Mapping[str, RollingHistory | None]) -> dict[str, Any]:
+def rolling_record(turns: Mapping[str, RollingHistory]) -> dict[str, Any]:
     """The turn's worst places by load case, mm and MPa, for ``trial.json``."""
-    return {name: None if turn is None else _worst(turn) for name, turn in turns.items()}
+    return {name: _worst(turn) for name, turn in turns.items()}
 
 
 def _worst(turn: RollingHistory) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +13,7 @@ from scipy.optimize import brentq
 
 from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
 from camwright.geometry.errors import CamError, InputError
+from camwright.pipeline.base.quantities import In, Part
 
 CYCLE_ANGLE = 4.0 * pi
 SETTLED = 1e-13  # of the mean speed, between two passes
@@ -20,6 +22,24 @@ PASSES_MAX = 200
 # Crank torque (n,) of a mechanism without the inertia of its moving parts, N m, from crank
 # speed (n,), rad/s, and crank acceleration (n,), rad/s2.
 MechanismTorque = Callable[[Array, Array], Array]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crankshaft(Part):
+    """Rotating parts of the engine and the load it drives; needed for the speed, not for the cam.
+
+    `inertia` is that of the engine with its flywheel, reciprocating masses left out where the
+    engine states them; `mechanism_inertia` that of the turning parts of the mechanism, at the
+    crank. The load follows the speed to the power of `load_exponent`.
+    """
+
+    table: ClassVar[str] = "crankshaft"
+
+    inertia: Annotated[float, In("kg m^2", above=0, at_most=1e6)]
+    mechanism_inertia: Annotated[float, In("kg m^2", at_least=0, at_most=1e6)] = 0.0
+    load_exponent: Annotated[float, In(at_least=0, at_most=4)] = 0.0
+    measured_speed_std: Annotated[float, In("rad/s", above=0, at_most=1e3)] | None = None
+    source: str = ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -405,7 +405,11 @@ def torque_from_pressure(
     parts = {"gas": gas, "inertia": inertia, "friction": np.full_like(theta, -mean)}
     coarse = uniform_cycle(SAMPLES)
     parts = {name: _thinned(part) for name, part in parts.items()}
-    return Torque(coarse, all_cylinders(parts, coarse, engine.firing_offsets))
+    return Torque(
+        coarse,
+        all_cylinders(parts, coarse, engine.firing_offsets),
+        engine.reciprocating_inertia(coarse),
+    )
 
 
 def _thinned(values: Array) -> Array:

@@ -28,6 +28,9 @@ class Torque:
     ----------
     theta_crank : array (n,)               rad, uniform over [0, 4 pi), 0 the TDC of intake
     components : mapping to array (n,)     N m, of each part by its name; the total is their sum
+    varying_inertia : array (n,)           kg m2, of the reciprocating masses whose torque at
+                                           constant speed is the component ``inertia``; None where
+                                           it is not known
 
     Raises
     ------
@@ -38,6 +41,7 @@ class Torque:
 
     theta_crank: Array
     components: Mapping[str, Array]
+    varying_inertia: Array | None = None
 
     def __post_init__(self) -> None:
         theta = finite("torque.theta_crank", self.theta_crank)
@@ -93,7 +97,8 @@ class Torque:
             return self
         theta = uniform_cycle(n)
         parts = {name: _periodic(part, theta) for name, part in self.components.items()}
-        return Torque(theta, parts)
+        varying = self.varying_inertia
+        return Torque(theta, parts, None if varying is None else _periodic(varying, theta))
 
 
 def uniform_cycle(count: int) -> Array:
@@ -119,7 +124,11 @@ def torque_from_cycle(cycle: CylinderCycle) -> Torque:
     }
     if cycle.engine.dipper_area == 0.0:
         del parts["dipper"]
-    return Torque(cycle.theta, all_cylinders(parts, cycle.theta, cycle.engine.firing_offsets))
+    return Torque(
+        cycle.theta,
+        all_cylinders(parts, cycle.theta, cycle.engine.firing_offsets),
+        cycle.engine.reciprocating_inertia(cycle.theta),
+    )
 
 
 def all_cylinders(

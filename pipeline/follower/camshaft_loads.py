@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from math import pi
+from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,8 @@ from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.cad_drawing import KeywayLike
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError, InputError
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.quantities import Angle, Count, Force, In, Length, Part, Pressure
 
 
 class KeyStress(NamedTuple):
@@ -98,40 +101,51 @@ _BALANCED = 1e-9
 """Of the area's power 3/2: a first moment that is round-off."""
 
 
-@dataclass(frozen=True)
-class Camshaft:
-    """Places along the shaft from its first bearing, m, and the gear that drives it.
+@dataclass(frozen=True, kw_only=True)
+class CamshaftGear(Part):
+    """The spur gear on the camshaft; its limits are those of its material for endless life.
 
-    Parameters
-    ----------
-    bearing_spacing : float       m, > 0
-    cam_position, gear_position : float   m; negative or beyond the spacing: overhung
-    gear_radius : float           pitch radius, m, > 0
-    mesh_angle : float            where the gears mesh, seen from the axis, from the follower's
-                                  axis counter-clockwise, rad
-    pressure_angle : float        of the teeth, rad
+    The teeth are of 20 deg full depth; the pinion is on the crank.
     """
 
-    bearing_spacing: float
-    cam_position: float
-    gear_position: float
-    gear_radius: float
-    mesh_angle: float = np.pi
-    pressure_angle: float = np.radians(20.0)
+    table: ClassVar[str] = "camshaft.gear"
 
-    def __post_init__(self) -> None:
-        for name in ("bearing_spacing", "gear_radius"):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise InputError(f"camshaft.{name}", getattr(self, name), "> 0 m")
-        for name in ("cam_position", "gear_position", "mesh_angle"):
-            finite(f"camshaft.{name}", getattr(self, name))
-        if not 0.0 <= self.pressure_angle < np.radians(45.0):
-            raise InputError("camshaft.pressure_angle", self.pressure_angle, "from 0 to pi/4 rad")
+    teeth: Annotated[int, Count(10, 1000)]
+    pinion_teeth: Annotated[int, Count(10, 1000)]
+    width: Length
+    material: Material
+    application_factor: Annotated[float, In(at_least=1, at_most=10)] = 1.5
+    bending_limit: Pressure | None = None
+    contact_limit: Pressure | None = None
+    source: str = ""
 
-    @classmethod
-    def of(cls, given: Any) -> Camshaft:
-        """The shaft as a case's section gives it."""
-        return cls(**{name: getattr(given, name) for name in cls.__dataclass_fields__})
+
+@dataclass(frozen=True, kw_only=True)
+class Camshaft(Part):
+    """The cam's shaft: positions from its first bearing, and the gear that drives it.
+
+    A negative position or one beyond the spacing is overhung. The gears mesh at mesh_angle, seen
+    from the axis, from the follower's axis counter-clockwise; gear_radius is the pitch radius and
+    pressure_angle that of the teeth. The notch factors are those of the keyway under the cam, as
+    an end mill cuts it; the rating is the dynamic one, C, of each of its two ball bearings.
+    """
+
+    table: ClassVar[str] = "camshaft"
+
+    bearing_spacing: Length
+    cam_position: Annotated[float, In("mm", above=-10_000, below=10_000)]
+    gear_position: Annotated[float, In("mm", above=-10_000, below=10_000)]
+    gear_radius: Length
+    mesh_angle: Angle = pi
+    pressure_angle: Annotated[float, In("deg", at_least=0, below=45)] = pi / 9.0
+    drag: Annotated[float, In("N m", at_least=0, at_most=1e6)] = 0.0
+    diameter: Length | None = None
+    material: Material | None = None
+    notch_bending: Annotated[float, In(at_least=1, at_most=10)] = 2.14
+    notch_torsion: Annotated[float, In(at_least=1, at_most=10)] = 3.0
+    bearing_rating: Force | None = None
+    gear: CamshaftGear | None = None
+    source: str = ""
 
 
 @dataclass(frozen=True, eq=False)

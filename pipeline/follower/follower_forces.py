@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.follower.spring import Spring
 
 REST = 1e-9  # of the stroke per radian: what a spline leaves of the slope of a dwell
 JAM_FLOOR = 0.01  # least share of the cam's push that friction is let to leave over
@@ -73,8 +74,7 @@ class FollowerSystem:
     Parameters
     ----------
     mass : float                    moving mass, kg, >= 0
-    spring_rate : float             k, N/m, > 0
-    preload : float                 P, spring force at zero lift, N, >= 0
+    spring : Spring                 its force over the lift
     guide_spacing : float           b, between the centres of guides A and B, m, > 0
     overhang_at_max_lift : float    a, roller centre to centre of A at the largest lift, m, >= 0
     friction_a, friction_b : float  Coulomb coefficients, >= 0
@@ -91,8 +91,7 @@ class FollowerSystem:
     """
 
     mass: float
-    spring_rate: float
-    preload: float
+    spring: Spring
     guide_spacing: float
     overhang_at_max_lift: float
     friction_a: float
@@ -103,12 +102,10 @@ class FollowerSystem:
     rubbing: Rubbing | None = None
 
     def __post_init__(self) -> None:
-        for name, unit in (("spring_rate", "N/m"), ("guide_spacing", "m")):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise InputError(f"follower.{name}", getattr(self, name), f"> 0 {unit}")
+        if not 0.0 < self.guide_spacing < np.inf:
+            raise InputError("follower.guide_spacing", self.guide_spacing, "> 0 m")
         for name, unit in (
             ("mass", "kg"),
-            ("preload", "N"),
             ("overhang_at_max_lift", "m"),
             ("friction_a", ""),
             ("friction_b", ""),
@@ -118,21 +115,6 @@ class FollowerSystem:
             if not 0.0 <= getattr(self, name) < np.inf:
                 raise InputError(f"follower.{name}", getattr(self, name), f">= 0 {unit}".rstrip())
         finite("follower.gravity_along_axis", self.gravity_along_axis)
-
-    @classmethod
-    def from_case(cls, case: Any) -> FollowerSystem:
-        """The system described by the follower, spring and guides tables of a case."""
-        return cls(
-            mass=case.follower.mass,
-            spring_rate=case.spring.rate,
-            preload=case.spring.preload,
-            guide_spacing=case.guides.spacing,
-            overhang_at_max_lift=case.follower.overhang_at_max_lift,
-            friction_a=case.guides.a.friction,
-            friction_b=case.guides.b.friction,
-            viscous_damping=case.follower.viscous_damping,
-            face_friction=case.follower.face_friction,
-        )
 
     def guide_factors(self, overhang: ArrayLike) -> tuple[Array, Array]:
         """|A|/F_t and |B|/F_t, see `levers`."""
@@ -273,7 +255,7 @@ def jump_speed(pitch: PitchCurve, system: FollowerSystem, theta: ArrayLike) -> t
     """
     theta = finite("theta", theta)
     lift, _, bend = pitch.lift.derivatives(theta, 2)
-    hold = system.preload + system.spring_rate * lift + system.mass * system.gravity_along_axis
+    hold = system.spring.force(lift) + system.mass * system.gravity_along_axis
     throw = -system.mass * bend
     square = np.divide(
         np.maximum(hold, 0.0), throw, out=np.full_like(throw, np.inf), where=throw > 0.0
@@ -355,7 +337,7 @@ def follower_loads(
     lift, slope, bend = pitch.lift.derivatives(theta, 2)
     slope = np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0)
     acceleration = bend * speed**2 + slope * finite("cam_acceleration", cam_acceleration)
-    spring_force = system.preload + system.spring_rate * lift
+    spring_force = system.spring.force(lift)
     inertia_force = system.mass * acceleration
     viscous_force = system.viscous_damping * slope * speed
     weight = system.mass * system.gravity_along_axis

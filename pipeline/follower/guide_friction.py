@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
-from camwright.pipeline.follower.guide_reactions import WALL_SHARE
+from camwright.pipeline.follower.guide_reactions import WALL_SHARE, GuidePair
 
 # Nylon: Mott, Machine Elements in Mechanical Design, table 16-1 (0.105 MPa m/s dry) and the
 # graded limits of a bush maker, of which the dry one is the lower.
@@ -21,6 +21,66 @@ NYLON_PV = {
     "regularly_greased": 0.33e6,
     "flooded": 0.83e6,
 }
+
+
+@dataclass(frozen=True)
+class FrictionRange:
+    """Coulomb coefficients of guides A and B: nominal, least and greatest.
+
+    bounded says whether a greatest coefficient of both guides is known.
+
+    Raises
+    ------
+    InputError
+        If the bounds do not enclose the nominal coefficients; NaN included.
+    """
+
+    nominal: tuple[float, float]
+    least: tuple[float, float]
+    greatest: tuple[float, float]
+    bounded: bool = True
+
+    def __post_init__(self) -> None:
+        ranges = zip("ab", self.least, self.nominal, self.greatest, strict=True)
+        for name, low, middle, high in ranges:
+            if not 0.0 <= low <= middle <= high:
+                shown = f"{low:g}, {middle:g}, {high:g}"
+                limit = "0 <= least <= nominal <= greatest"
+                raise InputError(f"guides.{name}.friction", shown, limit)
+
+    @classmethod
+    def of(cls, guides: GuidePair, tolerance: float) -> FrictionRange:
+        """From the bounds of the guides; the tolerance (a share) where a guide has none."""
+        both = (guides.a, guides.b)
+        low = [
+            g.friction * (1.0 - tolerance) if g.friction_min is None else g.friction_min
+            for g in both
+        ]
+        high = [
+            g.friction * (1.0 + tolerance) if g.friction_max is None else g.friction_max
+            for g in both
+        ]
+        return cls(
+            nominal=(guides.a.friction, guides.b.friction),
+            least=(low[0], low[1]),
+            greatest=(high[0], high[1]),
+            bounded=tolerance > 0.0 or all(g.friction_max is not None for g in both),
+        )
+
+    def factors(self, side: int) -> tuple[float, float]:
+        """Least and greatest coefficient of a guide (0: A, 1: B) over the nominal one."""
+        nominal = self.nominal[side] or 1.0
+        return self.least[side] / nominal, self.greatest[side] / nominal
+
+    def scaled(self, factor_a: float, factor_b: float) -> FrictionRange:
+        """The nominal coefficients times a factor each; the bounds widened to hold them."""
+        a, b = self.nominal[0] * factor_a, self.nominal[1] * factor_b
+        return replace(
+            self,
+            nominal=(a, b),
+            least=(min(self.least[0], a), min(self.least[1], b)),
+            greatest=(max(self.greatest[0], a), max(self.greatest[1], b)),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,35 +119,19 @@ class FrictionBounds:
 
 
 def friction_bounds(
-    solved: Callable[[FollowerSystem], Loads],
-    system: FollowerSystem,
-    least: tuple[float, float],
-    greatest: tuple[float, float],
+    solved: Callable[[FollowerSystem], Loads], system: FollowerSystem, friction: FrictionRange
 ) -> FrictionBounds:
-    """Loads with the friction of guides A and B at its bounds and as in `system`.
+    """Loads at the least, nominal and greatest friction of guides A and B.
 
     Parameters
     ----------
     solved : function    the loads of a system, such as `follower_loads` or `guided_loads` give
-
-    Raises
-    ------
-    InputError
-        If the bounds do not enclose the nominal friction.
     """
-    nominal = (system.friction_a, system.friction_b)
-    for name, low, middle, high in zip("ab", least, nominal, greatest, strict=True):
-        if not 0.0 <= low <= middle <= high:
-            raise InputError(
-                f"guides.{name}.friction",
-                f"{low}, {middle}, {high}",
-                "0 <= least <= nominal <= most",
-            )
 
-    def loads(friction: tuple[float, float]) -> Loads:
-        return solved(replace(system, friction_a=friction[0], friction_b=friction[1]))
+    def loads(both: tuple[float, float]) -> Loads:
+        return solved(replace(system, friction_a=both[0], friction_b=both[1]))
 
-    return FrictionBounds(loads(least), loads(nominal), loads(greatest))
+    return FrictionBounds(loads(friction.least), loads(friction.nominal), loads(friction.greatest))
 
 
 @dataclass(frozen=True, eq=False)

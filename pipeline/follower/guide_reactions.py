@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import Legendre
@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
 from camwright.pipeline.follower.guide_contact import BearingLine, settle
 from camwright.pipeline.follower.stem_beam import Stem, end_flexibility, stem_compliance
 
@@ -21,77 +23,86 @@ _NO_LOAD = 1e-290  # N: the slope a spline leaves in a dwell; so near to zero di
 WALL_SHARE = 0.25  # wall of a plain bushing over its bore, where the drawing gives none
 
 
-@dataclass(frozen=True)
-class Guide:
-    """A bore the stem slides in.
+def _no_press_fit(field: str, clearance: float) -> None:
+    if clearance < 0.0:
+        raise InputError(field, f"{1e3 * clearance:g} mm", ">= 0 mm: a press fit cannot slide")
 
-    Parameters
-    ----------
-    length : float               m, > 0
-    diameter : float             nominal, m, > 0
-    clearance : float            bore less stem, across the diameter, m, >= 0
-    foundation_modulus : float   force per length and deflection, N/m2, > 0; see
-                                 `bush_foundation_modulus`
-    friction : float             Coulomb coefficient, >= 0
+
+@dataclass(frozen=True, kw_only=True)
+class Guide(Part):
+    """A bore the stem slides in; its limits hold for dry running unless the source says more.
+
+    clearance is bore less stem, across the diameter; friction Coulomb's coefficient, with its
+    bounds where they are known; stiffness that of the whole bush, else of its wall's elasticity.
 
     Raises
     ------
     InputError
-        If a value is out of these bounds; a negative clearance is a press fit, which cannot slide.
+        If a value is out of its bounds; a negative clearance is a press fit, which cannot slide.
     """
 
-    length: float
-    diameter: float
-    clearance: float
-    foundation_modulus: float
-    friction: float = 0.0
+    table: ClassVar[str] = "guide"
+
+    length: Length
+    diameter: Length
+    friction: Annotated[float, In(at_least=0, below=2)]
+    friction_min: Annotated[float, In(at_least=0, below=2)] | None = None
+    friction_max: Annotated[float, In(at_least=0, below=2)] | None = None
+    lubrication: Literal["dry", "greased_once", "regularly_greased", "flooded"] | None = None
+    clearance: Annotated[float, In("mm", at_least=-100, at_most=100)] = 0.0
+    material: Material
+    pressure_limit: Pressure | None = None
+    pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e6)] | None = None
+    stiffness: Annotated[float, In("N/mm", above=0, at_most=1e9)] | None = None
+    thermal_resistance: Annotated[float, In("K/W", above=0, at_most=1e6)] | None = None
+    wear_rate: Annotated[float, In("mm^3/N/m", above=0, at_most=1e3)] | None = None
+    source: str = ""
 
     def __post_init__(self) -> None:
-        for name, unit in (("length", "m"), ("diameter", "m"), ("foundation_modulus", "N/m2")):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise InputError(f"guide.{name}", getattr(self, name), f"> 0 {unit}")
-        if not 0.0 <= self.clearance < np.inf:
-            raise InputError("guide.clearance", self.clearance, ">= 0 m: a press fit cannot slide")
-        if not 0.0 <= self.friction < np.inf:
-            raise InputError("guide.friction", self.friction, ">= 0")
+        super().__post_init__()
+        _no_press_fit("guide.clearance", self.clearance)
+        low, high = self.friction_min, self.friction_max
+        if low is not None and not low <= self.friction:
+            raise InputError("guide.friction_min", low, f"<= {self.friction:g}, the friction")
+        if high is not None and not self.friction <= high:
+            raise InputError("guide.friction_max", high, f">= {self.friction:g}, the friction")
 
-    @classmethod
-    def from_case(cls, case: Any, name: str) -> Guide:
-        """Guide `a` or `b` of a case; a stiffness given there is that of the whole guide, N/m."""
-        given = getattr(case.guides, name)
-        material = case.materials[given.material]
-        if given.stiffness is not None:
-            modulus = given.stiffness / given.length
-        else:
-            modulus = bush_foundation_modulus(
-                given.diameter, WALL_SHARE * given.diameter, material.E, material.nu
-            )
-        return cls(given.length, given.diameter, given.clearance, modulus, given.friction)
+    @cached_property
+    def foundation_modulus(self) -> float:
+        """Force per length and deflection of the bush, N/m2; see `bush_foundation_modulus`."""
+        if self.stiffness is not None:
+            return self.stiffness / self.length
+        bore, card = self.diameter, self.material
+        return bush_foundation_modulus(bore, WALL_SHARE * bore, card.E, card.nu)
+
+    @property
+    def projected_area(self) -> float:
+        """Diameter times length, m2."""
+        return self.diameter * self.length
 
 
-@dataclass(frozen=True)
-class GuidePair:
-    """Guide A beside the roller and guide B behind it.
+@dataclass(frozen=True, kw_only=True)
+class GuidePair(Part):
+    """Guide A next to the cam and guide B beyond it; the spacing is from middle to middle."""
 
-    Parameters
-    ----------
-    spacing : float   between the middles of the guides, m; the guides may not touch
-    a, b : Guide
-    """
+    table: ClassVar[str] = "guides"
 
-    spacing: float
+    spacing: Length
+    ambient_temperature: Temperature = 293.15
     a: Guide
     b: Guide
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         least = 0.5 * (self.a.length + self.b.length)
-        if not least < self.spacing < np.inf:
-            raise InputError("guides.spacing", self.spacing, f"> {least:g} m, half of both lengths")
+        if not least < self.spacing:
+            limit = f"> {least:.6g} m, half of both lengths"
+            raise InputError("guides.spacing", f"{self.spacing:.6g} m", limit)
 
-    @classmethod
-    def from_case(cls, case: Any) -> GuidePair:
-        """The guides table of a case."""
-        return cls(case.guides.spacing, Guide.from_case(case, "a"), Guide.from_case(case, "b"))
+    @property
+    def both(self) -> tuple[tuple[Literal["A", "B"], Guide], ...]:
+        """The guides by name."""
+        return ("A", self.a), ("B", self.b)
 
 
 @dataclass(frozen=True, eq=False)

@@ -48,11 +48,11 @@ class RollerMotion:
 
 @dataclass(frozen=True)
 class RatingLife:
-    """Basic rating life: P_m in N, L10 in revolutions of the bearing and in hours."""
+    """Basic rating life: P_m in N, L10 in revolutions of the bearing and in seconds."""
 
     mean_load: float
     revolutions: float
-    hours: float
+    seconds: float
 
 
 def roller_motion(
@@ -184,7 +184,7 @@ def rating_life(
     mean_load = equivalent_load(normal_force, spin, exponent)
     spin_mean = float(np.mean(np.abs(spin)))
     revolutions = 1e6 * (dynamic_rating / mean_load) ** exponent if mean_load > 0.0 else np.inf
-    return RatingLife(mean_load, revolutions, revolutions * FULL_TURN / spin_mean / HOUR)
+    return RatingLife(mean_load, revolutions, revolutions * FULL_TURN / spin_mean)
 
 
 def static_safety(normal_force: ArrayLike, static_rating: float) -> float:

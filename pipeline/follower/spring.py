@@ -3,92 +3,72 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite
+from camwright.geometry.energy import spring_deflection
 from camwright.geometry.errors import InputError
+from camwright.geometry.path import Values
+from camwright.pipeline.base.quantities import In, Length, Part, Preload, Pressure, Rate
 
 DEAD_COILS = 2.0  # squared and ground ends
 SHEAR_STRENGTH_SHARE = 0.67  # S_su over R_m
-ZIMMERLI = {False: (241e6, 379e6), True: (398e6, 534e6)}  # S_sa, S_sm by peened, Pa
+ZIMMERLI = {"plain": (241e6, 379e6), "peened": (398e6, 534e6)}  # S_sa, S_sm by treatment, Pa
 BUCKLING = 2.63  # free length over mean diameter and end factor, steel
 
-
-@dataclass(frozen=True)
-class Wire:
-    """Spring steel: R_m = strength_at_1mm (d / 1 mm)^-exponent.
-
-    Parameters
-    ----------
-    shear_modulus : float      G, Pa
-    density : float            kg/m3
-    strength_at_1mm : float    Pa
-    exponent : float           >= 0
-    peened : bool              shot peened
-    """
-
-    shear_modulus: float
-    density: float
-    strength_at_1mm: float
-    exponent: float
-    peened: bool = False
-    source: str = ""
-
-    def __post_init__(self) -> None:
-        for name in ("shear_modulus", "density", "strength_at_1mm"):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise InputError(f"spring.wire.{name}", getattr(self, name), "> 0")
-        if not 0.0 <= self.exponent < 1.0:
-            raise InputError("spring.wire.exponent", self.exponent, ">= 0 and < 1")
-
-    def tensile_strength(self, diameter: float) -> float:
-        """R_m of a wire, Pa."""
-        return float(self.strength_at_1mm * (diameter / 1e-3) ** -self.exponent)
+WireModulus = Annotated[float, In("GPa", above=0, at_most=1e5)]
+WireDensity = Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
+WireExponent = Annotated[float, In(at_least=0, below=1)]
+Treatment = Literal["plain", "peened"]
 
 
-@dataclass(frozen=True)
-class HelicalSpring:
-    """A cylindrical spring of round wire, ends squared and ground.
+@dataclass(frozen=True, kw_only=True)
+class HelicalSpring(Part):
+    """A cylindrical compression spring of round wire, ends squared and ground.
 
-    Parameters
-    ----------
-    wire_diameter, mean_diameter : float   d and D, m; D/d from 3 to 20
-    coils : float                          active ones, >= 1.5
-    free_length : float                    L0, m, longer than solid
-    wire : Wire
-    end_factor : float                     1 pivoted at both ends, 0.707 pivoted and fixed, 0.5 flat
+    mean_diameter D over wire_diameter d from 3 to 20; coils are the active ones; end_factor 1
+    pivoted at both ends, 0.707 pivoted and fixed, 0.5 flat. The wire has the tensile strength
+    R_m = strength_at_1mm (d / 1 mm)^-strength_exponent. name is that of a catalogue.
 
     Raises
     ------
     InputError
-        If a value is out of these bounds. A spring that goes solid under its load is no such
+        If a value is out of its bounds. A spring that goes solid under its load is no such
         error: see `solid_clearance`.
     """
 
-    wire_diameter: float
-    mean_diameter: float
-    coils: float
-    free_length: float
-    wire: Wire
-    end_factor: float = 0.5
+    table: ClassVar[str] = "spring.design"
+    labels: ClassVar[tuple[str, ...]] = ("name",)
+
+    wire_diameter: Length
+    mean_diameter: Length
+    coils: Annotated[float, In(at_least=1.5, at_most=1000)]
+    free_length: Length
+    end_factor: Annotated[float, In(above=0, at_most=2)] = 0.5
+    shear_modulus: WireModulus
+    density: WireDensity
+    strength_at_1mm: Pressure
+    strength_exponent: WireExponent
+    treatment: Treatment = "plain"
+    source: str = ""
     name: str = ""
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.wire_diameter < np.inf:
-            raise InputError("spring.wire_diameter", self.wire_diameter, "> 0 m")
+        super().__post_init__()
         if not 3.0 <= self.mean_diameter / self.wire_diameter <= 20.0:
             limit = "3 to 20 wire diameters, which can be coiled"
-            raise InputError("spring.mean_diameter", self.mean_diameter, limit)
-        if not 1.5 <= self.coils < np.inf:
-            raise InputError("spring.coils", self.coils, ">= 1.5")
-        if not self.solid_length < self.free_length < np.inf:
+            raise InputError("spring.design.mean_diameter", self.mean_diameter, limit)
+        if not self.solid_length < self.free_length:
             limit = f"> {self.solid_length:g} m, the solid length"
-            raise InputError("spring.free_length", self.free_length, limit)
-        if not 0.0 < self.end_factor <= 2.0:
-            raise InputError("spring.end_factor", self.end_factor, "> 0 and <= 2")
+            raise InputError("spring.design.free_length", self.free_length, limit)
+
+    @property
+    def tensile_strength(self) -> float:
+        """R_m of the wire, Pa."""
+        return float(self.strength_at_1mm * (self.wire_diameter / 1e-3) ** -self.strength_exponent)
 
     @property
     def index(self) -> float:
@@ -98,7 +78,7 @@ class HelicalSpring:
     @property
     def rate(self) -> float:
         """k = G d^4 / (8 D^3 n), N/m."""
-        bend = self.wire.shear_modulus * self.wire_diameter**4
+        bend = self.shear_modulus * self.wire_diameter**4
         return bend / (8.0 * self.mean_diameter**3 * self.coils)
 
     @property
@@ -113,7 +93,7 @@ class HelicalSpring:
 
     def _mass(self, coils: float) -> float:
         section = 0.25 * np.pi * self.wire_diameter**2
-        return float(self.wire.density * section * np.pi * self.mean_diameter * coils)
+        return float(self.density * section * np.pi * self.mean_diameter * coils)
 
     @property
     def solid_length(self) -> float:
@@ -155,7 +135,7 @@ class HelicalSpring:
         ----------
         EN 13906-1 (recalled, verify); Shigley's Mechanical Engineering Design, ch. 10.
         """
-        strength = 0.56 * self.wire.tensile_strength(self.wire_diameter)
+        strength = 0.56 * self.tensile_strength
         return float(self.stress(force)) / strength
 
     def fatigue_safety(self, force_min: float, force_max: float) -> float:
@@ -173,8 +153,8 @@ class HelicalSpring:
             raise InputError("spring.force", force_min, "0 <= least <= greatest, N")
         low, high = float(self.stress(force_min)), float(self.stress(force_max))
         amplitude, mean = 0.5 * (high - low), 0.5 * (high + low)
-        shear_strength = SHEAR_STRENGTH_SHARE * self.wire.tensile_strength(self.wire_diameter)
-        zimmerli_amplitude, zimmerli_mean = ZIMMERLI[self.wire.peened]
+        shear_strength = SHEAR_STRENGTH_SHARE * self.tensile_strength
+        zimmerli_amplitude, zimmerli_mean = ZIMMERLI[self.treatment]
         endurance = zimmerli_amplitude / (1.0 - zimmerli_mean / shear_strength)
         if not endurance > 0.0:
             return 0.0
@@ -192,26 +172,39 @@ class HelicalSpring:
         return self.free_length * self.end_factor / (BUCKLING * self.mean_diameter)
 
 
-def case_spring(case: Any) -> HelicalSpring | None:
-    """The spring of a case; None where the case tells the rate alone."""
-    design = case.spring.design
-    if design is None:
-        return None
-    wire = Wire(
-        design.shear_modulus,
-        design.density,
-        design.strength_at_1mm,
-        design.strength_exponent,
-        design.treatment == "peened",
-    )
-    return HelicalSpring(
-        design.wire_diameter,
-        design.mean_diameter,
-        design.coils,
-        design.free_length,
-        wire,
-        design.end_factor,
-    )
+@dataclass(frozen=True, kw_only=True)
+class Spring(Part):
+    """The spring that stores the engine's excess energy: linear, preloaded at zero lift.
+
+    The tolerances are shares of the nominal; travel_max is the greatest lift it allows, and
+    design the spring as wound.
+    """
+
+    table: ClassVar[str] = "spring"
+
+    rate: Rate
+    preload: Preload
+    travel_max: Length | None = None
+    rate_tolerance: Annotated[float, In(at_least=0, below=1)] = 0.0
+    preload_tolerance: Annotated[float, In(at_least=0, below=1)] = 0.0
+    design: HelicalSpring | None = None
+    source: str = ""
+
+    def force(self, lift: Values) -> Values:
+        """Force P + k s at a lift (...), m, in N."""
+        return self.preload + self.rate * lift
+
+    def stiffness(self, lift: Values) -> Values:
+        """Slope k of the force over the lift (...), N/m."""
+        return self.rate + 0.0 * lift
+
+    def energy(self, lift: float) -> float:
+        """Energy P s + k s^2 / 2 stored beyond that of the preload, J."""
+        return self.preload * lift + 0.5 * self.rate * lift**2
+
+    def lift_for(self, energy: ArrayLike) -> Array:
+        """Lift (...), m, at which the spring stores an energy (...), J, beyond the preload's."""
+        return spring_deflection(energy, self.rate, self.preload)
 
 
 def surge_harmonics(

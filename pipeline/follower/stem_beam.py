@@ -47,14 +47,6 @@ class Stem:
         if not 0.0 <= self.bore < self.diameter:
             raise InputError("stem.bore", self.bore, f">= 0 and < {self.diameter:g} m")
 
-    @classmethod
-    def from_case(cls, case: Any) -> Stem:
-        """The stem described by the follower table of a case."""
-        material = case.materials[case.follower.stem_material]
-        given = case.follower.stem_length
-        length = np.inf if given is None else given
-        return cls(case.follower.stem_diameter, material.E, material.nu, length=length)
-
     @property
     def bending_stiffness(self) -> float:
         """E I, N m2."""

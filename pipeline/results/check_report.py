@@ -28,7 +28,7 @@ STYLES = {"pass": "green", "fail": "red", "waived": "yellow", "not_evaluated": "
 
 
 def selected(records: Sequence[Record], only: Iterable[str]) -> tuple[Record, ...]:
-    """The records whose id fits a pattern such as ``bush_*``; all of them without a pattern.
+    """The records whose id fits a pattern such as ``guide_*``; all of them without a pattern.
 
     Raises
     ------

@@ -10,6 +10,7 @@ from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import InputError
 from camwright.meshes.calculix_deck import DeckBody, write_deck
 from camwright.pipeline.base.tables import Table
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.certificate import SolvedPair, solve_pair
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import ElasticBody
@@ -105,7 +106,7 @@ def deck(run: Path, theta: float, path: Path, load_case: str | None = None) -> S
     case, contour = drawn_cam(run)
     name = case.load_cases[0].name if load_case is None else load_case
     force = force_at(cycle, name, theta)
-    pair = contact_pair(case, contour)
+    pair = contact_pair(machines(case)[0], contour)
     solved = solve_pair(pair, theta % FULL_TURN, force)
     write_contact_deck(path, pair, solved)
     return solved

@@ -13,7 +13,7 @@ from camwright.geometry.errors import ResultError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.gmsh_mesher import Index
 from camwright.meshes.mesh_files import write_pvd, write_vtu
-from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies, stress_on_patch
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.contact_patch import (
     ELEMENTS_PER_HALF_WIDTH,
     STRESS_REACH,
@@ -23,6 +23,7 @@ from camwright.pipeline.contact.contact_patch import (
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.elasticity.elastic_body import elements_near
 from camwright.pipeline.contact.elasticity.surface_integrals import ContactFrame
+from camwright.pipeline.contact.two_scale import CycleBodies, stress_on_patch
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.results.stress_fields import position_notes
 

@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from camwright.meshes.mesh_files import write_sheet
-from camwright.pipeline.case.case import Case
 from camwright.pipeline.contact.certificate import solve_pair
-from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.rolling_envelope import Envelope
+from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.certificate_angles import positions_to_certify
-from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.rolling_history import MAPS
 from camwright.pipeline.results.contact_patch_series import write_patches
@@ -28,7 +27,7 @@ _MEGAPASCAL = 1e6
 
 
 def write_fields(
-    folder: Path, case: Case, final: Trial, tell: Callable[[int, int], None] = lambda *_: None
+    folder: Path, final: Trial, tell: Callable[[int, int], None] = lambda *_: None
 ) -> None:
     """Write ``fields/`` of a trial that has a body.
 
@@ -36,7 +35,7 @@ def write_fields(
     """
     if final.mesh is None:
         return
-    pair = contact_pair(case, final.contour)
+    pair = final.cycles[0].pair
     index = round(final.mesh.theta / (final.cycles[0].theta[1] - final.cycles[0].theta[0]))
     force = max(float(cycle.loads.normal_force[index]) for cycle in final.cycles)
     write_contact(
@@ -44,13 +43,12 @@ def write_fields(
     )
     chosen = hardest(final.cycles)
     cycle = final.cycles[chosen]
-    certified = positions_to_certify(final.cycles, case.solver.certificate_positions)
+    certified = positions_to_certify(final.cycles, final.case.solver.certificate_positions)
     indices = shown_positions(cycle, [k for number, k in certified if number == chosen])
-    bodies = CycleBodies.meshed(pair)
+    bodies = cycle.bodies or CycleBodies.meshed(pair)
     write_bodies(folder, pair, bodies, cycle, indices, chosen + 1, tell)
     write_patches(folder, pair, bodies, cycle, chosen + 1, tell)
-    if cycle.rolling is not None:
-        write_envelope(folder / ENVELOPE, pair, cycle.rolling.envelope, chosen + 1)
+    write_envelope(folder / ENVELOPE, pair, cycle.rolling.envelope, chosen + 1)
     np.savez_compressed(folder / TURN, allow_pickle=False, **turn_view(pair, bodies, cycle, tell))
 
 

@@ -19,8 +19,9 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.cam_outline import KeywayLike
 from camwright.pipeline.contact.body_compliance import LoadedBody, hertz_stress
-from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity import plane_stress_measures
+from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.results.stress_fields import IntArray, facing, follower_places
 

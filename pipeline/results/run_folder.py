@@ -16,6 +16,7 @@ import shutil
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -32,12 +33,11 @@ from camwright.pipeline.base.files import json_text, read_json, write_atomic
 from camwright.pipeline.base.tables import Column, table
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import load_case_file
-from camwright.pipeline.case.given_lift import contour_of
 from camwright.pipeline.results import run_reader, signoff
 
 _STATE, _CHUNKS, _LOCK = ".state.json", ".chunks", ".lock"
 _OURS = re.compile(
-    r"case\.toml|(run|signoff|corners)\.json|inputs|fields|figures|exports|shop|inspection|trial_\d+"
+    r"case\.toml|(run|signoff|corners)\.json|inputs|fields|figures|exports|workshop|inspection|trial_\d+"
     r"|scene\.html|\d+_\w+\.(csv|html|json|pdf)"
 )
 _LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib")
@@ -92,7 +92,7 @@ class RunFolder:
         # What is told to the user would end so again; what nobody expected need not, and the
         # solved part of a trial is worth keeping for then.
         ours = kind is not None and issubclass(kind, CamError)
-        bare = not any(self.path.glob("trial_*"))
+        bare = not any((self.path / _CHUNKS).rglob("*.npz"))
         if ours or (bare and kind is not None and issubclass(kind, Exception)):
             self.discard()
         self._unlock()
@@ -221,28 +221,9 @@ class RunFolder:
 
     # --- pieces of the cycle, kept as they are done
 
-    def save_chunk(
-        self, trial: int, load_case: str, index: int, arrays: Mapping[str, ArrayLike], key: str = ""
-    ) -> None:
-        """Keep a piece of the cycle; `key` says what it was computed from."""
-        named = {f"a_{name}": a for name, a in arrays.items()} | {"key": np.array(key)}
-        write_atomic(self._chunk_folder(trial, load_case) / f"{index:06d}.npz", _npz(named))
-
-    def load_chunks(self, trial: int, load_case: str, key: str = "") -> dict[int, dict[str, Array]]:
-        """Pieces of the cycle by index; those of another `key` are left out."""
-        found: dict[int, dict[str, Array]] = {}
-        for file in sorted(self._chunk_folder(trial, load_case).glob("*.npz")):
-            try:
-                with np.load(file, allow_pickle=False) as stored:
-                    if str(stored["key"]) == key:
-                        names = [name for name in stored.files if name.startswith("a_")]
-                        found[int(file.stem)] = {n[2:]: readonly(stored[n]) for n in names}
-            except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-                continue  # torn by a crash of the machine: computed anew
-        return found
-
-    def _chunk_folder(self, trial: int, load_case: str) -> Path:
-        return self.path / _CHUNKS / f"trial_{trial}" / load_case
+    def contact_store(self, trial: int) -> ContactFiles:
+        """Pieces of the contact of a trial."""
+        return ContactFiles(self.path / _CHUNKS / f"trial_{trial}")
 
     # --- opening
 
@@ -328,6 +309,31 @@ class RunFolder:
         write_atomic(self._file(name), table(columns, values).to_csv())
 
 
+@dataclass(frozen=True)
+class ContactFiles:
+    """Pieces of a trial's contact as files: the store of a run that may be interrupted."""
+
+    folder: Path
+
+    def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None:
+        """Keep a piece; `key` is the hash of all that decides it."""
+        named = {f"a_{name}": a for name, a in arrays.items()} | {"key": np.array(key)}
+        write_atomic(self.folder / load_case / f"{index:06d}.npz", _npz(named))
+
+    def load(self, load_case: str, key: str) -> dict[int, dict[str, Array]]:
+        """Pieces by index; those of another key are left out."""
+        pieces: dict[int, dict[str, Array]] = {}
+        for file in sorted((self.folder / load_case).glob("*.npz")):
+            try:
+                with np.load(file, allow_pickle=False) as stored:
+                    if str(stored["key"]) == key:
+                        names = [name for name in stored.files if name.startswith("a_")]
+                        pieces[int(file.stem)] = {n[2:]: readonly(stored[n]) for n in names}
+            except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+                continue  # torn by a crash of the machine: computed anew
+        return pieces
+
+
 def _differing(found: Any, wanted: Mapping[str, Any]) -> str:
     """What an interrupted run was made of that is not so now, in words; empty when all is."""
     found = found if isinstance(found, dict) else {}
@@ -344,7 +350,7 @@ def drawn_cam(run: Path) -> tuple[Case, Contour]:
     found = run_reader.load_run(run)
     case = load_case_file(run / "case.toml")
     values = 1e-3 * np.asarray(found.final.lift["lift_mm"], dtype=float)
-    return case, contour_of(case, Lift(uniform_turn(values.size), values))
+    return case, case.contour(Lift(uniform_turn(values.size), values))
 
 
 @contextmanager

@@ -1,8 +1,8 @@
-"""What a run writes about itself: columns of its tables, its headline, a trial's record."""
+"""Records of a run: columns of its tables, headline, trial, crank speed."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -10,14 +10,17 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import Contour
+from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.outer_ring import roller_in_words
-from camwright.pipeline.contact.contact_history import CertificatePoint
+from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
 from camwright.pipeline.cycle.cam_balance import balance
-from camwright.pipeline.cycle.contact_setup import contact_width
+from camwright.pipeline.cycle.crank_speed import SpeedStudy, consistency, study_of
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.rolling_history import rolling_record
+from camwright.pipeline.engine.crankshaft import CrankMotion
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.results.trial import Trial
 
@@ -56,6 +59,15 @@ def contour_columns(case: Case, contour: Contour) -> dict[str, Array]:
     }
 
 
+def cycle_columns(cycles: tuple[Cycle, ...]) -> Mapping[str, Array]:
+    """Columns of all load cases, one below the other."""
+    tables = [cycle.columns() for cycle in cycles]
+    names = dict.fromkeys(name for table in tables for name in table)
+    # One load case has columns that another lacks, such as the torque of an engine at rest.
+    unknown = np.full(cycles[0].theta.size, np.nan)
+    return {name: np.concatenate([t.get(name, unknown) for t in tables]) for name in names}
+
+
 def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
     """Arrays of ``5_pressure.npz``: rows as in ``5_cycle.csv``, a column per knot."""
     return {
@@ -66,20 +78,19 @@ def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
     }
 
 
-def headline(case: Case, torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | None]:
+def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | None]:
     """Figures of the final trial in millimetres, newtons and megapascals; null: not applicable."""
     first, contour = trial.cycles[0], trial.contour
-    sound = trial.mesh is not None
-    design = torques.get(case.load_cases[0].name)
+    design = torques.get(first.load_case)
 
-    def over(measure: Any) -> float:
+    def over(measure: Callable[[Cycle], Array]) -> float:
         return float(np.max([np.max(measure(cycle)) for cycle in trial.cycles]))
 
-    def contact(measure: Any, scale: float) -> float | None:
-        worst = over(lambda c: measure(c.contact)) if sound else np.nan
+    def contact(measure: Callable[[ContactHistory], Array], scale: float) -> float | None:
+        worst = over(lambda c: measure(c.contact)) if trial.mesh is not None else np.nan
         return scale * worst if np.isfinite(worst) else None
 
-    after = first.residual_torque
+    after = first.turn.torque_after
     return {
         "torque_std_before_Nm": None if design is None else design.std,
         "torque_std_after_Nm": None if after is None else float(np.std(after)),
@@ -111,33 +122,31 @@ def _residual_max(trial: Trial) -> float | None:
             cycle.contact.residual_equilibrium,
             cycle.guides.force_residual,
             cycle.guides.moment_residual,
-            cycle.friction_residual,
+            cycle.turn.friction_residual,
         )
         return float(np.max([np.abs(part).max() for part in parts]))
 
-    found = float(np.max([worst(cycle) for cycle in trial.cycles]))
-    return found if np.isfinite(found) else None
+    greatest = float(np.max([worst(cycle) for cycle in trial.cycles]))
+    return greatest if np.isfinite(greatest) else None
 
 
-def trial_record(case: Case, trial: Trial) -> dict[str, Any]:
-    """Contents of ``trial.json``: what was changed and why, mesh, certificate."""
-    smoother, mesh = trial.smoother, trial.mesh
-    window = None if smoother is None else float(np.degrees(smoother.angular_width))
+def trial_record(trial: Trial) -> dict[str, Any]:
+    """Contents of ``trial.json``: smoothing, reason, mesh, certificate, rolling."""
+    smoothing, mesh, width = trial.smoothing, trial.mesh, trial.smoothing.angular_width
+    machine, contact = trial.solution.machine, trial.cycles[0].contact
     return {
         "number": trial.number,
         "why": trial.why,
-        "smoother": _smoother_kind(trial),
-        "strength": None if smoother is None else smoother.strength,
-        "angular_width_deg": window,
-        "smoothing": _smoothing_in_words(trial),
+        "smoother": smoothing.kind,
+        "strength": smoothing.strength,
+        "angular_width_deg": None if width is None else in_unit(width, "deg"),
+        "smoothing": smoothing.words,
         "synthesis": trial.synthesis,
         "prices": None if trial.synthesis is None else trial.synthesis["prices"],
         "closure_mm": _MM * trial.lift.closure,
-        "contact_method": "; ".join(
-            filter(None, (trial.cycles[0].contact.method, roller_in_words(case)))
-        ),
-        "line_contact_width_mm": _MM * contact_width(case),
-        "balance": balance(case, trial.contour).record(),
+        "contact_method": "; ".join(filter(None, (contact.method, machine.follower.body_model))),
+        "line_contact_width_mm": _MM * machine.contact_width,
+        "balance": balance(machine.cam, trial.contour).record(),
         "mesh": None
         if mesh is None
         else {
@@ -147,19 +156,81 @@ def trial_record(case: Case, trial: Trial) -> dict[str, Any]:
             **asdict(mesh.quality),
         },
         "certificate": [certificate_record(point) for point in trial.certificate],
+        "rolling": rolling_record({cycle.load_case: cycle.rolling for cycle in trial.cycles}),
     }
 
 
-def _smoother_kind(trial: Trial) -> str | None:
-    if trial.synthesis is not None:
-        return "constrained"
-    return None if trial.smoother is None else trial.smoother.kind
+def crank_speed_record(
+    torques: Mapping[str, Torque], trial: Trial, required: Array | None
+) -> tuple[dict[str, Any], Mapping[str, Array] | None]:
+    """Crank speed with and without the cam, and the consistency of the inputs.
+
+    Parameters
+    ----------
+    required : array (n,)   crank torque about its mean, N m, for which a smoother drew the lift in
+                            the design load case; None where none did
+
+    Returns
+    -------
+    record : dict       ``speed`` and ``consistency`` of ``run.json``
+    columns : mapping   SI values of ``1_speed.csv`` in the design load case; None without a
+                        crankshaft
+    """
+    case, speed, findings, columns = trial.case, {}, [], None
+    running = [c for c in trial.cycles if c.load_case in torques and c.machine.speed > 0]
+    for number, cycle in enumerate(running):
+        machine, name, pitch = cycle.machine, cycle.load_case, trial.contour.pitch
+        torque, rubbing, study = torques[name], cycle.loads.rubbing, None
+        try:
+            study = study_of(machine, torque, pitch, rubbing)
+        except CamError as error:  # a crank that stalls contradicts the case, not the cam
+            speed[name] = {"refused": str(error)}
+        if study is not None:
+            speed[name] = _speed_record(study, trial.contour.radius_max().value)
+            columns = study.columns if number == 0 else columns
+        agreement = consistency(
+            machine,
+            torque,
+            pitch,
+            study,
+            demand=required if number == 0 else None,
+            rubbing=rubbing,
+            measured=name == case.load_cases[0].name,
+        )
+        findings += [{"load_case": name, **one.as_record()} for one in agreement]
+    return {"speed": speed or None, "consistency": findings}, columns
 
 
-def _smoothing_in_words(trial: Trial) -> str:
-    if trial.synthesis is not None:
-        return "constrained: the least ripple within all limits"
-    return "a given lift" if trial.smoother is None else trial.smoother.width_in_words
+def _speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:
+    """Crank speed of one load case; radius (m) of the cam."""
+    disc, rim = study.flywheel_masses(radius)
+    return {
+        "before": _motion_record(study.before),
+        "inertia_alone": _motion_record(study.inertia_alone),
+        "after": _motion_record(study.after),
+        "flywheel_for_the_same_std": {
+            "added_inertia_kg_m2": study.added_inertia,
+            "outer_radius_mm": in_unit(radius, "mm"),
+            "disc_mass_kg": disc,
+            "rim_mass_kg": rim,
+        },
+    }
+
+
+def _motion_record(motion: CrankMotion) -> dict[str, float]:
+    ripple = motion.statistics
+    return {
+        "mean_rad_per_s": ripple.mean,
+        "std_rad_per_s": ripple.std,
+        "p2p_rad_per_s": ripple.peak_to_peak,
+        "fluctuation": ripple.fluctuation,
+        "minimum_rad_per_s": ripple.minimum,
+        "minimum_crank_angle_deg": float(np.degrees(ripple.minimum_angle)),
+        "maximum_rad_per_s": ripple.maximum,
+        "maximum_crank_angle_deg": float(np.degrees(ripple.maximum_angle)),
+        "load_mean_Nm": float(motion.load_torque.mean()),
+        "closure": motion.closure,
+    }
 
 
 def certificate_record(point: CertificatePoint) -> dict[str, Any]:

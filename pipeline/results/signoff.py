@@ -21,7 +21,7 @@ PRESENTATION = ("figures", "exports", "inspection")
 PRESENTATION_SUFFIXES = (".html", ".png", ".svg", ".pdf")
 LIMITATIONS = (
     "Plane strain: the ends of the roller, its chamfers and a tilt of the axis raise the pressure"
-    " in ways two dimensions cannot see; the edge derating stands for them.",
+    " in ways two dimensions cannot see; the edge factor stands for them.",
     "Linear elastic bodies: above first yield the stresses are those before shakedown, and no"
     " plastic strain is known.",
     "Frictionless contact under the certificate; traction enters by the closed form of sliding.",
@@ -32,15 +32,15 @@ SINGULARITIES = (
     "Corners of the keyway and the edges of the bore: stress there grows without bound as the"
     " mesh is refined; excluded by distance, figures away from edges are given apart.",
     "Places where bodies are held: excluded, none lies within ten half-widths of the contact.",
-    "Ends of the roller: not in the plane model; covered by the edge derating.",
+    "Ends of the roller: not in the plane model; covered by the edge factor.",
 )
 STANDING_FOR = (
     *zip(
         LIMITATIONS,
-        ("edge_derating", "shakedown", "shakedown_traction", "roller_radial"),
+        ("edge_factor", "shakedown", "shakedown_traction", "roller_radial"),
         strict=True,
     ),
-    *zip(SINGULARITIES, ("excluded_zone", "clear_of_holds", "edge_pressure"), strict=True),
+    *zip(SINGULARITIES, ("excluded_zone", "held_distance", "edge_pressure"), strict=True),
 )
 """Each statement with the check that fails where it would mislead."""
 

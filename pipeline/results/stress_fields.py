@@ -13,9 +13,10 @@ from camwright.geometry.arrays import Array
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_files import write_pvd, write_vtu
 from camwright.pipeline.contact.certificate import SolvedPair
-from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity import plane_stress_measures as stress
 from camwright.pipeline.contact.elasticity.elastic_body import ElasticBody, StressRecovery
+from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.cycle import Cycle
 
 _MILLIMETRE, _MEGAPASCAL = 1e-3, 1e6

@@ -1,4 +1,4 @@
-"""TODO."""
+"""Trial: one cam, its solution and the checks of both."""
 
 from __future__ import annotations
 
@@ -6,46 +6,93 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
-from camwright.meshes.body_mesh import BodyMesh
-from camwright.meshes.mesh_quality import Quality
-from camwright.pipeline.checks.check import Check
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.checks.check import Check, Verdict, binding, verdict
 from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.cycle.solution import ContactMesh, Solution
 
 
-@dataclass(frozen=True, eq=False)
-class ContactMesh:
-    """Cam and follower meshed for the contact at their worst angle (rad).
+@dataclass(frozen=True)
+class SmoothingRecord:
+    """How the torque was smoothed: `kind` of smoother, strength, width in rad of crank, in words.
 
-    `name` is that of the follower's body: roller or face.
+    strength and angular_width are None where no smoother of the torque drew the lift.
     """
 
-    theta: float
-    half_width: float
-    cam: BodyMesh
-    follower: BodyMesh
-    name: str
-    quality: Quality
+    kind: str | None
+    words: str
+    strength: float | None = None
+    angular_width: float | None = None
+
+
+GIVEN_LIFT = SmoothingRecord(None, "a given lift")
+CONSTRAINED = SmoothingRecord("constrained", "constrained: the least ripple within all limits")
 
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """A lift and all that follows from it; `why` says what brought it about.
+    """A cam with its solution and checks.
 
-    synthesis is the record of the constrained synthesis that drew the lift, if one did.
-    mesh is None, and the contact unknown (NaN), where the contour cannot exist as a body.
+    Parameters
+    ----------
+    number : int       from 1, within a run
+    why : str          reason for the trial
+    smoothing : SmoothingRecord
+    solution : Solution
+    checks : tuple     not evaluated first, then by falling utilisation
+    synthesis : mapping   record of the constrained synthesis that drew the lift; None without
+    limits_in_use : (n,) cam angles, rad, and the share in use of each limit at them (n,) by its
+                  name; None without a constrained synthesis
     """
 
     number: int
-    smoother: Smoother | None
     why: str
-    lift: Lift
-    contour: Contour
-    cycles: tuple[Cycle, ...]
-    mesh: ContactMesh | None
+    smoothing: SmoothingRecord
+    solution: Solution
     checks: tuple[Check, ...]
-    certificate: tuple[CertificatePoint, ...] = ()
     synthesis: Mapping[str, Any] | None = None
+    limits_in_use: tuple[Array, Mapping[str, Array]] | None = None
+
+    @property
+    def case(self) -> Case:
+        """The case as solved: with the spring and prime radius of a constrained synthesis."""
+        return self.solution.case
+
+    @property
+    def contour(self) -> Contour:
+        """Cam contour."""
+        return self.solution.contour
+
+    @property
+    def lift(self) -> Lift:
+        """Follower lift."""
+        return self.solution.contour.pitch.lift
+
+    @property
+    def cycles(self) -> tuple[Cycle, ...]:
+        """One cycle a load case, the design load case first."""
+        return self.solution.cycles
+
+    @property
+    def mesh(self) -> ContactMesh | None:
+        """Meshes at the worst contact; None in a preview, and where the contour is no body."""
+        return self.solution.mesh
+
+    @property
+    def certificate(self) -> tuple[CertificatePoint, ...]:
+        """Angles solved in full on three meshes; empty unless certified."""
+        return self.solution.certificate
+
+    @property
+    def verdict(self) -> Verdict:
+        """``pass`` when every must-have check passes or is waived."""
+        return verdict(self.checks)
+
+    @property
+    def binding(self) -> tuple[str, ...]:
+        """Ids of the must-have checks that fail the verdict, worst first."""
+        return binding(self.checks)

@@ -1,4 +1,4 @@
-"""What the shop is given: contour table, drawing, solid, cutter path and inspection sheet."""
+"""Workshop files: contour table, drawing, solid, cutter path, inspection sheet."""
 
 from __future__ import annotations
 
@@ -34,14 +34,16 @@ _INSPECTION = (
     "measured_x_mm", "measured_y_mm", "deviation_mm",
 )  # fmt: skip
 
+WORKSHOP = "workshop"
+
 
 def outline_of(case: Case, contour: Contour) -> Outline:
     """Contour, bore, keyway and counter-hole of a case."""
-    hole = drilled_hole(case, contour)
-    return Outline(contour, case.cam.bore_radius, case.cam.keyway, hole)
+    cam = case.cam
+    return Outline(contour, cam.bore_radius, cam.keyway, drilled_hole(cam, contour))
 
 
-def write_shop(
+def write_workshop(
     folder: Path,
     case: Case,
     contour: Contour,
@@ -53,7 +55,7 @@ def write_shop(
     left out and `note` is told why; all others are written.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    outline, order = outline_of(case, contour), case.workshop
+    outline, order = outline_of(case, contour), case.workshop_order
     tool = order.tool_radius or contour.fitting_tool
     jobs: dict[str, Callable[[Path], object]] = {
         "contour.csv": lambda path: write_atomic(path, contour_table(contour, order.theta)),
@@ -69,7 +71,7 @@ def write_shop(
             write(folder / name)
         except CamError as error:
             (folder / name).unlink(missing_ok=True)
-            note(f"shop/{name} is left out: {error}")
+            note(f"{WORKSHOP}/{name} is left out: {error}")
 
 
 def contour_table(contour: Contour, theta: Array) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse import csc_array, csr_array, eye_array, vstack
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
 
 _ACCEPTED = ("Solved", "AlmostSolved")
 
@@ -166,7 +166,7 @@ def solved(
     size = slope.size
     names = list(dict.fromkeys(row.name for row in rows if row.elastic))
     if any(norm.ceiling is not None for norm in norms):
-        names.append(TORQUE_REDUCTION)
+        names.append(TORQUE_REDUCTION.id)
     program = Cones(size + 1 + len(names))  # x, ripple, slacks
     program.charge_square(curvature)
     program.charge(np.concatenate([slope, [ripple_weight], np.full(len(names), penalty)]))

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
-from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.grid import Grid
 from camwright.pipeline.smoothing.linear_model import State
@@ -53,7 +53,7 @@ def synthesise(problem: Problem, ripple_weight: float = 1.0) -> Design:
         if not between.size:
             break
         extra = between if extra is None else np.unique(np.concatenate([extra, between]))
-        seed = replace(problem, seed=found.state.coefficients, machine=found.state.machine)
+        seed = replace(problem, seed=found.state.coefficients, variables=found.state.variables)
     return _design(search, found, steps)
 
 
@@ -66,7 +66,7 @@ def started(problem: Problem, ripple_weight: float = 1.0) -> Array:
     core = convex_start(problem)
     if core is not None:
         starts.append(core.coefficients)
-    states = [search.state(start, problem.machine) for start in starts]
+    states = [search.state(start, problem.variables) for start in starts]
     return min(states, key=lambda state: state.merit(PENALTY, ripple_weight)).coefficients
 
 
@@ -79,7 +79,7 @@ def _between(search: Search, state: State) -> Array:
     """Angles between the points where a limit is passed that holds on them."""
     fine = _fine(search)
     found: list[Array] = []
-    for name, value in search.utilisations(state.coefficients, state.machine, fine).items():
+    for name, value in search.utilisations(state.coefficients, state.variables, fine).items():
         if np.size(value) == 1:
             continue
         bound = max(1.0 - 0.5 * RESERVE, state.utilisation[name] + 0.2 * RESERVE)
@@ -95,13 +95,13 @@ def _design(search: Search, found: Descent, steps: int) -> Design:
             if name != LEAST_ENERGY and values.sum() > _PRICE_LEAST:
                 prices[name] = float(values.sum())
     theta = search.turn.theta
-    on_points = search.utilisations(state.coefficients, state.machine, search.turn)
+    on_points = search.utilisations(state.coefficients, state.variables, search.turn)
     # Where a limit is the worst between its points, that is what a check will see.
-    fine = search.utilisations(state.coefficients, state.machine, _fine(search))
+    fine = search.utilisations(state.coefficients, state.variables, _fine(search))
     most = {name: max(state.utilisation[name], float(np.max(fine[name]))) for name in fine}
     return Design(
         coefficients=readonly(state.coefficients),
-        machine=state.machine,
+        variables=state.variables,
         ripple=state.ripple,
         utilisation=state.utilisation | most,
         multipliers=prices,

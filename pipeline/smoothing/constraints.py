@@ -18,7 +18,7 @@ from camwright.pipeline.checks import demands
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.follower_forces import levers
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, rolling_share, wear
-from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
 
 class Jet(NamedTuple):
@@ -30,20 +30,20 @@ class Jet(NamedTuple):
     jerk: Values = 0.0
 
 
-def lift_jet(energy: tuple[Values, ...], machine: Machine) -> Jet:
+def lift_jet(energy: tuple[Values, ...], variables: DesignVariables) -> Jet:
     """Lift at which the spring holds the energy, with three derivatives, from those of E.
 
     F_s = sqrt(P^2 + 2 k E), s = 2 E / (F_s + P), and E' = F_s s' differentiated.
     """
     level, first, second, third = energy
-    force = np.sqrt(machine.preload**2 + 2.0 * machine.rate * level)
+    force = np.sqrt(variables.preload**2 + 2.0 * variables.rate * level)
     slope = first / force
-    bend = (second - machine.rate * slope**2) / force
+    bend = (second - variables.rate * slope**2) / force
     return Jet(
-        lift=2.0 * level / (force + machine.preload),
+        lift=2.0 * level / (force + variables.preload),
         slope=slope,
         bend=bend,
-        jerk=(third - 3.0 * machine.rate * slope * bend) / force,
+        jerk=(third - 3.0 * variables.rate * slope * bend) / force,
     )
 
 
@@ -61,10 +61,10 @@ class Motion(NamedTuple):
         return self.along / self.across
 
 
-def motion(jet: Jet, machine: Machine, offset: float) -> Motion:
+def motion(jet: Jet, variables: DesignVariables, offset: float) -> Motion:
     """Pitch curve of a translating follower at each point; see `PitchCurve`."""
     along = jet.slope - offset
-    across = np.sqrt(machine.base_radius**2 - offset**2) + jet.lift
+    across = np.sqrt(variables.prime_radius**2 - offset**2) + jet.lift
     return Motion(along, across, *speed_and_curvature(along, across, jet.slope, jet.bend))
 
 
@@ -84,14 +84,17 @@ class Forces(NamedTuple):
     rub: tuple[Values, Values]
 
 
-def forces(jet: Jet, path: Motion, highest: Values, machine: Machine, scenario: Scenario) -> Forces:
+def forces(
+    jet: Jet, path: Motion, highest: Values, variables: DesignVariables, scenario: Scenario
+) -> Forces:
     """Follower forces with implicit guide friction; see `follower_loads`.
 
     Unlike there they are not held at zero where the contact is lost nor short of a jam, so that
     a design beyond these places still has a way back.
     """
     spring = (
-        machine.preload * scenario.preload_factor + machine.rate * scenario.rate_factor * jet.lift
+        variables.preload * scenario.preload_factor
+        + variables.rate * scenario.rate_factor * jet.lift
     )
     inertia = scenario.mass * scenario.cam_speed**2 * jet.bend
     viscous = scenario.viscous_damping * scenario.cam_speed * jet.slope
@@ -124,9 +127,9 @@ class Mean(NamedTuple):
         return np.array([max(float(np.mean(self.terms)), 0.0) ** self.power])
 
 
-def shape_utilisations(jet: Jet, machine: Machine, ratings: Ratings) -> dict[str, Values]:
+def shape_utilisations(jet: Jet, variables: DesignVariables, ratings: Ratings) -> dict[str, Values]:
     """Limits on the shape of the cam, whatever it carries; each (n,)."""
-    path = motion(jet, machine, ratings.offset)
+    path = motion(jet, variables, ratings.offset)
     bend = ratings.roller_radius * path.curvature
     found: dict[str, Values] = {}
     if ratings.travel is not None:
@@ -145,37 +148,42 @@ def shape_utilisations(jet: Jet, machine: Machine, ratings: Ratings) -> dict[str
     if ratings.cam_radius is not None:
         inset = ratings.roller_radius / path.speed
         reach = demands.contour_radius(path.along, path.across, ratings.offset, inset)
-        found["cam_envelope"] = reach / ratings.cam_radius
+        found["cam_radius"] = reach / ratings.cam_radius
     return found
 
 
 def load_utilisations(
-    jet: Jet, highest: Values, machine: Machine, ratings: Ratings, scenario: Scenario
+    jet: Jet, highest: Values, variables: DesignVariables, ratings: Ratings, scenario: Scenario
 ) -> dict[str, Values]:
     """Limits on what the cam carries in one scenario; each (n,), or a `Mean` of the turn.
 
     The stress limit is r kappa + N / F_lim <= 1, which is p0 <= p_allowed: the pressure of a
     line contact and the undercut depend on the same factor 1 - r kappa.
     """
-    path = motion(jet, machine, ratings.offset)
-    load = forces(jet, path, highest, machine, scenario)
-    found = _contact_utilisations(jet, load, path, machine, ratings, scenario)
+    path = motion(jet, variables, ratings.offset)
+    load = forces(jet, path, highest, variables, scenario)
+    found = _contact_utilisations(jet, load, path, variables, ratings, scenario)
     if ratings.jam_index is not None:
         found["jam_index"] = demands.jam_outward(jet.slope, load.jam) / ratings.jam_index
         if scenario.friction_worst is not None:
             first, second = scenario.friction_worst
             factor = (first * load.lever[0] + second * load.lever[1]) * scenario.correction.jam
             worst = demands.jam_outward(jet.slope, factor * magnitude(path.tangent))
-            found["jam_at_worst_friction"] = worst / ratings.jam_index
+            found["jam_index_friction_max"] = worst / ratings.jam_index
     found |= _roller_utilisations(load, path, ratings, scenario)
     return found | _bush_utilisations(load, path, jet, ratings, scenario)
 
 
 def _contact_utilisations(
-    jet: Jet, load: Forces, path: Motion, machine: Machine, ratings: Ratings, scenario: Scenario
+    jet: Jet,
+    load: Forces,
+    path: Motion,
+    variables: DesignVariables,
+    ratings: Ratings,
+    scenario: Scenario,
 ) -> dict[str, Values | Mean]:
     found: dict[str, Values | Mean] = {}
-    preload = machine.preload * scenario.preload_factor
+    preload = variables.preload * scenario.preload_factor
     if ratings.pressure is not None:
         flat = peak_pressure_square(
             load.normal / ratings.contact_width,
@@ -209,7 +217,7 @@ def _roller_utilisations(
     if ratings.roller_spin is not None:
         found["roller_speed"] = magnitude(spin) / ratings.roller_spin
     if ratings.life_force_cubed is not None:
-        # hours = (C / P_m)^3 LIFE_UNIT / mean spin, and P_m^3 mean spin is this mean
+        # life = (C / P_m)^3 1e6 turns / mean spin, and P_m^3 mean spin is this mean
         worn = wear(load.normal, spin) / ratings.life_force_cubed
         found["roller_life"] = Mean(worn, 1.0 / BALL_LIFE_EXPONENT)
     return found
@@ -222,20 +230,20 @@ def _bush_utilisations(
     velocity = scenario.cam_speed * jet.slope
     found: dict[str, Values | Mean] = {}
     for place, name in enumerate("AB"):
-        area = ratings.bush_area[place]
-        limit, product = ratings.bush_pressure[place], ratings.bush_pv[place]
+        area = ratings.guide_area[place]
+        limit, product = ratings.guide_pressure[place], ratings.guide_pv[place]
         if limit is not None:
             pressure = demands.bush_pressure(side * load.push[place], area)
-            found[f"bush_pressure_{name}"] = pressure / limit
+            found[f"guide_pressure_{name}"] = pressure / limit
         if product is not None:
             spent = demands.bush_pv(side * load.rub[place], velocity, area)
-            found[f"bush_pv_{name}"] = Mean(spent / product)
+            found[f"guide_pv_{name}"] = Mean(spent / product)
     return found
 
 
 def delivered_torque(
-    jet: Jet, highest: Values, machine: Machine, scenario: Scenario, offset: float
+    jet: Jet, highest: Values, variables: DesignVariables, scenario: Scenario, offset: float
 ) -> Values:
     """Cam torque F_a s' with friction and inertia inside, N m, (n,)."""
-    load = forces(jet, motion(jet, machine, offset), highest, machine, scenario)
+    load = forces(jet, motion(jet, variables, offset), highest, variables, scenario)
     return load.axial * jet.slope

@@ -49,8 +49,8 @@ def convex_start(problem: Problem) -> Core | None:
     Boyd and Vandenberghe, Convex Optimization (2004), sec. 4.4.2: second-order cone programs;
     Demeulenaere et al., ASME J. Mech. Des. 131 (2009) 101004: splines by convex programs.
     """
-    machine, ratings = problem.machine, problem.ratings
-    if ratings.offset != 0.0 or machine.base_radius * machine.rate < machine.preload:
+    variables, ratings = problem.variables, problem.ratings
+    if ratings.offset != 0.0 or variables.prime_radius * variables.rate < variables.preload:
         return None
     points = min(problem.points, COARSE_POINTS)
     turns = tuple(
@@ -68,7 +68,7 @@ def convex_start(problem: Problem) -> Core | None:
 
 def _program(search: Search) -> Cones:
     """Unknowns: coefficients over their scale, the ripple, and sigma / P at each point."""
-    problem, machine, ratings = search.problem, search.problem.machine, search.problem.ratings
+    problem, variables, ratings = search.problem, search.problem.variables, search.problem.ratings
     count, points = problem.coefficients, problem.points
     theta = uniform_turn(points)
     level, slope = (search.scale * basis_matrix(theta, count, order) for order in (0, 1))
@@ -82,20 +82,20 @@ def _program(search: Search) -> Cones:
         program.at_most(energy[[k]], problem.energy[1])
     if ratings.travel is not None:
         top = ratings.travel * (1.0 - RESERVE)
-        program.at_most(energy, machine.preload * top + 0.5 * machine.rate * top**2)
+        program.at_most(energy, variables.preload * top + 0.5 * variables.rate * top**2)
     # q / P^2 = 1 + growth, and sigma / P is the unknown
-    growth = (2.0 * machine.rate / machine.preload**2) * energy
+    growth = (2.0 * variables.rate / variables.preload**2) * energy
     sigma = program.columns(csr_array(np.eye(points)), count + 1)
     if ratings.pressure_angle is not None:
-        steep = np.tan(ratings.pressure_angle * (1.0 - RESERVE)) * machine.preload
-        by_root = machine.base_radius - machine.preload / machine.rate
-        room = steep * (by_root * sigma + (machine.preload / machine.rate) * growth)
+        steep = np.tan(ratings.pressure_angle * (1.0 - RESERVE)) * variables.preload
+        by_root = variables.prime_radius - variables.preload / variables.rate
+        room = steep * (by_root * sigma + (variables.preload / variables.rate) * growth)
         for side in (1.0, -1.0):
-            program.at_most(side * torque - room, steep * machine.preload / machine.rate)
+            program.at_most(side * torque - room, steep * variables.preload / variables.rate)
         program.square_at_most(sigma, growth, 1.0)
     if ratings.normal_force is not None:
-        share = (ratings.normal_force * (1.0 - RESERVE) / machine.preload) ** 2
-        sideways = torque / (machine.base_radius * machine.preload)
+        share = (ratings.normal_force * (1.0 - RESERVE) / variables.preload) ** 2
+        sideways = torque / (variables.prime_radius * variables.preload)
         program.square_at_most(sideways, -growth, share - 1.0)
     return program
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.cycle.cycle import Cycle
@@ -30,18 +31,15 @@ def corrections_of(cycles: Sequence[Cycle]) -> dict[str, Correction]:
 
 
 def _correction(cycle: Cycle) -> Correction:
-    guides, contact, parts = cycle.guides, cycle.contact, cycle.parts
-    jam = np.ones(cycle.theta.size)
-    if parts is not None:
-        worst = parts.friction.greatest
-        jam = _ratio(worst.jam_index, worst.jam_index_statics)
+    guides, contact = cycle.guides, cycle.contact
+    worst = cycle.parts.friction.greatest
     return Correction(
         contact=_ratio(contact.p0, contact.p0_hertz),
         guide_a=_ratio(guides.reaction_a, guides.statics_a),
         guide_b=_ratio(guides.reaction_b, guides.statics_b),
         rubbing_a=_ratio(guides.rubbing_load_a, guides.statics_a, _RUBBING),
         rubbing_b=_ratio(guides.rubbing_load_b, guides.statics_b, _RUBBING),
-        jam=jam,
+        jam=_ratio(worst.jam_index, worst.jam_index_statics),
     )
 
 
@@ -96,7 +94,7 @@ class Moved(NamedTuple):
 def moved(design: Design, problem: Problem, corrections: Mapping[str, Correction]) -> Moved:
     """How far new corrections move the utilisation of any limit that is above one half."""
     states = [
-        Search(replace(each, seed=design.coefficients)).state(design.coefficients, design.machine)
+        Search(replace(each, seed=design.coefficients)).state(design.coefficients, design.variables)
         for each in (problem, with_corrections(problem, corrections))
     ]
     before, after = (state.utilisation for state in states)
@@ -128,7 +126,7 @@ def refined_problem(
         replace(new, correction=old.correction.towards(new.correction, share))
         for old, new in zip(problem.scenarios, after.scenarios, strict=True)
     )
-    return replace(after, scenarios=scenarios, seed=design.coefficients, machine=design.machine)
+    return replace(after, scenarios=scenarios, seed=design.coefficients, variables=design.variables)
 
 
 def corrections_record(problem: Problem) -> dict[str, dict[str, list[float]]]:
@@ -144,16 +142,11 @@ def corrections_record(problem: Problem) -> dict[str, dict[str, list[float]]]:
 
 
 def redrawn(case: Case, design: Design) -> Case:
-    """The case with the spring and base radius of the design."""
-    machine = design.machine
-    return case.model_copy(
-        update={
-            "spring": case.spring.model_copy(
-                update={"rate": float(machine.rate), "preload": float(machine.preload)}
-            ),
-            "cam": case.cam.model_copy(update={"pitch_base_radius": float(machine.base_radius)}),
-        }
-    )
+    """The case with the spring and prime radius of the design."""
+    variables = design.variables
+    spring = replace(case.spring, rate=float(variables.rate), preload=float(variables.preload))
+    cam = replace(case.cam, prime_radius=float(variables.prime_radius))
+    return case.model_copy(update={"spring": spring, "cam": cam})
 
 
 def design_record(design: Design, problem: Problem, starts: Starts | None = None) -> dict[str, Any]:
@@ -165,18 +158,18 @@ def design_record(design: Design, problem: Problem, starts: Starts | None = None
     starts : Starts     how far several starts agree; None where one goes on from a trial before
     """
     least = float(design.lift().lowest.value)
-    machine = design.machine
-    energy = machine.preload * least + 0.5 * machine.rate * least**2
+    variables = design.variables
+    energy = variables.preload * least + 0.5 * variables.rate * least**2
     return {
         "feasible": design.feasible,
         "converged": design.converged,
         "steps": design.steps,
         "ripple_left": design.ripple,
         "initial_energy_J": energy,
-        "spring_rate_N_per_mm": 1e-3 * machine.rate,
-        "preload_N": machine.preload,
-        "pitch_base_radius_mm": 1e3 * machine.base_radius,
-        "phase_deg": float(np.degrees(machine.phase)),
+        "spring_rate_N_per_mm": in_unit(variables.rate, "N/mm"),
+        "preload_N": variables.preload,
+        "prime_radius_mm": in_unit(variables.prime_radius, "mm"),
+        "phase_deg": in_unit(variables.phase, "deg"),
         "reserve": RESERVE,
         "starts": None if starts is None else starts.as_record(),
         "corrections": corrections_record(problem),

@@ -1,4 +1,4 @@
-"""Values of functions of the lift and the machine with all their derivatives, by complex steps."""
+"""Derivatives by complex steps of functions of lift and design variables."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.smoothing.constraints import Jet, Mean, Values, lift_jet
-from camwright.pipeline.smoothing.scenario import Machine
+from camwright.pipeline.smoothing.scenario import DesignVariables
 
-Function = Callable[[Jet, Values, Machine], Mapping[str, "Values | Mean"]]
-FREED = ("rate", "preload", "base_radius")
+Function = Callable[[Jet, Values, DesignVariables], Mapping[str, "Values | Mean"]]
+FREED = ("rate", "preload", "prime_radius")
 _STEP = 1e-30
 
 
@@ -34,17 +34,17 @@ def differentiated(
     function: Function,
     energy: tuple[Array, ...],
     highest: float,
-    machine: Machine,
+    variables: DesignVariables,
     freed: bool,
 ) -> dict[str, Gradient]:
     """Values of a function of the jets with all its derivatives.
 
     Parameters
     ----------
-    function : callable   jet, greatest lift, machine -> values by name
+    function : callable   jet, greatest lift, variables -> values by name
     energy : four arrays (n,)   E, E', E'', E'''
     highest : float       greatest lift of the turn, m
-    machine : Machine
+    variables : DesignVariables
     freed : bool          derivatives by k, P, r0 are asked for; else they are zero
 
     References
@@ -52,20 +52,20 @@ def differentiated(
     Squire and Trapp, SIAM Review 40 (1998) 110: the complex step has no cancellation.
     """
 
-    def sides(parts: tuple[Any, ...], top: Values, given: Machine) -> dict[str, Array]:
+    def sides(parts: tuple[Any, ...], top: Values, given: DesignVariables) -> dict[str, Array]:
         found = function(lift_jet(parts, given), top, given)
         return {name: np.imag(_terms(value)) / _STEP for name, value in found.items()}
 
     step = 1j * _STEP
     directions = [
-        sides(tuple(part + step * (j == k) for j, part in enumerate(energy)), highest, machine)
+        sides(tuple(part + step * (j == k) for j, part in enumerate(energy)), highest, variables)
         for k in range(len(energy))
     ]
-    directions.append(sides(energy, highest + step, machine))
+    directions.append(sides(energy, highest + step, variables))
     for name in FREED if freed else ():
-        other = replace(machine, **{name: getattr(machine, name) + step})
+        other = replace(variables, **{name: getattr(variables, name) + step})
         directions.append(sides(energy, highest, other))
-    values = function(lift_jet(energy, machine), highest, machine)
+    values = function(lift_jet(energy, variables), highest, variables)
     return {
         name: _gradient(value, [direction[name] for direction in directions], len(energy))
         for name, value in values.items()

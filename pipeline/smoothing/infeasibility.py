@@ -8,14 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from camwright.pipeline.checks.cam_shape import TOOL_ALLOWANCE
-from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.smoothing.bounds import FACTOR_MAX, Eased, bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
-from camwright.pipeline.smoothing.scenario import Ratings
 from camwright.pipeline.smoothing.synthesis_problem import Problem, coarsened
 
-_FACTOR_MAX = 4.0
-_STEEPEST = np.radians(60.0)  # pressure angle that a follower might still be asked to bear
 _BISECTIONS = 5
 _IN_HAND = 1.02  # a relaxation is given with this much beyond the least one found
 _NEARLY = 0.8
@@ -71,9 +69,9 @@ class Infeasibility:
 
 @dataclass(frozen=True)
 class _Row:
-    """What may be changed: words, value as shown, unit, change, and by what factor at most.
+    """One change to try: words, value as shown, unit, and by what factor at most.
 
-    direction -1: less makes room.
+    direction -1: a smaller value makes room.
     """
 
     what: str
@@ -81,7 +79,7 @@ class _Row:
     unit: str
     change: Change
     direction: int = 1
-    most: float = _FACTOR_MAX
+    most: float = FACTOR_MAX
 
 
 def infeasibility(problem: Problem, rollers: Iterable[tuple[str, Problem]] = ()) -> Infeasibility:
@@ -116,7 +114,7 @@ def infeasibility(problem: Problem, rollers: Iterable[tuple[str, Problem]] = ())
     kept = [item for item in found if item is not None]
     if any(name.startswith("roller") for name in conflict):
         kept += _from_catalogue(problem, rollers, kept)
-    if TORQUE_REDUCTION in conflict:
+    if TORQUE_REDUCTION.id in conflict:
         kept += _less_reduction(coarse)
     return Infeasibility(
         tuple(reversed(conflict)), tuple(sorted(kept, key=lambda item: item.factor))
@@ -132,85 +130,43 @@ def _possible(problem: Problem) -> bool:
     torque_alone = problem.speed_weight == 0.0 and problem.torque_weight == 1.0
     if problem.ceiling is None or weights != {1.0} or not torque_alone:
         return synthesise(problem, ripple_weight=0.0).feasible
-    best = synthesise(replace(problem, left_out=problem.left_out | {TORQUE_REDUCTION}))
+    best = synthesise(replace(problem, left_out=problem.left_out | {TORQUE_REDUCTION.id}))
     return best.feasible and best.ripple <= problem.ceiling
 
 
 def _rows(problem: Problem, conflict: list[str]) -> list[_Row]:
-    """Every single change that may make room: limits of the set, and spring and base radius."""
-    rows = [row for name, row in _limits(problem.ratings).items() if name in conflict]
-    machine = problem.machine
-    for name, what, scale, unit, direction in (
-        ("rate", "a spring rate of", 1e-3, "N/mm", -1),
-        ("preload", "a preload of", 1.0, "N", -1),
-        ("base_radius", "a pitch base radius of", 1e3, "mm", 1),
+    """Every single change that may make room: bounds of the set, then spring and prime radius."""
+    rows = [
+        _Row(
+            bound.words,
+            bound.value,
+            bound.unit,
+            _eased(bound.eased),
+            1 if bound.slope > 0.0 else -1,
+            bound.factor_max,
+        )
+        for name, bound in bounds_of(problem.ratings).items()
+        if name in conflict and bound.eased is not None
+    ]
+    for name, what, unit, direction in (
+        ("rate", "spring rate", "N/mm", -1),
+        ("preload", "preload", "N", -1),
+        ("prime_radius", "prime radius", "mm", 1),
     ):
         if name not in problem.freed:
-            rows.append(_Row(what, scale * getattr(machine, name), unit, _built(name), direction))
+            value = in_unit(getattr(problem.variables, name), unit)
+            rows.append(_Row(what, value, unit, _built(name), direction))
     return rows
 
 
-def _limits(ratings: Ratings) -> dict[str, _Row]:
-    """The change of each limit that can be bought, by the name of the limit."""
-    found: dict[str, _Row] = {}
-    for limit, name, what, scale, unit, direction in (
-        ("roller_static", "normal_force", "a roller that bears a normal force of", 1.0, "N", 1),
-        ("roller_speed", "roller_spin", "a roller that turns at", 30.0 / np.pi, "rpm", 1),
-        ("pressure_angle", "pressure_angle", "a pressure angle up to", 180.0 / np.pi, "deg", 1),
-        ("spring_travel", "travel", "a spring travel of", 1e3, "mm", 1),
-        ("contact_pressure", "pressure", "a contact pressure up to", 1e-6, "MPa", 1),
-        ("cam_envelope", "cam_radius", "room for a cam of radius", 1e3, "mm", 1),
-        ("jam_index", "jam_index", "a jam index up to", 1.0, "-", 1),
-        ("concave_radius", "hollow_radius", "a tool of radius", 1e3 / TOOL_ALLOWANCE, "mm", -1),
-    ):
-        value = getattr(ratings, name)
-        if value is not None:
-            most = _STEEPEST / value if limit == "pressure_angle" else _FACTOR_MAX
-            found[limit] = _Row(what, scale * value, unit, _rated(name), direction, most)
-    if ratings.life_force_cubed is not None and ratings.dynamic_rating is not None:
-        what = "a dynamic rating of the roller of"
-        found["roller_life"] = _Row(what, ratings.dynamic_rating, "N", _longer_life)
-    for place, side in enumerate("AB"):
-        for limit, name, what, unit in (
-            ("bush_pressure", "bush_pressure", "a pressure in guide {} up to", "MPa"),
-            ("bush_pv", "bush_pv", "a PV of guide {} up to", "MPa m/s"),
-        ):
-            value = getattr(ratings, name)[place]
-            if value is not None:
-                row = _Row(what.format(side), 1e-6 * value, unit, _rated_side(name, place))
-                found[f"{limit}_{side}"] = row
-    return found
-
-
-def _rated(name: str) -> Change:
-    def change(given: Problem, factor: float) -> Problem:
-        value = getattr(given.ratings, name) * factor
-        return replace(given, ratings=replace(given.ratings, **{name: value}))
-
-    return change
-
-
-def _rated_side(name: str, place: int) -> Change:
-    def change(given: Problem, factor: float) -> Problem:
-        both: Any = list(getattr(given.ratings, name))
-        both[place] *= factor
-        changed: dict[str, Any] = {name: tuple(both)}
-        return replace(given, ratings=replace(given.ratings, **changed))
-
-    return change
-
-
-def _longer_life(given: Problem, factor: float) -> Problem:
-    ratings = given.ratings
-    worn, rating = ratings.life_force_cubed or 0.0, ratings.dynamic_rating or 0.0
-    changed = replace(ratings, life_force_cubed=worn * factor**3, dynamic_rating=rating * factor)
-    return replace(given, ratings=changed)
+def _eased(eased: Eased) -> Change:
+    return lambda given, factor: replace(given, ratings=eased(given.ratings, factor))
 
 
 def _built(name: str) -> Change:
     def change(given: Problem, factor: float) -> Problem:
-        value = getattr(given.machine, name) * factor
-        return replace(given, machine=replace(given.machine, **{name: value}))
+        value = getattr(given.variables, name) * factor
+        return replace(given, variables=replace(given.variables, **{name: value}))
 
     return change
 
@@ -252,7 +208,7 @@ def _from_catalogue(
     for name, other in rollers:
         borne = other.ratings.normal_force
         if borne is not None and borne >= needed and _possible(coarsened(other)):
-            what = f"the catalogue's roller {name}, which bears a normal force of"
+            what = f"roller {name} of the catalogue, normal force"
             return [Relaxation(what, given, borne, "N", borne / given, _instead(other))]
     return []
 
@@ -264,7 +220,7 @@ def _instead(other: Problem) -> Change:
 def _less_reduction(problem: Problem) -> list[Relaxation]:
     """The reduction that the other limits leave room for."""
     floor = problem.torque_reduction
-    best = synthesise(replace(problem, left_out=problem.left_out | {TORQUE_REDUCTION}))
+    best = synthesise(replace(problem, left_out=problem.left_out | {TORQUE_REDUCTION.id}))
     if floor is None or not best.feasible:
         return []
     asked = 1.0 - best.ripple * _IN_HAND
@@ -273,4 +229,4 @@ def _less_reduction(problem: Problem) -> list[Relaxation]:
         return replace(given, torque_reduction=asked)
 
     factor = (1.0 - asked) / (1.0 - floor)
-    return [Relaxation("a torque reduction of", floor, asked, "-", factor, change)]
+    return [Relaxation(TORQUE_REDUCTION.title, floor, asked, "-", factor, change)]

@@ -11,16 +11,16 @@ from scipy.sparse import csr_array
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.smoothing.cone_program import Norm, Rows
-from camwright.pipeline.smoothing.scenario import Machine
+from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE
 
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A place in the search: coefficients, machine, and all that depends on them."""
+    """A place in the search: coefficients, variables, and all that depends on them."""
 
     coefficients: Array
-    machine: Machine
+    variables: DesignVariables
     ripple: float
     jerk: float
     utilisation: dict[str, float]

@@ -94,7 +94,7 @@ def explored(problem: Problem, count: int, seed: int = _SEED) -> tuple[Design, S
         not designs[0].feasible or better.ripple * (1.0 + AGREE) < designs[0].ripple
     ):
         fine = refined(better.coefficients, problem.coefficients)
-        found.append(synthesise(replace(problem, seed=fine, machine=better.machine)))
+        found.append(synthesise(replace(problem, seed=fine, variables=better.variables)))
     ripples = tuple(each.ripple if each.feasible else None for each in designs or found)
     return _best(found) or own, Starts(ripples)
 
@@ -105,7 +105,7 @@ def _best(designs: Sequence[Design]) -> Design | None:
 
 
 def _random(problem: Problem, random: np.random.Generator) -> Problem:
-    """The problem from a smooth random energy and, of what is freed, a random machine."""
+    """The problem from a smooth random energy and, of what is freed, a random variables."""
     size = float(np.abs(Search(problem).exact).max())
     count = problem.coefficients
     order = np.arange(1, count // 4)
@@ -116,10 +116,10 @@ def _random(problem: Problem, random: np.random.Generator) -> Problem:
     )
     low = max(problem.energy[0], 0.0) + 0.02 * size
     energy = low + size * random.uniform(0.3, 1.2) * (waves - waves.min()) / np.ptp(waves)
-    machine = problem.machine
+    variables = problem.variables
     for name, (least, greatest) in problem.freed.items():
-        machine = replace(machine, **{name: float(random.uniform(least, greatest))})
-    return replace(problem, seed=readonly(energy), machine=machine)
+        variables = replace(variables, **{name: float(random.uniform(least, greatest))})
+    return replace(problem, seed=readonly(energy), variables=variables)
 
 
 def refined(coefficients: Array, count: int) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, uniform_turn
-from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.smoothing.cone_program import Norm
 from camwright.pipeline.smoothing.constraints import (
     Jet,
@@ -26,7 +26,7 @@ from camwright.pipeline.smoothing.gradients import FREED, Function, Gradient, di
 from camwright.pipeline.smoothing.grid import Grid
 from camwright.pipeline.smoothing.linear_model import Linear, Model, State, Summit
 from camwright.pipeline.smoothing.ripple import ripple_of, torque_ripple, triangle
-from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
 
 INITIAL_ENERGY = "initial_energy"
@@ -44,7 +44,7 @@ class Search:
         self.exact = self._exact()
         self.start = self.exact if problem.seed is None else problem.seed
         self.scale = max(float(np.abs(self.exact).max()), 1e-9)
-        exact = lift_jet(self.turn.energy(self.exact), problem.machine)
+        exact = lift_jet(self.turn.energy(self.exact), problem.variables)
         # A step whose energy bends as much as the exact one's has the length 1 by this matrix.
         bend = basis_matrix(self.turn.theta, count, 2) * self.scale
         size = float(np.linalg.norm(bend @ self.exact)) / self.scale or 1.0
@@ -57,7 +57,7 @@ class Search:
         return self.problem.coefficients + len(self.problem.freed)
 
     def _exact(self) -> Array:
-        problem, machine = self.problem, self.problem.machine
+        problem, variables = self.problem, self.problem.variables
         first = max(problem.scenarios, key=lambda item: item.weight)
         torque = problem.gear_ratio * first.torque
         ratings = problem.ratings
@@ -65,11 +65,11 @@ class Search:
         found = exact_start(
             torque - torque.mean(),
             problem.coefficients,
-            rate=machine.rate,
-            preload=machine.preload,
-            base_radius=machine.base_radius,
+            rate=variables.rate,
+            preload=variables.preload,
+            prime_radius=variables.prime_radius,
             pressure_angle=ratings.pressure_angle or np.pi / 3,
-            energy_max=machine.preload * travel + 0.5 * machine.rate * travel**2,
+            energy_max=variables.preload * travel + 0.5 * variables.rate * travel**2,
         )
         rise = float(np.clip(0.0, problem.energy[0] - 1e-12, problem.energy[1]))
         least = float(self.turn.energy(found)[0].min())
@@ -91,49 +91,51 @@ class Search:
                 angle -= float(np.clip(slope[0] / bend[0], -step, step))
         return angle
 
-    def highest(self, coefficients: Array, machine: Machine) -> float:
+    def highest(self, coefficients: Array, variables: DesignVariables) -> float:
         """Greatest lift, between the points too, m."""
         peak = Grid.at(np.array([self._summit_angle(coefficients)]), coefficients.size)
-        return float(lift_jet(peak.energy(coefficients), machine).lift[0])
+        return float(lift_jet(peak.energy(coefficients), variables).lift[0])
 
-    def _summit(self, coefficients: Array, machine: Machine) -> Summit:
+    def _summit(self, coefficients: Array, variables: DesignVariables) -> Summit:
         peak = Grid.at(np.array([self._summit_angle(coefficients)]), coefficients.size)
         freed = bool(self.problem.freed)
-        lift = differentiated(_lift, peak.energy(coefficients), 0.0, machine, freed)["lift"]
+        lift = differentiated(_lift, peak.energy(coefficients), 0.0, variables, freed)["lift"]
         return Summit(
             float(lift.value[0]), peak.chained(lift.local)[0], peak.columns[0], lift.shared[:, 0]
         )
 
-    def _scenarios(self, grid: Grid, machine: Machine) -> list[Scenario]:
+    def _scenarios(self, grid: Grid, variables: DesignVariables) -> list[Scenario]:
         """The scenarios with their corrections at the angles of a grid."""
-        theta = grid.theta + float(machine.phase)
+        theta = grid.theta + float(variables.phase)
         return [
             replace(item, correction=item.correction.at(theta)) for item in self.problem.scenarios
         ]
 
-    def _functions(self, grid: Grid, machine: Machine) -> list[Function]:
+    def _functions(self, grid: Grid, variables: DesignVariables) -> list[Function]:
         ratings = self.problem.ratings
-        loads = [partial(_loads, item, ratings) for item in self._scenarios(grid, machine)]
+        loads = [partial(_loads, item, ratings) for item in self._scenarios(grid, variables)]
         return [partial(_shape, ratings), *loads]
 
-    def utilisations(self, coefficients: Array, machine: Machine, grid: Grid) -> dict[str, Array]:
+    def utilisations(
+        self, coefficients: Array, variables: DesignVariables, grid: Grid
+    ) -> dict[str, Array]:
         """Every limit on a grid: (n,) or, for means, one number; the worst of the scenarios."""
-        jet = lift_jet(grid.energy(coefficients), machine)
-        top = self.highest(coefficients, machine)
+        jet = lift_jet(grid.energy(coefficients), variables)
+        top = self.highest(coefficients, variables)
         found: dict[str, Array] = {}
-        for function in self._functions(grid, machine):
-            for name, value in function(jet, top, machine).items():
+        for function in self._functions(grid, variables):
+            for name, value in function(jet, top, variables).items():
                 if name not in self.problem.left_out:
                     use = value.value if isinstance(value, Mean) else value
                     found[name] = np.maximum(found[name], use) if name in found else use
         return found
 
-    def state(self, coefficients: Array, machine: Machine) -> State:
+    def state(self, coefficients: Array, variables: DesignVariables) -> State:
         """All that the merit of a place depends on."""
-        found = self.utilisations(coefficients, machine, self.turn)
+        found = self.utilisations(coefficients, variables, self.turn)
         most = {name: float(np.max(value)) for name, value in found.items()}
         if self.extra.theta.size:
-            more = self.utilisations(coefficients, machine, self.extra)
+            more = self.utilisations(coefficients, variables, self.extra)
             for name, value in more.items():
                 if found[name].size > 1:  # a mean of these angles would be none of the turn
                     most[name] = max(most[name], float(np.max(value)))
@@ -142,34 +144,36 @@ class Search:
             over = float(energy[0].min()) - self.problem.energy[1]
             most[INITIAL_ENERGY] = 1.0 - RESERVE + over / self.scale
         ripple = 0.0
-        for item, left in self.left(coefficients, machine):
+        for item, left in self.left(coefficients, variables):
             ripple = max(
                 ripple, item.weight * float(np.linalg.norm(ripple_of(self.problem, item, left)))
             )
             if self.problem.ceiling is not None:
                 over = float(np.linalg.norm(torque_ripple(item, left))) - self.problem.ceiling
                 used = 1.0 - RESERVE + over
-                most[TORQUE_REDUCTION] = max(most.get(TORQUE_REDUCTION, used), used)
-        jerk = self._jerk_scale * lift_jet(energy, machine).jerk
-        return State(coefficients, machine, ripple, 0.5 * float(jerk @ jerk), most)
+                most[TORQUE_REDUCTION.id] = max(most.get(TORQUE_REDUCTION.id, used), used)
+        jerk = self._jerk_scale * lift_jet(energy, variables).jerk
+        return State(coefficients, variables, ripple, 0.5 * float(jerk @ jerk), most)
 
-    def left(self, coefficients: Array, machine: Machine) -> list[tuple[Scenario, Array]]:
+    def left(self, coefficients: Array, variables: DesignVariables) -> list[tuple[Scenario, Array]]:
         """Each scenario whose ripple counts, and the crank torque (n,) left to it, N m."""
-        jet = lift_jet(self.turn.energy(coefficients), machine)
-        top = self.highest(coefficients, machine)
+        jet = lift_jet(self.turn.energy(coefficients), variables)
+        top = self.highest(coefficients, variables)
         problem, found = self.problem, []
-        for item in self._scenarios(self.turn, machine):
+        for item in self._scenarios(self.turn, variables):
             if item.weight > 0:
-                torque = delivered_torque(jet, top, machine, item, problem.ratings.offset)
-                asked = item.torque_at(float(machine.phase))[0]
+                torque = delivered_torque(jet, top, variables, item, problem.ratings.offset)
+                asked = item.torque_at(float(variables.phase))[0]
                 found.append((item, asked - torque / problem.gear_ratio))
         return found
 
     def model(self, state: State) -> Model:
         """Linear and quadratic models of ripple, limits and jerk near a state."""
-        summit = self._summit(state.coefficients, state.machine)
+        summit = self._summit(state.coefficients, state.variables)
         energy = self.turn.energy(state.coefficients)
-        found = differentiated(_jerk, energy, 0.0, state.machine, bool(self.problem.freed))["jerk"]
+        found = differentiated(_jerk, energy, 0.0, state.variables, bool(self.problem.freed))[
+            "jerk"
+        ]
         jerk = self._jerk_scale * self._dense(found, state, summit)
         return Model(
             norms=self._norms(state, summit),
@@ -179,15 +183,15 @@ class Search:
         )
 
     def _norms(self, state: State, summit: Summit) -> list[Norm]:
-        problem, machine = self.problem, state.machine
+        problem, variables = self.problem, state.variables
         energy = self.turn.energy(state.coefficients)
-        weighted = [item for item in self._scenarios(self.turn, machine) if item.weight > 0]
+        weighted = [item for item in self._scenarios(self.turn, variables) if item.weight > 0]
         found = []
         for item in weighted:
             torque = partial(_torque, item, problem.ratings.offset)
             freed = bool(problem.freed)
-            gradient = differentiated(torque, energy, summit.lift, machine, freed)["torque"]
-            asked, turning = item.torque_at(float(machine.phase))
+            gradient = differentiated(torque, energy, summit.lift, variables, freed)["torque"]
+            asked, turning = item.torque_at(float(variables.phase))
             left = asked - gradient.value / problem.gear_ratio
             slopes = -self._dense(gradient, state, summit) / problem.gear_ratio
             if "phase" in problem.freed:
@@ -228,7 +232,7 @@ class Search:
             if freed in FREED:
                 k = 1 + FREED.index(freed)
                 side = gradient.shared[k] + by_top * summit.shared[k]
-                entries.append(side[:, None] * getattr(state.machine, freed))
+                entries.append(side[:, None] * getattr(state.variables, freed))
                 places.append(np.full((height, 1), self.problem.coefficients + number))
         level = gradient.value - 1.0 + RESERVE
         return Linear(name, level, np.hstack(entries), np.hstack(places))
@@ -239,9 +243,9 @@ class Search:
             if not grid.theta.size:
                 continue
             energy = grid.energy(state.coefficients)
-            for function in self._functions(grid, state.machine):
+            for function in self._functions(grid, state.variables):
                 gradients = differentiated(
-                    function, energy, summit.lift, state.machine, bool(problem.freed)
+                    function, energy, summit.lift, state.variables, bool(problem.freed)
                 )
                 for name, gradient in gradients.items():
                     asked = name not in problem.left_out
@@ -260,51 +264,51 @@ class Search:
             found.append(Linear(INITIAL_ENERGY, level, entries[[k]], columns[[k]]))
         return found
 
-    def moved(self, state: State, step: Array) -> tuple[Array, Machine]:
-        """Coefficients and machine a step away."""
-        count, machine = self.problem.coefficients, state.machine
+    def moved(self, state: State, step: Array) -> tuple[Array, DesignVariables]:
+        """Coefficients and variables a step away."""
+        count, variables = self.problem.coefficients, state.variables
         for name, part in zip(self.problem.freed, step[count:], strict=True):
-            value = getattr(machine, name) + _unit(name, machine) * float(part)
-            machine = replace(machine, **{name: value})
-        return state.coefficients + self.scale * step[:count], machine
+            value = getattr(variables, name) + _unit(name, variables) * float(part)
+            variables = replace(variables, **{name: value})
+        return state.coefficients + self.scale * step[:count], variables
 
     def box(self, state: State, trust: float) -> Array:
         """Least and greatest step within the trust region and the ranges, (2, size)."""
         count = self.problem.coefficients
         low, high = np.full(self.size, -trust), np.full(self.size, trust)
         for number, (name, (least, greatest)) in enumerate(self.problem.freed.items()):
-            now, unit = getattr(state.machine, name), _unit(name, state.machine)
+            now, unit = getattr(state.variables, name), _unit(name, state.variables)
             low[count + number] = max((least - now) / unit, -trust)
             high[count + number] = min((greatest - now) / unit, trust)
         return np.stack([low, high])
 
 
-def _unit(name: str, machine: Machine) -> float:
+def _unit(name: str, variables: DesignVariables) -> float:
     """What a step of one is of a freed quantity: all of it, or a radian."""
-    return 1.0 if name == "phase" else float(getattr(machine, name))
+    return 1.0 if name == "phase" else float(getattr(variables, name))
 
 
-def _lift(jet: Jet, _top: Values, _machine: Machine) -> Mapping[str, Values | Mean]:
+def _lift(jet: Jet, _top: Values, _machine: DesignVariables) -> Mapping[str, Values | Mean]:
     return {"lift": jet.lift}
 
 
-def _jerk(jet: Jet, _top: Values, _machine: Machine) -> Mapping[str, Values | Mean]:
+def _jerk(jet: Jet, _top: Values, _machine: DesignVariables) -> Mapping[str, Values | Mean]:
     return {"jerk": jet.jerk}
 
 
 def _torque(
-    scenario: Scenario, offset: float, jet: Jet, top: Values, machine: Machine
+    scenario: Scenario, offset: float, jet: Jet, top: Values, variables: DesignVariables
 ) -> Mapping[str, Values | Mean]:
-    return {"torque": delivered_torque(jet, top, machine, scenario, offset)}
+    return {"torque": delivered_torque(jet, top, variables, scenario, offset)}
 
 
 def _shape(
-    ratings: Ratings, jet: Jet, _top: Values, machine: Machine
+    ratings: Ratings, jet: Jet, _top: Values, variables: DesignVariables
 ) -> Mapping[str, Values | Mean]:
-    return shape_utilisations(jet, machine, ratings)
+    return shape_utilisations(jet, variables, ratings)
 
 
 def _loads(
-    scenario: Scenario, ratings: Ratings, jet: Jet, top: Values, machine: Machine
+    scenario: Scenario, ratings: Ratings, jet: Jet, top: Values, variables: DesignVariables
 ) -> Mapping[str, Values | Mean]:
-    return load_utilisations(jet, top, machine, ratings, scenario)
+    return load_utilisations(jet, top, variables, ratings, scenario)

@@ -1,4 +1,4 @@
-"""What a synthesis is given: machine, limits, load cases, and what finite elements say of them."""
+"""Variables, ratings, load cases and finite-element corrections of a synthesis."""
 
 from __future__ import annotations
 
@@ -8,21 +8,18 @@ import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
 from camwright.geometry.path import Values
-from camwright.pipeline.follower.roller_motion import HOUR
-
-LIFE_UNIT = 1e6 * FULL_TURN / HOUR  # rad of a million turns, per hour
 
 
 @dataclass(frozen=True)
-class Machine:
-    """What a synthesis may free: spring rate N/m, preload N, pitch base radius m, phase rad.
+class DesignVariables:
+    """What a synthesis may free: spring rate N/m, preload N, prime radius m, phase rad.
 
     The phase is how far the cam is turned ahead on its shaft against the spline of its energy.
     """
 
     rate: Values
     preload: Values
-    base_radius: Values
+    prime_radius: Values
     phase: Values = 0.0
 
 
@@ -60,9 +57,9 @@ class Ratings:
     dynamic_rating: float | None = None
     life_force_cubed: float | None = None
     roller_spin: float | None = None
-    bush_pressure: tuple[float | None, float | None] = (None, None)
-    bush_pv: tuple[float | None, float | None] = (None, None)
-    bush_area: tuple[float, float] = (1.0, 1.0)
+    guide_pressure: tuple[float | None, float | None] = (None, None)
+    guide_pv: tuple[float | None, float | None] = (None, None)
+    guide_area: tuple[float, float] = (1.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)

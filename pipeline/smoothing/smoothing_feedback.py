@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION
-from camwright.pipeline.checks.verdict import binding, verdict
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.checks.check import Check, binding, verdict
 from camwright.pipeline.smoothing.smoothers import CYCLE, Smoother
 from camwright.pipeline.smoothing.smoothing_forecast import (
     Attempt,
@@ -160,7 +159,7 @@ def _between(lower: Attempt, upper: Attempt, tolerance: float) -> float | None:
 def _torque_spare(checks: Sequence[Check]) -> float | None:
     """Torque reduction above its least value; None when unknown."""
     for check in checks:
-        if check.id == TORQUE_REDUCTION and check.evaluated:
+        if check.id == TORQUE_REDUCTION.id and check.evaluated:
             spare = (check.demand or 0.0) - (check.limit or 0.0)
             return spare if math.isfinite(spare) else None
     return None
@@ -203,12 +202,12 @@ def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
 def _reached(attempts: Sequence[Attempt]) -> str:
     if not any(keeps_torque(item.checks) for item in attempts):
         return (
-            f"{TORQUE_REDUCTION} is not met by the smoothing the case asks for, "
+            f"{TORQUE_REDUCTION.id} is not met by the smoothing the case asks for, "
             "and a gentler lift lowers it further"
         )
     answer = attempts[best_attempt(attempts)].smoother
     return (
-        f"smoothing cannot reach the limits while it keeps {TORQUE_REDUCTION}: "
+        f"smoothing cannot reach the limits while it keeps {TORQUE_REDUCTION.id}: "
         f"the best is {answer.width_in_words}"
     )
 
@@ -216,6 +215,6 @@ def _reached(attempts: Sequence[Attempt]) -> str:
 def _why(latest: Attempt, candidate: Smoother) -> str:
     change = f"{latest.smoother.width_in_words}; next: {candidate.width_in_words}"
     if not keeps_torque(latest.checks):
-        return f"{TORQUE_REDUCTION} is lost at {change}"
+        return f"{TORQUE_REDUCTION.id} is lost at {change}"
     worst = lift_failures(latest.checks)[0]
     return f"{worst.id} at {worst.utilisation or 0.0:.3g} of its limit with {change}"

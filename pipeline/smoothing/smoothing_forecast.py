@@ -11,8 +11,8 @@ from itertools import pairwise
 import numpy as np
 
 from camwright.geometry.errors import CamError
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION
 from camwright.pipeline.smoothing.smoothers import Smoother
 
 Predict = Callable[[Smoother], Sequence[Check]]
@@ -33,7 +33,7 @@ class Attempt:
 
 def keeps_torque(checks: Sequence[Check]) -> bool:
     """Whether the torque reduction holds, or is not asked for; a missing number does not."""
-    return all(c.status in ("pass", "waived") for c in checks if c.id == TORQUE_REDUCTION)
+    return all(c.status in ("pass", "waived") for c in checks if c.id == TORQUE_REDUCTION.id)
 
 
 def score(checks: Sequence[Check]) -> Score:

@@ -9,9 +9,9 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.geometry.lift import Lift
-from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
-from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
 RESERVE = 1e-3  # share of every limit kept in hand, for what lies between the points
 FEASIBLE = 1e-5  # greatest utilisation above the reserve's that counts as none
@@ -27,9 +27,9 @@ class Problem:
     ----------
     scenarios : tuple of Scenario   all limits hold in each; the worst weighted ripple counts
     ratings : Ratings
-    machine : Machine               spring and base radius to start from
+    variables : DesignVariables               spring and base radius to start from
     gear_ratio : float              crank turns per cam turn
-    freed : mapping                 of `rate`, `preload`, `base_radius`, `phase` to (least,
+    freed : mapping                 of `rate`, `preload`, `prime_radius`, `phase` to (least,
                                     greatest), SI
     energy : (float, float)         least and greatest energy at the lowest lift, E0, J
     coefficients : int              splines of the turn
@@ -42,7 +42,7 @@ class Problem:
 
     scenarios: tuple[Scenario, ...]
     ratings: Ratings
-    machine: Machine
+    variables: DesignVariables
     gear_ratio: float = 2.0
     freed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     energy: tuple[float, float] = (0.0, np.inf)
@@ -58,14 +58,14 @@ class Problem:
     @property
     def ceiling(self) -> float | None:
         """Greatest share of the ripple that may be left; None where nothing is asked."""
-        if self.torque_reduction is None or TORQUE_REDUCTION in self.left_out:
+        if self.torque_reduction is None or TORQUE_REDUCTION.id in self.left_out:
             return None
         return (1.0 - self.torque_reduction) * (1.0 - RESERVE)
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """An answer: energy coefficients (J) and machine, what it leaves and what it uses.
+    """An answer: energy coefficients (J) and variables, what it leaves and what it uses.
 
     ripple is the worst weighted ripple over that without a cam. utilisation has the greatest of
     each limit over the turn, between its points too, and all scenarios; multipliers, by limit,
@@ -73,7 +73,7 @@ class Design:
     """
 
     coefficients: Array
-    machine: Machine
+    variables: DesignVariables
     ripple: float
     utilisation: Mapping[str, float]
     multipliers: Mapping[str, float]
@@ -88,10 +88,12 @@ class Design:
 
     def lift(self, samples: int = 1440) -> Lift:
         """The lift, sampled from the spline of the energy."""
-        theta = uniform_turn(samples) - float(self.machine.phase)
+        theta = uniform_turn(samples) - float(self.variables.phase)
         energy = np.maximum(basis_matrix(theta, self.coefficients.size) @ self.coefficients, 0.0)
-        force = np.sqrt(self.machine.preload**2 + 2.0 * self.machine.rate * energy)
-        return Lift(uniform_turn(samples), readonly(2.0 * energy / (force + self.machine.preload)))
+        force = np.sqrt(self.variables.preload**2 + 2.0 * self.variables.rate * energy)
+        return Lift(
+            uniform_turn(samples), readonly(2.0 * energy / (force + self.variables.preload))
+        )
 
 
 def coarsened(problem: Problem) -> Problem:

@@ -43,7 +43,7 @@ def descended(search: Search, ripple_weight: float) -> Descent:
     Fletcher, Practical Methods of Optimization (1987), sec. 14.4: sequential programming with an
     exact penalty and a trust region.
     """
-    state = search.state(search.start, search.problem.machine)
+    state = search.state(search.start, search.problem.variables)
     trust, penalty, last = _TRUST, PENALTY, None
     for step in range(1, _STEPS_MAX + 1):
         model = search.model(state)

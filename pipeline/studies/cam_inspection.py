@@ -16,20 +16,14 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.measured_contour import Inspection, inspected, real_contour
-from camwright.pipeline import solver as road
 from camwright.pipeline.base.files import json_text, write_atomic
+from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import Column, Table, read_table, table
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.verdict import binding, verdict
-from camwright.pipeline.contact.contact_benchmarks import benchmarks
-from camwright.pipeline.contact.contact_pair import CycleBodies
-from camwright.pipeline.cycle.certificate_angles import certified, positions_to_certify
-from camwright.pipeline.cycle.contact_setup import contact_pair
-from camwright.pipeline.cycle.cycle import Cycle, finished
-from camwright.pipeline.cycle.rolling_history import rolling_history
-from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.run_records import cycle_columns
 from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.solver import solve
 
 FOLDER = "inspection"
 BYTES_MAX = 64 << 20
@@ -107,55 +101,30 @@ def inspect_part(
     *,
     keep_phase: bool = False,
     jobs: int | None = None,
-    tell: Callable[[str], None] = lambda _: None,
+    progress: Progress = SILENT,
 ) -> RealPart:
-    """Fit a measured contour, run the cycle on it, and check the real part.
+    """Fit a measured contour, solve it, and check the real part.
 
     Parameters
     ----------
     measured : array (2, n)   surface points, m
     keep_phase : bool         the angles of the measurement are those of the keyway
+    jobs : int                processes for the certificate; None: the processors, at most 4
 
     Raises
     ------
     InputError, GeometryError
         If the measurement is not of this cam.
     """
-    tell("fit")
+    progress.stage("fit")
     fit = inspected(contour, measured)
     real = real_contour(contour, fit, keep_phase=keep_phase)
-    torques = road.engine_torques(case)
-    turns = road.turns_of(case, real, torques, case.solver.positions)
-    why = "the measured contour"
-    if not road.is_body(real):
-        cycles = tuple(finished(case, real, given, road.unknown_contact(given)) for given in turns)
-        empty = Trial(1, None, why, real.pitch.lift, real, cycles, None, ())
-        return RealPart(fit, real, road.checked(case, empty, torques))
-    pair = contact_pair(case, real)
-    mesh = road.meshed(pair, turns)
-    tell("contact")
-    bodies = CycleBodies.meshed(pair)
-    cycles = tuple(_cycle(case, real, bodies, given) for given in turns)
-    trial = Trial(1, None, why, real.pitch.lift, real, cycles, mesh, ())
-    chosen = positions_to_certify(cycles, case.solver.certificate_positions)
-    if chosen:
-        tell(f"certificate at {len(chosen)} angles")
-        points = certified(pair, cycles, chosen, jobs, lambda *_: None)
-        trial = replace(trial, certificate=points)
-    solved = benchmarks(case.contact_radius)
-    return RealPart(fit, real, road.checked(case, trial, torques, solved))
+    certify = case.solver.certificate_positions
+    trial = solve(case, real, certify=certify, jobs=jobs, progress=progress)
+    return RealPart(fit, real, replace(trial, why="the measured contour"))
 
 
-def _cycle(case: Case, contour: Contour, bodies: CycleBodies, given: Turn) -> Cycle:
-    pair = contact_pair(case, contour)
-    contact = road.joined(dict(road.contact_chunks(pair, bodies, given, {})))
-    done = finished(case, contour, given, contact)
-    state = case.at(given.load_case)
-    speed = given.crank_speed / state.mechanism.gear_ratio
-    return replace(done, rolling=rolling_history(state, pair, bodies, given.loads, contact, speed))
-
-
-def write_inspection(run: Path, case: Case, part: RealPart, tolerance: float) -> dict[str, Any]:
+def write_inspection(run: Path, part: RealPart, tolerance: float) -> dict[str, Any]:
     """Write ``inspection/`` of a run: deviations, cycle, checks, and a record of them.
 
     Returns
@@ -170,7 +139,9 @@ def write_inspection(run: Path, case: Case, part: RealPart, tolerance: float) ->
         "form": fit.form(fit.theta[order]),
     }
     write_atomic(folder / "deviation.csv", table(_DEVIATION, deviation).to_csv())
-    write_atomic(folder / "cycle.csv", _cycle_table(case, part.trial.cycles))
+    write_atomic(
+        folder / "cycle.csv", table(run_reader.CYCLE, cycle_columns(part.trial.cycles)).to_csv()
+    )
     records = [check.as_record() for check in part.trial.checks]
     write_atomic(folder / "checks.json", json_text(records) + "\n")
     record = {
@@ -185,19 +156,11 @@ def write_inspection(run: Path, case: Case, part: RealPart, tolerance: float) ->
         "waves_um": _waves(fit),
         "nominal": _figures_of(run_reader.load_run(run).final.cycle),
         "measured": _figures_of(read_table(folder / "cycle.csv", run_reader.CYCLE)),
-        "verdict": verdict(part.trial.checks),
-        "binding": list(binding(part.trial.checks)),
+        "verdict": part.trial.verdict,
+        "binding": list(part.trial.binding),
     }
     write_atomic(folder / "inspection.json", json_text(record) + "\n")
     return record
-
-
-def _cycle_table(case: Case, cycles: tuple[Cycle, ...]) -> str:
-    tables = [cycle.columns(case.mechanism.gear_ratio) for cycle in cycles]
-    names = dict.fromkeys(name for made in tables for name in made)
-    unknown = np.full(cycles[0].theta.size, np.nan)
-    values = {name: np.concatenate([t.get(name, unknown) for t in tables]) for name in names}
-    return table(run_reader.CYCLE, values).to_csv()
 
 
 def _waves(fit: Inspection) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Smoothers side by side: the same case, each way to draw the lift, judged by closed forms."""
+"""Comparison of smoothers on one case, by previews."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.lift import Lift
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.extremes import TrialEvidence
-from camwright.pipeline.checks.registry import design_checks
-from camwright.pipeline.checks.verdict import binding, verdict
-from camwright.pipeline.cycle import cycle as cycles
+from camwright.pipeline.checks.check import binding, verdict
+from camwright.pipeline.checks.registry import without_sign_off
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.engine.torque import Torque
-from camwright.pipeline.preview import look_ahead
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.solver import solve
 
 _SMOOTHERS = (
     Smoother("none"),
@@ -57,8 +57,9 @@ def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
     for smoother in _SMOOTHERS:
         words = smoother.width_in_words
         try:
-            lift = road.designed_lift(case, torques, smoother)
-            yield _judged(case, torques, smoother.kind, words, lift)
+            contour = case.contour(cam_lift(case, torques, smoother))
+            trial = solve(case, contour, tier=Tier.PREVIEW, torques=torques)
+            yield Compared(smoother.kind, words, trial.lift, _record(trial))
         except CamError as error:
             yield _without(smoother.kind, words, error)
     try:
@@ -73,30 +74,19 @@ def _without(kind: str, words: str, error: CamError) -> Compared:
 
 def _constrained(case: Case) -> Compared:
     smoothing = case.smoothing.model_copy(update={"kind": "constrained"})
-    seen = look_ahead(case.model_copy(update={"smoothing": smoothing}))
-    kept = seen.design is not None and seen.design.feasible
-    words = "least ripple within all limits" if kept else "no cam keeps all limits"
-    record = _record(seen.case, seen.contour, seen.cycles)
-    return Compared("constrained", words, seen.contour.pitch.lift, record)
+    trial = preview_case(case.model_copy(update={"smoothing": smoothing}))
+    feasible = trial.synthesis is not None and trial.synthesis["feasible"]
+    words = "least ripple within all limits" if feasible else "no cam keeps all limits"
+    return Compared("constrained", words, trial.lift, _record(trial))
 
 
-def _judged(
-    case: Case, torques: Mapping[str, Torque], kind: str, words: str, lift: Lift
-) -> Compared:
-    contour = road.cam_contour(case, lift)
-    turns = road.turns_of(case, contour, torques, _POSITIONS)
-    found = tuple(cycles.closed_form_cycle(case, contour, given) for given in turns)
-    return Compared(kind, words, lift, _record(case, contour, found))
-
-
-def _record(case: Case, contour: Contour, found: tuple[cycles.Cycle, ...]) -> dict[str, Any]:
-    checks = design_checks(TrialEvidence(case=case, contour=contour, cycles=found))
-    rest = found[0].residual_torque
+def _record(trial: Trial) -> dict[str, Any]:
+    rest, checks = trial.cycles[0].turn.torque_after, without_sign_off(trial.checks)
     return {
-        "pressure_angle_max_deg": float(np.degrees(contour.pitch.pressure_angle_max().value)),
-        "lift_max_mm": 1e3 * contour.pitch.lift.highest.value,
-        "normal_force_max_N": max(float(c.loads.normal_force.max()) for c in found),
-        "p0_max_MPa": 1e-6 * max(float(np.max(c.contact.p0)) for c in found),
+        "pressure_angle_max_deg": float(np.degrees(trial.contour.pressure_angle_max().value)),
+        "lift_max_mm": 1e3 * trial.lift.highest.value,
+        "normal_force_max_N": max(float(c.loads.normal_force.max()) for c in trial.cycles),
+        "p0_max_MPa": 1e-6 * max(float(np.max(c.contact.p0)) for c in trial.cycles),
         "residual_std_Nm": None if rest is None else float(np.std(rest)),
         "residual_p2p_Nm": None if rest is None else float(np.ptp(rest)),
         "verdict": verdict(checks),

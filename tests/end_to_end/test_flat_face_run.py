@@ -63,8 +63,8 @@ def test_run_tells_of_a_face(folder):
     for name in ("undercut", "face_width", "certificate_spread", "guide_equilibrium_moment",
                  "friction_balance", "energy_closure", "contact_equilibrium"):  # fmt: skip
         assert checks[name]["status"] == "pass", name
-    assert checks["face_sliding"]["status"] == "not_evaluated"
-    assert not {"pressure_angle", "roller_static", "roller_grip"} & set(checks)
+    assert checks["face_pv"]["status"] == "not_evaluated"
+    assert not {"pressure_angle", "roller_static", "traction_demand"} & set(checks)
 
 
 def test_files_and_page_show_a_face(folder):
@@ -77,7 +77,7 @@ def test_files_and_page_show_a_face(folder):
     page = (folder / "8_report.html").read_text()
     assert "Contact on the face" in page
     assert "von Mises stress under the face" in page
-    assert (folder / "shop" / "cutter.csv").exists()
+    assert (folder / "workshop" / "cutter.csv").exists()
 
 
 def test_deck_and_check_know_the_face(folder, tmp_path):
@@ -86,13 +86,13 @@ def test_deck_and_check_know_the_face(folder, tmp_path):
     assert "the bore and the face's stem are held" in (tmp_path / "contact.inp").read_text()
     code, said = camwright("check", folder)  # as published, it does not pass
     assert code == 1, said
-    assert "Width of the face that the contact needs" in said
+    assert "Required face width" in said
 
 
 @pytest.mark.slow
 def test_measured_cam_is_judged_under_the_face(folder, tmp_path):
     """Three waves of 4 um along the normal are found, but for what the phase takes of them."""
-    rows = list(csv.DictReader((folder / "shop" / "inspection.csv").read_text().splitlines()))
+    rows = list(csv.DictReader((folder / "workshop" / "inspection.csv").read_text().splitlines()))
     lines = ["x_mm,y_mm"]
     for row in rows[::4]:
         off = 0.004 * math.cos(3 * math.radians(float(row["cam_angle_deg"])))
@@ -117,7 +117,7 @@ def third_cam():
 
 
 @pytest.mark.parametrize("cam", [pytest.param(sharp_cam, marks=pytest.mark.slow), third_cam])
-def test_undercut_is_a_verdict_through_the_road(tmp_path, cam):
+def test_undercut_is_a_verdict_of_the_run(tmp_path, cam):
     (tmp_path / "cut.toml").write_text(cam())
     code, said = camwright("run", tmp_path / "cut.toml", "--out", tmp_path / "run")
     assert code == 0, said
@@ -144,7 +144,7 @@ def test_undercut_is_a_verdict_through_the_road(tmp_path, cam):
          "lift.segment.stroke = 0.001 m in all, must be 0 m in all: the lift must close"),
         ('angle = "180 deg"', 'angle = "170 deg"', "lift.segment.angle = 350 deg in all, must be"),
         ('bore_radius = "6 mm"', 'offset = "13.1 mm"\nbore_radius = "6 mm"',
-         "cam.offset = 0.0131 m, must be smaller than cam.pitch_base_radius"),
+         "cam.offset = 0.0131 m, must be smaller than cam.prime_radius"),
     ],
     ids=["face too narrow", "does not close", "no turn", "offset too great"],
 )  # fmt: skip

@@ -3,6 +3,7 @@
 import csv
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import ezdxf
@@ -10,10 +11,8 @@ import numpy as np
 import pytest
 
 from camwright.pipeline.base.progress import Silent
-from camwright.pipeline.case.cards.card_filling import filled
-from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import load_case_file
-from camwright.pipeline.case.outer_ring import roller_in_words
+from camwright.pipeline.case.case_file import case_of, load_case_file
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.run import run_case
 
 GX120 = Path(__file__).resolve().parents[2] / "cases" / "gx120.toml"
@@ -65,9 +64,9 @@ COLUMNS = (
     "ring_correction_percent",
 )
 CHECKS = (
-    "roller_static", "roller_speed", "roller_pin", "roller_ring", "roller_grip", "spring_stress",
-    "spring_fatigue", "spring_solid", "spring_buckling", "spring_rate", "spring_surge",
-    "key_pressure", "torque_reversals",
+    "roller_static", "roller_speed", "roller_pin", "roller_ring_fatigue", "traction_demand",
+    "spring_stress", "spring_fatigue", "spring_solid", "spring_buckling", "spring_rate",
+    "spring_surge", "key_pressure", "torque_reversals",
 )  # fmt: skip
 
 
@@ -79,7 +78,7 @@ def run(tmp_path_factory):
     for card in given["materials"].values():
         card.setdefault("hardness", 600)
     folder = tmp_path_factory.mktemp("full") / "run"
-    run_case(Case.model_validate(filled(given, None)), folder, progress=Silent(), jobs=1)
+    run_case(case_of(given), folder, progress=Silent(), jobs=1)
     return folder
 
 
@@ -105,13 +104,13 @@ def test_every_part_that_is_described_is_judged(run):
 def test_the_method_says_how_the_roller_is_taken(run):
     """As a ring where balls and ring are given; else solid, and why."""
     record = json.loads((run / "trial_1" / "trial.json").read_text())
-    assert "outer ring on balls" in record["contact_method"]
+    assert "outer ring of its bearing on balls" in record["contact_method"]
     case = load_case_file(run / "case.toml")
-    bearing = case.roller.bearing.model_copy(update={"ring": None})
-    roller = case.roller.model_copy(update={"bearing": bearing})
-    plain = case.model_copy(update={"roller_given": roller})
-    assert roller_in_words(plain) == (
-        "the roller is solid on its hub, as no ring and balls of the bearing are given"
+    roller = machines(case)[0].follower
+    assert record["contact_method"].endswith(roller.body_model)
+    plain = replace(roller, bearing=replace(roller.bearing, ring=None))
+    assert plain.body_model == (
+        "roller solid on its hub: no ring and balls of the bearing are given"
     )
 
 
@@ -119,7 +118,7 @@ def test_balance_is_recorded_and_drilled(run):
     found = json.loads((run / "trial_1" / "trial.json").read_text())["balance"]
     assert found["hole_drilled"]
     assert 0.0 <= found["unbalance_left_g_mm"] < found["unbalance_g_mm"]
-    drawn = ezdxf.readfile(run / "shop" / "contour.dxf").query('CIRCLE[layer=="counter_hole"]')
+    drawn = ezdxf.readfile(run / "workshop" / "contour.dxf").query('CIRCLE[layer=="counter_hole"]')
     assert [2 * c.dxf.radius for c in drawn] == [pytest.approx(found["hole_diameter_mm"])]
 
 

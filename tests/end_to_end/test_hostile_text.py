@@ -20,14 +20,13 @@ import small_run
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.template import template
 from camwright.pipeline.results import run_reader, signoff
 from camwright.pipeline.results.check_report import junit
 from camwright.pipeline.results.run_folder import RunFolder
-from camwright.pipeline.results.workshop_files import write_shop
+from camwright.pipeline.results.workshop_files import write_workshop
 
 TECHNICIAN = "\U0001f469\u200d\U0001f527"  # two signs and a joiner
 HARM = "<script>alert(1)</script> \"quoted\" 'so' ../../etc/passwd ]]> <!-- & %s {0} $(id) "
@@ -86,14 +85,14 @@ def test_junit_is_whole_xml() -> None:
     }  # fmt: skip
 
 
-def test_shop_files_lie_in_a_folder_of_any_name_and_read_back(tmp_path: Path) -> None:
+def test_workshop_files_lie_in_a_folder_of_any_name_and_read_back(tmp_path: Path) -> None:
     import ezdxf
     import gmsh
 
     of, folder, said = case(), tmp_path / FOLDER, []
     theta = uniform_turn(180)
-    contour = road.cam_contour(of, Lift(theta, 0.005 * (1 - np.cos(theta))))
-    write_shop(folder, of, contour, said.append)
+    contour = of.contour(Lift(theta, 0.005 * (1 - np.cos(theta))))
+    write_workshop(folder, of, contour, said.append)
     assert said == []
     assert sorted(path.name for path in folder.iterdir()) == [
         "cam.step", "contour.csv", "contour.dxf", "cutter.csv", "inspection.csv"

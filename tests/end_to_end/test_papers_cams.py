@@ -1,4 +1,4 @@
-"""The papers' cams through the road: an eccentric circle, and valve cams that are undercut."""
+"""The papers' cams from case to contact: an eccentric circle, and valve cams that are undercut."""
 
 from pathlib import Path
 
@@ -7,13 +7,16 @@ import pytest
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.eccentric import Eccentric
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import cam_shape as checks
-from camwright.pipeline.checks.extremes import TrialEvidence
-from camwright.pipeline.contact.contact_pair import CycleBodies, closed_form_history, pair_history
+from camwright.pipeline.contact.closed_form import closed_form_history
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.solution import Solution, is_body, turns_of
 from camwright.pipeline.follower.roller_motion import roller_motion
+from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.studies.papers.slider_crank_drive import (
     EccentricDrive,
     HoldingSpring,
@@ -29,8 +32,8 @@ POSITIONS = 72
 @pytest.fixture(scope="module")
 def eccentric():
     case = load_case_file(PAPERS / "eccentric.toml")
-    contour = road.cam_contour(case, road.designed_lift(case, {}, None))
-    return case, contour, road.turns_of(case, contour, {}, POSITIONS)[0]
+    contour = case.contour(cam_lift(case, {}))
+    return case, contour, turns_of(machines(case), contour, case, {}, POSITIONS)[0]
 
 
 LINKAGE = Eccentric(0.02, 0.08)
@@ -76,12 +79,12 @@ def test_torque_and_reactions_are_those_of_the_slider_crank(eccentric):
 
 
 def test_hertz_radius_is_constant_and_finite_elements_agree(eccentric):
-    case, contour, turn = eccentric
-    pair, few = contact_pair(case, contour), slice(None, None, 18)
+    _, contour, turn = eccentric
+    pair, few = contact_pair(turn.machine, contour), slice(None, None, 18)
     history = closed_form_history(pair, turn.theta, turn.loads.normal_force)
     radius = 1 / (1 / 0.0325 + 1 / 0.0475)
     np.testing.assert_allclose(history.relative_radius, radius, rtol=1e-9)
-    solved = pair_history(
+    solved = two_scale_history(
         pair, CycleBodies.meshed(pair), turn.theta[few], turn.loads.normal_force[few]
     )
     np.testing.assert_allclose(solved.p0, history.p0[few], rtol=2e-3)
@@ -91,13 +94,12 @@ def test_hertz_radius_is_constant_and_finite_elements_agree(eccentric):
                                               ("b4", False)])  # fmt: skip
 def test_third_and_fourth_valve_cam_fail_as_undercut(name, stands):
     case = load_case_file(PAPERS / f"petrescu_{name}.toml")
-    contour = road.cam_contour(case, road.designed_lift(case, {}, None))
-    check = checks.undercut(TrialEvidence(case=case, contour=contour, cycles=()))
-    assert road.is_body(contour) is stands
+    contour = case.contour(cam_lift(case, {}))
+    drawn = Solution(case, contour, machines(case), Tier.PREVIEW, None, ())
+    check = checks.undercut(drawn)
+    assert is_body(contour) is stands
     assert (check.demand > 0) is stands
     if not stands:
         assert check.status == "fail"
         assert check.must_have
-    assert checks.pressure_angle(
-        TrialEvidence(case=case, contour=contour, cycles=())
-    ).status == "fail"  # fmt: skip
+    assert checks.pressure_angle(drawn).status == "fail"

@@ -1,9 +1,10 @@
-"""The whole road on a small case: folder, verdict, resumption, and what is refused."""
+"""A whole run of a small case: folder, verdict, resumption, and what is refused."""
 
 from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +13,17 @@ import pytest
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import ResultError
-from camwright.pipeline import solver as road
 from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import load_case_file
-from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.solution import CONTACT
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.run import run_case
-from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.reports.sections import build
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -38,7 +41,7 @@ class Recorder(Silent):
         self.stages.append(name)
 
     def advance(self, k: int, total: int) -> None:
-        if self._left is not None and self.stages[-1].endswith("contact"):
+        if self._left is not None and self.stages[-1].endswith(CONTACT):
             self._left -= 1
             if self._left == 0:
                 raise KeyboardInterrupt
@@ -94,7 +97,7 @@ def test_run_folder_holds_what_was_promised(
     assert summary == json.loads((out / "run.json").read_text())
     assert set(run_reader.HEADLINE) <= set(summary["headline"])
     assert all(value is not None for value in summary["headline"].values())
-    stages = {"torque", "lift", "contour", "mesh", "cycle", "checks", "report", "total"}
+    stages = {"torque", "lift and contour", "mesh", "cycle", "checks", "report", "total"}
     assert stages <= set(summary["timings_s"])
     assert summary["input_sha256"] == case.sha256
     assert summary["mesh_quality"]["edges_across_half_width"] >= 7.9
@@ -129,7 +132,7 @@ def test_published_design_fails_where_it_must(
     _, out, summary = finished
     found = run_reader.load_run(out)
     first = {check["id"]: check for check in found.trials[0].checks}
-    for name in ("roller_static", "pressure_angle", "bush_pv_A", "shakedown"):
+    for name in ("roller_static", "pressure_angle", "guide_pv_A", "shakedown"):
         assert first[name]["status"] == "fail", name
     assert summary["verdict"] == "fail"
     assert "roller_static" in summary["binding"]
@@ -165,14 +168,13 @@ def test_a_solid_roller_is_pressed_as_hertz_says(
 ) -> None:
     """The same cam under the same forces: on so large a relative radius bodies add little."""
     case, _, _ = finished
-    bearing = case.roller.bearing.model_copy(update={"ring": None})
-    roller = case.roller.model_copy(update={"bearing": bearing})
-    solid = case.model_copy(update={"roller_given": roller})
-    lift = road.designed_lift(case, road.engine_torques(case), Smoother.from_case(case.smoothing))
-    pair = contact_pair(solid, road.cam_contour(solid, lift))
+    machine = machines(case)[0]
+    bearing = replace(case.roller.bearing, ring=None)
+    solid = replace(machine, follower=replace(case.roller, bearing=bearing))
+    pair = contact_pair(solid, case.contour(cam_lift(case, engine_torques(case))))
     theta = uniform_turn(24)
-    found = pair_history(pair, CycleBodies.meshed(pair), theta, np.full(theta.size, 900.0))
-    np.testing.assert_allclose(found.p0, found.p0_hertz, rtol=2e-3)
+    contact = two_scale_history(pair, CycleBodies.meshed(pair), theta, np.full(theta.size, 900.0))
+    np.testing.assert_allclose(contact.p0, contact.p0_hertz, rtol=2e-3)
 
 
 def test_pressure_of_every_position_carries_the_load(
@@ -231,7 +233,7 @@ def test_folder_of_another_case_is_refused(
 
 
 def test_undercut_is_a_verdict(tmp_path: Path) -> None:
-    case = small(tmp_path, radius='"20 mm"', pitch_base_radius='"34 mm"')
+    case = small(tmp_path, radius='"20 mm"', prime_radius='"34 mm"')
     text = (tmp_path / "case.toml").read_text().replace('kind = "moving_average"', 'kind = "none"')
     (tmp_path / "case.toml").write_text(text)
     case = load_case_file(tmp_path / "case.toml")
@@ -245,7 +247,7 @@ def test_undercut_is_a_verdict(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "8_report.html").is_file()
 
 
-def test_road_may_begin_at_the_lift(tmp_path: Path) -> None:
+def test_a_run_may_begin_at_the_lift(tmp_path: Path) -> None:
     """An eccentric: its curvature, and with it the relative radius, is that of a circle."""
     base, eccentricity = 30e-3, 6e-3
     angle = np.arange(0.0, 360.0, 2.0)
@@ -255,7 +257,7 @@ def test_road_may_begin_at_the_lift(tmp_path: Path) -> None:
     lift = along + np.sqrt(radius**2 - across**2) - base
     rows = "\n".join(f"{a},{1e3 * s!r}" for a, s in zip(angle, lift.tolist(), strict=True))
     (tmp_path / "lift.csv").write_text(f"cam_angle_deg,lift_mm\n{rows}\n")
-    case = small(tmp_path, pitch_base_radius='"30 mm"')
+    case = small(tmp_path, prime_radius='"30 mm"')
     text = (tmp_path / "case.toml").read_text()
     engine = re.search(r"(?ms)^\[engine\]\n.*?^\[mechanism\]", text)
     assert engine is not None

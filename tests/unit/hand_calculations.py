@@ -1,4 +1,4 @@
-"""Demands of the trial of `made_trial`, worked out by hand: closed forms with their sources."""
+"""Demands of the solution of `made_trial`, worked out by hand: closed forms with their sources."""
 
 import made_trial as made
 import numpy as np

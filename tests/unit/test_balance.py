@@ -1,10 +1,9 @@
-"""A cam's balance: the hole that is left out or drilled, in the check, the record and the shop."""
+"""A cam's balance: a hole left out or drilled, in check, record and workshop."""
 
 import json
 from dataclasses import replace
 
 import ezdxf
-import made_trial as made
 import numpy as np
 import pytest
 
@@ -16,18 +15,20 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import cam_mesh
 from camwright.meshes.element_size import Sizing
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.template import template
-from camwright.pipeline.checks.extremes import TrialEvidence
 from camwright.pipeline.checks.part_strength import cam_unbalance
 from camwright.pipeline.contact.certificate import solve_pair
-from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.cam_balance import WALL, balance, drilled_hole
 from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import CounterHole, greatest_hole, unbalance
-from camwright.pipeline.results.workshop_files import outline_of, write_shop
+from camwright.pipeline.results.workshop_files import outline_of, write_workshop
 
 KEY = '\n[cam.keyway]\nwidth = "6 mm"\ndepth = "2.8 mm"\nangle = "50 deg"\n'
-ASKED = "\n[cam.counter_hole]\n"
+ORDERED = "\n[cam.counter_hole]\n"
 
 
 def a_cam(height):
@@ -72,30 +73,30 @@ def moments_by_sectors(contour, cam, hole):
 
 def test_nothing_is_left_of_the_unbalance_by_numerical_area_moments():
     """To 1e-9 of the moment there was, and of the area."""
-    case = case_of(ASKED)
-    found = balance(case, SLIGHT)
-    assert found.missed == ""
-    area, moment = moments_by_sectors(SLIGHT, case.cam, found.hole)
-    assert area == pytest.approx(found.left.area, rel=1e-9)
-    before = np.hypot(*found.unbalance.moment)
-    assert before > 1e-3 * found.unbalance.area * 1e-3
-    assert np.hypot(*moment) < 1e-9 * found.unbalance.area * 0.06
-    assert found.left.product < 1e-9 * found.unbalance.product
-    assert found.left.mass < found.unbalance.mass
+    cam = case_of(ORDERED).cam
+    drilled = balance(cam, SLIGHT)
+    assert drilled.missed == ""
+    area, moment = moments_by_sectors(SLIGHT, cam, drilled.hole)
+    assert area == pytest.approx(drilled.left.area, rel=1e-9)
+    before = np.hypot(*drilled.unbalance.moment)
+    assert before > 1e-3 * drilled.unbalance.area * 1e-3
+    assert np.hypot(*moment) < 1e-9 * drilled.unbalance.area * 0.06
+    assert drilled.left.product < 1e-9 * drilled.unbalance.product
+    assert drilled.left.mass < drilled.unbalance.mass
 
 
 def test_a_heavy_cam_gets_the_hole_that_helps_most():
     """None takes it all; the greatest keeps its walls, and no other hole of a grid beats it."""
-    case = case_of(ASKED)
-    found = balance(case, HEAVY)
-    assert "no counter-hole fits" in found.missed
-    hole, ring = found.hole, HEAVY.polygon(7200)
-    assert 0.0 < found.left.product < found.unbalance.product
+    cam = case_of(ORDERED).cam
+    drilled = balance(cam, HEAVY)
+    assert "no counter-hole fits" in drilled.missed
+    hole, ring = drilled.hole, HEAVY.polygon(7200)
+    assert 0.0 < drilled.left.product < drilled.unbalance.product
     away = np.hypot(*(ring - hole.centre[:, None])).min() - hole.radius
-    inwards = np.hypot(*hole.centre) - hole.radius - case.cam.bore_radius - case.cam.keyway.depth
+    inwards = np.hypot(*hole.centre) - hole.radius - cam.bore_radius - cam.keyway.depth
     assert min(away, inwards) == pytest.approx(WALL, abs=1e-5)
     direction = hole.centre / np.hypot(*hole.centre)
-    reach = case.cam.bore_radius + case.cam.keyway.depth + WALL
+    reach = cam.bore_radius + cam.keyway.depth + WALL
     for place in np.linspace(0.012, 0.07, 200):
         room = np.hypot(*(ring - (place * direction)[:, None])).min() - WALL
         radius = max(min(room, place - reach), 0.0)
@@ -103,48 +104,51 @@ def test_a_heavy_cam_gets_the_hole_that_helps_most():
 
 
 def test_no_room_for_any_hole():
-    thick = case_of('\n[cam.counter_hole]\nwall = "30 mm"\n')
-    found = balance(thick, HEAVY)
-    assert found.hole is None
-    assert "no hole fits" in found.missed
+    thick = case_of('\n[cam.counter_hole]\nwall = "30 mm"\n').cam
+    whole = balance(thick, HEAVY)
+    assert whole.hole is None
+    assert "no hole fits" in whole.missed
     assert drilled_hole(thick, HEAVY) is None
-    assert found.record()["hole_drilled"] is False
-    given = unbalance(HEAVY, 0.01, None, 0.01, 7850.0)
+    assert whole.record()["hole_drilled"] is False
+    uneven = unbalance(HEAVY, 0.01, None, 0.01, 7850.0)
     with pytest.raises(GeometryError, match="no hole fits"):
-        greatest_hole(HEAVY, given, 0.01, 0.03)
+        greatest_hole(HEAVY, uneven, 0.01, 0.03)
 
 
-def evidence(case, contour):
-    return TrialEvidence(case=case, contour=contour, cycles=(made.cycle(crank_speed=157.0),))
+def solved(case, contour):
+    """A solution without cycles at 157 rad/s of the crank: the check reads the cam alone."""
+    state = case.load_cases[0].model_copy(update={"speed": 157.0})
+    case = case.model_copy(update={"load_cases": (state,)})
+    return Solution(case, contour, machines(case), Tier.PREVIEW, mesh=None, cycles=())
 
 
 def test_the_check_judges_the_cam_as_it_is_made():
     plain = template("balance").replace("[limits]", '[limits]\nunbalance = "16 mm/s"', 1) + KEY
     left_out, drilled = (
-        cam_unbalance(evidence(parse_case(plain + extra), SLIGHT)) for extra in ("", ASKED)
+        cam_unbalance(solved(parse_case(plain + extra), SLIGHT)) for extra in ("", ORDERED)
     )
-    found = balance(parse_case(plain), SLIGHT)
-    assert left_out.demand == pytest.approx(1e3 * found.unbalance.eccentricity * 78.5)
-    assert "would take 100% of it" in left_out.note
+    whole = balance(parse_case(plain).cam, SLIGHT)
+    assert left_out.demand == pytest.approx(whole.unbalance.eccentricity * 78.5)
+    assert "would remove 100% of it" in left_out.note
     assert drilled.demand < 1e-6 * left_out.demand
     assert (left_out.status, drilled.status) == ("fail", "pass")
-    heavy = cam_unbalance(evidence(parse_case(plain + ASKED), HEAVY))
+    heavy = cam_unbalance(solved(parse_case(plain + ORDERED), HEAVY))
     assert heavy.status == "fail"
     assert "no counter-hole fits" in heavy.note
 
 
 def test_the_record_is_plain_numbers():
-    record = balance(case_of(), SLIGHT).record()
+    record = balance(case_of().cam, SLIGHT).record()
     assert json.loads(json.dumps(record)) == record
     assert record["hole_drilled"] is False
     assert record["unbalance_left_g_mm"] < 1e-6 < record["unbalance_g_mm"]
 
 
-def test_the_shop_drills_it(tmp_path):
+def test_the_workshop_drills_it(tmp_path):
     """In the drawing as a circle of its own layer, in the solid as steel left out."""
-    case = case_of(ASKED)
-    write_shop(tmp_path, case, SLIGHT)
-    hole = drilled_hole(case, SLIGHT)
+    case = case_of(ORDERED)
+    write_workshop(tmp_path, case, SLIGHT)
+    hole = drilled_hole(case.cam, SLIGHT)
     circles = ezdxf.readfile(tmp_path / "contour.dxf").query('CIRCLE[layer=="counter_hole"]')
     assert len(circles) == 1
     assert circles[0].dxf.radius == pytest.approx(1e3 * hole.radius, rel=1e-12)
@@ -160,10 +164,10 @@ def test_the_shop_drills_it(tmp_path):
         centre = gmsh.model.occ.getCenterOfMass(3, gmsh.model.getEntities(3)[0][1])
     finally:
         gmsh.finalize()
-    found = balance(case, SLIGHT)
-    assert volume == pytest.approx(1e9 * found.left.area * case.cam.width, rel=1e-6)
+    drilled = balance(case.cam, SLIGHT)
+    assert volume == pytest.approx(1e9 * drilled.left.area * case.cam.width, rel=1e-6)
     assert np.hypot(*centre[:2]) < 1e-4  # mm; before the hole it was a hundred times that
-    assert found.unbalance.eccentricity > 1e-5
+    assert drilled.unbalance.eccentricity > 1e-5
 
 
 def test_the_contact_feels_the_hole():
@@ -171,15 +175,14 @@ def test_the_contact_feels_the_hole():
 
     Elsewhere it changes nothing. One mesh of the certificate: pressure to 0.1 %, shear to 2 %.
     """
-    case = case_of(ASKED)
-    pair = contact_pair(case, HEAVY)
+    pair = contact_pair(machines(case_of(ORDERED))[0], HEAVY)
     theta = uniform_turn(3600)
     hole = pair.counter_hole
     thinnest = theta[np.argmin(np.hypot(*(HEAVY.points(theta) - hole.centre[:, None])))]
     at, force = np.array([thinnest, thinnest + 2.0]), np.full(2, 3000.0)
     without = replace(pair, counter_hole=None)
     drilled, whole = (
-        pair_history(each, CycleBodies.meshed(each), at, force) for each in (pair, without)
+        two_scale_history(each, CycleBodies.meshed(each), at, force) for each in (pair, without)
     )
     change = drilled.tau_max / whole.tau_max - 1.0
     assert change[0] > 0.1
@@ -190,10 +193,9 @@ def test_the_contact_feels_the_hole():
 
 
 def test_the_mesh_leaves_the_hole_out():
-    found = balance(case_of(), HEAVY)
-    sizing = Sizing(far_size=3e-3)
-    holed, whole = (cam_mesh(HEAVY, 0.01, None, sizing, each) for each in (found.hole, None))
-    assert whole.area - holed.area == pytest.approx(np.pi * found.hole.radius**2, rel=1e-4)
+    hole, sizing = balance(case_of().cam, HEAVY).hole, Sizing(far_size=3e-3)
+    holed, whole = (cam_mesh(HEAVY, 0.01, None, sizing, each) for each in (hole, None))
+    assert whole.area - holed.area == pytest.approx(np.pi * hole.radius**2, rel=1e-4)
     assert "counter_hole" in holed.boundaries
     out = CounterHole(np.array([0.05, 0.0]), 0.05)
     with pytest.raises(GeometryError, match="wall of the counter-hole"):

@@ -1,5 +1,7 @@
 """Key, gear, shaft bearings and unbalance against hand calculation."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.case.parts_section import Keyway
+from camwright.pipeline.contact.cam_body import Keyway
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
     counter_hole,
@@ -62,7 +64,7 @@ def test_a_dwell_is_one_reversal():
     assert torque_reversals(THETA, np.zeros(720)) == ()
 
 
-SHAFT = Camshaft(0.06, 0.02, -0.015, 0.02)
+SHAFT = Camshaft(bearing_spacing=0.06, cam_position=0.02, gear_position=-0.015, gear_radius=0.02)
 
 
 def test_shaft_is_in_equilibrium():
@@ -86,12 +88,21 @@ def test_gear_presses_the_wheels_apart():
 
 
 @pytest.mark.parametrize(
-    ("values", "name"),
-    [((0.0, 0.1, 0.1, 0.1), "bearing_spacing"), ((0.1, np.nan, 0.1, 0.1), "cam_position")],
+    ("name", "value"),
+    [
+        ("bearing_spacing", 0.0),
+        ("bearing_spacing", np.inf),
+        ("gear_radius", 0.0),
+        ("cam_position", np.nan),
+        ("gear_position", np.inf),
+        ("mesh_angle", np.nan),
+        ("pressure_angle", -0.1),
+        ("pressure_angle", np.radians(45.0)),
+    ],
 )
-def test_shaft_refusals(values, name):
-    with pytest.raises(InputError, match=name):
-        Camshaft(*values)
+def test_shaft_refusals(name, value):
+    with pytest.raises(InputError, match=rf"camshaft\.{name}"):
+        replace(SHAFT, **{name: value})
 
 
 def test_unbalance_of_an_eccentric_disc():
@@ -124,7 +135,7 @@ def test_unbalance_turns_with_the_cam():
 
 def test_keyway_is_taken_off_exactly():
     """Against a sum over a fine grid."""
-    key = Keyway(width="5 mm", depth="2.3 mm", angle="2 rad")
+    key = Keyway(width=5e-3, depth=2.3e-3, angle=2.0)
     with_key = unbalance(eccentric(), 8.5e-3, key, WIDTH, DENSITY)
     without = unbalance(eccentric(), 8.5e-3, None, WIDTH, DENSITY)
     y = (np.arange(4000) + 0.5) / 4000 * 5e-3 - 2.5e-3
@@ -179,7 +190,7 @@ def test_balanced_cam_needs_no_hole():
 
 def test_hole_stays_within_the_contour_of_a_valley():
     # the keyway lies under the lobe at 260 deg, so the valley at 80 deg is the heavy side
-    contour, found = tripled(notch=Keyway(width="5 mm", depth="2.3 mm", angle="260 deg"))
+    contour, found = tripled(notch=Keyway(width=5e-3, depth=2.3e-3, angle=np.radians(260.0)))
     assert np.degrees(found.angle) == pytest.approx(80.0)
     hole = counter_hole(contour, found, 8.5e-3, 1e-3)
     away = np.hypot(*(contour.polygon(1440) - hole.centre[:, None])).min()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import FrozenInstanceError
+from math import radians
 from pathlib import Path
 
 import pytest
@@ -10,6 +12,15 @@ import pytest
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import CASE_BYTES, load_case_file, parse_case
+from camwright.pipeline.case.limits import (
+    CURVATURE_RATE,
+    JAM_INDEX,
+    LIMITS,
+    PRESSURE_ANGLE,
+    TORQUE_REDUCTION,
+    AnyLimit,
+    Limits,
+)
 from camwright.pipeline.case.template import template
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -34,13 +45,13 @@ def test_gx120_is_the_published_design() -> None:
     case = parse_case(GX120)
     assert case.spring.rate == 24200.0
     assert case.spring.preload == 242.0
-    assert case.cam.pitch_base_radius == 0.050
+    assert case.cam.prime_radius == 0.050
     assert case.roller.radius == 0.008
     assert case.roller.bearing.C0 == 380.0
     assert case.guides.a.friction == 0.04
     assert case.guides.b.friction == 0.20
     assert case.guides.spacing == 0.080
-    assert case.limits.torque_reduction == 0.4
+    assert case.limits[TORQUE_REDUCTION] == 0.4
     assert case.solver.positions == 720
     assert [load_case.name for load_case in case.load_cases] == ["idle"]
 
@@ -62,7 +73,7 @@ def test_resolved_text_reads_back_bit_for_bit() -> None:
     case = parse_case(GX120)
     text = case.to_toml()
     again = parse_case(text)
-    assert again.model_dump() == case.model_dump()
+    assert again == case
     assert again.to_toml() == text
     assert again.sha256 == case.sha256
 
@@ -154,7 +165,7 @@ def test_load_case_names_differ() -> None:
     assert refused(text) == "load_case[1].name = IDLE, must be unlike every other"
 
 
-def test_enters_the_road_once() -> None:
+def test_starts_at_the_torque_or_at_the_lift_never_at_both() -> None:
     assert "must be exactly one" in refused(GX120 + '\n[lift]\nfile = "lift.csv"\n')
 
 
@@ -248,8 +259,48 @@ def test_include_that_is_missing_is_named(tmp_path: Path) -> None:
 
 def test_frozen() -> None:
     case = parse_case(GX120)
-    with pytest.raises(ValueError, match="frozen"):
+    with pytest.raises(FrozenInstanceError):
         case.spring.rate = 1.0  # type: ignore[misc]
+    with pytest.raises(ValueError, match="frozen"):
+        case.solver.positions = 36  # type: ignore[misc]
+    with pytest.raises(ValueError, match="frozen"):
+        case.limits.jam_index = 1.0
+
+
+def test_parts_hold_the_cards_of_their_materials() -> None:
+    case = parse_case(GX120)
+    for name, card in case.materials.items():
+        assert card.name == name
+    for card in (
+        case.cam.material,
+        case.roller.material,
+        case.follower.stem_material,
+        case.guides.a.material,
+        case.guides.b.material,
+    ):
+        assert card == case.materials[card.name]
+    assert (case.cam.material.name, case.guides.a.material.name) == ("s355", "nylon")
+
+
+def test_limits_are_looked_up_by_their_rows() -> None:
+    limits = parse_case(GX120).limits
+    assert limits[JAM_INDEX] == 0.5
+    assert limits[PRESSURE_ANGLE] == pytest.approx(radians(30.0), rel=1e-15)
+    assert limits[CURVATURE_RATE] is None  # it has no default, and the case sets none
+    assert limits.source(PRESSURE_ANGLE).startswith("Rothbart, Cam Design Handbook (2004), ch. 6")
+    assert limits.source(JAM_INDEX) == JAM_INDEX.source  # the case has no words of its own
+
+
+@pytest.mark.parametrize("row", LIMITS.values(), ids=LIMITS)
+def test_a_limit_left_out_is_that_of_its_row(row: AnyLimit) -> None:
+    assert Limits()[row] == row.default
+    if row.default is not None:
+        assert row.quantity.holds(row.default)
+
+
+def test_the_tables_of_a_case_are_those_of_its_text() -> None:
+    case = parse_case(GX120)
+    assert case.tables() == tomllib.loads(case.to_toml())
 
 
 def test_template_is_a_case() -> None:

@@ -7,15 +7,19 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import CREEP, Corner, machine, machines
 from camwright.pipeline.checks import guide_bushes, jump_and_jamming, roller_bearing
-from camwright.pipeline.checks.extremes import TrialEvidence
 from camwright.pipeline.checks.jump_and_jamming import contact_force_margin
-from camwright.pipeline.checks.tolerance_corners import Corner, applied
-from camwright.pipeline.cycle.cycle import closed_form_cycle, finished
+from camwright.pipeline.contact.contact_history import ContactHistory
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.solution import Solution, solved_turns
 from camwright.pipeline.cycle.turn import turn
-from camwright.pipeline.preview import closed_form_checks
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 
 GX120_CASE = Path(__file__).resolve().parents[2] / "cases" / "gx120.toml"
@@ -26,38 +30,91 @@ TWELVE = Smoother("moving_average", points=12, spacing=float(np.radians(5.0)))
 
 @pytest.fixture(scope="module")
 def torques():
-    return road.engine_torques(parse_case(GX120))
+    return engine_torques(parse_case(GX120))
 
 
 def cam(case, torques):
-    return road.cam_contour(case, road.designed_lift(case, torques, TWELVE))
+    return case.contour(cam_lift(case, torques, TWELVE))
+
+
+def by_name(case):
+    """The machine in every load case."""
+    return {each.load_case: each for each in machines(case)}
 
 
 def test_a_load_case_with_its_own_preload_changes_the_spring_force_by_the_difference(torques):
     case = parse_case(GX120 + SOFT)
     contour = cam(case, torques)
-    idle, soft = (turn(case, contour, torques["idle"], name, 72) for name in ("idle", "soft"))
+    idle, soft = (turn(each, contour, torques["idle"], 72) for each in machines(case))
     np.testing.assert_allclose(idle.loads.spring_force - soft.loads.spring_force, 121.0, atol=1e-9)
     plain = cam(parse_case(GX120), torques)
     np.testing.assert_array_equal(contour.pitch.lift.values, plain.pitch.lift.values)
-    cycles = (closed_form_cycle(case, contour, soft),)
-    evidence = TrialEvidence(case=case, contour=contour, cycles=cycles)
+    solution = solved_turns(case, contour, (soft,), Tier.PREVIEW, {})
     expected = float(soft.loads.normal_force.min()) / 121.0
-    assert contact_force_margin(evidence).demand == pytest.approx(expected, rel=1e-12)
+    assert contact_force_margin(solution).demand == pytest.approx(expected, rel=1e-12)
+
+
+def test_there_is_a_machine_for_every_load_case_with_its_speed_and_preload():
+    case = parse_case(GX120 + SOFT + '\n[[load_case]]\nname = "still"\nspeed = "0 rpm"\n')
+    found = machines(case)
+    assert [each.load_case for each in found] == ["idle", "soft", "still"]
+    assert found[1] == machine(case, case.load_cases[1])
+    idle, soft, still = found
+    assert (idle.spring, soft.spring.preload) == (case.spring, 121.0)
+    assert soft.spring.rate == case.spring.rate
+    assert idle.cam_speed == pytest.approx(0.5 * 1500 * np.pi / 30, rel=1e-12)
+    assert (still.speed, still.crank_speed) == (0.0, CREEP)  # it creeps
+    assert idle.cam is soft.cam and idle.follower is case.roller
+
+
+def test_the_machine_of_a_case_by_hand():
+    case = parse_case(GX120)
+    (found,) = machines(case)
+    cam, roller = case.cam.material, case.roller.material
+    assert found.contact_width == min(case.cam.width, case.roller.width - 2 * case.roller.chamfer)
+    assert found.base_radius == pytest.approx(0.050 - 0.008)
+    compliance = (1 - cam.nu**2) / cam.E + (1 - roller.nu**2) / roller.E
+    assert found.contact_modulus == pytest.approx(1 / compliance, rel=1e-12)
+    assert found.softer is cam  # S355 under bearing steel
+    stem, follower = found.stem, case.follower
+    assert (stem.diameter, stem.elastic_modulus) == (0.010, follower.stem_material.E)
+    reach = follower.overhang_at_max_lift + case.guides.spacing
+    stiffness = stem.elastic_modulus * np.pi / 4 * 0.010**2 / reach
+    assert found.axial_stiffness == pytest.approx(stiffness, rel=1e-12)
+    assert found.system.spring is found.spring
+    assert found.system.face_friction == 0.0
+    assert (found.roller, found.face) == (case.roller, None)
 
 
 def test_a_corner_of_the_preload_moves_that_of_every_load_case():
-    at = applied(parse_case(GX120 + SOFT), Corner("stiff", preload=1.05))
-    assert at.spring.preload == pytest.approx(1.05 * 242.0)
-    assert at.at("soft").spring.preload == pytest.approx(1.05 * 121.0)
-    assert at.at("idle").spring.preload == pytest.approx(1.05 * 242.0)
+    given = by_name(parse_case(GX120 + SOFT))
+    at = {name: each.at_corner(Corner("stiff", preload=1.05)) for name, each in given.items()}
+    assert at["idle"].spring.preload == pytest.approx(1.05 * 242.0)
+    assert at["soft"].spring.preload == pytest.approx(1.05 * 121.0)
+    assert given["soft"].spring.preload == 121.0
+
+
+def test_a_corner_moves_what_it_names():
+    """A cam proud by 0.1 mm compresses the stiffer spring by as much."""
+    (nominal,) = machines(parse_case(GX120))
+    corner = Corner(
+        "all", friction_a=1.5, friction_b=0.5, rate=1.1, mass=1.2, inertia=0.9, profile=1e-4
+    )
+    at = nominal.at_corner(corner)
+    assert at.spring.rate == pytest.approx(1.1 * 24.2e3)
+    assert at.spring.preload == pytest.approx(242.0 + 1.1 * 24.2e3 * 1e-4)
+    assert at.mass == pytest.approx(1.2 * nominal.mass)
+    assert at.crankshaft.inertia == pytest.approx(0.9 * nominal.crankshaft.inertia)
+    assert at.friction.nominal == pytest.approx((0.06, 0.10))
+    assert (at.system.friction_a, at.system.friction_b) == at.friction.nominal
+    assert (at.cam, at.follower, at.guides) == (nominal.cam, nominal.follower, nominal.guides)
 
 
 def test_half_the_compensation_halves_the_torque_that_the_cam_takes(torques):
     half = parse_case(GX120.replace("gear_ratio = 2.0", "compensation = 0.5\ngear_ratio = 2.0"))
     taken = []
     for case in (parse_case(GX120), half):
-        loads = turn(case, cam(case, torques), torques["idle"], "idle", 720).loads
+        loads = turn(machines(case)[0], cam(case, torques), torques["idle"], 720).loads
         taken.append(loads.spring_force * loads.lift_slope)
     # The lift's spline is not linear in the torque: 1e-3 of the greatest.
     np.testing.assert_allclose(2.0 * taken[1], taken[0], atol=1e-3 * np.abs(taken[0]).max())
@@ -91,7 +148,7 @@ LOADS = (GX120_CASE.parent / "gx120-loads.toml").read_text(encoding="utf-8")
 def loads():
     """Four states of one machine, at few positions."""
     given = parse_case(LOADS).with_positions(72)
-    return given, road.engine_torques(given)
+    return given, engine_torques(given)
 
 
 def test_each_load_case_has_the_torque_of_its_own_throttle(loads):
@@ -108,7 +165,7 @@ def test_each_load_case_has_the_torque_of_its_own_throttle(loads):
 def test_the_cam_is_cut_for_the_idle_alone(loads):
     case, found = loads
     alone = parse_case(GX120).with_positions(72)
-    lifts = [road.designed_lift(given, found, TWELVE).values for given in (case, alone)]
+    lifts = [cam_lift(given, found, TWELVE).values for given in (case, alone)]
     np.testing.assert_array_equal(*lifts)
 
 
@@ -119,10 +176,10 @@ def test_checks_from_rest_to_overspeed_name_what_governs_and_pass_on_no_missing_
     text = LOADS.replace("[cam]\n", oil + rough)
     text = text.replace("[roller]\n", f"[roller]\nfriction = 0.1\n{rough}")
     oiled = parse_case(text).with_positions(72)
-    found = {check.id: check for check in closed_form_checks(oiled)}
+    found = {check.id: check for check in preview_case(oiled).checks}
     assert (found["film_ratio"].load_case, found["film_ratio"].status) == ("start", "fail")
     assert 0.0 < found["film_ratio"].demand < 1e-2
-    for name in ("contact_pressure", "roller_static", "bush_pv_A", "jump", "roller_speed"):
+    for name in ("contact_pressure", "roller_static", "guide_pv_A", "jump", "roller_speed"):
         assert found[name].load_case == "overspeed", name
     assert found["torque_reduction"].load_case == "idle"
     for check in found.values():
@@ -131,18 +188,23 @@ def test_checks_from_rest_to_overspeed_name_what_governs_and_pass_on_no_missing_
 
 def test_at_rest_alone_no_speed_dependent_check_is_missing(loads):
     case, _ = loads
-    start = next(state for state in case.load_cases if state.name == "start")
+    start = by_name(case)["start"]
     lift = parse_case(GX120).with_positions(72)
-    contour = cam(lift, road.engine_torques(lift))
-    still = case.model_copy(update={"load_cases": (start,)})
-    given = turn(still, contour, None, "start", 72)
-    cycles = (finished(still, contour, given, road.unknown_contact(given)),)
-    trial = TrialEvidence(case=still, contour=contour, cycles=cycles)
-    assert jump_and_jamming.jump(trial).demand == pytest.approx(0.0, abs=1e-10)
-    assert guide_bushes.bush_pv_a(trial).demand == pytest.approx(0.0, abs=1e-3)
-    assert roller_bearing.roller_speed(trial).demand == pytest.approx(0.0, abs=1e-1)
-    assert roller_bearing.roller_life(trial).demand > 1e3
-    assert jump_and_jamming.jump_speed(trial).demand == pytest.approx(3318.0, rel=0.01)
+    contour = cam(lift, engine_torques(lift))
+    given = turn(start, contour, None, 72)
+    pair, unknown = contact_pair(start, contour), ContactHistory.unknown(72)
+    cycles = (Cycle(given, contour, pair, None, unknown),)
+    solution = Solution(case, contour, (start,), Tier.FINITE_ELEMENTS, None, cycles)
+
+    def demand(check):
+        """In the unit of its record."""
+        return check(solution).as_record()["demand"]
+
+    assert demand(jump_and_jamming.jump) == pytest.approx(0.0, abs=1e-10)
+    assert demand(guide_bushes.guide_pv_a) == pytest.approx(0.0, abs=1e-3)
+    assert demand(roller_bearing.roller_speed) == pytest.approx(0.0, abs=1e-1)
+    assert demand(roller_bearing.roller_life) > 1e3
+    assert demand(jump_and_jamming.jump_speed) == pytest.approx(3318.0, rel=0.01)
 
 
 @pytest.mark.parametrize(

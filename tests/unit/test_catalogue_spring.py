@@ -6,17 +6,20 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cards.spring_catalogue import CATALOGUE, SpringDemand, read_catalogue
 from camwright.pipeline.case.case_file import load_case_file, parse_case
 from camwright.pipeline.case.template import template
-from camwright.pipeline.follower.spring import case_spring
 
 WIRE = """
 [wires.steel]
 shear_modulus = "80 GPa"
 density = "7850 kg/m^3"
 strength_at_1mm = "2000 MPa"
-exponent = 0.1
-peened = true
+strength_exponent = 0.1
+treatment = "peened"
 source = "a test"
 """
+OLD_WIRE = WIRE.replace("strength_exponent", "exponent").replace(
+    'treatment = "peened"', "peened = true"
+)
+WIRELESS = "[wires]\nsteel = 1\n"
 SPRING = """
 [[spring]]
 name = "{name}"
@@ -45,7 +48,7 @@ def shipped(travel="25 mm", **changes):
 def test_the_lightest_of_the_shipped_springs_becomes_the_design():
     """By brute force over the catalogue; the resolved case holds it and asks for no file."""
     case = shipped()
-    spring = case_spring(case)
+    spring = case.spring.design
     demand = SpringDemand(case.spring.rate, case.spring.preload, 0.025)
     will_do = [each for each in read_catalogue() if not demand.shortfalls(each)]
     assert spring.mass == pytest.approx(min(each.mass for each in will_do), rel=1e-12)
@@ -57,7 +60,7 @@ def test_the_lightest_of_the_shipped_springs_becomes_the_design():
 
 def test_tolerances_and_preloads_of_states_ask_for_more():
     """The hardest spring that may come, at the greatest preload, decides; both rule springs out."""
-    base = case_spring(shipped()).mass
+    base = shipped().spring.design.mass
     spread = parse_case(
         case_text(
             'catalogue = "shipped"', 'travel_max = "25 mm"', "preload_tolerance = 0.5",
@@ -67,8 +70,8 @@ def test_tolerances_and_preloads_of_states_ask_for_more():
         case_text('catalogue = "shipped"', 'travel_max = "25 mm"')
         + '\n[[load_case]]\nname = "hard"\nspeed = "1500 rpm"\npreload = "600 N"\n'
     )
-    assert case_spring(spread) == case_spring(stiffer)
-    assert case_spring(spread).mass > base
+    assert spread.spring.design == stiffer.spring.design
+    assert spread.spring.design.mass > base
 
 
 def test_a_catalogue_beside_the_case(tmp_path):
@@ -123,11 +126,14 @@ def test_stays_in_the_folder_of_the_case(tmp_path, name):
         ("spring = 3\n[wires]", r"catalogue\.spring = 3, must be tables"),
         ("spring = [1]\n[wires]", r"catalogue\.spring\[0\] = 1, must be a table"),
         ("wires = {a = 1}\nspring = []", r"catalogue\.wires\.a = 1, must be a table"),
+        (
+            WIRELESS + SPRING.format(name="a", wire=5, mean=32, coils=8),
+            r"catalogue\.wires\.steel = 1, must be a table",
+        ),
         ("colour = 1", r"catalogue\.colour = unknown key"),
         (WIRE + 2 * SPRING.format(name="a", wire=5, mean=32, coils=8), "unlike every other"),
         (WIRE + SPRING.format(name="a", wire=5, mean=32, coils='"8"'), "a number without a unit"),
-        (WIRE + SPRING.format(name="a", wire=5, mean=32, coils="nan"), "a number without a unit"),
-        (WIRE.replace("true", "1") + "\n[[spring]]", "true or false"),
+        (WIRE + SPRING.format(name="a", wire=5, mean=32, coils="nan"), "must be finite"),
         (WIRE + SPRING.format(name="", wire=5, mean=32, coils=8), "printable text"),
         (WIRE + "spring = " + 5000 * "[" + 5000 * "]", "catalogue"),
     ],
@@ -137,6 +143,73 @@ def test_refuses_a_hostile_catalogue(tmp_path, text, match):
     path.write_text(text)
     with pytest.raises(InputError, match=match):
         read_catalogue(path)
+
+
+def catalogue(folder, wire, **changes):
+    """Springs of a catalogue of one spring, of a wire."""
+    path = folder / "own.toml"
+    one = {"name": "one", "wire": 5, "mean": 32, "coils": 8} | changes
+    path.write_text(wire + SPRING.format(**one))
+    return read_catalogue(path)
+
+
+@pytest.mark.parametrize(("peened", "treatment"), [("true", "peened"), ("false", "plain")])
+def test_a_catalogue_with_the_keys_of_version_0_1_is_read(tmp_path, peened, treatment):
+    old = OLD_WIRE.replace("peened = true", f"peened = {peened}")
+    new = WIRE.replace('"peened"', f'"{treatment}"')
+    (spring,) = catalogue(tmp_path, old)
+    assert (spring.strength_exponent, spring.treatment) == (0.1, treatment)
+    assert (spring,) == catalogue(tmp_path, new)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("strength_exponent = 0.1", "strength_exponent = 1.0",
+         "catalogue.wires.steel.strength_exponent = 1.0, must be >= 0 and < 1"),
+        ("strength_exponent = 0.1", 'strength_exponent = "0.1"',
+         "catalogue.wires.steel.strength_exponent = 0.1, must be a number without a unit"),
+        ("strength_exponent = 0.1", "exponent = nan",
+         "catalogue.wires.steel.strength_exponent = nan, must be finite"),
+        ('"80 GPa"', '"0 GPa"',
+         "catalogue.wires.steel.shear_modulus = 0 GPa, must be > 0 and <= 100000 GPa"),
+        ('"80 GPa"', '"80 mm"',
+         "catalogue.wires.steel.shear_modulus = 80 mm, must be in a unit of the dimension of GPa"),
+        ('"7850 kg/m^3"', "7850",
+         "catalogue.wires.steel.density = 7850, must be a number with a unit"),
+        ('"2000 MPa"', '"-1 MPa"',
+         "catalogue.wires.steel.strength_at_1mm = -1 MPa, must be > 0"),
+        ('treatment = "peened"', 'treatment = "shot"',
+         "catalogue.wires.steel.treatment = shot, must be 'plain' or 'peened'"),
+        ('treatment = "peened"', "peened = 1",
+         "catalogue.wires.steel.treatment = 1, must be 'plain' or 'peened'"),
+        ('source = "a test"', "source = 3",
+         "catalogue.wires.steel.source = 3, must be text in quotes"),
+        ('source = "a test"', 'source = "a test"\ncolour = "red"',
+         "catalogue.wires.steel.colour = unknown key"),
+    ],
+)  # fmt: skip
+def test_a_bad_value_of_a_wire_is_told_by_the_wire_s_own_name(tmp_path, old, new, message):
+    assert WIRE.count(old) == 1
+    with pytest.raises(InputError) as refusal:
+        catalogue(tmp_path, WIRE.replace(old, new))
+    assert message in str(refusal.value)
+
+
+@pytest.mark.parametrize("second", ["exponent = 0.2", "peened = false"])
+def test_a_wire_with_an_old_and_a_new_name_of_a_key_is_refused(tmp_path, second):
+    with pytest.raises(InputError, match=r"catalogue\.wires\.steel"):
+        catalogue(tmp_path, f"{WIRE}{second}\n")
+
+
+def test_a_bad_value_of_a_spring_is_told_by_its_place(tmp_path):
+    with pytest.raises(InputError) as refusal:
+        catalogue(tmp_path, WIRE, coils=1)
+    assert refusal.value.field == "catalogue.spring[0].coils"
+    with pytest.raises(InputError) as refusal:
+        catalogue(tmp_path, WIRE, mean=10)  # two wire diameters
+    assert refusal.value.field == "catalogue.spring[0].mean_diameter"
+    assert "3 to 20 wire diameters" in str(refusal.value)
 
 
 def test_an_empty_catalogue_has_no_spring(tmp_path):

@@ -5,17 +5,17 @@ import math
 
 import numpy as np
 import pytest
+from made_check import made_check
 
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.verdict import binding, in_order, verdict
+from camwright.pipeline.checks.check import Check, binding, in_order, verdict
 
 
 def at_most(demand, limit=2.0, **more) -> Check:
-    return Check("x", "X", demand, limit, "MPa", **more)
+    return made_check("x", demand, limit, unit="MPa", **more)
 
 
 def at_least(demand, limit=2.0, **more) -> Check:
-    return Check("x", "X", demand, limit, "-", sense="at_least", **more)
+    return made_check("x", demand, limit, sense="at_least", **more)
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,7 @@ def test_status_and_utilisation(check, status, utilisation):
     [(None, 1.0), (1.0, None), (np.nan, 1.0), (1.0, np.nan), (None, None), (1.0, np.inf)],
 )
 def test_a_missing_number_never_passes(sense, demand, limit):
-    check = Check("x", "X", demand, limit, sense=sense)
+    check = made_check("x", demand, limit, sense=sense)
     assert check.status == "not_evaluated"
     assert check.utilisation is None
     assert verdict([check]) == "fail"
@@ -83,12 +83,12 @@ def test_no_checks_no_pass():
 
 def test_order_not_evaluated_first_then_worst():
     checks = [
-        Check("mild", "", 0.5, 1.0),
-        Check("bad", "", 3.0, 1.0),
-        Check("never", "", 0.0, 1.0, sense="at_least"),
-        Check("optional_unknown", "", None, 1.0, must_have=False),
-        Check("unknown", "", None, 1.0),
-        Check("over", "", 1.01, 1.0),
+        made_check("mild", 0.5, 1.0),
+        made_check("bad", 3.0, 1.0),
+        made_check("never", 0.0, 1.0, sense="at_least"),
+        made_check("optional_unknown", None, 1.0, must_have=False),
+        made_check("unknown", None, 1.0),
+        made_check("over", 1.01, 1.0),
     ]
     names = [check.id for check in in_order(checks)]
     assert names == ["unknown", "optional_unknown", "never", "bad", "over", "mild"]
@@ -96,15 +96,35 @@ def test_order_not_evaluated_first_then_worst():
 
 
 def test_order_does_not_depend_on_the_input_order():
-    checks = [Check(name, "", 1.0, 1.0) for name in "cab"]
+    checks = [made_check(name, 1.0, 1.0) for name in "cab"]
     assert [check.id for check in in_order(checks)] == ["a", "b", "c"]
 
 
 def test_record_has_the_contract_s_keys():
-    record = at_most(1.0, load_case="idle", cam_angle_deg=12.0, source="s", method="m").as_record()
+    record = at_most(1.0, load_case="idle", cam_angle=0.2, source="s", method="m").as_record()
     first = "id title demand limit unit utilisation status load_case cam_angle_deg source method"
     assert list(record)[:11] == first.split()
     assert record["utilisation"] == 0.5
+
+
+@pytest.mark.parametrize(
+    ("unit", "si", "written"),
+    [("MPa", 2e6, 2.0), ("deg", 0.5 * math.pi, 90.0), ("%", 0.03, 3.0), ("h", 7200.0, 2.0),
+     ("rpm", math.pi, 30.0), ("degC", 56.85, 56.85), ("-", 0.5, 0.5), ("crossings", 3.0, 3.0)],
+)  # fmt: skip
+def test_record_is_in_the_unit_of_the_check(unit, si, written):
+    """Demand, limit, error and corner; the utilisation is that of the SI values."""
+    check = made_check(
+        "x", si, 2.0 * si, unit=unit, cam_angle=math.pi / 3.0, error_share=0.01,
+        corner="mass high", corner_demand=1.5 * si,
+    )  # fmt: skip
+    record = check.as_record()
+    assert record["demand"] == pytest.approx(written, rel=1e-12)
+    assert record["limit"] == pytest.approx(2.0 * written, rel=1e-12)
+    assert record["error"] == pytest.approx(0.01 * written, rel=1e-12)
+    assert record["corner_demand"] == pytest.approx(1.5 * written, rel=1e-12)
+    assert record["cam_angle_deg"] == pytest.approx(60.0, rel=1e-12)
+    assert record["utilisation"] == check.utilisation == 0.5
 
 
 @pytest.mark.parametrize(

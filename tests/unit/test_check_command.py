@@ -1,4 +1,4 @@
-"""`camwright check`: choice, failure, JUnit, baseline, record, look ahead."""
+"""`camwright check`: choice, failure, JUnit, baseline, record, preview."""
 
 from __future__ import annotations
 
@@ -156,18 +156,17 @@ def test_a_changed_byte_fails_the_record_and_is_named(run: Path, command: Comman
     assert "5_cycle.csv: was changed" in err
 
 
-def test_a_case_file_is_looked_ahead_and_never_passes(tmp_path: Path, command: Command) -> None:
-    file = tmp_path / "ahead.toml"
-    file.write_text(template("ahead"))
+def test_a_case_file_is_previewed_and_never_passes(tmp_path: Path, command: Command) -> None:
+    file = tmp_path / "early.toml"
+    file.write_text(template("early"))
     code, out, _ = command("check", file, "--json")
     document = json.loads(out)
     assert code == 1
-    assert document["look_ahead"]
+    assert document["preview"] is True
+    assert document["verdict"] == "fail"
     assert "signed_off" in document["binding"]
-    designs = [r for r in document["checks"] if r["id"] not in ("signed_off",)]
-    assert all(r["method"].startswith("closed forms only") or not r["method"].strip()
-               for r in designs)  # fmt: skip
-    assert "a look ahead by closed forms" in command("check", file)[1]
+    assert all(record["method"].startswith("preview: ") for record in document["checks"])
+    assert "preview by closed forms" in command("check", file)[1]
 
 
 def test_a_finished_run_is_checked_from_its_folder(tmp_path: Path, command: Command) -> None:
@@ -178,11 +177,11 @@ def test_a_finished_run_is_checked_from_its_folder(tmp_path: Path, command: Comm
 def test_what_binds_is_told_apart_from_what_nobody_can_judge():
     records = [
         {"id": "roller_static", "status": "fail"},
-        {"id": "bush_pv_B", "status": "not_evaluated"},
+        {"id": "guide_pv_B", "status": "not_evaluated"},
         {"id": "closure", "status": "pass"},
     ]
-    assert binding_lines(records, ["bush_pv_B", "roller_static"]) == [
+    assert binding_lines(records, ["guide_pv_B", "roller_static"]) == [
         "binding: roller_static",
-        "binding, as a number is missing: bush_pv_B",
+        "binding, as a number is missing: guide_pv_B",
     ]
     assert binding_lines(records, []) == []

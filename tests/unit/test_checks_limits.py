@@ -1,7 +1,5 @@
 """What a limit is made of, and a NaN in one of two load cases; each check in test_every_check."""
 
-from dataclasses import replace
-
 import made_trial as made
 import numpy as np
 import pytest
@@ -18,9 +16,9 @@ from trial_variants import (
     with_mesh,
 )
 
-from camwright.pipeline.case.requirements_section import Limits
-from camwright.pipeline.checks.extremes import TrialEvidence
+from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.checks.registry import all_checks
+from camwright.pipeline.cycle.solution import Solution
 
 
 @pytest.mark.parametrize(
@@ -50,7 +48,7 @@ def test_a_share_is_of_the_whole(name, share):
     assert check(name, with_limits(**{share: 0.7})).limit == pytest.approx(0.7 * whole.limit)
 
 
-def poisoned(part: str, field: str) -> TrialEvidence:
+def poisoned(part: str, field: str) -> Solution:
     """Two load cases; of the second one figure is not known."""
     bad = cycle_with(part, made.cycle(load_case="bad"), **{field: NAN})
     return made.of_load_cases(made.cycle(), bad)
@@ -75,10 +73,10 @@ def poisoned(part: str, field: str) -> TrialEvidence:
         ("first_yield", "contact", "von_mises"),
         ("contact_equilibrium", "contact", "residual_equilibrium"),
         ("contact_complementarity", "contact", "residual_complementarity"),
-        ("bush_pressure_A", "guides", "reaction_a"),
-        ("bush_pv_A", "guides", "rubbing_load_a"),
-        ("bush_pressure_B", "guides", "reaction_b"),
-        ("bush_pv_B", "guides", "rubbing_load_b"),
+        ("guide_pressure_A", "guides", "reaction_a"),
+        ("guide_pv_A", "guides", "rubbing_load_a"),
+        ("guide_pressure_B", "guides", "reaction_b"),
+        ("guide_pv_B", "guides", "rubbing_load_b"),
         ("guide_equilibrium_force", "guides", "force_residual"),
         ("guide_equilibrium_moment", "guides", "moment_residual"),
     ],
@@ -101,7 +99,7 @@ def test_a_nan_force_leaves_the_life_unknown():
     assert np.isnan(check("roller_life", poisoned("loads", "normal_force")).demand)
 
 
-@pytest.mark.parametrize("field", ["torque_before", "residual_torque"])
+@pytest.mark.parametrize("field", ["torque_before", "torque_after"])
 @pytest.mark.parametrize("name", ["torque_reduction", "phase_tolerance"])
 def test_a_nan_torque_leaves_the_reduction_unknown(name, field):
     assert check(name, with_cycle(**{field: NAN})).status == "not_evaluated"
@@ -136,9 +134,10 @@ class Watched(dict):
 
 
 def test_the_source_of_every_limit_is_looked_up_and_no_other():
-    """But for the over-speed, of which a limit is made; `limits.sources` accepts no other name."""
+    """But for the overspeed, of which a limit is made; `limits.sources` accepts no other name."""
     sources = Watched()
-    for trial in (made.evidence(), hollow(), soft(), faced()):
-        limits = made.changed(trial.case.limits, sources=sources)
-        all_checks(replace(trial, case=made.changed(trial.case, limits=limits)))
-    assert sources.names == set(Limits.model_fields) - {"sources", "overspeed"}
+    for solution in (made.solution(), hollow(), soft(), faced()):
+        limits = made.changed(solution.case.limits, sources=sources)
+        case = made.changed(solution.case, limits=limits)
+        all_checks(made.changed_solution(solution, case=case))
+    assert sources.names == set(LIMITS) - {"overspeed"}

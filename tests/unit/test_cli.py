@@ -13,6 +13,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pytest
 from small_run import check, small_case, summary, write_run, write_trial
 
@@ -42,7 +43,7 @@ def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str])
 
 
 @pytest.fixture
-def road(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Any]], None]:
+def runner(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Any]], None]:
     """Puts a stand-in in the place of the run itself."""
 
     def install(run_case: Callable[..., Any]) -> None:
@@ -60,7 +61,7 @@ def case_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Command)
     return tmp_path / "small.toml"
 
 
-def short_road(
+def short_run(
     case: Any,
     out: Path,
     *,
@@ -69,6 +70,7 @@ def short_road(
     resume: bool,
     progress: Any,
     present: Callable[[Path], object],
+    also: Callable[[Any], object],
 ) -> None:
     progress.stage("cycle")
     progress.advance(1, 2)
@@ -82,9 +84,9 @@ def is_one_line(text: str) -> bool:
 
 
 def test_run_completes_with_0_whatever_the_verdict(
-    case_file: Path, command: Command, road: Any
+    case_file: Path, command: Command, runner: Any
 ) -> None:
-    road(short_road)
+    runner(short_run)
     code, out, err = command("run", case_file, "--out", "runs/small", "--jobs", 2)
     assert code == 0
     assert "verdict: fail after 1 trial\n" in out
@@ -94,31 +96,31 @@ def test_run_completes_with_0_whatever_the_verdict(
     assert err == "cycle\n"
 
 
-def test_positions_reach_the_case(case_file: Path, command: Command, road: Any) -> None:
+def test_positions_reach_the_case(case_file: Path, command: Command, runner: Any) -> None:
     seen: list[Any] = []
 
     def look(case: Any, out: Path, **options: Any) -> None:
         seen.append((case.solver.positions, options["positions"]))
-        short_road(case, out, **options)
+        short_run(case, out, **options)
 
-    road(look)
+    runner(look)
     assert command("run", case_file, "--out", "run", "--positions", 48)[0] == 0
     assert seen == [(48, 48)]
 
 
 def test_resume_of_a_finished_run_solves_nothing(
-    case_file: Path, command: Command, road: Any
+    case_file: Path, command: Command, runner: Any
 ) -> None:
-    road(short_road)
+    runner(short_run)
     first = command("run", case_file, "--out", "run")
-    road(lambda *_, **__: pytest.fail("solved again"))
+    runner(lambda *_, **__: pytest.fail("solved again"))
     assert command("run", case_file, "--out", "run", "--resume")[:2] == first[:2]
 
 
 def test_replace_takes_an_earlier_version_of_the_case_only(
-    case_file: Path, command: Command, road: Any
+    case_file: Path, command: Command, runner: Any
 ) -> None:
-    road(short_road)
+    runner(short_run)
     assert command("run", case_file, "--out", "run")[0] == 0
     case_file.write_text(case_file.read_text().replace('"400 N"', '"401 N"'))
     code, _, err = command("run", case_file, "--out", "run")
@@ -158,14 +160,14 @@ def test_bad_arguments(
         (MemoryError(), "unexpected MemoryError"),
     ],
 )
-def test_errors_of_the_road(
-    case_file: Path, command: Command, road: Any, error: Exception, message: str
+def test_errors_of_the_run(
+    case_file: Path, command: Command, runner: Any, error: Exception, message: str
 ) -> None:
     def fails(case: Any, out: Path, **_: Any) -> None:
         with RunFolder(out, case):
             raise error
 
-    road(fails)
+    runner(fails)
     code, out, err = command("run", case_file, "--out", "runs/small")
     assert (code, out) == (2, "")
     assert message in err
@@ -173,22 +175,22 @@ def test_errors_of_the_road(
     assert sorted(entry.name for entry in case_file.parent.iterdir()) == ["small.toml"]
 
 
-def test_debug_shows_where(case_file: Path, command: Command, road: Any) -> None:
+def test_debug_shows_where(case_file: Path, command: Command, runner: Any) -> None:
     def fails(*_: Any, **__: Any) -> None:
         raise ZeroDivisionError
 
-    road(fails)
+    runner(fails)
     with pytest.raises(ZeroDivisionError):
         command("run", case_file, "--out", "run", "--debug")
 
 
-def test_interrupt_says_how_to_go_on(case_file: Path, command: Command, road: Any) -> None:
+def test_interrupt_says_how_to_go_on(case_file: Path, command: Command, runner: Any) -> None:
     def stopped(case: Any, out: Path, **_: Any) -> None:
         with RunFolder(out, case) as folder:
-            folder.save_chunk(1, "idle", 0, {"p0": [1.0]})
+            folder.contact_store(1).save("idle", 0, {"p0": np.array([1.0])}, key="a")
             raise KeyboardInterrupt
 
-    road(stopped)
+    runner(stopped)
     code, _, err = command("run", case_file, "--out", "run")
     assert code == 130
     assert is_one_line(err)

@@ -4,22 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_check import made_check
 
-from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
-from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.machine import Corner, machines
 from camwright.pipeline.case.template import template
-from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.tolerance_corners import (
-    Corner,
     Outcome,
-    applied,
     corners_of,
+    corners_record,
     governed,
     outcomes,
-    record,
 )
 from camwright.pipeline.engine.torque import Torque, uniform_cycle
 
@@ -38,13 +35,21 @@ seed = 7
 
 
 def case():
+    """The template's machine with a smaller cam and roller."""
     text = template("corners")
+    for wide, narrow in (
+        ('prime_radius = "60 mm"', 'prime_radius = "50 mm"'),
+        ('radius = "16 mm"', 'radius = "8 mm"'),
+        ('hub_radius = "8 mm"', 'hub_radius = "4 mm"'),
+    ):
+        assert text.count(wide) == 1
+        text = text.replace(wide, narrow)
     return parse_case(text + TOLERANCES)
 
 
 def cam():
     theta = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
-    return Contour(PitchCurve(Lift(theta, 0.005 * (1.0 - np.cos(theta))), 0.05), 0.008)
+    return case().contour(Lift(theta, 0.005 * (1.0 - np.cos(theta))))
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +60,7 @@ def torque():
 
 
 @pytest.fixture(scope="module")
-def found():
+def demands():
     return {one.corner.name: one.demands for one in outcomes(case(), {}, cam())}
 
 
@@ -72,30 +77,35 @@ def test_one_at_a_time_then_a_seeded_sample():
 
 def test_without_tolerances_there_are_no_corners():
     bare = case()
-    none = {"tolerances": bare.tolerances.model_copy(
-        update={"friction": 0.0, "mass": 0.0, "inertia": 0.0, "phase": 0.0})}  # fmt: skip
-    guides = bare.guides.model_copy(update={
-        side: getattr(bare.guides, side).model_copy(
-            update={"friction_min": None, "friction_max": None})
-        for side in ("a", "b")})  # fmt: skip
-    spring = bare.spring.model_copy(update={"rate_tolerance": 0.0, "preload_tolerance": 0.0})
-    none |= {"guides": guides, "spring": spring}
-    assert corners_of(bare.model_copy(update=none)) == ()
+    exact = bare.tolerances.model_copy(
+        update={"friction": 0.0, "mass": 0.0, "inertia": 0.0, "phase": 0.0}
+    )
+    a, b = (replace(guide, friction_min=None, friction_max=None) for _, guide in bare.guides.both)
+    parts = {
+        "tolerances": exact,
+        "guides": replace(bare.guides, a=a, b=b),
+        "spring": replace(bare.spring, rate_tolerance=0.0, preload_tolerance=0.0),
+    }
+    assert corners_of(bare.model_copy(update=parts)) == ()
 
 
-def test_a_proud_contour_presses_the_spring():
-    at = applied(case(), Corner("x", profile=1e-4, rate=1.1))
-    spring = case().spring
-    assert at.spring.preload == pytest.approx(spring.preload + 1.1 * spring.rate * 1e-4)
+@pytest.mark.parametrize("own", [None, 350.0])
+def test_a_proud_contour_presses_the_spring(own):
+    """From the preload of the spring, or from that of the load case."""
+    state = case().load_cases[0].model_copy(update={"preload": own})
+    machine = machines(case().model_copy(update={"load_cases": (state,)}))[0]
+    at, spring = machine.at_corner(Corner("x", profile=1e-4, rate=1.1)), case().spring
+    preload = spring.preload if own is None else own
+    assert at.spring.preload == pytest.approx(preload + 1.1 * spring.rate * 1e-4)
 
 
-def test_tendencies_at_a_fixed_lift(found):
+def test_tendencies_at_a_fixed_lift(demands):
     """Worse friction and a heavier follower: nearer to jamming, to more pressure, to the jump."""
-    assert found["friction high"]["jam_index"] > found["nominal"]["jam_index"]
-    assert found["friction high"]["contact_pressure"] > found["nominal"]["contact_pressure"]
-    assert found["mass high"]["jump_speed"] < found["nominal"]["jump_speed"]
+    assert demands["friction high"]["jam_index"] > demands["nominal"]["jam_index"]
+    assert demands["friction high"]["contact_pressure"] > demands["nominal"]["contact_pressure"]
+    assert demands["mass high"]["jump_speed"] < demands["nominal"]["jump_speed"]
     # w_jump goes with one over the root of the mass
-    ratio = found["mass high"]["jump_speed"] / found["nominal"]["jump_speed"]
+    ratio = demands["mass high"]["jump_speed"] / demands["nominal"]["jump_speed"]
     assert ratio == pytest.approx(1.1**-0.5, rel=1e-9)
 
 
@@ -116,59 +126,67 @@ def test_phase_and_inertia_move_the_speed_ripple_alone(torque):
         assert seen["crank inertia high"][other] == pytest.approx(seen["nominal"][other])
 
 
-def test_every_demand_that_a_tolerance_moves_has_a_corner(found):
+def test_every_demand_that_a_tolerance_moves_has_a_corner(demands):
     """Of parts, springs and films too: nothing that moves is left out, nothing stands still."""
     moved = {
         name
-        for name, here in found["nominal"].items()
+        for name, here in demands["nominal"].items()
         if any(
-            one.get(name, here) != pytest.approx(here, rel=1e-12, abs=0.0) for one in found.values()
+            one.get(name, here) != pytest.approx(here, rel=1e-12, abs=0.0)
+            for one in demands.values()
         )
     }
     assert {
-        *("bush_peak_A", "bush_pressure_B", "bush_pv_A", "contact_at_overspeed", "first_yield"),
-        *("contact_force_margin", "edge_pressure", "elastic_contact", "jam_index", "jump"),
-        *("jump_speed", "roller_grip", "roller_life", "roller_radial", "roller_static"),
+        *("guide_edge_pressure_A", "guide_pressure_B", "guide_pv_A", "contact_at_overspeed"),
+        *("first_yield", "contact_force_margin", "edge_pressure", "elastic_contact", "jam_index"),
+        *("jump", "jump_speed", "traction_demand", "roller_life", "roller_radial", "roller_static"),
     } <= moved
     # The shape of the cam moves only with the line profile, which the template does not give.
-    assert {"pressure_angle", "curvature_ratio", "undercut"} <= set(found["nominal"]) - moved
+    assert {"pressure_angle", "curvature_ratio", "undercut"} <= set(demands["nominal"]) - moved
 
 
-def test_what_has_no_answer_at_a_corner_is_lost():
-    check = Check("p", "force share", 0.1, 0.2)
+def test_a_check_without_a_solution_at_a_corner_is_lost():
+    check = made_check("jump", 0.1, 0.2)
     seen = (
-        Outcome(Corner("nominal"), {"p": 0.1}),
-        Outcome(Corner("apart"), {"p": np.inf}),
+        Outcome(Corner("nominal"), {"jump": 0.1}),
+        Outcome(Corner("apart"), {"jump": np.inf}),
         Outcome(Corner("jammed"), {}, "follower.friction = 9, must be less"),
     )
-    named, robust = governed([check], seen)
+    named, robust = governed(machines(case())[0], [check], seen)
     assert (named.corner, named.corner_demand) == ("apart", np.inf)
     assert robust.demand == 2.0
     assert "jammed: follower.friction" in robust.note
-    assert record(case(), seen)["corners"][1]["demands"]["p"] is None
+    written = corners_record(case(), seen)["corners"]
+    assert [corner["demands"].get("jump") for corner in written] == [0.1, None, None]
 
 
 def test_the_governing_corner_is_named_and_scales_the_nominal_demand():
-    check = Check("p", "pressure", 100.0, 105.0)
+    check = made_check("p", 100.0, 105.0)
     seen = (
         Outcome(Corner("nominal"), {"p": 50.0}),
         Outcome(Corner("a"), {"p": 55.0}),
         Outcome(Corner("b"), {"p": 45.0}),
         Outcome(Corner("c"), {}),
     )
-    named, robust = governed([check], seen)
+    named, robust = governed(machines(case())[0], [check], seen)
     assert (named.corner, named.corner_demand) == ("a", pytest.approx(110.0))
     assert named.status == "pass"
     assert (robust.id, robust.demand, robust.status, robust.note) == (
         "tolerance_corners", 1.0, "fail", "p"
     )  # fmt: skip
-    lower, fine = governed([replace(check, sense="at_least", limit=80.0)], seen)
+    check = made_check("p", 100.0, 80.0, sense="at_least")
+    lower, fine = governed(machines(case())[0], [check], seen)
     assert (lower.corner, lower.corner_demand) == ("b", pytest.approx(90.0))
     assert fine.status == "pass"
 
 
 def test_record_holds_every_corner():
     seen = outcomes(case(), {}, cam())
-    written = record(case(), seen)
+    written = corners_record(case(), seen)
     assert written["tried"] == len(seen) - 1 == len(corners_of(case()))
-    assert written["corners"][0]["name"] == "nominal"
+    nominal = written["corners"][0]
+    assert nominal["name"] == "nominal"
+    # In the units of the checks: MPa and rpm.
+    demands, record = seen[0].demands, nominal["demands"]
+    assert record["contact_pressure"] == pytest.approx(1e-6 * demands["contact_pressure"])
+    assert record["jump_speed"] == pytest.approx(30.0 / np.pi * demands["jump_speed"])

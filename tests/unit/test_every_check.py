@@ -9,35 +9,37 @@ from pathlib import Path
 import made_trial as made
 import numpy as np
 import pytest
-from check_registry import BY_ID, BY_ITSELF, FUNCTIONS, MADE_LATER, TRIED, check
+from check_registry import BY_ID, BY_ITSELF, MADE_LATER, TRIED, check
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.case.case_file import load_case_file
-from camwright.pipeline.checks import proof, verdict
-from camwright.pipeline.follower.guide_reactions import GuidePair, guide_reactions
-from camwright.pipeline.follower.stem_beam import Stem
-from camwright.pipeline.preview import closed_form_checks
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks import solution_verification as verification
+from camwright.pipeline.checks.check import verdict
+from camwright.pipeline.checks.registry import CHECKS, MADE_FROM_OTHERS
+from camwright.pipeline.follower.guide_reactions import guide_reactions
+from camwright.pipeline.preview import preview_case
 
 MUST_HAVE = {
-    # shape, room and function
+    # shape, space and function
     *("closure", "acceleration_step", "pressure_angle", "curvature_ratio", "undercut"),
     *("self_intersection", "second_contact", "concave_radius", "minimum_wall", "spring_travel"),
-    *("guide_clearance", "cam_envelope", "torque_reduction", "energy_closure"),
+    *("guide_gap", "cam_radius", "torque_reduction", "energy_closure"),
     # forces and contact
     *("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed", "friction_balance"),
-    *("jam_index", "jam_at_worst_friction", "contact_pressure", "contact_pressure_at_life"),
+    *("jam_index", "jam_index_friction_max", "contact_pressure", "contact_pressure_at_life"),
     *("shakedown", "shakedown_traction", "edge_pressure"),
     # parts
     *("roller_static", "roller_life", "roller_radial", "roller_speed", "roller_pin"),
-    *("bush_pressure_A", "bush_pressure_B", "bush_pv_A", "bush_pv_B"),
+    *("guide_pressure_A", "guide_pressure_B", "guide_pv_A", "guide_pv_B"),
     *("spring_stress", "spring_fatigue", "spring_solid", "spring_buckling"),
     # manufacture
     *("profile_waviness", "chord_error"),
-    # evidence
+    # verification
     *("guide_equilibrium_force", "guide_equilibrium_moment", "contact_equilibrium"),
     *("contact_complementarity", "certificate_spread", "certificate_gci", "mesh_angle"),
     *("mesh_jacobian", "mesh_edges", "mesh_p0", "mesh_half_width", "mesh_von_mises"),
-    *("benchmark_nafems", "benchmark_hertz", "edge_derating", "clear_of_holds", "excluded_zone"),
+    *("benchmark_nafems", "benchmark_hertz", "edge_factor", "held_distance", "excluded_zone"),
 }
 SIGNED_CASE = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
 
@@ -77,15 +79,15 @@ def test_by_hand(name):
     tried = TRIED[name]
     assert tried.how
     # Splines of 72 samples hold their second derivative to 1e-4; all else is closed.
-    assert check(name, tried.base()).demand == pytest.approx(tried.hand, rel=5e-4, abs=1e-15)
+    demand = check(name, tried.base()).as_record()["demand"]
+    assert demand == pytest.approx(tried.hand, rel=5e-4, abs=1e-15)
 
 
 def solved(reaction: float):
     """In place of the guides' solver: one position with this reaction in guide A."""
-    guides = guide_reactions(
-        [100.0], [0.03], Stem.from_case(made.case()), GuidePair.from_case(made.case())
-    )
-    return replace(guides, reaction_a=np.array([reaction]))
+    machine = machines(made.case())[0]
+    answer = guide_reactions([100.0], [0.03], machine.stem, machine.guides)
+    return replace(answer, reaction_a=np.array([reaction]))
 
 
 @pytest.mark.parametrize(
@@ -93,16 +95,17 @@ def solved(reaction: float):
 )
 def test_mesh_uncertainty_of_the_reaction(monkeypatch, gci, status):
     """Of the guides' solutions alone: 3 per cent of the finest at an observed order of one."""
-    monkeypatch.setattr(proof, "converged", lambda values, ratio: made.converged(gci))
-    assert proof.mesh_reaction(made.evidence()).status == status
+    monkeypatch.setattr(verification, "converged", lambda values, ratio: made.converged(gci))
+    assert verification.mesh_reaction(made.solution()).status == status
 
 
 def test_mesh_uncertainty_of_the_reaction_by_hand(monkeypatch):
     """1.04, 1.01 and 1.0025 of a limit of one: order 2, GCI 1.25 (0.0075/1.0025)/3, Roache."""
-    solutions = iter([solved(1.04), solved(1.01), solved(1.0025)])
-    monkeypatch.setattr(proof, "guide_reactions", lambda *args, **more: next(solutions))
-    result = proof.mesh_reaction(made.evidence())
-    assert result.demand == pytest.approx(100.0 * 1.25 * 0.0075 / 1.0025 / 3.0, rel=1e-9)
+    answers = iter([solved(1.04), solved(1.01), solved(1.0025)])
+    monkeypatch.setattr(verification, "guide_reactions", lambda *args, **more: next(answers))
+    result = verification.mesh_reaction(made.solution())
+    demand = result.as_record()["demand"]
+    assert demand == pytest.approx(100.0 * 1.25 * 0.0075 / 1.0025 / 3.0, rel=1e-9)
     assert "observed order 2.00" in result.method
 
 
@@ -121,12 +124,13 @@ def test_a_must_have_is_one_with_and_without_its_data(name):
 def test_every_check_is_tried():
     """A check cannot be added without its limits, NaN, missing data and hand calculation."""
     assert set(BY_ID) == set(TRIED) | BY_ITSELF
-    assert len(FUNCTIONS) == len(BY_ID)
+    assert len(CHECKS) == len(BY_ID)
+    assert {declared.id for declared in MADE_FROM_OTHERS} == MADE_LATER
 
 
 def test_a_signed_case_raises_no_check_that_is_not_tried():
-    """The redesigned machine, as a case file describes it, by closed forms."""
-    given = load_case_file(SIGNED_CASE).with_positions(72)
-    found = {check.id for check in closed_form_checks(given)}
-    assert found <= set(TRIED) | MADE_LATER
-    assert len(found) > 50
+    """The redesigned machine, as a case file describes it, in a preview."""
+    signed = load_case_file(SIGNED_CASE).with_positions(72)
+    names = {check.id for check in preview_case(signed).checks}
+    assert names <= set(TRIED) | MADE_LATER
+    assert len(names) > 50

@@ -1,7 +1,5 @@
 """Checks of a flat face: at their limits, and what they leave out."""
 
-from dataclasses import replace
-
 import made_trial as made
 import pytest
 from trial_variants import faced
@@ -12,7 +10,7 @@ from camwright.pipeline.checks import (
     roller_bearing,
     surface_durability,
 )
-from camwright.pipeline.checks.registry import DESIGN
+from camwright.pipeline.checks.registry import FORECAST
 
 HALF_WIDTH, PV = 1e-4, 150e6
 
@@ -22,21 +20,21 @@ def test_width_of_the_face_at_its_limit(share, status):
     """Half the stroke either way, and the contact's half-width beyond."""
     needed = 2 * (0.5 * made.STROKE + HALF_WIDTH)
     check = flat_face_sliding.face_width(faced(width=share * needed))
-    assert check.demand == pytest.approx(1e3 * needed, rel=1e-9)
+    assert check.demand == pytest.approx(needed, rel=1e-9)
     assert check.status == status
     assert check.must_have
 
 
 @pytest.mark.parametrize(("share", "status"), [(0.99, "fail"), (1.01, "pass")])
 def test_sliding_at_its_limit(share, status):
-    check = flat_face_sliding.face_sliding(faced(pv_limit=share * PV))
-    assert check.demand == pytest.approx(1e-6 * PV)
+    check = flat_face_sliding.face_pv(faced(pv_limit=share * PV))
+    assert check.demand == pytest.approx(PV)
     assert check.status == status
     assert check.must_have
 
 
 def test_sliding_without_a_limit_is_not_evaluated():
-    check = flat_face_sliding.face_sliding(faced(pv_limit=None))
+    check = flat_face_sliding.face_pv(faced(pv_limit=None))
     assert check.status == "not_evaluated"
     assert not check.must_have
     assert "no PV limit" in check.note
@@ -45,29 +43,32 @@ def test_sliding_without_a_limit_is_not_evaluated():
 @pytest.mark.parametrize(("share", "status"), [(0.99, "fail"), (1.01, "pass")])
 def test_undercut_at_its_limit(share, status):
     """At the top s'' is minus half the stroke: r + h/2 of r + h is left."""
-    trial = faced()
+    solution = faced()
     least = (made.BASE + 0.5 * made.STROKE) / (made.BASE + made.STROKE)
-    limits = made.changed(trial.case.limits, undercut_factor=least / share)
-    check = cam_shape.undercut(replace(trial, case=made.changed(trial.case, limits=limits)))
+    limits = made.changed(solution.case.limits, undercut_factor=least / share)
+    case = made.changed(solution.case, limits=limits)
+    check = cam_shape.undercut(made.changed_solution(solution, case=case))
     assert check.demand == pytest.approx(least, rel=1e-6)
     assert check.status == status
 
 
 def test_checks_of_a_roller_do_not_apply_to_a_face_nor_the_other_way():
-    trial = faced()
+    solution = faced()
     for check in (
         cam_shape.pressure_angle, cam_shape.curvature_ratio, cam_shape.concave_radius,
-        surface_durability.roller_grip, *roller_bearing.CHECKS,
+        surface_durability.traction_demand, roller_bearing.roller_static,
+        roller_bearing.roller_life, roller_bearing.roller_speed, roller_bearing.roller_radial,
     ):  # fmt: skip
-        assert check(trial) is None
-    for check in flat_face_sliding.CHECKS:
-        assert check(made.evidence()) is None
-    assert flat_face_sliding.face_width not in DESIGN
+        assert check(solution) is None
+    for check in (flat_face_sliding.face_width, flat_face_sliding.face_pv):
+        assert check(made.solution()) is None
+        assert check not in FORECAST
 
 
 def test_a_face_is_called_a_face():
-    trial = faced()
-    assert cam_shape.second_contact(trial).title == "Face cuts into another part of the cam"
-    assert cam_shape.second_contact(trial).demand == 0.0
-    assert "no roughness of the face" not in surface_durability.film_ratio(trial).note
+    solution = faced()
+    second = cam_shape.second_contact(solution)
+    assert second.title == "Interference of the face away from its contact"
+    assert second.demand == 0.0
+    assert "no roughness of the face" not in surface_durability.film_ratio(solution).note
     assert "no roughness of the face" in surface_durability.film_ratio(faced(roughness=None)).note

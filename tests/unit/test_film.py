@@ -1,5 +1,7 @@
 """Film thickness, lambda ratio, and the regression that refuses outside its range."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,7 +16,7 @@ from camwright.pipeline.contact.oil_film import (
     mixed_film_where_it_holds,
 )
 
-OIL = Lubricant(0.03, 2e-8)
+OIL = Lubricant(viscosity=0.03, pressure_viscosity=2e-8)
 MODULUS = 115.4e9
 
 
@@ -39,7 +41,11 @@ def test_dowson_higginson_by_hand():
 
 @pytest.mark.parametrize(
     ("change", "power"),
-    [({"speed": 8.0}, 0.70), ({"load": 2e5}, -0.13), ({"oil": Lubricant(0.03, 4e-8)}, 0.54)],
+    [
+        ({"speed": 8.0}, 0.70),
+        ({"load": 2e5}, -0.13),
+        ({"oil": replace(OIL, pressure_viscosity=4e-8)}, 0.54),
+    ],
 )
 def test_film_grows_by_its_powers(change, power):
     assert minimum_film(groups(**change)) / minimum_film(groups()) == pytest.approx(2**power)
@@ -73,10 +79,13 @@ def test_groups_refuse(bad):
         groups(**bad)
 
 
-@pytest.mark.parametrize("oil", [(0, 2e-8), (0.03, np.nan), (-0.03, 2e-8)])
-def test_lubricant_refuses(oil):
-    with pytest.raises(InputError):
-        Lubricant(*oil)
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("viscosity", 0.0), ("viscosity", -0.03), ("pressure_viscosity", np.nan)],
+)
+def test_lubricant_refuses(name, value):
+    with pytest.raises(InputError, match=rf"lubricant\.{name}"):
+        replace(OIL, **{name: value})
 
 
 MIXED = {"W": 1e-4, "U": 2e-11, "G": 4500.0}

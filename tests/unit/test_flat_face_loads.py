@@ -14,10 +14,12 @@ from camwright.pipeline.follower.follower_forces import (
     follower_loads,
     turn_integral,
 )
+from camwright.pipeline.follower.spring import Spring
 
 THETA = uniform_turn(720)
 E, RADIUS, SPEED = 0.004, 0.015, 200.0
 OVERHANG, SPACING, PRELOAD, RATE, MASS = 0.02, 0.05, 300.0, 20e3, 0.1
+SPRING = Spring(rate=RATE, preload=PRELOAD)
 COS, SIN = np.cos(THETA), np.sin(THETA)
 FREE = PRELOAD + RATE * E * (1 - COS) + MASS * SPEED**2 * E * COS
 
@@ -27,9 +29,7 @@ def path(offset=0.0):
 
 
 def loads(guide=0.0, face=0.0, offset=0.0):
-    system = FollowerSystem(
-        MASS, RATE, PRELOAD, SPACING, OVERHANG, guide, guide, face_friction=face
-    )
+    system = FollowerSystem(MASS, SPRING, SPACING, OVERHANG, guide, guide, face_friction=face)
     return follower_loads(path(offset), system, SPEED, THETA)
 
 
@@ -103,7 +103,7 @@ def test_friction_rests_in_a_dwell():
         (Segment("cycloidal", 0.2 * turn, 0.006), Segment("cycloidal", 0.2 * turn, -0.006),
          Segment("dwell", 0.6 * turn))
     )  # fmt: skip
-    system = FollowerSystem(MASS, RATE, PRELOAD, SPACING, OVERHANG, 0.1, 0.1, face_friction=0.08)
+    system = FollowerSystem(MASS, SPRING, SPACING, OVERHANG, 0.1, 0.1, face_friction=0.08)
     found = follower_loads(FacePath(motion.lift(), 0.02), system, SPEED, THETA)
     dwell = np.abs(THETA - 0.7 * turn) < 0.28 * turn
     np.testing.assert_allclose(found.normal_force[dwell], PRELOAD, rtol=1e-12)

@@ -16,11 +16,11 @@ from camwright.pipeline.follower.follower_forces import (
     jump_speed,
     turn_integral,
 )
+from camwright.pipeline.follower.spring import Spring
 
 SYSTEM = FollowerSystem(
     mass=0.2,
-    spring_rate=20e3,
-    preload=200.0,
+    spring=Spring(rate=20e3, preload=200.0),
     guide_spacing=0.08,
     overhang_at_max_lift=0.03,
     friction_a=0.05,
@@ -185,8 +185,6 @@ def test_gravity_presses_on_the_cam():
     ("field", "value"),
     [
         ("mass", -0.1),
-        ("spring_rate", 0.0),
-        ("preload", -1.0),
         ("guide_spacing", 0.0),
         ("overhang_at_max_lift", -0.01),
         ("friction_a", -0.01),
@@ -197,6 +195,12 @@ def test_gravity_presses_on_the_cam():
 def test_bad_system_is_refused_by_name(field, value):
     with pytest.raises(InputError, match=field):
         replace(SYSTEM, **{field: value})
+
+
+@pytest.mark.parametrize(("field", "value"), [("rate", 0.0), ("preload", -1.0)])
+def test_bad_spring_of_a_system_is_refused_by_name(field, value):
+    with pytest.raises(InputError, match=rf"spring\.{field}"):
+        replace(SYSTEM, spring=replace(SYSTEM.spring, **{field: value}))
 
 
 def test_bad_speed_and_angle_are_refused():

@@ -9,17 +9,22 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.material import Material
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 from camwright.pipeline.follower.guide_friction import (
     NYLON_PV,
+    FrictionRange,
     bush_resistance,
     friction_bounds,
     guide_heat,
 )
+from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
+from camwright.pipeline.follower.spring import Spring
 
 THETA = uniform_turn(360)
 PITCH = PitchCurve(Lift(THETA, 0.01 * (1 - np.cos(THETA))), 0.05)
-SYSTEM = FollowerSystem(0.175, 24.2e3, 242.0, 0.08, 0.03, 0.04, 0.2)
+SYSTEM = FollowerSystem(0.175, Spring(rate=24.2e3, preload=242.0), 0.08, 0.03, 0.04, 0.2)
+NOMINAL = (0.04, 0.2)
 SPEED = 75.0
 
 
@@ -28,7 +33,7 @@ def loads_of(system):
 
 
 def test_force_lies_between_the_bounds():
-    found = friction_bounds(loads_of, SYSTEM, (0.02, 0.1), (0.1, 0.3))
+    found = friction_bounds(loads_of, SYSTEM, FrictionRange(NOMINAL, (0.02, 0.1), (0.1, 0.3)))
     middle = found.nominal.normal_force
     assert (found.normal_force_min <= middle * (1 + 1e-12)).all()
     assert (found.normal_force_max >= middle * (1 - 1e-12)).all()
@@ -44,18 +49,73 @@ def test_force_lies_between_the_bounds():
 
 def test_jam_margin_is_the_factor_to_locking():
     """At that many times the worst friction the index is 1."""
-    found = friction_bounds(loads_of, SYSTEM, (0.0, 0.0), (0.1, 0.3))
+    found = friction_bounds(loads_of, SYSTEM, FrictionRange(NOMINAL, (0.0, 0.0), (0.1, 0.3)))
     locked = replace(SYSTEM, friction_a=0.1 * found.jam_margin, friction_b=0.3 * found.jam_margin)
     loads = follower_loads(PITCH, locked, SPEED, THETA)
     assert loads.jam_index[loads.lift_slope > 0].max() == pytest.approx(1.0, rel=1e-12)
-    free = replace(SYSTEM, friction_a=0.0, friction_b=0.0)
-    none = friction_bounds(loads_of, free, (0.0, 0.0), (0.0, 0.0))
+    nothing = (0.0, 0.0)
+    none = friction_bounds(loads_of, SYSTEM, FrictionRange(nothing, nothing, nothing))
     assert none.jam_margin == np.inf
 
 
-def test_bounds_must_enclose_the_nominal():
-    with pytest.raises(InputError, match=r"guides\.b\.friction"):
-        friction_bounds(loads_of, SYSTEM, (0.02, 0.21), (0.1, 0.3))
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [
+        ({"least": (0.02, 0.21)}, "b"),
+        ({"greatest": (0.1, 0.19)}, "b"),
+        ({"least": (-0.01, 0.1)}, "a"),
+        ({"nominal": (np.nan, 0.2)}, "a"),
+        ({"greatest": (0.1, np.nan)}, "b"),
+    ],
+)
+def test_bounds_must_enclose_the_nominal(changes, name):
+    good = {"nominal": NOMINAL, "least": (0.02, 0.1), "greatest": (0.1, 0.3)}
+    with pytest.raises(InputError, match=rf"guides\.{name}\.friction"):
+        FrictionRange(**(good | changes))
+
+
+def guides(a=None, b=None):
+    """Two like guides; friction and bounds of A and B as given."""
+    nylon = Material(E=2.8e9, nu=0.4, yield_strength=60e6, density=1150.0, source="maker")
+    plain = Guide(length=0.02, diameter=0.01, friction=NOMINAL[0], material=nylon)
+    return GuidePair(
+        spacing=0.08,
+        a=replace(plain, **(a or {})),
+        b=replace(plain, friction=NOMINAL[1], **(b or {})),
+    )
+
+
+def test_range_is_that_of_the_guides_else_that_of_the_tolerance():
+    """0.04 within 20 % is 0.032 to 0.048; guide B states 0.15 to 0.25 itself."""
+    found = FrictionRange.of(guides(b={"friction_min": 0.15, "friction_max": 0.25}), 0.2)
+    assert found.nominal == NOMINAL
+    assert found.least == pytest.approx((0.032, 0.15), rel=1e-12)
+    assert found.greatest == pytest.approx((0.048, 0.25), rel=1e-12)
+    assert found.factors(0) == pytest.approx((0.8, 1.2), rel=1e-12)
+    assert found.factors(1) == pytest.approx((0.75, 1.25), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "tolerance", "bounded"),
+    [
+        (0.1, 0.3, 0.0, True),
+        (0.1, None, 0.0, False),
+        (None, None, 0.0, False),
+        (None, None, 0.1, True),
+    ],
+)
+def test_range_is_bounded_where_the_greatest_friction_of_both_guides_is_known(
+    a, b, tolerance, bounded
+):
+    found = FrictionRange.of(guides({"friction_max": a}, {"friction_max": b}), tolerance)
+    assert found.bounded is bounded
+
+
+def test_scaled_friction_widens_its_bounds_where_it_leaves_them():
+    found = FrictionRange(NOMINAL, (0.02, 0.1), (0.05, 0.3)).scaled(1.5, 0.25)
+    assert found.nominal == pytest.approx((0.06, 0.05), rel=1e-12)
+    assert found.least == pytest.approx((0.02, 0.05), rel=1e-12)
+    assert found.greatest == pytest.approx((0.06, 0.3), rel=1e-12)
 
 
 def test_viscous_drag_follows_the_speed():

@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from made_check import made_check
 
 from camwright.geometry.errors import GeometryError, InputError
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.verdict import verdict
+from camwright.pipeline.checks.check import Check, verdict
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Next, Stop, best_attempt, next_smoother
 from camwright.pipeline.smoothing.smoothing_forecast import Attempt, keeps_torque, score
@@ -17,11 +17,11 @@ BOUND = 6
 
 
 def check(name: str, utilisation: float, lift: bool = True, **more) -> Check:
-    return Check(name, name, utilisation, 1.0, must_have=True, lift_can_help=lift, **more)
+    return made_check(name, utilisation, 1.0, must_have=True, lift_can_help=lift, **more)
 
 
 def torque(reduction: float) -> Check:
-    return Check("torque_reduction", "torque", reduction, 0.4, sense="at_least")
+    return made_check("torque_reduction", reduction, 0.4, sense="at_least")
 
 
 def drive(model: Model, max_trials: int = BOUND, predict: Model | None = None, kind="gaussian"):
@@ -142,21 +142,21 @@ def test_what_the_lift_cannot_help_is_left_alone():
 
 def test_a_missing_number_does_not_drive_the_lift_and_does_not_pass():
     def model(_s):
-        missing = Check("bush_pv_B", "pv", 2.0, None, lift_can_help=True)
+        missing = made_check("guide_pv_B", 2.0, None, lift_can_help=True)
         return torque(0.7), missing
 
     attempts, _, stop = drive(model)
     assert len(attempts) == 1
-    assert stop.binding == ("bush_pv_B",)
+    assert stop.binding == ("guide_pv_B",)
     assert stop.reason.endswith("; one limit not judged, as the case leaves a number out")
 
 
 def test_beside_a_missing_number_the_others_still_improve():
     def model(s):
-        return *cannot_pass(s), Check("bush_pv_B", "pv", 2.0, None, lift_can_help=True)
+        return *cannot_pass(s), made_check("guide_pv_B", 2.0, None, lift_can_help=True)
 
     attempts, _, stop = drive(model, predict=model)
-    assert stop.binding == ("bush_pv_B", "roller_static")
+    assert stop.binding == ("guide_pv_B", "roller_static")
     assert 2.1 / 1.03 <= attempts[-1].smoother.strength <= 2.1
 
 
@@ -181,7 +181,7 @@ def test_nan_later_ends_on_a_trial_that_is_known():
     assert stop.binding == ("pressure_angle",)
 
 
-def test_no_smoothing_asked_for_cannot_be_gentler():
+def test_a_case_without_smoothing_cannot_be_gentler():
     attempts, _, stop = drive(cannot_pass, kind="none")
     assert len(attempts) == 1
     assert "asks for no smoothing" in stop.reason
@@ -222,7 +222,7 @@ def test_a_predictor_that_is_off_is_put_right_by_the_trials():
     assert len(attempts) <= 4
 
 
-def test_checks_nobody_foresees_stay_as_the_trial_found_them():
+def test_checks_without_a_forecast_stay_as_the_trial_has_them():
     def truth(s):
         return torque(0.9 - 0.25 * s), check("pressure_angle", 1.4 / s), check("fe_only", 1.3)
 
@@ -355,7 +355,7 @@ def test_without_a_place_to_go_back_the_better_trial_is_named():
 def test_infinite_utilisation_is_a_failure_like_any_other():
     def model(s):
         force = -0.1 if s < 1.5 else 0.3
-        lost = Check("contact_force_margin", "m", force, 0.2, sense="at_least", lift_can_help=True)
+        lost = made_check("contact_force_margin", force, 0.2, sense="at_least", lift_can_help=True)
         return torque(0.9 - 0.2 * s), lost
 
     attempts, whys, stop = drive(model)
@@ -368,10 +368,10 @@ def test_infinite_utilisation_is_a_failure_like_any_other():
     "wrong", [{"attempts": []}, {"max_trials": 0}, {"tolerance": 0.0}, {"tolerance": np.nan}]
 )
 def test_nonsense_is_refused(wrong):
-    given = {
+    plain = {
         "attempts": [Attempt(Smoother(), cannot_pass(1.0))],
         "max_trials": BOUND,
         "tolerance": 0.02,
     }
     with pytest.raises(InputError):
-        next_smoother(**(given | wrong))
+        next_smoother(**(plain | wrong))

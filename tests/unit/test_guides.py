@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.follower import guide_contact
 from camwright.pipeline.follower import guide_reactions as guides_module
 from camwright.pipeline.follower.guide_reactions import (
@@ -20,65 +22,80 @@ from camwright.pipeline.follower.guide_reactions import (
 from camwright.pipeline.follower.stem_beam import Stem, stem_compliance
 
 STEM = Stem(0.01, 210e9)
-NYLON = Guide(0.02, 0.01, 50e-6, 2e10, 0.04)
-STEEL = Guide(0.016, 0.01, 30e-6, 9e11, 0.2)
-PAIR = GuidePair(0.08, NYLON, STEEL)
+BUSH = Material(E=2.8e9, nu=0.4, yield_strength=60e6, density=1150.0, source="made up")
+
+
+def guide(length, clearance, foundation_modulus, friction):
+    """A bore of 10 mm whose bush has that foundation modulus, N/m2, whatever it is made of."""
+    return Guide(
+        length=length,
+        diameter=0.01,
+        clearance=clearance,
+        stiffness=foundation_modulus * length,
+        friction=friction,
+        material=BUSH,
+    )
+
+
+NYLON = guide(0.02, 50e-6, 2e10, 0.04)
+STEEL = guide(0.016, 30e-6, 9e11, 0.2)
+PAIR = GuidePair(spacing=0.08, a=NYLON, b=STEEL)
 FORCE = np.array([-120.0, -1.0, 0.0, 2.0, 300.0, 800.0])
 OVERHANG = np.linspace(0.03, 0.06, 6)
 
 
 def test_side_force_too_small_to_have_digits_is_none():
-    """In the middle of a dwell a spline leaves slopes of 1e-315: no residual can be told there."""
-    found = guide_reactions([1e-315, -3.4e-315, 100.0], 0.04, STEM, PAIR)
-    assert (found.moment_residual[:2] == 0.0).all()
-    assert (found.force_residual[:2] == 0.0).all()
+    """In the middle of a dwell a spline leaves slopes of 1e-315: a residual has no digits there."""
+    solved = guide_reactions([1e-315, -3.4e-315, 100.0], 0.04, STEM, PAIR)
+    assert (solved.moment_residual[:2] == 0.0).all()
+    assert (solved.force_residual[:2] == 0.0).all()
 
 
 def test_reactions_are_signed_like_the_statics():
-    found = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
-    np.testing.assert_allclose(found.statics_a, FORCE * (OVERHANG + 0.08) / 0.08)
-    np.testing.assert_allclose(found.statics_b, FORCE * OVERHANG / 0.08)
+    solved = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+    np.testing.assert_allclose(solved.statics_a, FORCE * (OVERHANG + 0.08) / 0.08)
+    np.testing.assert_allclose(solved.statics_b, FORCE * OVERHANG / 0.08)
     loaded = FORCE != 0.0
     for name in "ab":
         ratio = (
-            getattr(found, f"reaction_{name}")[loaded] / getattr(found, f"statics_{name}")[loaded]
+            getattr(solved, f"reaction_{name}")[loaded] / getattr(solved, f"statics_{name}")[loaded]
         )
         assert ((ratio > 0.3) & (ratio < 1.3)).all()
 
 
 def test_equilibrium_from_the_pressures_themselves():
     """Integrated anew over the knots, force and moment about the roller close to 1e-9."""
-    found = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+    solved = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
     _, weight = lobatto(guides_module.KNOTS)
-    push_a = found.line_pressure_a * (0.01 * weight)[:, None]
-    push_b = found.line_pressure_b * (0.008 * weight)[:, None]
+    push_a = solved.line_pressure_a * (0.01 * weight)[:, None]
+    push_b = solved.line_pressure_b * (0.008 * weight)[:, None]
     total = push_a.sum(axis=0) + push_b.sum(axis=0)
     np.testing.assert_allclose(total, FORCE, rtol=1e-9, atol=1e-12)
-    turning = (push_a * (found.knots_a[:, None] + OVERHANG)).sum(axis=0)
-    turning += (push_b * (found.knots_b[:, None] + 0.08 + OVERHANG)).sum(axis=0)
+    turning = (push_a * (solved.knots_a[:, None] + OVERHANG)).sum(axis=0)
+    turning += (push_b * (solved.knots_b[:, None] + 0.08 + OVERHANG)).sum(axis=0)
     np.testing.assert_allclose(turning, 0.0, atol=1e-9 * 800.0 * 0.14)
     for name in ("force_residual", "moment_residual", "complementarity_residual"):
-        assert getattr(found, name).max() <= 1e-9
+        assert getattr(solved, name).max() <= 1e-9
 
 
 def test_no_load_gives_zeros():
-    found = guide_reactions(np.zeros(3), 0.04, STEM, PAIR)
+    solved = guide_reactions(np.zeros(3), 0.04, STEM, PAIR)
     for name in ("reaction_a", "reaction_b", "pressure_max_a", "slope_a", "roller_deflection"):
-        np.testing.assert_array_equal(getattr(found, name), 0.0)
-    np.testing.assert_array_equal(found.moment_residual, 0.0)
+        np.testing.assert_array_equal(getattr(solved, name), 0.0)
+    np.testing.assert_array_equal(solved.moment_residual, 0.0)
 
 
 def test_pressure_is_line_pressure_over_the_stem():
-    found = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
-    peak = np.abs(found.line_pressure_b).max(axis=0) / 0.01
-    np.testing.assert_allclose(found.pressure_max_b, peak)
-    assert (found.pressure_max_a >= np.abs(found.reaction_a) / (0.02 * 0.01) - 1e-9).all()
+    solved = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+    peak = np.abs(solved.line_pressure_b).max(axis=0) / 0.01
+    np.testing.assert_allclose(solved.pressure_max_b, peak)
+    assert (solved.pressure_max_a >= np.abs(solved.reaction_a) / (0.02 * 0.01) - 1e-9).all()
 
 
 def test_a_bore_pushes_from_one_side_only_at_a_knot_and_not_within_its_play():
-    found = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
-    assert (found.rubbing_load_a >= np.abs(found.reaction_a) - 1e-9).all()
-    assert (found.line_pressure_b[:, -1] == 0.0).any()
+    solved = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
+    assert (solved.rubbing_load_a >= np.abs(solved.reaction_a) - 1e-9).all()
+    assert (solved.line_pressure_b[:, -1] == 0.0).any()
 
 
 def test_reversing_the_load_mirrors_the_answer():
@@ -90,23 +107,24 @@ def test_reversing_the_load_mirrors_the_answer():
 
 @pytest.mark.parametrize("size", [1e-15, 1e-6, 1e4])
 def test_load_and_play_scaled_together_scale_everything(size):
-    def scaled(guide):
-        return replace(guide, clearance=size * guide.clearance)
+    def at(factor):
+        """Reactions at a tenth of load and play times a factor: a clearance is 100 mm at most."""
+        share = 0.1 * factor
+        a, b = (replace(each, clearance=share * each.clearance) for each in (NYLON, STEEL))
+        guides = GuidePair(spacing=0.08, a=a, b=b)
+        return guide_reactions(share * FORCE, OVERHANG, STEM, guides)
 
-    one = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
-    many = guide_reactions(
-        size * FORCE, OVERHANG, STEM, GuidePair(0.08, scaled(NYLON), scaled(STEEL))
-    )
+    one, many = at(1.0), at(size)
     np.testing.assert_allclose(many.reaction_b, size * one.reaction_b, rtol=1e-8)
     np.testing.assert_allclose(many.slope_b, size * one.slope_b, rtol=1e-8, atol=1e-16 * size)
 
 
 @pytest.mark.parametrize("force", [1e-30, 1e-12, 1e-3])
 def test_a_load_that_hardly_dents_the_bore_is_still_in_equilibrium(force):
-    found = guide_reactions([force], 0.04, STEM, PAIR)
-    assert found.reaction_a - found.reaction_b == pytest.approx(force, rel=1e-9)
+    solved = guide_reactions([force], 0.04, STEM, PAIR)
+    assert solved.reaction_a - solved.reaction_b == pytest.approx(force, rel=1e-9)
     # the stem leans on the outer mouth of A and the far end of B
-    assert found.reaction_b == pytest.approx(force * (0.04 - 0.01) / (0.08 + 0.018), rel=2e-2)
+    assert solved.reaction_b == pytest.approx(force * (0.04 - 0.01) / (0.08 + 0.018), rel=2e-2)
 
 
 def test_answers_do_not_depend_on_the_company():
@@ -158,7 +176,7 @@ def test_bad_bush_is_refused(values, field):
         ("diameter", np.inf, "diameter"),
         ("clearance", -1e-6, "press fit"),
         ("clearance", np.nan, "clearance"),
-        ("foundation_modulus", 0.0, "foundation_modulus"),
+        ("stiffness", 0.0, "stiffness"),
         ("friction", -0.1, "friction"),
     ],
 )
@@ -180,10 +198,10 @@ def test_bad_stem_is_refused(field, value):
 def test_guides_may_not_overlap(share, fits):
     spacing = share * 0.018
     if fits:
-        assert GuidePair(spacing, NYLON, STEEL).spacing == spacing
+        assert GuidePair(spacing=spacing, a=NYLON, b=STEEL).spacing == spacing
     else:
         with pytest.raises(InputError, match=r"guides\.spacing"):
-            GuidePair(spacing, NYLON, STEEL)
+            GuidePair(spacing=spacing, a=NYLON, b=STEEL)
 
 
 @pytest.mark.parametrize(("share", "fits"), [(1.01, True), (0.99, False)])
@@ -242,11 +260,12 @@ def test_a_residual_that_is_not_met_raises(monkeypatch, spoilt, name):
         guide_reactions(FORCE, OVERHANG, STEM, PAIR)
 
 
-def test_from_case_takes_the_bush_unless_a_stiffness_is_given():
+def test_guides_of_a_case_take_the_bush_unless_a_stiffness_is_given():
     stiff = made.changed(made.case().guides.b, stiffness=6e8)
-    case = made.case(guides=made.changed(made.case().guides, b=stiff))
-    pair = GuidePair.from_case(case)
-    assert pair.a.foundation_modulus == bush_foundation_modulus(0.01, WALL_SHARE * 0.01, 2.8e9, 0.4)
-    assert pair.b.foundation_modulus == pytest.approx(3e10, rel=1e-15)
-    assert pair.spacing == 0.08
-    assert Stem.from_case(case).elastic_modulus == 210e9
+    guides = made.changed(made.case().guides, b=stiff)
+    machine = machines(made.case(guides=guides))[0]
+    a, b = machine.guides.a, machine.guides.b
+    assert a.foundation_modulus == bush_foundation_modulus(0.01, WALL_SHARE * 0.01, 2.8e9, 0.4)
+    assert b.foundation_modulus == pytest.approx(3e10, rel=1e-15)
+    assert machine.guides.spacing == 0.08
+    assert machine.stem.elastic_modulus == 210e9

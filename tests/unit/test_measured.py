@@ -9,11 +9,19 @@ import pytest
 from crank_traces import CYCLE, noisy_times, tooth_angles, voltage
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case_file import load_case_file, parse_case
-from camwright.pipeline.case.load_case_torque import engine_torque, measurement_record
-from camwright.pipeline.cycle.crank_speed import consistency, speed_record, study_of
-from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.case.load_case_torque import (
+    engine_torque,
+    engine_torques,
+    measurement_record,
+)
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.crank_speed import consistency, study_of
+from camwright.pipeline.cycle.solution import solution
+from camwright.pipeline.results.run_records import crank_speed_record
+from camwright.pipeline.results.trial import GIVEN_LIFT, Trial
+from camwright.pipeline.smoothing.required_lift import cam_lift
 
 ROOT = Path(__file__).resolve().parents[2]
 GX120 = (ROOT / "cases" / "gx120.toml").read_text(encoding="utf-8")
@@ -114,53 +122,91 @@ def test_two_gigabytes_are_refused_unread(tmp_path):
 @pytest.fixture(scope="module")
 def gx120():
     case = parse_case(GX120)
-    torque = road.engine_torques(case)
-    lift = road.designed_lift(case, torque, Smoother.from_case(case.smoothing))
-    return case, torque["idle"], road.cam_contour(case, lift)
+    torques = engine_torques(case)
+    return case, torques["idle"], case.contour(cam_lift(case, torques))
 
 
 def test_speed_of_the_published_case(gx120):
     """Engine alone 3.59 rad/s at 157 rad/s, 3.44 with the mechanism's inertia, 0.40 at work."""
     case, torque, contour = gx120
-    study = study_of(case, torque, 157.08, contour.pitch)
+    (idle,) = machines(case)
+    study = study_of(idle, torque, contour.pitch)
     assert study is not None
-    record = speed_record(study, contour.radius_max().value)
-    stds = [record[name]["std_rad_per_s"] for name in ("before", "inertia_alone", "after")]
+    motions = (study.before, study.inertia_alone, study.after)
+    stds = [motion.statistics.std for motion in motions]
     assert stds == pytest.approx([3.59, 3.44, 0.40], rel=0.02)
-    assert max(record[name]["closure"] for name in ("before", "after")) < 1e-10
-    flywheel = record["flywheel_for_the_same_std"]["added_inertia_kg_m2"]
-    assert flywheel == pytest.approx(0.11, abs=0.005)  # two digits are published
-    json.dumps(record)
+    assert max(study.before.closure, study.after.closure) < 1e-10
+    assert study.added_inertia == pytest.approx(0.11, abs=0.005)  # two digits are published
     assert set(study.columns) == {
         "crank_angle", "speed_before", "speed_inertia_alone", "speed_after"
     }  # fmt: skip
-    all_of_it, (idle,) = torque.without_mean().total, case.load_cases
-    found = {
-        one.id: one for one in consistency(case, idle, torque, contour.pitch, study, all_of_it)
-    }
+    whole, pitch = torque.without_mean().total, contour.pitch
+    agreement = consistency(idle, torque, pitch, study, demand=whole, measured=True)
+    found = {one.id: one for one in agreement}
     assert set(found) == {"power", "energy", "work", "inertia"}
     assert not found["work"].flagged
     assert not found["inertia"].flagged
     assert found["power"].flagged  # smoothing takes 14 % of the torque away
 
 
+def trial_of(case, torques, contour):
+    """A trial of few positions, its contact by closed forms."""
+    solved = solution(case, contour, Tier.PREVIEW, torques=torques, positions=72)
+    return Trial(1, "", GIVEN_LIFT, solved, ())
+
+
+def test_the_record_of_a_run_holds_the_crank_speed_of_the_guides_that_rub(gx120):
+    case, torque, contour = gx120
+    trial, whole = trial_of(case, {"idle": torque}, contour), torque.without_mean().total
+    record, columns = crank_speed_record({"idle": torque}, trial, whole)
+    json.dumps(record)
+    (cycle,) = trial.cycles
+    study = study_of(cycle.machine, torque, contour.pitch, cycle.loads.rubbing)
+    found = record["speed"]["idle"]
+    for name in ("before", "inertia_alone", "after"):
+        motion = getattr(study, name)
+        assert found[name]["std_rad_per_s"] == motion.statistics.std
+        assert found[name]["closure"] == motion.closure
+    flywheel, radius = found["flywheel_for_the_same_std"], contour.radius_max().value
+    assert flywheel["added_inertia_kg_m2"] == study.added_inertia
+    assert flywheel["outer_radius_mm"] == pytest.approx(1e3 * radius, rel=1e-12)
+    assert flywheel["disc_mass_kg"] == pytest.approx(2.0 * flywheel["rim_mass_kg"], rel=1e-12)
+    np.testing.assert_array_equal(columns["speed_after"], study.after.speed)
+    agreement = {one["id"]: one for one in record["consistency"]}
+    assert set(agreement) == {"power", "energy", "work", "inertia"}
+    assert {one["load_case"] for one in agreement.values()} == {"idle"}
+
+
 def test_no_crankshaft_no_speed(gx120):
     case, torque, contour = gx120
     bare = case.model_copy(update={"crankshaft": None})
-    assert study_of(bare, torque, 157.08, contour.pitch) is None
-    all_of_it, (idle,) = torque.without_mean().total, case.load_cases
-    found = {one.id for one in consistency(bare, idle, torque, contour.pitch, None, all_of_it)}
-    assert found == {"power", "energy"}
+    (idle,) = machines(bare)
+    assert study_of(idle, torque, contour.pitch) is None
+    whole, pitch = torque.without_mean().total, contour.pitch
+    agreement = consistency(idle, torque, pitch, None, demand=whole, measured=True)
+    assert {one.id for one in agreement} == {"power", "energy"}
+    record, columns = crank_speed_record(
+        {"idle": torque}, trial_of(bare, {"idle": torque}, contour), None
+    )
+    assert (record, columns) == ({"speed": None, "consistency": []}, None)
 
 
 def test_nothing_asked_of_the_cam_and_nothing_measured_there_is_nothing_to_agree_with(gx120):
     case, torque, contour = gx120
-    (idle,) = case.load_cases
-    rated = idle.model_copy(update={"name": "rated"})
-    both = case.model_copy(update={"load_cases": (idle, rated)})
-    found = [one.id for one in consistency(both, idle, torque, contour.pitch, None)]
+    (idle,) = machines(case)
+    found = [one.id for one in consistency(idle, torque, contour.pitch, None, measured=True)]
     assert found == ["inertia"]
-    assert consistency(both, rated, torque, contour.pitch, None) == ()
+    assert consistency(idle, torque, contour.pitch, None) == ()
+
+
+def test_what_was_measured_of_the_speed_belongs_to_the_design_load_case(gx120):
+    case, torque, contour = gx120
+    (idle,) = case.load_cases
+    both = case.model_copy(update={"load_cases": (idle, idle.model_copy(update={"name": "rated"}))})
+    torques = {"idle": torque, "rated": torque}
+    record, _ = crank_speed_record(torques, trial_of(both, torques, contour), None)
+    found = [(one["load_case"], one["id"]) for one in record["consistency"]]
+    assert found == [("idle", "work"), ("idle", "inertia"), ("rated", "work")]
 
 
 def test_firing_order_and_lift_tables_of_a_cylinder():

@@ -11,14 +11,14 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.case.cards.bearing_cards import as_case_table
 from camwright.pipeline.case.case_file import parse_case
-from camwright.pipeline.case.outer_ring import outer_ring, roller_in_words, why_solid
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.template import template
-from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
 from camwright.pipeline.contact.follower_body import RollerBody
 from camwright.pipeline.contact.ring_body import BallRing, RingBody
-from camwright.pipeline.cycle.contact_setup import contact_pair, contact_width
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.follower.roller_parts import OuterRing
 
 RING = {
     "outer_diameter": '"32 mm"',
@@ -34,6 +34,16 @@ def case(**changes):
     return parse_case(template("ring") + f"\n[roller.bearing.ring]\n{rows}\n")
 
 
+def pair_of(given, contour):
+    """The contact pair of a case with one load case."""
+    (machine,) = machines(given)
+    return contact_pair(machine, contour)
+
+
+def ring_of(given, width=0.01):
+    return given.roller.ring(width, given.spring.preload)
+
+
 def a_contour():
     theta = uniform_turn(360)
     return Contour(PitchCurve(Lift(theta, 4e-3 * (1 - np.cos(theta))), 0.06), 0.016)
@@ -41,33 +51,35 @@ def a_contour():
 
 def test_a_case_may_tell_of_the_ring_itself():
     given = case()
-    assert why_solid(given) == ""
-    pair = contact_pair(given, a_contour())
+    assert given.roller.solid_reason == ""
+    pair = pair_of(given, a_contour())
     assert isinstance(pair.follower, RingBody)
     assert pair.follower.ring.thickness == pytest.approx(3.2e-3)
-    assert "outer ring on balls" in roller_in_words(given)
+    assert "outer ring of its bearing on balls" in given.roller.body_model
     assert parse_case(given.to_toml()) == given
     assert "None" not in repr(pair.follower)  # all of it is in the fingerprint of the contact
 
 
 def test_without_a_ring_the_roller_stays_solid():
     plain = parse_case(template("plain"))
-    assert isinstance(contact_pair(plain, a_contour()).follower, RollerBody)
-    assert outer_ring(plain, 0.01) is None
-    assert "no ring and balls of the bearing are given" in roller_in_words(plain)
+    assert isinstance(pair_of(plain, a_contour()).follower, RollerBody)
+    assert ring_of(plain) is None
+    assert "no ring and balls of the bearing are given" in plain.roller.body_model
     tyre = case(outer_diameter='"26 mm"', thickness='"1 mm"')
-    assert isinstance(contact_pair(tyre, a_contour()).follower, RollerBody)
-    assert "not the bearing's outer ring itself" in why_solid(tyre)
+    assert isinstance(pair_of(tyre, a_contour()).follower, RollerBody)
+    assert ring_of(tyre) is None
+    assert "not the bearing's outer ring itself" in tyre.roller.solid_reason
+    assert "roller solid on its hub" in tyre.roller.body_model
 
 
 def test_between_two_balls_the_pressure_is_lower_by_what_is_told():
     """`midway` against both contacts solved: to a fiftieth of the change."""
     given, contour = case(thickness='"2 mm"', pitch_diameter='"23 mm"'), a_contour()
-    pair, theta = contact_pair(given, contour), np.array([0.5, 2.0])
-    ring = outer_ring(given, contact_width(given))
+    pair, theta = pair_of(given, contour), np.array([0.5, 2.0])
+    ring = ring_of(given, pair.width)
     force = np.array([2000.0, 6000.0])
     over, between = (
-        pair_history(moved, CycleBodies.meshed(moved), theta, force)
+        two_scale_history(moved, CycleBodies.meshed(moved), theta, force)
         for moved in (pair, replace(pair, follower=ring.between_balls))
     )
     found = ring.midway(force / pair.width, over.relative_radius)
@@ -77,10 +89,10 @@ def test_between_two_balls_the_pressure_is_lower_by_what_is_told():
 
 def test_stiffer_balls_take_more_of_the_load_alone():
     """The static rating sets their stiffness; without it the preload does."""
-    rated = outer_ring(case(), 0.01)
+    rated = ring_of(case())
     text = template("ring").replace('C0 = "8.3 kN"', "")
     rows = "\n".join(f"{key} = {value}" for key, value in RING.items())
-    unrated = outer_ring(parse_case(text + f"\n[roller.bearing.ring]\n{rows}\n"), 0.01)
+    unrated = ring_of(parse_case(text + f"\n[roller.bearing.ring]\n{rows}\n"))
     assert unrated.ring.ball_stiffness < rated.ring.ball_stiffness
     share = (rated.bending.ball_load[0].max(), unrated.bending.ball_load[0].max())
     assert share[0] > share[1]
@@ -88,10 +100,10 @@ def test_stiffer_balls_take_more_of_the_load_alone():
 
 def test_two_rows_share_the_load():
     """Each ball then carries half, and two of them give way less than one under all of it."""
-    one, two = (outer_ring(case(rows=rows), 0.01).ring.ball_stiffness for rows in ("1", "2"))
+    one, two = (ring_of(case(rows=rows)).ring.ball_stiffness for rows in ("1", "2"))
     assert two / one == pytest.approx(2.0 ** (2.0 / 3.0), rel=1e-12)  # way goes with F^(2/3)
     card = read_cards()["track_roller_32x14"]
-    assert as_case_table(card)["ring"]["rows"] == 2
+    assert card.bearing.ring.rows == 2
 
 
 @pytest.mark.parametrize(
@@ -100,7 +112,7 @@ def test_two_rows_share_the_load():
         ({"balls": "2"}, r"ring\.balls = 2, must be >= 3"),
         ({"balls": "7.5"}, "a whole number"),
         ({"rows": "0"}, r"ring\.rows = 0, must be >= 1"),
-        ({"balls": "20"}, "do not overlap"),
+        ({"balls": "20"}, "fewer: they overlap"),
         ({"thickness": '"0 mm"'}, r"ring\.thickness = 0 mm, must be > 0"),
         ({"thickness": "3.2"}, "a number with a unit"),
         ({"thickness": '"nan mm"'}, "finite"),
@@ -114,6 +126,25 @@ def test_two_rows_share_the_load():
 def test_refuses_a_ring_that_cannot_be(changes, match):
     with pytest.raises(InputError, match=match):
         case(**changes)
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        ({"balls": 2}, "balls"),
+        ({"balls": 20}, "balls"),
+        ({"rows": 0}, "rows"),
+        ({"thickness": np.nan}, "thickness"),
+        ({"thickness": 7e-3}, "outer_diameter"),
+        ({"thickness": 7e-3, "pitch_diameter": 14e-3}, "thickness"),
+        ({"fatigue_bending": 0.0}, "fatigue_bending"),
+    ],
+)
+def test_a_ring_that_cannot_be_is_refused_when_built_in_python_as_well(change, name):
+    good = {"outer_diameter": 32e-3, "thickness": 3.2e-3, "pitch_diameter": 20e-3, "balls": 8}
+    with pytest.raises(InputError) as refusal:
+        OuterRing(**(good | change))
+    assert refusal.value.field == f"roller.bearing.ring.{name}"
 
 
 @pytest.mark.parametrize(

@@ -10,9 +10,10 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.contact import hertz
-from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies, pair_history
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import RollerBody
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 
 STEEL = Elastic(210e9, 0.3)
 
@@ -33,7 +34,7 @@ def bodies() -> CycleBodies:
 
 def test_apart_is_an_answer(bodies: CycleBodies) -> None:
     pair, theta = round_cam(), np.array([0.0, 1.0, 2.0])
-    found = pair_history(pair, bodies, theta, np.array([0.0, 800.0, -5.0]))
+    found = two_scale_history(pair, bodies, theta, np.array([0.0, 800.0, -5.0]))
     for name in ("line_load", "p0", "half_width", "tau_max", "von_mises"):
         values = getattr(found, name)
         assert values[0] == values[2] == 0.0 < values[1], name
@@ -43,7 +44,7 @@ def test_apart_is_an_answer(bodies: CycleBodies) -> None:
 
 def test_round_cam_is_alike_at_every_angle(bodies: CycleBodies) -> None:
     theta = np.linspace(0.0, 6.0, 23)
-    found = pair_history(round_cam(), bodies, theta, np.full(theta.size, 800.0))
+    found = two_scale_history(round_cam(), bodies, theta, np.full(theta.size, 800.0))
     # The contact falls anywhere between the nodes of the body's mesh; 1e-4 is what that moves.
     for name, rtol in (("p0", 1e-6), ("half_width", 1e-6), ("tau_max", 1e-4), ("von_mises", 1e-4)):
         values = getattr(found, name)
@@ -56,7 +57,7 @@ def test_too_wide_a_contact_is_not_a_number() -> None:
     soft = round_cam(Elastic(0.5e9, 0.45))
     bodies = CycleBodies.meshed(soft)
     theta, force = np.array([0.0, 1.0]), np.array([10.0, 1e5])
-    found = pair_history(soft, bodies, theta, force)
+    found = two_scale_history(soft, bodies, theta, force)
     assert np.isfinite(found.p0[0])
     assert found.half_width_hertz[1] > 0.1 * found.relative_radius[1]
     for name in ("p0", "half_width", "tau_max", "von_mises", "residual_equilibrium"):
@@ -70,7 +71,7 @@ def test_shear_on_any_plane_is_told_where_it_is_larger(nu: float) -> None:
     """Below nu of about 0.25 the largest shear turns out of the plane (Johnson 1985, sec. 4.2)."""
     pair = round_cam(Elastic(210e9, nu))
     bodies = CycleBodies.meshed(pair)
-    found = pair_history(pair, bodies, np.array([0.5]), np.array([800.0]))
+    found = two_scale_history(pair, bodies, np.array([0.5]), np.array([800.0]))
     by_hertz = hertz.shear_any_plane_peak(nu) * found.p0_hertz
     np.testing.assert_allclose(found.tau_any_plane, by_hertz, rtol=1e-2)  # the disc adds 0.7 %
     assert (found.tau_any_plane > 1.01 * found.tau_max).all() == (nu < 0.25)

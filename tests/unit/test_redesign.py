@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline import solver as road
 from camwright.pipeline.base.files import json_text
 from camwright.pipeline.case.cards.catalogue import (
     better_bush,
@@ -19,7 +18,8 @@ from camwright.pipeline.case.cards.catalogue import (
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_of, variant
 from camwright.pipeline.case.case_file import load_case_file, parse_case
-from camwright.pipeline.follower.spring import case_spring
+from camwright.pipeline.case.limits import CAM_RADIUS
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.roller_alternatives import roller_problems
 from camwright.pipeline.studies.redesign import point_store
@@ -138,10 +138,10 @@ def test_roller_brings_along_what_hangs_on_it(case, parts):
     springs = 0.5 * (parts.springs["60 x 42"].mass - parts.springs["40 x 25"].mass)
     assert found.follower.mass == pytest.approx(case.follower.mass + disc + springs, rel=1e-9)
     assert found.spring.rate == pytest.approx(parts.springs["60 x 42"].rate, rel=1e-12)
-    assert case_spring(found).rate == pytest.approx(found.spring.rate, rel=1e-12)
+    assert found.spring.design.rate == pytest.approx(found.spring.rate, rel=1e-12)
     assert found.guides.b.pv_limit == pytest.approx(1.8e6)
     assert found.guides.b.length == case.guides.b.length
-    assert found.limits.cam_radius == 0.08
+    assert found.limits[CAM_RADIUS] == 0.08
     assert found.smoothing.kind == "constrained"
     assert parse_case(found.to_toml()).sha256 == found.sha256
 
@@ -173,21 +173,21 @@ def test_travel_is_the_most_that_keeps_the_springs_limits(case, parts, name):
 
 
 def test_a_spring_that_cannot_be_is_of_no_use(case, parts):
-    hard = case.spring.model_copy(update={"preload": 5000.0})
+    hard = replace(case.spring, preload=5000.0)
     assert travel_of(parts.springs["40 x 25"], case.model_copy(update={"spring": hard})) == 0.0
 
 
 def test_rollers_for_a_case_without_an_answer(case):
     """The smallest first, the cam's base circle kept, and no file needed for it."""
-    torques = road.engine_torques(case)
+    torques = engine_torques(case)
     loose = parse_case(case.to_toml())  # lies in no folder
     found = list(roller_problems(loose, torques, problem_of(case, torques)))
     assert len(found) >= 5
     radii = [problem.ratings.roller_radius for _, problem in found]
     assert radii == sorted(radii)
-    circle = case.cam.pitch_base_radius - case.roller.radius
+    circle = case.cam.prime_radius - case.roller.radius
     for _, problem in found:
-        base = problem.machine.base_radius - problem.ratings.roller_radius
+        base = problem.variables.prime_radius - problem.ratings.roller_radius
         assert base == pytest.approx(circle, rel=1e-9)
     forces = {name: problem.ratings.normal_force for name, problem in found}
     assert forces["track_roller_35x16"] == 3600.0  # of its ring; its balls bear 5.1 kN
@@ -203,7 +203,7 @@ def test_parts_beside_the_case(tmp_path, parts):
     )
     (tmp_path / "springs.toml").write_text(
         '[wires.w]\nshear_modulus = "79 GPa"\ndensity = "7850 kg/m^3"\n'
-        'strength_at_1mm = "1900 MPa"\nexponent = 0.15\nsource = "mine"\n'
+        'strength_at_1mm = "1900 MPa"\nstrength_exponent = 0.15\nsource = "mine"\n'
         '[[spring]]\nname = "mine"\nwire = "w"\nwire_diameter = "5 mm"\nmean_diameter = "35 mm"\n'
         'coils = 7\nfree_length = "110 mm"\n'
     )

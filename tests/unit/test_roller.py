@@ -138,12 +138,12 @@ def test_rating_life_by_hand():
     life = rating_life([570.0] * 3, [600 * 2 * np.pi / 60] * 3, 1140.0)
     assert life.mean_load == pytest.approx(570.0)
     assert life.revolutions == pytest.approx(8e6, rel=1e-12)
-    assert life.hours == pytest.approx(8e6 / 600 / 60, rel=1e-12)
-    assert rating_life([0.0], [1.0], 1140.0).hours == np.inf
+    assert life.seconds == pytest.approx(8e6 / 600 * 60, rel=1e-12)
+    assert rating_life([0.0], [1.0], 1140.0).seconds == np.inf
 
 
 def test_ten_percent_more_load_costs_a_quarter_of_the_life():
-    one, more = (rating_life([f], [100.0], 1140.0).hours for f in (500.0, 550.0))
+    one, more = (rating_life([f], [100.0], 1140.0).seconds for f in (500.0, 550.0))
     assert more / one == pytest.approx(1.1**-3, rel=1e-12)
 
 

@@ -23,6 +23,11 @@ def entries(folder: Path) -> list[str]:
     return sorted(entry.name for entry in folder.iterdir())
 
 
+def keep_piece(folder: RunFolder) -> None:
+    """A first piece of the contact of a first trial."""
+    folder.contact_store(1).save("idle", 0, {"p0": np.arange(3) / 7.0}, key="a")
+
+
 def other_case() -> Any:
     return parse_case(template("small").replace('"400 N"', '"401 N"'))
 
@@ -57,11 +62,20 @@ def test_what_nobody_expected_leaves_solved_trials_to_resume(tmp_path: Path) -> 
     """A failure of the drawing after an hour of contact must not take the contact with it."""
     case = small_case()
     with pytest.raises(ZeroDivisionError), RunFolder(tmp_path / "run", case) as folder:
+        keep_piece(folder)
         write_trial(folder, [check()])
         raise ZeroDivisionError
     with RunFolder(tmp_path / "run", case, resume=True) as folder:
         assert folder.resumed
         assert (folder.path / "trial_1" / "5_cycle.csv").is_file()
+        assert list(folder.contact_store(1).load("idle", "a")) == [0]
+
+
+def test_what_nobody_expected_before_any_contact_leaves_nothing(tmp_path: Path) -> None:
+    with pytest.raises(ZeroDivisionError), RunFolder(tmp_path / "run", small_case()) as folder:
+        folder.write_torque(np.arange(5) / 7.0, {"total": np.arange(5) / 3.0})
+        raise ZeroDivisionError
+    assert entries(tmp_path) == []
 
 
 def test_an_empty_folder_will_do(tmp_path: Path) -> None:
@@ -94,6 +108,14 @@ def test_refuses_foreign_files(tmp_path: Path) -> None:
     assert entries(tmp_path) == ["run", "thesis.tex"]
 
 
+def test_a_run_with_its_workshop_files_is_no_stranger(tmp_path: Path) -> None:
+    out = write_run(tmp_path / "run")
+    (out / "workshop").mkdir()
+    (out / "workshop" / "contour.csv").write_text("")
+    write_run(out, status="fail")
+    assert run_reader.load_run(out).verdict == "fail"
+
+
 def test_refuses_what_stands_where_the_work_folder_goes(tmp_path: Path) -> None:
     (tmp_path / ".run.partial").mkdir()
     (tmp_path / ".run.partial" / "precious").write_text("x")
@@ -113,8 +135,8 @@ def test_two_runs_at_once(tmp_path: Path) -> None:
 
 def interrupted(out: Path) -> None:
     with pytest.raises(KeyboardInterrupt), RunFolder(out, small_case()) as folder:
-        folder.save_chunk(1, "idle", 0, {"p0": np.arange(3) / 7.0}, key="a")
-        folder.save_chunk(1, "idle", 1, {"p0": np.arange(3) / 9.0}, key="b")
+        keep_piece(folder)
+        folder.contact_store(1).save("idle", 1, {"p0": np.arange(3) / 9.0}, key="b")
         raise KeyboardInterrupt
 
 
@@ -124,10 +146,11 @@ def test_interrupted_run_resumes(tmp_path: Path) -> None:
     assert not out.exists()
     with RunFolder(out, small_case(), resume=True) as folder:
         assert folder.resumed
-        found = folder.load_chunks(1, "idle", key="a")
+        found = folder.contact_store(1).load("idle", "a")
         assert list(found) == [0]
         assert found[0]["p0"].tolist() == (np.arange(3) / 7.0).tolist()
-        assert folder.load_chunks(2, "idle", key="a") == {}
+        assert folder.contact_store(2).load("idle", "a") == {}
+        assert folder.contact_store(1).load("rated", "a") == {}
         write_trial(folder, [check()])
         folder.finish(summary())
     assert entries(tmp_path) == ["run"]
@@ -138,7 +161,7 @@ def test_without_resume_an_interrupted_run_starts_afresh(tmp_path: Path) -> None
     interrupted(tmp_path / "run")
     with RunFolder(tmp_path / "run", small_case()) as folder:
         assert not folder.resumed
-        assert folder.load_chunks(1, "idle", key="a") == {}
+        assert folder.contact_store(1).load("idle", "a") == {}
 
 
 def test_resume_without_a_start_begins(tmp_path: Path) -> None:
@@ -161,13 +184,13 @@ def test_resume_refuses_another_input_or_other_versions(
     assert RunFolder(out, small_case(), resume=True).resumed
 
 
-def test_torn_chunk_is_computed_anew(tmp_path: Path) -> None:
+def test_torn_piece_is_computed_anew(tmp_path: Path) -> None:
     out = tmp_path / "run"
     interrupted(out)
-    (chunk,) = tmp_path.rglob("000000.npz")
-    chunk.write_bytes(chunk.read_bytes()[:100])
+    (piece,) = tmp_path.rglob("000000.npz")
+    piece.write_bytes(piece.read_bytes()[:100])
     with RunFolder(out, small_case(), resume=True) as folder:
-        assert folder.load_chunks(1, "idle", key="a") == {}
+        assert folder.contact_store(1).load("idle", "a") == {}
 
 
 def full_disk(*_: object) -> None:

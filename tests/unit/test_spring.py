@@ -7,10 +7,23 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand, lightest, read_catalogue
-from camwright.pipeline.follower.spring import HelicalSpring, Wire, surge_force, surge_harmonics
+from camwright.pipeline.follower.spring import (
+    HelicalSpring,
+    Spring,
+    surge_force,
+    surge_harmonics,
+)
 
-WIRE = Wire(80e9, 7850.0, 2000e6, 0.1)
-SPRING = HelicalSpring(5e-3, 30e-3, 9.0, 0.11, WIRE)
+SPRING = HelicalSpring(
+    wire_diameter=5e-3,
+    mean_diameter=30e-3,
+    coils=9.0,
+    free_length=0.11,
+    shear_modulus=80e9,
+    density=7850.0,
+    strength_at_1mm=2000e6,
+    strength_exponent=0.1,
+)
 
 
 def test_rate_mass_and_lengths():
@@ -34,14 +47,15 @@ def test_wahl_factor_and_stress():
 
 def test_fatigue_meets_zimmerlis_point():
     """At Zimmerli's own mean and amplitude the safety is 1; below it rises as 1/force."""
-    for peened, (amplitude, mean) in {False: (241e6, 379e6), True: (398e6, 534e6)}.items():
-        spring = replace(SPRING, wire=replace(WIRE, peened=peened))
+    points = {"plain": (241e6, 379e6), "peened": (398e6, 534e6)}
+    for treatment, (amplitude, mean) in points.items():
+        spring = replace(SPRING, treatment=treatment)
         per_newton = float(spring.stress(1.0))
         low, high = (mean - amplitude) / per_newton, (mean + amplitude) / per_newton
         assert spring.fatigue_safety(low, high) == pytest.approx(1.0, rel=1e-12)
         assert spring.fatigue_safety(low / 2, high / 2) == pytest.approx(2.0, rel=1e-12)
     assert SPRING.fatigue_safety(0.0, 0.0) == np.inf
-    steady = 0.67 * WIRE.tensile_strength(5e-3) / float(SPRING.stress(500.0))
+    steady = 0.67 * SPRING.tensile_strength / float(SPRING.stress(500.0))
     assert SPRING.fatigue_safety(500.0, 500.0) == pytest.approx(steady)
 
 
@@ -105,18 +119,36 @@ def test_surge_vanishes_slowly():
         ({"coils": float("nan")}, "coils"),
         ({"free_length": 0.05}, "free_length"),
         ({"end_factor": 0.0}, "end_factor"),
+        ({"density": -1.0}, "density"),
+        ({"shear_modulus": 0.0}, "shear_modulus"),
+        ({"strength_at_1mm": float("inf")}, "strength_at_1mm"),
+        ({"strength_exponent": 1.0}, "strength_exponent"),
     ],
 )
 def test_refusals(change, field):
-    with pytest.raises(InputError, match=f"spring.{field}"):
+    with pytest.raises(InputError, match=rf"spring\.design\.{field}"):
         replace(SPRING, **change)
 
 
 def test_refuses_forces_out_of_order():
     with pytest.raises(InputError, match="force"):
         SPRING.fatigue_safety(2.0, 1.0)
-    with pytest.raises(InputError, match="density"):
-        replace(WIRE, density=-1.0)
+
+
+def test_tensile_strength_falls_with_the_wire_s_diameter():
+    """R_m at 1 mm times (5 mm / 1 mm)^-0.1."""
+    assert SPRING.tensile_strength == pytest.approx(2000e6 * 5**-0.1, rel=1e-14)
+    assert replace(SPRING, strength_exponent=0.0).tensile_strength == 2000e6
+
+
+def test_spring_of_the_follower_by_hand():
+    """24 kN/m and 240 N: 480 N at 10 mm, and 3.6 J beyond the preload's."""
+    spring = Spring(rate=24e3, preload=240.0)
+    lift = np.array([0.0, 0.01])
+    np.testing.assert_allclose(spring.force(lift), [240.0, 480.0], rtol=1e-14)
+    np.testing.assert_array_equal(spring.stiffness(lift), [24e3, 24e3])
+    assert spring.energy(0.01) == pytest.approx(3.6, rel=1e-14)
+    np.testing.assert_allclose(spring.lift_for([0.0, 3.6]), lift, atol=1e-15)
 
 
 def test_lightest_of_the_shipped_catalogue():
@@ -139,7 +171,7 @@ def test_lightest_of_the_shipped_catalogue():
     ("text", "match"),
     [
         ("nonsense", "TOML"),
-        ("[wires.a]\nexponent = 0.1", "missing"),
+        ("[wires.a]\nstrength_exponent = 0.1", "missing"),
         ("[[spring]]\nname = 'a'\ncolour = 'red'", "unknown key"),
         (
             "[[spring]]\nname='a'\nwire='b'\nwire_diameter='1 mm'\nmean_diameter='5 mm'\n"

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from made_check import made_check
 
-from camwright.pipeline.checks.check import Check
 from camwright.pipeline.smoothing.fe_correction import SETTLED, Moved, settled
 from camwright.pipeline.smoothing.scenario import Correction
 
 
-def moved(before, after, limit="bush_pv_A"):
+def moved(before, after, limit="guide_pv_A"):
     return Moved(limit, before, after)
 
 
@@ -32,7 +32,7 @@ def test_a_series_that_goes_one_way_is_left_alone():
 
 
 def check(demand, lift_can_help=True):
-    return Check("x", "x", demand, 1.0, lift_can_help=lift_can_help)
+    return made_check("x", demand, 1.0, lift_can_help=lift_can_help)
 
 
 @pytest.mark.parametrize(
@@ -58,5 +58,5 @@ def test_part_of_the_way_from_one_correction_to_another():
 
 
 def test_sentence_names_the_limit_and_both_shares():
-    assert "bush_pv_A from 0.9 to 0.95" in moved(0.9, 0.95).sentence
+    assert "guide_pv_A from 0.9 to 0.95" in moved(0.9, 0.95).sentence
     assert "no limit" in Moved("", 0.0, 0.0).sentence

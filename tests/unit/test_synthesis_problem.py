@@ -1,19 +1,21 @@
 """From a case to the synthesis it asks for: load cases, corners, what is freed."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.problem_setup import problem_of
 
 CASES = Path(__file__).parents[2] / "cases"
 
 
 def section(given, **changes):
+    """A section of a case with other values."""
     return given.model_copy(update=changes)
 
 
@@ -24,7 +26,7 @@ def case():
 
 @pytest.fixture(scope="module")
 def torques(case):
-    return road.engine_torques(case)
+    return engine_torques(case)
 
 
 def test_every_load_case_is_a_scenario(case, torques):
@@ -38,11 +40,11 @@ def test_every_load_case_is_a_scenario(case, torques):
 def test_corners_are_all_of_spring_and_friction_and_each_of_mass_and_phase(case, torques):
     wide = section(
         case,
-        spring=section(case.spring, rate_tolerance=0.05, preload_tolerance=0.1),
-        guides=section(
+        spring=replace(case.spring, rate_tolerance=0.05, preload_tolerance=0.1),
+        guides=replace(
             case.guides,
-            a=section(case.guides.a, friction=0.1, friction_min=0.05, friction_max=0.15),
-            b=section(case.guides.b, friction=0.1, friction_min=None, friction_max=None),
+            a=replace(case.guides.a, friction=0.1, friction_min=0.05, friction_max=0.15),
+            b=replace(case.guides.b, friction=0.1, friction_min=None, friction_max=None),
         ),
         tolerances=section(case.tolerances, friction=0.2, mass=0.1, phase=np.radians(4.0)),
         smoothing=section(case.smoothing, corners=True),
@@ -67,7 +69,7 @@ def test_preload_of_a_load_case_is_that_of_its_scenario(case, torques):
     own = section(case, load_cases=(idle, section(over, preload=300.0)))
     problem = problem_of(own, torques)
     assert problem.scenarios[0].preload_factor == 1.0
-    found = problem.scenarios[1].preload_factor * problem.machine.preload
+    found = problem.scenarios[1].preload_factor * problem.variables.preload
     assert found == pytest.approx(300.0)
 
 

@@ -6,9 +6,17 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case_file import load_case_file, parse_case
-from camwright.pipeline.cycle.valve_train import valve_cam, valve_record
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import turns_of
+from camwright.pipeline.solver import solve
+from camwright.pipeline.studies.papers.valve_train import (
+    machine_motion,
+    valve_cam,
+    valve_record,
+)
 from camwright.reports.verification_tables import valve_train
 
 PAPERS = Path(__file__).resolve().parents[2] / "cases" / "papers"
@@ -21,8 +29,15 @@ def text(name):
 
 def record(given):
     case = parse_case(given)
-    contour = road.cam_contour(case, road.designed_lift(case, {}, None))
-    return case, valve_record(case, road.turns_of(case, contour, {}, POSITIONS))
+    contour = case.contour(given_lift(case))
+    turns = turns_of(machines(case), contour, case, {}, POSITIONS)
+    return case, machine_motion(valve_cam(case), turns)
+
+
+def solved(given):
+    """A trial of few positions."""
+    case = parse_case(given)
+    return solve(case, case.contour(given_lift(case)), tier=Tier.PREVIEW, positions=72)
 
 
 def value(found, name):
@@ -88,8 +103,17 @@ def test_what_is_reconstructed_is_said_on_the_page():
     assert valve_train(None).rows == []
 
 
+def test_the_record_of_a_run_holds_module_and_rows_of_the_trial_s_own_turns():
+    trial = solved(text("c"))
+    found = valve_record(trial)["valve_train"]
+    assert found == machine_motion(valve_cam(trial.case), [cycle.turn for cycle in trial.cycles])
+    assert found["module"] == "C"
+    assert {row["load_case"] for row in found["rows"]} == {"", trial.case.load_cases[0].name}
+
+
 def test_a_case_that_does_not_ask_gets_nothing():
-    assert record(text("c").replace("[valve_train]", "#").replace("cam_mass", "#"))[1] is None
+    bare = text("c").replace("[valve_train]", "#").replace("cam_mass", "#")
+    assert valve_record(solved(bare)) == {"valve_train": None}
     assert valve_cam(load_case_file(PAPERS / "eccentric.toml")) is None
 
 

@@ -1,4 +1,4 @@
-"""The trial of `made_trial` with one thing changed: a limit, a figure, a shape, a NaN."""
+"""The solution of `made_trial` with one thing changed: a limit, a figure, a shape, a NaN."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,125 +13,134 @@ from camwright.geometry.extrema import Extremum
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import DEGREE, PeriodicPolynomial
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.checks.extremes import TrialEvidence
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.rolling_history import RollingHistory
+from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import Reversal
 from camwright.pipeline.follower.guide_friction import GuideHeat
 
 NAN = np.full(made.POSITIONS, np.nan)
+NO_ROLLING = RollingHistory.unknown(made.POSITIONS)
 
 
-def with_case(**sections: Any) -> TrialEvidence:
-    return made.evidence(case=made.case(**sections))
+def with_case(**sections: Any) -> Solution:
+    return made.solution(case=made.case(**sections))
 
 
-def with_limits(**values: Any) -> TrialEvidence:
-    return made.evidence(case=made.limits(**values))
+def with_limits(**values: Any) -> Solution:
+    return made.solution(case=made.limits(**values))
 
 
-def with_part(section: str, **values: Any) -> TrialEvidence:
-    """The trial with a section of its case changed."""
+def with_part(section: str, **values: Any) -> Solution:
+    """The solution with a section of its case changed."""
     return with_case(**{section: made.changed(getattr(made.case(), section), **values)})
 
 
-def with_material(name: str, **values: Any) -> TrialEvidence:
-    cards = made.case().materials
-    return with_case(materials=cards | {name: made.changed(cards[name], **values)})
+def with_material(name: str, **values: Any) -> Solution:
+    """The solution with a material changed, wherever a part is made of it."""
+    card = made.changed(made.case().materials[name], **values)
+    return made.solution(case=made.with_card(made.case(), card))
 
 
-def with_bearing(**values: Any) -> TrialEvidence:
+def with_speed(speed: float) -> Solution:
+    """The solution at another speed of the crank, rad/s; its figures stay as they are."""
+    return with_case(load_cases=(made.load_case("idle", speed=speed),))
+
+
+def with_bearing(**values: Any) -> Solution:
     return with_part("roller", bearing=made.changed(made.case().roller.bearing, **values))
 
 
-def with_ring(**values: Any) -> TrialEvidence:
+def with_ring(**values: Any) -> Solution:
     return with_bearing(ring=made.changed(made.case().roller.bearing.ring, **values))
 
 
-def with_shaft(**values: Any) -> TrialEvidence:
+def with_shaft(**values: Any) -> Solution:
     return with_part("camshaft", **values)
 
 
-def with_gear(**values: Any) -> TrialEvidence:
+def with_gear(**values: Any) -> Solution:
     return with_shaft(gear=made.changed(made.case().camshaft.gear, **values))
 
 
-def with_guide(side: str, **values: Any) -> TrialEvidence:
+def with_guide(side: str, **values: Any) -> Solution:
     guide = made.changed(getattr(made.case().guides, side), **values)
     return with_part("guides", **{side: guide})
 
 
-def with_design(**values: Any) -> TrialEvidence:
+def with_design(**values: Any) -> Solution:
     return with_part("spring", design=made.changed(made.case().spring.design, **values))
 
 
-def with_cycle(cycle: Cycle | None = None, **values: Any) -> TrialEvidence:
-    return made.evidence(cycles=(replace(cycle or made.cycle(), **values),))
+def with_cycle(cycle: Cycle | None = None, **values: Any) -> Solution:
+    return made.solution(cycles=(made.changed_cycle(cycle or made.cycle(), **values),))
 
 
 def cycle_with(part: str, base: Cycle | None = None, **values: Any) -> Cycle:
     """The made-up cycle with some figures of its loads, contact, guides, rolling or parts."""
     base = base or made.cycle()
-    return replace(base, **{part: replace(getattr(base, part), **values)})
+    return made.changed_cycle(base, **{part: replace(getattr(base, part), **values)})
 
 
-def with_loads(**values: Any) -> TrialEvidence:
+def with_loads(**values: Any) -> Solution:
     return with_cycle(cycle_with("loads", **values))
 
 
-def with_contact(**values: Any) -> TrialEvidence:
+def with_contact(**values: Any) -> Solution:
     return with_cycle(cycle_with("contact", **values))
 
 
-def with_guides(**values: Any) -> TrialEvidence:
+def with_guides(**values: Any) -> Solution:
     return with_cycle(cycle_with("guides", **values))
 
 
-def with_rolling(**values: Any) -> TrialEvidence:
+def with_rolling(**values: Any) -> Solution:
     return with_cycle(cycle_with("rolling", **values))
 
 
-def with_bore(**values: Any) -> TrialEvidence:
+def with_bore(**values: Any) -> Solution:
     return with_rolling(bore=replace(made.cycle().rolling.bore, **values))
 
 
-def with_map(**values: Any) -> TrialEvidence:
+def with_map(**values: Any) -> Solution:
     return with_rolling(envelope=replace(made.cycle().rolling.envelope, **values))
 
 
-def with_parts(**values: Any) -> TrialEvidence:
+def with_parts(**values: Any) -> Solution:
     return with_cycle(cycle_with("parts", **values))
 
 
-def with_temperature(side: str, temperature: float) -> TrialEvidence:
+def with_temperature(side: str, temperature: float) -> Solution:
     heat = getattr(made.cycle().parts, f"heat_{side}")
     return with_parts(**{f"heat_{side}": GuideHeat(heat.power, temperature)})
 
 
-def with_worst_friction(**values: Any) -> TrialEvidence:
-    """The trial with other loads at the greatest friction of the guides."""
+def with_worst_friction(**values: Any) -> Solution:
+    """The solution with other loads at the greatest friction of the guides."""
     bounds = made.cycle().parts.friction
     return with_parts(friction=replace(bounds, greatest=replace(bounds.greatest, **values)))
 
 
-def with_elastic_force(force: Any) -> TrialEvidence:
+def with_elastic_force(force: Any) -> Solution:
     elastic = made.cycle().parts.elastic
     return with_parts(
         elastic=replace(elastic, response=replace(elastic.response, contact_force=force))
     )
 
 
-def with_certificate(**values: Any) -> TrialEvidence:
-    """The trial with other figures at the second certified angle."""
+def with_certificate(**values: Any) -> Solution:
+    """The solution with other figures at the second certified angle."""
     first, second = made.CERTIFICATE
-    return made.evidence(certificate=(first, replace(second, **values)))
+    return made.solution(certificate=(first, replace(second, **values)))
 
 
-def with_mesh(**values: Any) -> TrialEvidence:
-    return made.evidence(mesh_quality=replace(made.MESH, **values))
+def with_mesh(**values: Any) -> Solution:
+    quality = replace(made.MESH.quality, **values)
+    return made.solution(mesh=replace(made.MESH, quality=quality))
 
 
-def with_benchmark(name: str, off: float) -> TrialEvidence:
-    return made.evidence(benchmarks=made.BENCHMARKS | {f"{name}_half_width": off})
+def with_benchmark(name: str, off: float) -> Solution:
+    return made.solution(benchmarks=made.BENCHMARKS | {f"{name}_half_width": off})
 
 
 class UnknownLift(Lift):
@@ -145,17 +154,17 @@ class UnknownLift(Lift):
         return PeriodicPolynomial(np.full((DEGREE + 1, self.theta.size), np.nan))
 
 
-def unknown() -> TrialEvidence:
-    """The trial on a contour of which no place is known."""
+def unknown() -> Solution:
+    """The solution on a contour of which no place is known."""
     lift = UnknownLift(made.THETA, NAN, np.nan)
-    return made.evidence(contour=Contour(PitchCurve(lift, made.BASE), made.ROLLER))
+    return made.solution(contour=Contour(PitchCurve(lift, made.BASE), made.ROLLER))
 
 
-def open_ended() -> TrialEvidence:
-    """The trial on a lift whose source missed its start by half a nanometre."""
+def open_ended() -> Solution:
+    """The solution on a lift whose source missed its start by half a nanometre."""
     shape = made.contour()
     lift = replace(shape.pitch.lift, closure=5e-10)
-    return made.evidence(contour=replace(shape, pitch=replace(shape.pitch, lift=lift)))
+    return made.solution(contour=replace(shape, pitch=replace(shape.pitch, lift=lift)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,40 +177,40 @@ class SearchedContour(Contour):
         return self.gap
 
 
-def with_gap(gap: float, theta: float = np.nan) -> TrialEvidence:
-    """The trial on a contour with a least gap, m, between roller and cam away from the contact."""
+def with_gap(gap: float, theta: float = np.nan) -> Solution:
+    """The solution with a least gap, m, between roller and cam away from the contact."""
     shape = made.contour()
-    return made.evidence(
+    return made.solution(
         contour=SearchedContour(shape.pitch, shape.roller_radius, Extremum(gap, theta))
     )
 
 
-def hollow() -> TrialEvidence:
-    return made.evidence(contour=made.hollow())
+def hollow() -> Solution:
+    return made.solution(contour=made.hollow())
 
 
-def soft(**values: Any) -> TrialEvidence:
+def soft(**values: Any) -> Solution:
     """A cam without a hardened case."""
     card = {"case_depth": None, "treatment": "through_hardened"}
     return with_material("steel", **(card | values))
 
 
-def faced(cycle: Cycle | None = None, **values: Any) -> TrialEvidence:
-    """The trial with a flat face of 20 mm; the contact is 5 mm off the stem's axis at most."""
+def faced(cycle: Cycle | None = None, **values: Any) -> Solution:
+    """The solution with a flat face of 20 mm; the contact is 5 mm off the stem's axis at most."""
     follower = made.face_case().follower
     face = made.changed(follower.face, **values)
-    return made.evidence(
+    return made.solution(
         case=made.changed(made.face_case(), follower=made.changed(follower, face=face)),
         contour=made.face_contour(),
         cycles=(cycle or made.cycle(made.face_contour()),),
     )
 
 
-def reversing(count: int) -> TrialEvidence:
+def reversing(count: int) -> Solution:
     return with_parts(reversals=(Reversal(1.0, 1.0),) * count)
 
 
-def lossy() -> TrialEvidence:
+def lossy() -> Solution:
     """A cam whose torque pays one part in ten million more than the guides' heat."""
     loads = made.cycle().loads
     spent = loads.cam_torque - (loads.spring_force + loads.inertia_force) * loads.lift_slope

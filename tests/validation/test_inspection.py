@@ -18,13 +18,14 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.measured_contour import inspected, real_contour
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline import solver as road
 from camwright.pipeline.base.tables import read_table
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.template import template
-from camwright.pipeline.contact.contact_pair import closed_form_history
+from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.solution import turns_of
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_records import contour_columns, lift_columns
@@ -109,7 +110,7 @@ def small_case(positions: int = 180) -> Case:
 def test_rise_of_force_and_pressure_is_that_of_theory() -> None:
     """A round cam with a ripple: F = P + k e + m w^2 e'', and Hertz with the wave's curvature."""
     case, theta = small_case(), uniform_turn(720)
-    base, roller = case.cam.pitch_base_radius, case.roller.radius
+    base, roller = case.cam.prime_radius, case.roller.radius
     flat = Contour(PitchCurve(Lift(theta, np.zeros(720)), base), roller)
     error = RIPPLE * np.cos(WAVES * POINTS)
     points = flat.points(POINTS) + error * flat.normal(POINTS)
@@ -119,7 +120,8 @@ def test_rise_of_force_and_pressure_is_that_of_theory() -> None:
     points = nominal.points(POINTS) + error * nominal.normal(POINTS)
     real = real_contour(nominal, inspected(nominal, points))
     speed = case.load_cases[0].speed / case.mechanism.gear_ratio
-    drawn, run = (road.turns_of(case, made, {}, 720)[0] for made in (nominal, real))
+    states = machines(case)
+    drawn, run = (turns_of(states, made, case, {}, 720)[0] for made in (nominal, real))
     away = np.cos(theta) > 0.2  # far from the mark the cam is round
     # the roller's centre sees the wave of the surface a little finer than the surface itself
     surface = base - roller
@@ -131,12 +133,12 @@ def test_rise_of_force_and_pressure_is_that_of_theory() -> None:
     assert np.ptp(got) == pytest.approx(np.ptp(rise[away]), rel=2e-3)
     assert np.abs(got - rise[away]).max() < 0.1 * np.ptp(rise)
     # pressure: Hertz on the curvature of a circle with a wave, crest and hollow
-    pair = contact_pair(case, real)
-    found = closed_form_history(pair, theta, run.loads.normal_force)
+    pair = contact_pair(run.machine, real)
+    contact = closed_form_history(pair, theta, run.loads.normal_force)
     crest = 1 / surface + RIPPLE * (WAVES**2 - 1) / surface**2 * np.cos(WAVES * theta)
     load = run.loads.normal_force / pair.width
     p0 = np.sqrt(load * pair.contact_modulus * (crest + 1 / roller) / np.pi)
-    np.testing.assert_allclose(found.p0[away], p0[away], rtol=5e-3)
+    np.testing.assert_allclose(contact.p0[away], p0[away], rtol=5e-3)
 
 
 @pytest.fixture(scope="module")
@@ -144,7 +146,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Case, Contour]:
     """A run folder whose tables are those of a given lift, at little cost."""
     folder, case = tmp_path_factory.mktemp("inspect") / "run", small_case(72)
     lift = Lift(THETA, 0.005 * (1 - np.cos(THETA)))
-    made = road.cam_contour(case, lift)
+    made = case.contour(lift)
     with RunFolder(folder, case) as out:
         out.write_lift(1, lift_columns(case, lift))
         out.write_contour(1, contour_columns(case, made))
@@ -177,9 +179,9 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     # twelve crests a turn press harder than the drawing: Hertz and the finite elements agree on it
     np.testing.assert_allclose(cycle["p0_fe_MPa"], cycle["p0_hertz_MPa"], rtol=0.02)
     theta = np.radians(cycle["cam_angle_deg"])
-    drawn = road.turns_of(small_case(72), made, {}, 72)[0].loads.normal_force
-    rise = np.fft.rfft(cycle["normal_force_N"] - drawn) / (theta.size / 2)
     case = small_case(72)
+    drawn = turns_of(machines(case), made, case, {}, 72)[0].loads.normal_force
+    rise = np.fft.rfft(cycle["normal_force_N"] - drawn) / (theta.size / 2)
     speed = case.load_cases[0].speed / case.mechanism.gear_ratio
     swing = RIPPLE * (case.spring.rate - case.follower.mass * (speed * WAVES) ** 2)
     assert abs(rise[WAVES]) == pytest.approx(abs(swing), rel=0.01)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import load_case_file
-from camwright.pipeline.follower.follower_forces import FollowerSystem
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.cycle.solution import turns_of
+from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.studies.papers import cardoso_2024, cardoso_2025
 from camwright.pipeline.studies.papers.balancing_cam import (
@@ -35,27 +39,28 @@ def case(name: str) -> Case:
 
 @pytest.mark.parametrize("name", ["c25_preload", "c25_half_torque"])
 def test_machine_of_2025(name: str) -> None:
-    found = case(name)
-    assert found.engine is not None
-    assert found.engine.build() == GX120
-    assert FollowerSystem.from_case(found) == FOLLOWER_2025
-    assert Smoother.from_case(found.smoothing) == TWELVE_VALUES
-    assert found.mechanism.gear_ratio == RATIO
-    assert found.cam.pitch_base_radius == BASE_RADIUS
-    assert found.crankshaft is not None
-    assert found.crankshaft.inertia == EFFECTIVE_INERTIA
+    paper = case(name)
+    assert paper.engine is not None
+    assert paper.engine.build() == GX120
+    system = machines(paper)[0].system
+    bare = Spring(rate=system.spring.rate, preload=system.spring.preload)
+    assert replace(system, spring=bare) == FOLLOWER_2025
+    assert Smoother.from_case(paper.smoothing) == TWELVE_VALUES
+    assert paper.mechanism.gear_ratio == RATIO
+    assert paper.cam.prime_radius == BASE_RADIUS
+    assert paper.crankshaft is not None
+    assert paper.crankshaft.inertia == EFFECTIVE_INERTIA
 
 
 def test_preload_study_runs_one_cam_at_three_preloads() -> None:
-    found = case("c25_preload")
-    states = [found.at(state.name).spring.preload for state in found.load_cases]
-    assert sorted(states) == list(cardoso_2025.PRELOADS)
-    torques = road.engine_torques(found)
-    contour = road.cam_contour(
-        found, road.designed_lift(found, torques, Smoother.from_case(found.smoothing))
-    )
-    turns = road.turns_of(found, contour, torques, 72)
-    springs = {given.load_case: given.loads.spring_force for given in turns}
+    paper = case("c25_preload")
+    states = machines(paper)
+    preloads = [machine.spring.preload for machine in states]
+    assert sorted(preloads) == list(cardoso_2025.PRELOADS)
+    torques = engine_torques(paper)
+    contour = paper.contour(cam_lift(paper, torques))
+    turns = turns_of(states, contour, paper, torques, 72)
+    springs = {turn.machine.load_case: turn.loads.spring_force for turn in turns}
     # The cam is one; the springs differ by what they are screwed tighter or looser.
     np.testing.assert_allclose(springs["preload-242"] - springs["preload-121"], 121.0, atol=1e-9)
     np.testing.assert_allclose(springs["preload-363"] - springs["preload-242"], 121.0, atol=1e-9)
@@ -68,10 +73,10 @@ def test_half_torque_case_asks_half() -> None:
 
 
 def test_machine_of_2024() -> None:
-    found = case("c24_idle800")
-    assert found.engine is not None
-    assert found.engine.build() == ENGINE_800
-    assert found.load_cases[0].speed == pytest.approx(SLOW_IDLE, rel=1e-3)  # 800 rpm, 83.8 rad/s
-    assert found.spring.rate == cardoso_2024.SPRING.spring_rate
-    assert found.spring.preload == cardoso_2024.SPRING.preload
-    assert found.smoothing.kind == "none"
+    paper = case("c24_idle800")
+    assert paper.engine is not None
+    assert paper.engine.build() == ENGINE_800
+    assert paper.load_cases[0].speed == pytest.approx(SLOW_IDLE, rel=1e-3)  # 800 rpm, 83.8 rad/s
+    assert paper.spring.rate == cardoso_2024.SPRING.rate
+    assert paper.spring.preload == cardoso_2024.SPRING.preload
+    assert paper.smoothing.kind == "none"

@@ -11,6 +11,7 @@ from camwright.geometry.eccentric import Eccentric
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.studies.papers.friction_identification import (
     Pendulum,
     from_pendulum,
@@ -131,7 +132,7 @@ def test_reduced_inertia_is_twice_the_kinetic_energy():
     np.testing.assert_allclose(rod.reduced_inertia(PHI), energy, rtol=1e-8)
 
 
-def test_eccentric_cam_of_the_road_is_the_slider_crank():
+def test_eccentric_cam_and_follower_are_the_slider_crank():
     # no friction, no rod mass: the cam's follower forces beside Newton and Euler of the linkage
     for offset in (0.0, 0.015):
         linkage = Eccentric(0.02, 0.08, offset)
@@ -139,7 +140,8 @@ def test_eccentric_cam_of_the_road_is_the_slider_crank():
         rod = SliderCrankDrive(linkage, free, Masses(slider=1.3), SPRING)
         found = rod.reactions(PHI, SPEED)
         pitch = PitchCurve(linkage.lift(), linkage.prime_radius, offset)
-        system = FollowerSystem(1.3, SPRING.rate, SPRING.preload, 0.08, 0.03, 0.0, 0.0)
+        spring = Spring(rate=SPRING.rate, preload=SPRING.preload)
+        system = FollowerSystem(1.3, spring, 0.08, 0.03, 0.0, 0.0)
         loads = follower_loads(pitch, system, SPEED, PHI + 0.5 * np.pi)
         scale = np.abs(loads.normal_force).max()
         for cam_side, linkage_side in (

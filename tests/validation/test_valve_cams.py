@@ -12,7 +12,8 @@ from camwright.geometry.errors import ContactError, InputError
 from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
-from camwright.pipeline.follower.valve_cam import (
+from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.studies.papers.valve_cam import (
     ElasticValve,
     ValveCam,
     follower_acceleration,
@@ -94,7 +95,8 @@ def test_speed_keeps_the_energy_and_acceleration_is_its_slope(module):
 def test_true_efficiency_is_of_friction_alone():
     r0, h, angle = SETS["B1"][:3]
     pitch = PitchCurve(harmonic(h, angle).lift(), r0 + 0.002)
-    theta, system = np.arange(2880) * 2 * np.pi / 2880, (0.1, 5e5, 45e3, 0.06, 0.02)
+    spring = Spring(rate=5e5, preload=45e3)
+    theta, system = np.arange(2880) * 2 * np.pi / 2880, (0.1, spring, 0.06, 0.02)
     smooth = follower_loads(pitch, FollowerSystem(*system, 0.0, 0.0), 0.0, theta)
     assert rise_efficiency(smooth) == pytest.approx(1.0, rel=1e-12)
     rubbed = [

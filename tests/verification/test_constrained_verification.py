@@ -10,12 +10,13 @@ from scipy.optimize import brentq
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque, spring_deflection, stored_energy
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case_file import load_case_file
-from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.smoothing.constrained_synthesis import RESERVE, Problem, synthesise
 from camwright.pipeline.smoothing.infeasibility import infeasibility
-from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 from camwright.pipeline.smoothing.shadow_prices import prices
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
@@ -29,7 +30,7 @@ RATINGS = Ratings(
 @pytest.fixture(scope="module")
 def published():
     case = load_case_file(CASES / "gx120.toml")
-    return case, road.engine_torques(case)
+    return case, engine_torques(case)
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +45,7 @@ def idle(published):
 
 
 def problem(idle, **ratings):
-    return Problem((idle,), replace(RATINGS, **ratings), Machine(24.2e3, 242.0, 0.05))
+    return Problem((idle,), replace(RATINGS, **ratings), DesignVariables(24.2e3, 242.0, 0.05))
 
 
 @pytest.fixture(scope="module")
@@ -54,9 +55,8 @@ def limited(idle):
 
 
 def loads_of(design, case):
-    pitch = PitchCurve(design.lift(), case.cam.pitch_base_radius)
-    speed = case.load_cases[0].speed / 2
-    return pitch, follower_loads(pitch, FollowerSystem.from_case(case), speed, uniform_turn(7200))
+    pitch, machine = PitchCurve(design.lift(), case.cam.prime_radius), machines(case)[0]
+    return pitch, follower_loads(pitch, machine.system, machine.cam_speed, uniform_turn(7200))
 
 
 def test_bound_on_the_pressure_angle_is_attained(limited, published):
@@ -83,9 +83,9 @@ def test_delivered_ripple_is_that_of_the_follower(limited, published, idle):
 def moving_average(case, torque, strength, rise, base=0.05):
     target = 2 * smoothed(torque, Smoother().stretched(strength))[::2]
     lift = lift_from_torque(uniform_turn(360), target - target.mean(), 24.2e3, 242.0, rise)
-    speed = case.load_cases[0].speed / 2
-    system = FollowerSystem.from_case(case)
-    loads = follower_loads(PitchCurve(lift, base), system, speed, uniform_turn(360))
+    machine = machines(case)[0]
+    pitch, theta = PitchCurve(lift, base), uniform_turn(360)
+    loads = follower_loads(pitch, machine.system, machine.cam_speed, theta)
     angle = float(np.degrees(np.abs(loads.pressure_angle).max()))
     rest = float(np.std(torque[::2] - loads.cam_torque / 2))
     return angle, float(loads.normal_force.max()), rest
@@ -100,10 +100,10 @@ def test_leaves_a_third_of_the_moving_average_at_the_same_pressure_angle(publish
 
 
 def test_leaves_less_than_any_moving_average_within_angle_and_force(published, idle):
-    """E0 and the base radius free for both: of all averages that keep both limits, the best."""
+    """E0 and the prime radius free for both: of all averages that keep both limits, the best."""
     case, _ = published
     bases = (0.045, 0.065)
-    freed = replace(problem(idle, normal_force=1100.0), freed={"base_radius": bases})
+    freed = replace(problem(idle, normal_force=1100.0), freed={"prime_radius": bases})
     design = synthesise(freed)
     assert design.feasible
     best = np.inf
@@ -122,7 +122,7 @@ def test_lift_closes_and_scales_with_the_spring(idle):
     light = replace(idle, mass=0.0)
     heavy = replace(light, torque=2 * light.torque)
     lifts = [
-        synthesise(replace(problem(item), machine=Machine(k * 24.2e3, k * 242.0, 0.05),
+        synthesise(replace(problem(item), variables=DesignVariables(k * 24.2e3, k * 242.0, 0.05),
                            coefficients=48)).lift()
         for item, k in ((light, 1), (heavy, 2))
     ]  # fmt: skip
@@ -152,7 +152,7 @@ def test_conflict_is_named_and_a_relaxation_makes_room(idle):
     roller = next(item for item in report.relaxations if item.unit == "N")
     ratings = replace(given.ratings, normal_force=roller.asked)
     assert synthesise(replace(given, ratings=ratings)).feasible
-    less = next(item for item in report.relaxations if item.what.startswith("a torque"))
+    less = next(item for item in report.relaxations if item.what.startswith("torque"))
     assert synthesise(replace(given, torque_reduction=less.asked)).feasible
 
 

@@ -13,12 +13,13 @@ from camwright.meshes.element_size import Sizing
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact.body_compliance import LoadedBody
 from camwright.pipeline.contact.certificate import solve_pair
-from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies, pair_history
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity import sparse_factor
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, ElasticBody
 from camwright.pipeline.contact.elasticity.pressure_distribution import PressureShapes
 from camwright.pipeline.contact.elasticity.surface_integrals import ContactFrame, normal_loads
 from camwright.pipeline.contact.follower_body import RollerBody
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 
 THETA = uniform_turn(720)
 STEEL = Elastic(210e9, 0.3)
@@ -38,7 +39,7 @@ def pair(cam=STEEL, roller=STEEL, *, lift=0.0, pitch=0.03, bore=6e-3, hub=4e-3, 
 def history(of, theta, force):
     angles = np.atleast_1d(np.asarray(theta, dtype=float))
     forces = np.broadcast_to(np.asarray(force, dtype=float), angles.shape)
-    return pair_history(of, CycleBodies.meshed(of), angles, forces)
+    return two_scale_history(of, CycleBodies.meshed(of), angles, forces)
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,10 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.contact.certificate import solve_pair
-from camwright.pipeline.contact.contact_pair import ContactPair, CycleBodies, pair_history
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import RollerBody
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 
 STEEL = Elastic(210e9, 0.3)
 ROLLER, WIDTH = 0.01, 5e-3
@@ -33,7 +34,7 @@ def round_cam(ratio, cam, roller):
 
 def both_tiers(pair, line_load):
     force = line_load * WIDTH
-    cycle = pair_history(pair, CycleBodies.meshed(pair), np.array([THETA]), np.array([force]))
+    cycle = two_scale_history(pair, CycleBodies.meshed(pair), np.array([THETA]), np.array([force]))
     return cycle, solve_pair(pair, THETA, force).solution
 
 

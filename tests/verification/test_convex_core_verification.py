@@ -11,7 +11,7 @@ from camwright.pipeline.smoothing.constrained_synthesis import RESERVE, Problem,
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 from camwright.pipeline.smoothing.trust_region import descended
 
 COUNT, POINTS = 14, 60
@@ -31,7 +31,7 @@ def problem(**ratings):
     torque = 14.0 * np.sin(2 * THETA) + 6.0 * np.cos(3 * THETA)
     still = Scenario("still", 0.0, torque, 0.0, 0.08, 0.03, 0.0, 0.0)
     return Problem(
-        (still,), Ratings(roller_radius=0.008, **ratings), Machine(RATE, PRELOAD, BASE),
+        (still,), Ratings(roller_radius=0.008, **ratings), DesignVariables(RATE, PRELOAD, BASE),
         coefficients=COUNT, points=POINTS, jerk_weight=0.0,
     )  # fmt: skip
 
@@ -95,7 +95,7 @@ def test_descent_from_the_exact_energy_ends_at_the_global_optimum(name):
     given = problem(**LIMITS[name])
     search = Search(given)
     found = descended(search, 1.0)
-    assert search.state(search.start, given.machine).ripple != pytest.approx(found.state.ripple)
+    assert search.state(search.start, given.variables).ripple != pytest.approx(found.state.ripple)
     # the descent stops at a foreseen gain of 2e-6
     assert found.state.ripple == pytest.approx(convex_start(given).ripple, abs=1e-5)
 
@@ -117,7 +117,7 @@ def test_energy_held_at_zero_leaves_more_ripple():
     assert (LEVEL @ found.coefficients).min() == pytest.approx(0.0, abs=1e-6)
 
 
-@pytest.mark.parametrize("change", [{"machine": Machine(RATE, PRELOAD, 0.009)},
+@pytest.mark.parametrize("change", [{"variables": DesignVariables(RATE, PRELOAD, 0.009)},
                                     {"ratings": Ratings(0.008, offset=0.002)}])  # fmt: skip
 def test_what_is_not_convex_has_no_convex_part(change):
     given = replace(problem(**LIMITS["angle"]), **change)

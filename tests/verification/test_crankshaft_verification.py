@@ -17,11 +17,13 @@ from camwright.pipeline.engine.crankshaft import (
     torque_of_motion,
 )
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.spring import Spring
 
 COUNT = 720
 THETA = np.arange(COUNT) * (4.0 * np.pi / COUNT)
 TORQUE = 8.0 * np.sin(THETA / 2.0) + 5.0 * np.cos(THETA) + 3.0 * np.sin(2.5 * THETA)
-SYSTEM = FollowerSystem(0.175, 24200.0, 242.0, 0.08, 0.03, 0.04, 0.2)
+SPRING = Spring(rate=24200.0, preload=242.0)
+SYSTEM = FollowerSystem(0.175, SPRING, 0.08, 0.03, 0.04, 0.2)
 
 
 def pitch_of(amplitude=0.012):
@@ -105,7 +107,7 @@ def test_the_reciprocating_mass_in_the_inertia_is_its_torque_at_constant_speed()
 
 def test_spring_and_mass_of_a_follower_without_friction_do_no_work():
     """With no friction the mechanism takes nothing from the crank over a cycle: 1e-10 of 5 J."""
-    smooth = FollowerSystem(0.175, 24200.0, 242.0, 0.08, 0.03, 0.0, 0.0)
+    smooth = FollowerSystem(0.175, SPRING, 0.08, 0.03, 0.0, 0.0)
     study = speed_study(TORQUE, Inertia.constant_only(0.0139), 151.0, pitch_of(), smooth)
     assert abs(study.after.mechanism_torque.mean()) * 4.0 * np.pi < 5e-10
 

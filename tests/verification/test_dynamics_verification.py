@@ -20,6 +20,7 @@ from camwright.pipeline.follower.elastic_follower import (
 )
 from camwright.pipeline.follower.follower_flight import bounce
 from camwright.pipeline.follower.follower_forces import FollowerSystem, jump_speed
+from camwright.pipeline.follower.spring import Spring
 
 THETA = uniform_turn(360)
 HIGH = 12e-3
@@ -235,7 +236,8 @@ def test_energy_is_kept_through_impacts_at_varying_speed():
 
 
 def test_jump_speed_tends_to_the_rigid_one():
-    system = FollowerSystem(0.175, 24.2e3, 242.0, 0.08, 0.03, 0.0, 0.0)
+    spring = Spring(rate=24.2e3, preload=242.0)
+    system = FollowerSystem(0.175, spring, 0.08, 0.03, 0.0, 0.0)
     rigid, _ = jump_speed(PitchCurve(LIFT, 0.05), system, THETA)
     stiff = replace(PLAIN, stiffness=1e11)
     assert elastic_jump_speed(S, stiff, 1.5 * rigid) == pytest.approx(rigid, rel=2e-3)

@@ -12,12 +12,8 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.bore_stress import bore_stress
-from camwright.pipeline.contact.contact_pair import (
-    ContactPair,
-    CycleBodies,
-    closed_form_history,
-    pair_history,
-)
+from camwright.pipeline.contact.closed_form import closed_form_history
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.contact_patch import contact_patch
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.elasticity.plane_stress_measures import von_mises
@@ -30,6 +26,7 @@ from camwright.pipeline.contact.rolling_envelope import (
     rolling_pass,
     swept,
 )
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.rolling_history import added_stress
 
 STEEL = Elastic(210e9, 0.3)
@@ -126,7 +123,7 @@ def test_constant_load_on_a_circular_cam():
     """Finite elements at 60 angles; shear range 0.5 p0 at 0.5 a within 1 % everywhere."""
     pair, bodies = circular()
     theta, stations = uniform_turn(60), uniform_turn(STATIONS)
-    contact = pair_history(pair, bodies, theta, np.full(60, 500.0))
+    contact = two_scale_history(pair, bodies, theta, np.full(60, 500.0))
     map_ = swept(pair, theta, contact, stations, np.full(STATIONS, 500.0 / WIDTH))
     half_width, p0 = hertz.line_contact(
         500 / WIDTH, pair.relative_radius(0.0), pair.contact_modulus
@@ -162,7 +159,7 @@ def test_positions_do_not_matter(bodies):
     """180 against 720 positions, every station of the contour within 1 %."""
 
     def solve(pair, theta, load):
-        return pair_history(pair, bodies, theta, load)
+        return two_scale_history(pair, bodies, theta, load)
 
     assert_alike(swept_at(180, solve), swept_at(720, solve))
 
@@ -170,7 +167,7 @@ def test_positions_do_not_matter(bodies):
 @pytest.mark.slow
 def test_many_positions_do_not_matter_either(bodies):
     def solve(pair, theta, load):
-        return pair_history(pair, bodies, theta, load)
+        return two_scale_history(pair, bodies, theta, load)
 
     assert_alike(swept_at(720, solve), swept_at(2880, solve))
 

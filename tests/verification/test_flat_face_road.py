@@ -1,4 +1,4 @@
-"""A flat face down the road: an eccentric circle has every answer in closed form.
+"""A flat face from case to contact: an eccentric circle has every answer in closed form.
 
 Under a face the circle of radius R lifts by e (1 - cos theta), its curvature and so Hertz's radius
 are constant, and the contact wanders by e sin theta.
@@ -11,19 +11,18 @@ import pytest
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.follower_height import face_height
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.certificate import certificate_point
-from camwright.pipeline.contact.contact_pair import (
-    ContactPair,
-    CycleBodies,
-    closed_form_history,
-    pair_history,
-)
+from camwright.pipeline.contact.closed_form import closed_form_history
+from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import FaceBody
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.solution import turns_of
 from camwright.pipeline.follower.follower_forces import turn_integral
+from camwright.pipeline.smoothing.required_lift import cam_lift
 
 PAPERS = Path(__file__).resolve().parents[2] / "cases" / "papers"
 E, RADIUS, SPEED = 0.005, 0.018, 2.0 * np.pi * 2500.0 / 60.0
@@ -44,19 +43,20 @@ def text(friction="0.08", guides="0.05"):
     return changed.replace("friction = 0.05", f"friction = {guides}")
 
 
-def on_the_road(given):
-    case = parse_case(given)
-    contour = road.cam_contour(case, road.designed_lift(case, {}, None))
-    return case, contour, road.turns_of(case, contour, {}, THETA.size)[0]
+def turned(case_text):
+    """Contour and turn of a case."""
+    case = parse_case(case_text)
+    contour = case.contour(cam_lift(case, {}))
+    return contour, turns_of(machines(case), contour, case, {}, THETA.size)[0]
 
 
 @pytest.fixture(scope="module")
 def eccentric():
-    return on_the_road(text())
+    return turned(text())
 
 
 def test_motion_and_curvature_are_those_of_the_circle(eccentric):
-    _, contour, turn = eccentric
+    contour, turn = eccentric
     np.testing.assert_allclose(turn.loads.lift, E * (1 - np.cos(THETA)), atol=1e-12)
     np.testing.assert_allclose(turn.loads.velocity, SPEED * E * np.sin(THETA), atol=1e-9)
     np.testing.assert_allclose(contour.radius_of_curvature(THETA), RADIUS, rtol=1e-8)
@@ -66,14 +66,14 @@ def test_motion_and_curvature_are_those_of_the_circle(eccentric):
 
 def test_force_is_that_of_spring_mass_and_friction(eccentric):
     """The free body of the follower, guides of finite length: along the stem and about its end."""
-    case, _, turn = eccentric
+    _, turn = eccentric
     loads, guides = turn.loads, turn.guides
     free = 4500.0 + 150e3 * E * (1 - np.cos(THETA)) + 0.1 * SPEED**2 * E * np.cos(THETA)
     rubs = 0.05 * (guides.rubbing_load_a + guides.rubbing_load_b) * np.sign(loads.velocity)
     np.testing.assert_allclose(loads.normal_force, free + rubs, rtol=1e-9)
     across = guides.reaction_a - guides.reaction_b - 0.08 * loads.normal_force
     assert np.abs(across).max() < 1e-9 * loads.normal_force.max()
-    spacing = case.guides.spacing
+    spacing = turn.machine.guides.spacing
     about = (
         guides.moment_a + guides.moment_b + guides.reaction_a * loads.overhang
         - guides.reaction_b * (loads.overhang + spacing) - loads.normal_force * E * np.sin(THETA)
@@ -84,7 +84,7 @@ def test_force_is_that_of_spring_mass_and_friction(eccentric):
 @pytest.mark.parametrize(("friction", "guides"), [("", "0.0"), ("0.08", "0.0"), ("0.08", "0.05")])
 def test_work_over_the_turn_is_the_heat(friction, guides):
     """Torque N s' without friction; with it what guides and face turn into heat, to 1e-10."""
-    _, contour, turn = on_the_road(text(friction, guides))
+    contour, turn = turned(text(friction, guides))
     loads = turn.loads
     slope, height = E * np.sin(THETA), RADIUS - E * np.cos(THETA)
     mu = float(friction or 0.0)
@@ -99,14 +99,15 @@ def test_work_over_the_turn_is_the_heat(friction, guides):
 
 def test_hertz_radius_is_constant_and_finite_elements_agree(eccentric):
     """Hertz's cylinder on a flat within 0.5 %: what remains is the finite size of both bodies."""
-    case, contour, turn = eccentric
-    pair, few = contact_pair(case, contour), slice(None, None, 9)
+    contour, turn = eccentric
+    pair, few = contact_pair(turn.machine, contour), slice(None, None, 9)
     history = closed_form_history(pair, THETA, turn.loads.normal_force)
     np.testing.assert_allclose(history.relative_radius, RADIUS, rtol=1e-8)
     modulus = 210e9 / (1 - 0.3**2) / 2
     peak = np.sqrt(turn.loads.normal_force / 0.020 * modulus / (np.pi * RADIUS))
     np.testing.assert_allclose(history.p0, peak, rtol=1e-8)
-    solved = pair_history(pair, CycleBodies.meshed(pair), THETA[few], turn.loads.normal_force[few])
+    force = turn.loads.normal_force[few]
+    solved = two_scale_history(pair, CycleBodies.meshed(pair), THETA[few], force)
     np.testing.assert_allclose(solved.p0, history.p0[few], rtol=5e-3)
     np.testing.assert_allclose(solved.half_width, history.half_width[few], rtol=5e-3)
     assert solved.residual_equilibrium.max() < 1e-9
@@ -115,19 +116,19 @@ def test_hertz_radius_is_constant_and_finite_elements_agree(eccentric):
 def test_a_large_cylinder_on_a_thick_block_is_hertz():
     """Away from the finite size: half-widths of a hundredth of the bodies, p0 within 0.05 %."""
     steel = Elastic(210e9, 0.3)
-    _, contour, _ = on_the_road(text())
+    contour, _ = turned(text())
     pair = ContactPair(contour, 0.02, 0.003, None, steel, FaceBody(0.03, 0.02, 0.03, steel))
-    solved = pair_history(pair, CycleBodies.meshed(pair), THETA[:1], np.array([1000.0]))
+    solved = two_scale_history(pair, CycleBodies.meshed(pair), THETA[:1], np.array([1000.0]))
     np.testing.assert_allclose(solved.p0, solved.p0_hertz, rtol=5e-4)
 
 
 @pytest.mark.parametrize("at", [pytest.param(0, marks=pytest.mark.slow), 18])
 def test_certificate_and_cycle_agree(eccentric, at):
     """Both bodies in full, at mid-face and near its edge: spread within 1 %, here 0.2 %."""
-    case, contour, turn = eccentric
-    pair, only = contact_pair(case, contour), slice(at, at + 1)
+    contour, turn = eccentric
+    pair, only = contact_pair(turn.machine, contour), slice(at, at + 1)
     force = turn.loads.normal_force[only]
-    history = pair_history(pair, CycleBodies.meshed(pair), THETA[only], force)
+    history = two_scale_history(pair, CycleBodies.meshed(pair), THETA[only], force)
     point = certificate_point(pair, history, 0, float(THETA[at]))
     assert point.spread_percent < 0.2
     assert point.gci_percent < 0.5
@@ -135,10 +136,10 @@ def test_certificate_and_cycle_agree(eccentric, at):
 
 
 def test_published_cam_gives_its_lift_back():
-    """Through the road's own contour: a face let down on it moves by the lift, to 1e-6."""
+    """On the contour of the case: a face let down on it moves by the lift, to 1e-6."""
     case = load_case_file(PAPERS / "petrescu_c.toml")
-    contour = road.cam_contour(case, road.designed_lift(case, {}, None))
+    contour = case.contour(cam_lift(case, {}))
     theta = np.linspace(0, 2 * np.pi, 97)[:-1] + 0.0123
-    found = face_height(contour.polygon(20_000), theta) - contour.pitch.base_radius
+    height = face_height(contour.polygon(20_000), theta) - contour.pitch.base_radius
     lift = contour.pitch.lift
-    np.testing.assert_allclose(found, lift(theta), rtol=0, atol=1e-6 * lift.stroke)
+    np.testing.assert_allclose(height, lift(theta), rtol=0, atol=1e-6 * lift.stroke)

@@ -10,8 +10,10 @@ from camwright.geometry.energy import lift_from_torque, stored_energy, without_m
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.spring import Spring
 
-SYSTEM = FollowerSystem(0.175, 24.2e3, 242.0, 0.08, 0.03, 0.04, 0.2)
+SPRING = Spring(rate=24.2e3, preload=242.0)
+SYSTEM = FollowerSystem(0.175, SPRING, 0.08, 0.03, 0.04, 0.2)
 FREE = replace(SYSTEM, friction_a=0.0, friction_b=0.0)
 SPEED = 75.0
 
@@ -67,7 +69,7 @@ def test_quasi_static_torque_is_the_one_the_lift_was_made_from():
     """At rest and without friction F_a s' gives the torque back: 1e-6 of its peak."""
     theta = uniform_turn(720)
     torque, _ = without_mean(20.0 * np.sin(theta) + 12.0 * np.cos(2 * theta + 1.0))
-    lift = lift_from_torque(theta, torque, FREE.spring_rate, FREE.preload)
+    lift = lift_from_torque(theta, torque, SPRING.rate, SPRING.preload)
     loads = follower_loads(PitchCurve(lift, 0.05), FREE, 0.0, theta)
     np.testing.assert_allclose(loads.cam_torque, torque, atol=1e-6 * np.abs(torque).max())
     energy, _ = stored_energy(theta, torque)
@@ -111,7 +113,7 @@ def test_scaling_spring_mass_and_friction_free_load():
     """Doubling k, P and m doubles every force and leaves the angles alone."""
     theta = uniform_turn(360)
     pitch = PitchCurve(wavy_lift(720), 0.05)
-    twice = replace(SYSTEM, mass=0.35, spring_rate=48.4e3, preload=484.0)
+    twice = replace(SYSTEM, mass=0.35, spring=Spring(rate=48.4e3, preload=484.0))
     one, two = (follower_loads(pitch, system, SPEED, theta) for system in (SYSTEM, twice))
     for name in ("normal_force", "reaction_a", "friction_force_b", "cam_torque"):
         np.testing.assert_allclose(getattr(two, name), 2 * getattr(one, name), rtol=1e-13)

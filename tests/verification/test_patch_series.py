@@ -11,17 +11,18 @@ import pytest
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.lift import Lift
 from camwright.meshes.mesh_files import UNITS
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.template import template
-from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
 from camwright.pipeline.contact.contact_patch import contact_patch
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.pin_in_hole import peak_pressure
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
-from camwright.pipeline.cycle.cycle import finished
+from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.guide_pressure import bore_pressure, bush_arrays, loaded_length
 from camwright.pipeline.cycle.part_loads import bush_pair
+from camwright.pipeline.cycle.solution import turns_of
 from camwright.pipeline.follower.guide_reactions import lobatto
 from camwright.pipeline.results.contact_patch_series import (
     INDEX,
@@ -40,12 +41,12 @@ POSITIONS = 12
 def series(tmp_path_factory: pytest.TempPathFactory):
     case = parse_case(template("series")).with_positions(72)
     theta = uniform_turn(360)
-    contour = road.cam_contour(case, Lift(theta, 0.006 * (1 - np.cos(theta))))
-    given = road.turns_of(case, contour, {}, POSITIONS)[0]
-    pair = contact_pair(case, contour)
+    contour = case.contour(Lift(theta, 0.006 * (1 - np.cos(theta))))
+    turn = turns_of(machines(case), contour, case, {}, POSITIONS)[0]
+    pair = contact_pair(turn.machine, contour)
     bodies = CycleBodies.meshed(pair)
-    contact = pair_history(pair, bodies, given.theta, given.loads.normal_force)
-    cycle = finished(case, contour, given, contact)
+    contact = two_scale_history(pair, bodies, turn.theta, turn.loads.normal_force)
+    cycle = Cycle(turn, contour, pair, bodies, contact)
     folder = tmp_path_factory.mktemp("fields")
     return folder, write_patches(folder, pair, bodies, cycle, 1), pair, bodies, cycle
 
@@ -235,39 +236,38 @@ def test_edge_of_bore_and_keyway() -> None:
 
 @pytest.fixture(scope="module")
 def bushes(series):
-    case = parse_case(template("series"))
-    return case, bush_arrays(case, [series[-1]])
+    return bush_arrays([series[-1]])
 
 
 @pytest.mark.parametrize("side", ["A", "B"])
 def test_pressure_in_a_bush_adds_up_to_the_reaction(series, bushes, side) -> None:
-    case, found = bushes
-    guides = series[-1].guides
-    along, line = found[f"{side}_along_mm"], found[f"{side}_line_N_per_mm"]
+    cycle = series[-1]
+    guides = cycle.guides
+    along, line = bushes[f"{side}_along_mm"], bushes[f"{side}_line_N_per_mm"]
     weights = lobatto(along.size)[1] * along.max()
     reaction = guides.reaction_a if side == "A" else -guides.reaction_b
     np.testing.assert_allclose(line @ weights, reaction, rtol=1e-9, atol=1e-9)
     # Round the bore: what presses along the line of action is the push of the slice.
-    angle, row = np.radians(found[f"{side}_round_deg"]), int(found[f"{side}_row"])
-    pressure, slices = found[f"{side}_pressure_MPa"], found[f"{side}_slices_mm"]
+    angle, row = np.radians(bushes[f"{side}_round_deg"]), int(bushes[f"{side}_row"])
+    pressure, slices = bushes[f"{side}_pressure_MPa"], bushes[f"{side}_slices_mm"]
     force = np.trapezoid(pressure * np.cos(angle), angle, axis=1)
-    force *= 0.5e3 * case.follower.stem_diameter
+    force *= 0.5e3 * cycle.machine.stem.diameter
     pushes = np.interp(slices, along, line[row])
     # loads between those solved, straight lines between angles: less than 1 % together
     np.testing.assert_allclose(force, pushes, rtol=0.01, atol=1e-3 * np.abs(line).max())
     assert np.abs(line).max() == np.abs(line[row]).max() == np.abs(pushes).max()
 
 
-def test_pressure_in_a_bush_is_that_of_a_pin_in_its_hole(bushes) -> None:
-    case, _ = bushes
-    pushes = np.array([-3e3, 0.0, 5e2, 2.2e4, 7e4])
-    found = bore_pressure(case, case.guides.a, pushes)
-    assert not found[1].any()
-    assert found[0].argmax() == 0 and found[4].argmax() == found.shape[1] // 2
-    pin, bush = bush_pair(case, case.guides.a)
-    radius, clearance = 0.5 * case.follower.stem_diameter, 0.5 * case.guides.a.clearance
+def test_pressure_in_a_bush_is_that_of_a_pin_in_its_hole(series) -> None:
+    machine = series[-1].machine
+    guide, pushes = machine.guides.a, np.array([-3e3, 0.0, 5e2, 2.2e4, 7e4])
+    pressure = bore_pressure(machine, guide, pushes)
+    assert not pressure[1].any()
+    assert pressure[0].argmax() == 0 and pressure[4].argmax() == pressure.shape[1] // 2
+    pin, bush = bush_pair(machine, guide)
+    radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
     peak, _ = peak_pressure(np.abs(pushes), radius, clearance, pin, bush)
-    np.testing.assert_allclose(found.max(axis=1), peak, rtol=0.01)
+    np.testing.assert_allclose(pressure.max(axis=1), peak, rtol=0.01)
 
 
 def test_slices_cover_what_is_loaded_and_its_neighbours() -> None:

@@ -1,4 +1,4 @@
-"""What limits cost: the envelope of the cam as a limit, and prices against designs solved again."""
+"""What limits cost: the radius of the cam as a limit, and prices against designs solved again."""
 
 from dataclasses import replace
 
@@ -9,10 +9,11 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import Jet, shape_utilisations
-from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
-from camwright.pipeline.smoothing.shadow_prices import limits_in_use, named_limits, prices
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.shadow_prices import limits_in_use, prices
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 
@@ -22,8 +23,9 @@ def test_room_for_the_cam_is_that_of_its_contour(offset):
     lift = Lift(theta, 0.01 * (1 - np.cos(2 * theta)))
     radius = np.hypot(*Contour(PitchCurve(lift, 0.05, offset), 0.008).points(theta))
     ratings = Ratings(roller_radius=0.008, offset=offset, cam_radius=0.06)
-    found = shape_utilisations(Jet(*lift.derivatives(theta, 2)), Machine(1e4, 1e2, 0.05), ratings)
-    np.testing.assert_allclose(0.06 * found["cam_envelope"], radius, rtol=1e-12)
+    jet, variables = Jet(*lift.derivatives(theta, 2)), DesignVariables(1e4, 1e2, 0.05)
+    utilisations = shape_utilisations(jet, variables, ratings)
+    np.testing.assert_allclose(0.06 * utilisations["cam_radius"], radius, rtol=1e-12)
 
 
 TURN = uniform_turn(240)
@@ -31,7 +33,7 @@ TORQUE = 8.0 * np.sin(2 * TURN) + 5.0 * np.cos(3 * TURN) + 2.0 * np.sin(5 * TURN
 RATINGS = Ratings(
     roller_radius=0.016, travel=0.05, pressure_angle=np.radians(40.0), jam_index=0.8,
     curvature_ratio=1.2, undercut_factor=0.1, contact_width=0.014, contact_modulus=115e9,
-    bush_area=(4e-4, 4e-4),
+    guide_area=(4e-4, 4e-4),
 )  # fmt: skip
 LIFE = 8e10  # N^3 rad/s
 
@@ -39,7 +41,7 @@ LIFE = 8e10  # N^3 rad/s
 def asked(**ratings):
     running = Scenario("idle", 78.5, TORQUE, 0.2, 0.08, 0.038, 0.06, 0.06)
     return Problem(
-        (running,), replace(RATINGS, **ratings), Machine(24.2e3, 242.0, 0.056),
+        (running,), replace(RATINGS, **ratings), DesignVariables(24.2e3, 242.0, 0.056),
         coefficients=36, points=240,
     )  # fmt: skip
 
@@ -52,12 +54,12 @@ def asked(**ratings):
         ("contact_pressure", {"pressure": 400e6}, 1e6),
         ("spring_travel", {"travel": 0.018}, 1e-3),
         ("concave_radius", {"hollow_radius": 0.15, "travel": 0.03}, 1.1e-3),
-        ("cam_envelope", {"cam_radius": 0.058}, 1e-3),
+        ("cam_radius", {"cam_radius": 0.058}, 1e-3),
         ("curvature_ratio", {"curvature_ratio": 3.2, "travel": 0.03}, 1.0),
         ("jump_speed", {"jump_speed": 420.0}, np.pi / 30.0),
         ("roller_life", {"life_force_cubed": LIFE, "dynamic_rating": 5000.0}, None),
-        ("bush_pv_A", {"bush_pv": (0.35e6, None)}, 1e6),
-        ("bush_pressure_A", {"bush_pressure": (0.7e6, None)}, 1e6),
+        ("guide_pv_A", {"guide_pv": (0.35e6, None)}, 1e6),
+        ("guide_pressure_A", {"guide_pressure": (0.7e6, None)}, 1e6),
     ],
 )
 def test_price_is_the_difference_of_designs_solved_again(limit, given, unit):
@@ -89,19 +91,19 @@ def test_price_is_the_difference_of_designs_solved_again(limit, given, unit):
 def test_what_is_said_of_a_limit_has_its_size_and_unit():
     ratings = replace(RATINGS, normal_force=700.0, force_safety=1.5, hollow_radius=0.066,
                       life_force_cubed=LIFE, dynamic_rating=9e3)  # fmt: skip
-    found = named_limits(ratings)
-    assert found["roller_static"].limit == pytest.approx(1050.0)  # the rating, its safety inside
-    assert found["concave_radius"].limit == pytest.approx(60.0)  # the tool's, a tenth left off
-    assert found["concave_radius"].slope < 0 < found["roller_static"].slope
-    assert (found["roller_life"].limit, found["roller_life"].unit) == (9e3, "N")
-    assert found["pressure_angle"].limit == pytest.approx(40.0)
+    bounds = bounds_of(ratings)
+    assert bounds["roller_static"].value == pytest.approx(1050.0)  # the rating, its safety inside
+    assert bounds["concave_radius"].value == pytest.approx(60.0)  # the tool's, a tenth left off
+    assert bounds["concave_radius"].slope < 0 < bounds["roller_static"].slope
+    assert (bounds["roller_life"].value, bounds["roller_life"].unit) == (9e3, "N")
+    assert bounds["pressure_angle"].value == pytest.approx(40.0)
 
 
 def test_limits_in_use_stand_at_the_cam_angles_of_the_lift():
     """The spring travel is all in use where the lift is greatest, the phase of the cam inside."""
     problem = asked(travel=0.018)
     design = synthesise(problem)
-    turned = replace(design, machine=replace(design.machine, phase=0.3))
+    turned = replace(design, variables=replace(design.variables, phase=0.3))
     for each in (design, turned):
         angles, uses = limits_in_use(each)
         assert np.all(np.diff(angles) > 0)

@@ -13,14 +13,10 @@ from camwright.geometry.eccentric import Eccentric
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.contact.body_compliance import LoadedBody
 from camwright.pipeline.contact.certificate import solve_pair
-from camwright.pipeline.contact.contact_pair import (
-    ContactPair,
-    CycleBodies,
-    elastic_body,
-    pair_history,
-)
+from camwright.pipeline.contact.contact_pair import ContactPair, elastic_body
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.ring_body import BallRing, RingBody, ball_springs, unit_bend
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.follower.bearing_ring import Ring
 from camwright.pipeline.follower.bearing_ring_elements import RingElements, ring_bending
 
@@ -179,7 +175,7 @@ def test_cycle_meets_the_certificate_of_a_ring_on_balls(eccentric_pair, over):
     ring = replace(RING, thickness=1.36e-3, radius=7.32e-3, ball_stiffness=1.5e7)
     pair = replace(eccentric_pair, follower=loose(ring)[0 if over else 1])
     theta, force = np.array([1.2]), np.array([1000.0])
-    cycle = pair_history(pair, CycleBodies.meshed(pair), theta, force)
+    cycle = two_scale_history(pair, CycleBodies.meshed(pair), theta, force)
     full = solve_pair(pair, 1.2, 1000.0).solution
     assert cycle.p0[0] == pytest.approx(full.p0, rel=2e-3)
     assert cycle.half_width[0] == pytest.approx(full.half_width, rel=3e-3)

@@ -9,21 +9,36 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import ContactError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.material import Material
 from camwright.pipeline.follower import friction_coupling
 from camwright.pipeline.follower.follower_forces import JAM_FLOOR, FollowerSystem, follower_loads
 from camwright.pipeline.follower.friction_coupling import balanced, guided_loads
 from camwright.pipeline.follower.guide_effects import guide_shares
 from camwright.pipeline.follower.guide_reactions import Guide, GuidePair, guide_reactions
+from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.stem_beam import Stem
 
 THETA = uniform_turn(180)
 PITCH = PitchCurve(Lift(THETA, 0.01 * (1 - np.cos(THETA)) + 0.002 * (1 - np.cos(3 * THETA))), 0.05)
-SYSTEM = FollowerSystem(0.175, 24.2e3, 242.0, 0.08, 0.03, 0.04, 0.2)
+SPRING = Spring(rate=24.2e3, preload=242.0)
+SYSTEM = FollowerSystem(0.175, SPRING, 0.08, 0.03, 0.04, 0.2)
 ROUGH = replace(SYSTEM, friction_a=0.2, friction_b=0.3)
 STEM = Stem(0.01, 210e9)
-NYLON, STEEL = Guide(0.02, 0.01, 5e-5, 2e10), Guide(0.02, 0.01, 5e-5, 9e11)
-PAIR = GuidePair(0.08, NYLON, STEEL)
 SPEED = 75.0
+# Its elastic constants play no part: every guide has a stiffness of its own.
+CARD = Material(E=2.8e9, nu=0.4, yield_strength=70e6, density=1140.0, source="a test")
+
+
+def guide(length, clearance, modulus):
+    """A guide whose foundation has a modulus, N/m2; its friction is that of the system."""
+    return Guide(
+        length=length, diameter=0.01, clearance=clearance, stiffness=modulus * length,
+        friction=0.0, material=CARD,
+    )  # fmt: skip
+
+
+NYLON, STEEL = guide(0.02, 5e-5, 2e10), guide(0.02, 5e-5, 9e11)
+PAIR = GuidePair(spacing=0.08, a=NYLON, b=STEEL)
 
 
 def tight(pair):
@@ -92,8 +107,8 @@ def test_cam_work_is_the_heat_of_the_finite_guides():
 
 def test_short_stiff_guides_are_the_papers_statics():
     """Guides of 20 micrometres: contact force, friction, jam index of point supports, 1e-6."""
-    short = Guide(2e-5, 0.01, 0.0, 1e12)
-    found = guided(ROUGH, GuidePair(0.08, short, short)).loads
+    short = guide(2e-5, 0.0, 1e12)
+    found = guided(ROUGH, GuidePair(spacing=0.08, a=short, b=short)).loads
     points = follower_loads(PITCH, ROUGH, SPEED, THETA)
     for name in ("normal_force", "cam_torque", "jam_index"):
         peak = np.abs(getattr(points, name)).max()
@@ -143,8 +158,9 @@ def test_the_least_push_that_moves_the_follower():
     """
     lift = Lift(THETA, 0.0134 * (1.0 - np.cos(THETA)))
     pitch = PitchCurve(lift, 0.0315, -0.0092)
-    pair = GuidePair(0.0551, Guide(0.0113, 0.01, 1e-5, 5.4e8), Guide(0.027, 0.01, 1e-6, 9.9e11))
-    system = FollowerSystem(0.175, 24.2e3, 242.0, 0.0551, 0.0069, 0.105, 0.384)
+    a, b = guide(0.0113, 1e-5, 5.4e8), guide(0.027, 1e-6, 9.9e11)
+    pair = GuidePair(spacing=0.0551, a=a, b=b)
+    system = FollowerSystem(0.175, SPRING, 0.0551, 0.0069, 0.105, 0.384)
     found = guided(system, pair, pitch).loads
     free = follower_loads(
         pitch, replace(system, friction_a=0.0, friction_b=0.0), SPEED, THETA
@@ -173,11 +189,11 @@ def test_machines_at_random_are_in_balance():
     for _ in range(20):
         length, play = rng.uniform(0.005, 0.04, 2), rng.choice([0.0, 1e-6, 5e-5, 2e-4], 2)
         stiff = 10 ** rng.uniform(8.5, 12.0, 2)
-        a, b = (Guide(n, 0.01, c, k) for n, c, k in zip(length, play, stiff, strict=True))
-        pair = GuidePair(float(rng.uniform(0.045, 0.1)), a, b)
+        a, b = (guide(n, c, k) for n, c, k in zip(length, play, stiff, strict=True))
+        pair = GuidePair(spacing=float(rng.uniform(0.045, 0.1)), a=a, b=b)
         reach = 0.5 * float(length[0]) + float(rng.uniform(0.001, 0.05))
         mu = rng.uniform(0.0, 0.3, 2)
-        system = FollowerSystem(0.175, 24.2e3, 242.0, pair.spacing, reach, *map(float, mu))
+        system = FollowerSystem(0.175, SPRING, pair.spacing, reach, *map(float, mu))
         found = guided(system, pair, PitchCurve(PITCH.lift, 0.05, float(rng.uniform(-0.02, 0.02))))
         assert found.residual.max() <= 1e-10
         rounds.append(found.rounds)
@@ -267,6 +283,6 @@ def test_each_share_goes_with_its_cause():
     less = replace(PAIR, a=replace(NYLON, clearance=1e-6), b=replace(STEEL, clearance=1e-6))
     small = np.abs(shares(less)[1].reaction_a.by_clearance).max()
     assert small < 0.2 * np.abs(shares(PAIR)[1].reaction_a.by_clearance).max()
-    short = Guide(2e-5, 0.01, 0.0, 1e12)
-    _, points = shares(GuidePair(0.08, short, short))
+    short = guide(2e-5, 0.0, 1e12)
+    _, points = shares(GuidePair(spacing=0.08, a=short, b=short))
     assert np.abs(points.reaction_a.by_length).max() <= 1e-6 * peak

@@ -11,15 +11,15 @@ from scipy.integrate import solve_ivp
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.constrained_synthesis import Problem, synthesise
 from camwright.pipeline.smoothing.energy_spline import exact_start, fitted_energy
 from camwright.pipeline.smoothing.grid import Grid
 from camwright.pipeline.smoothing.multistart import explored
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import Machine, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 from camwright.pipeline.smoothing.smoothers import KINDS, Smoother, smoothed
 from camwright.pipeline.smoothing.synthesis_problem import coarsened
 
@@ -45,7 +45,7 @@ def engine(seed, waves=9):
 def problem(torque, **changes):
     load = Scenario("one", 78.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12)
     plain = {"coefficients": COUNT, "points": POINTS, "jerk_weight": 1e-7}
-    return Problem((load,), LIMITS, Machine(RATE, PRELOAD, BASE), **(plain | changes))
+    return Problem((load,), LIMITS, DesignVariables(RATE, PRELOAD, BASE), **(plain | changes))
 
 
 @settings(max_examples=12, deadline=None, derandomize=True)
@@ -76,7 +76,7 @@ def test_any_torque_of_zero_mean_closes(seed, waves):
 def test_start_scales_with_the_torque(seed, factor):
     """k, P and T times one factor: E grows with it and the lift is the same."""
     torque = engine(seed)
-    spring = {"base_radius": BASE, "pressure_angle": np.pi / 6, "energy_max": np.inf}
+    spring = {"prime_radius": BASE, "pressure_angle": np.pi / 6, "energy_max": np.inf}
     once = exact_start(torque, COUNT, rate=RATE, preload=PRELOAD, **spring)
     more = exact_start(
         factor * torque, COUNT, rate=factor * RATE, preload=factor * PRELOAD, **spring
@@ -92,7 +92,7 @@ def others(search, asked):
             energy = fitted_energy(2.0 * (target - target.mean()), COUNT)
             for share in (1.0, 0.7, 0.4):
                 for rise in (0.0, 4.0, 9.0):
-                    state = search.state(share * energy + rise, search.problem.machine)
+                    state = search.state(share * energy + rise, search.problem.variables)
                     if all(value <= 1.0 for value in state.utilisation.values()):
                         yield kind, state.ripple
 
@@ -114,7 +114,7 @@ def test_no_smoother_within_the_limits_leaves_less(seed):
 @pytest.fixture(scope="module")
 def signed():
     case = load_case_file(CASES / "gx120-signed.toml")
-    return coarsened(problem_of(case, road.engine_torques(case)))
+    return coarsened(problem_of(case, engine_torques(case)))
 
 
 def test_every_limit_holds_between_the_points(signed):
@@ -124,7 +124,7 @@ def test_every_limit_holds_between_the_points(signed):
     random = np.random.default_rng(1).uniform(0.0, 2 * np.pi, 10 * signed.points)
     for theta in (uniform_turn(10 * signed.points), np.sort(random)):
         grid = Grid.at(theta, design.coefficients.size)
-        found = search.utilisations(design.coefficients, design.machine, grid)
+        found = search.utilisations(design.coefficients, design.variables, grid)
         assert len(found) >= 18
         for name, value in found.items():
             if value.size > 1:  # a mean over random angles is none over the turn
@@ -135,7 +135,7 @@ def test_every_limit_holds_between_the_points(signed):
 
 
 FREED = {
-    "rate": (18e3, 30e3), "preload": (180.0, 320.0), "base_radius": (0.045, 0.06),
+    "rate": (18e3, 30e3), "preload": (180.0, 320.0), "prime_radius": (0.045, 0.06),
     "phase": (-0.3, 0.3),
 }  # fmt: skip
 
@@ -152,7 +152,7 @@ def test_what_is_freed_lowers_the_ripple_within_its_range(held, name):
     found = synthesise(problem(asked, freed=freed))
     assert found.feasible
     for each, (low, high) in freed.items():
-        value = getattr(found.machine, each)
+        value = getattr(found.variables, each)
         assert low * (1 - 1e-9) - 1e-9 <= value <= high * (1 + 1e-9)
     assert found.ripple < held.ripple
     assert np.isfinite(found.lift().values).all()
@@ -166,7 +166,7 @@ def test_initial_energy_that_is_not_free_is_zero(held):
 
 
 def test_phase_turns_the_cam_and_nothing_else(held):
-    turned = replace(held, machine=replace(held.machine, phase=2 * np.pi / 48))
+    turned = replace(held, variables=replace(held.variables, phase=2 * np.pi / 48))
     np.testing.assert_allclose(
         turned.lift(1440).values, np.roll(held.lift(1440).values, 30), atol=1e-12
     )
@@ -184,12 +184,14 @@ def test_worst_corner_keeps_what_the_nominal_does_not():
     robust = replace(nominal, scenarios=(one, *corners))
     judge, turn = Search(robust), Search(robust).turn
     lone, all_of_them = synthesise(nominal), synthesise(robust)
-    worst = [
-        max(float(np.max(v)) for v in judge.utilisations(d.coefficients, d.machine, turn).values())
-        for d in (lone, all_of_them)
-    ]
+
+    def worst_of(design):
+        use = judge.utilisations(design.coefficients, design.variables, turn)
+        return max(float(np.max(each)) for each in use.values())
+
+    worst = [worst_of(design) for design in (lone, all_of_them)]
     assert worst[0] > 1.0 >= worst[1]
-    ripples = [judge.state(d.coefficients, d.machine).ripple for d in (lone, all_of_them)]
+    ripples = [judge.state(d.coefficients, d.variables).ripple for d in (lone, all_of_them)]
     assert ripples[1] == pytest.approx(all_of_them.ripple, rel=1e-9)
     assert all_of_them.ripple > lone.ripple  # the worst of five is no better than one
 
@@ -203,7 +205,7 @@ def test_random_starts_agree():
 @pytest.mark.slow
 def test_twenty_random_starts_agree_on_the_redesigned_case():
     case = load_case_file(CASES / "gx120-signed.toml")
-    _, starts = explored(problem_of(case, road.engine_torques(case)), 20, seed=7)
+    _, starts = explored(problem_of(case, engine_torques(case)), 20, seed=7)
     assert len(starts.ripples) == 20
     assert starts.agree, starts.sentence
 
@@ -215,8 +217,8 @@ def test_ripple_of_the_speed_is_lowered_as_that_of_the_torque_is():
     found, other = synthesise(by_speed), synthesise(problem(asked))
     assert found.feasible and found.converged
     search = Search(by_speed)
-    assert found.ripple < search.state(other.coefficients, other.machine).ripple
-    assert Search(problem(asked)).state(found.coefficients, found.machine).ripple > other.ripple
+    assert found.ripple < search.state(other.coefficients, other.variables).ripple
+    assert Search(problem(asked)).state(found.coefficients, found.variables).ripple > other.ripple
 
 
 def test_reduction_of_the_torque_holds_while_the_speed_is_lowered():
@@ -227,4 +229,5 @@ def test_reduction_of_the_torque_holds_while_the_speed_is_lowered():
     )
     design = synthesise(given_problem)
     assert design.feasible
-    assert Search(problem(asked)).state(design.coefficients, design.machine).ripple <= 1.05 * least
+    by_torque = Search(problem(asked)).state(design.coefficients, design.variables)
+    assert by_torque.ripple <= 1.05 * least

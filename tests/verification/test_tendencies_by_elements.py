@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -10,17 +11,17 @@ import pytest
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
-from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.machine import Corner, Machine, machines
 from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import contact_strength, guide_bushes, jump_and_jamming
-from camwright.pipeline.checks.check import Check
-from camwright.pipeline.checks.extremes import TrialEvidence
-from camwright.pipeline.checks.tolerance_corners import Corner, applied
-from camwright.pipeline.contact.contact_pair import CycleBodies, pair_history
+from camwright.pipeline.checks.check import Check, Declaration
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
-from camwright.pipeline.cycle.cycle import Cycle, finished
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.turn import turn
 
 POSITIONS = 36
@@ -31,35 +32,31 @@ ELEMENTS = 2e-3
 @lru_cache(maxsize=1)
 def case() -> Case:
     """The template's machine in guides without play, which answer in proportion to the load."""
-    given = parse_case(template("tendency"))
-    sides = {n: getattr(given.guides, n).model_copy(update={"clearance": 0.0}) for n in "ab"}
-    return given.model_copy(update={"guides": given.guides.model_copy(update=sides)})
+    plain = parse_case(template("tendency"))
+    tight = {name: replace(getattr(plain.guides, name), clearance=0.0) for name in "ab"}
+    return plain.model_copy(update={"guides": replace(plain.guides, **tight)})
 
 
 @lru_cache(maxsize=1)
 def cam() -> Contour:
     """One and the same lift of 20 mm for every load on it."""
-    theta, given = uniform_turn(72), case()
-    lift = Lift(theta, 0.01 * (1.0 - np.cos(theta)))
-    return Contour(PitchCurve(lift, given.cam.pitch_base_radius), given.roller.radius)
+    theta = uniform_turn(72)
+    return case().contour(Lift(theta, 0.01 * (1.0 - np.cos(theta))))
 
 
 @lru_cache(maxsize=1)
 def bodies() -> CycleBodies:
     """Meshed and factored once: neither loads nor widths change them."""
-    return CycleBodies.meshed(contact_pair(case(), cam()))
+    return CycleBodies.meshed(contact_pair(machines(case())[0], cam()))
 
 
-def at(corner: Corner, width: float) -> Case:
+def at(corner: Corner, width: float) -> Machine:
     """The machine at a corner, cam and roller as much wider, the roller without chamfers."""
-    given = applied(case(), corner)
-    return given.model_copy(
-        update={
-            "cam": given.cam.model_copy(update={"width": width * given.cam.width}),
-            "roller_given": given.roller.model_copy(
-                update={"width": width * given.roller.width, "chamfer": 0.0}
-            ),
-        }
+    machine, roller = machines(case())[0].at_corner(corner), case().roller
+    return replace(
+        machine,
+        cam=replace(machine.cam, width=width * machine.cam.width),
+        follower=replace(roller, width=width * roller.width, chamfer=0.0),
     )
 
 
@@ -67,16 +64,16 @@ def at(corner: Corner, width: float) -> Case:
 def cycle(corner: Corner, width: float = 1.0) -> Cycle:
     """The turn at a corner of the machine."""
     machine = at(corner, width)
-    given = turn(machine, cam(), None, machine.load_cases[0].name, POSITIONS)
+    loaded = turn(machine, cam(), None, POSITIONS)
     pair = contact_pair(machine, cam())
-    found = pair_history(pair, bodies(), given.theta, given.loads.normal_force)
-    return finished(machine, cam(), given, found)
+    contact = two_scale_history(pair, bodies(), loaded.theta, loaded.loads.normal_force)
+    return Cycle(loaded, cam(), pair, bodies(), contact)
 
 
-def judged(function, corner: Corner, width: float = 1.0) -> Check:
+def judged(declared: Declaration, corner: Corner, width: float = 1.0) -> Check:
     """A check of that turn."""
-    cycles = (cycle(corner, width),)
-    return function(TrialEvidence(case=at(corner, width), contour=cam(), cycles=cycles))
+    one = cycle(corner, width)
+    return declared(Solution(case(), cam(), (one.machine,), Tier.FINITE_ELEMENTS, None, (one,)))
 
 
 PLAIN = Corner("plain")
@@ -112,7 +109,7 @@ def test_a_larger_preload_raises_friction_loss_and_least_contact_force() -> None
     least = [float(cycle(corner).loads.normal_force.min()) for corner in corners]
     assert np.all(np.diff(losses) > 0)
     assert np.all(np.diff(least) > 0)
-    pv = [judged(guide_bushes.bush_pv_a, corner).demand for corner in corners]
+    pv = [judged(guide_bushes.guide_pv_a, corner).demand for corner in corners]
     assert np.all(np.diff(pv) > 0)
     # Over the preload itself the margin falls: the cam's own force grows by less.
     share = [judged(jump_and_jamming.contact_force_margin, corner).demand for corner in corners]

@@ -1,142 +1,103 @@
-"""Bearing cards: what a maker says of a bearing, in TOML."""
+"""Bearing cards: ratings and sizes of ball bearings as their makers print them, in TOML."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import Annotated, Any, ClassVar
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base import units
+from camwright.pipeline.base.quantities import Count, In, Length, Part, Pressure
+from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.follower.roller_parts import Bearing, OuterRing
 
 CARDS = Path(__file__).parent / "bearings.toml"
 
-_UNITS = {
-    "C": "N",
-    "C0": "N",
-    "speed_limit": "rpm",
-    "bore": "mm",
-    "outer_diameter": "mm",
-    "width": "mm",
-    "fatigue_load_limit": "N",
-    "radial_limit": "N",
-    "pitch_diameter": "mm",
-    "ring_thickness": "mm",
-    "ring_fatigue_bending": "MPa",
-    "ring_tensile_strength": "MPa",
-}
-_RING = {"balls", "pitch_diameter", "ring_thickness"}
-_STRENGTHS = {"ring_fatigue_bending", "ring_tensile_strength"}
-_OPTIONAL = {"fatigue_load_limit", "radial_limit", "rows", *_RING, *_STRENGTHS}
+_Rating = Annotated[float, In("N", above=0, at_most=1e9)]
+_RING = ("balls", "pitch_diameter", "ring_thickness")
+_STRENGTHS = ("ring_fatigue_bending", "ring_tensile_strength")
 
 
-@dataclass(frozen=True)
-class BearingCard:
+@dataclass(frozen=True, kw_only=True)
+class BearingCard(Part):
     """A ball bearing as its maker rates it, SI.
 
-    Parameters
-    ----------
-    C, C0 : float             dynamic and static rating, N, > 0
-    speed_limit : float       rad/s, > 0
-    bore, outer_diameter, width : float    m, > 0
-    source : str              where the numbers come from; "verify" marks recalled ones
-    fatigue_load_limit : float   P_u, N; None when not given
-    radial_limit : float      N that the outer ring bears without a housing; None when not given
-    balls : int               of a row, >= 3; None with the next two where the ring is not known
-    pitch_diameter : float    of the balls' middles, m
-    ring_thickness : float    of the outer ring under the groove, m
-    ring_fatigue_bending, ring_tensile_strength : float   of the ring's steel, Pa; None when not
-                                                          given
-    rows : int                of balls, >= 1
-    """
-
-    name: str
-    C: float
-    C0: float
-    speed_limit: float
-    bore: float
-    outer_diameter: float
-    width: float
-    source: str
-    fatigue_load_limit: float | None = None
-    radial_limit: float | None = None
-    balls: int | None = None
-    pitch_diameter: float | None = None
-    ring_thickness: float | None = None
-    ring_fatigue_bending: float | None = None
-    ring_tensile_strength: float | None = None
-    rows: int = 1
-
-    def __post_init__(self) -> None:
-        for name in _UNITS:
-            value = getattr(self, name)
-            if value is not None and not 0.0 < value < np.inf:
-                raise InputError(f"bearing.{name}", value, "> 0")
-        if self.balls is not None and self.balls < 3:
-            raise InputError("bearing.balls", self.balls, ">= 3")
-        if self.rows < 1:
-            raise InputError("bearing.rows", self.rows, ">= 1")
-        pitch, thickness = self.pitch_diameter, self.ring_thickness
-        if pitch is not None and not self.bore < pitch < self.outer_diameter:
-            raise InputError("bearing.pitch_diameter", pitch, "between bore and outside")
-        if (
-            pitch is not None
-            and thickness is not None
-            and not thickness < 0.5 * (self.outer_diameter - pitch)
-        ):
-            raise InputError("bearing.ring_thickness", thickness, "outside the pitch circle")
-
-
-def read_card(name: str, entry: Any) -> BearingCard:
-    """A card from its table; all of the ring is told, or nothing of it.
+    radial_limit is the load that the outer ring bears without a housing; fatigue_load_limit P_u.
+    balls is the number in one row, pitch_diameter that of the balls' centres, ring_thickness that
+    of the outer ring under the groove; the ring is described completely or not at all.
 
     Raises
     ------
     InputError
-        For a card without C0 or another value, an unknown key, or a value out of its bounds.
+        If a value is out of its bounds, or the ring incomplete or larger than the bearing.
     """
-    if not isinstance(entry, dict):
-        raise InputError(f"cards.{name}", entry, "a table")
-    known = {*_UNITS, "name", "balls", "rows", "source"}
-    for key in sorted(set(entry) - known):
-        raise InputError(
-            f"cards.{name}.{key}", "unknown key", f"one of: {', '.join(sorted(known))}"
+
+    table: ClassVar[str] = "bearing"
+
+    name: str
+    C: _Rating
+    C0: _Rating
+    speed_limit: Annotated[float, In("rpm", above=0, at_most=1e6)]
+    bore: Length
+    outer_diameter: Length
+    width: Length
+    source: str
+    fatigue_load_limit: _Rating | None = None
+    radial_limit: _Rating | None = None
+    balls: Annotated[int, Count(3, 100)] | None = None
+    pitch_diameter: Length | None = None
+    ring_thickness: Length | None = None
+    ring_fatigue_bending: Pressure | None = None
+    ring_tensile_strength: Pressure | None = None
+    rows: Annotated[int, Count(1, 4)] = 1
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if any(getattr(self, name) is not None for name in (*_RING, *_STRENGTHS)):
+            for name in _RING:
+                if getattr(self, name) is None:
+                    raise InputError(f"bearing.{name}", "missing", "given")
+        pitch, thickness = self.pitch_diameter, self.ring_thickness
+        if pitch is None or thickness is None:
+            return
+        if not self.bore < pitch < self.outer_diameter:
+            raise InputError("bearing.pitch_diameter", pitch, "between bore and outside")
+        if not thickness < 0.5 * (self.outer_diameter - pitch):
+            raise InputError("bearing.ring_thickness", thickness, "outside the pitch circle")
+
+    @property
+    def bearing(self) -> Bearing:
+        """The bearing of a roller, with its outer ring where the card describes it."""
+        ring = None
+        if self.balls is not None and self.pitch_diameter and self.ring_thickness:
+            ring = OuterRing(
+                outer_diameter=self.outer_diameter,
+                thickness=self.ring_thickness,
+                pitch_diameter=self.pitch_diameter,
+                balls=self.balls,
+                rows=self.rows,
+                fatigue_bending=self.ring_fatigue_bending,
+                tensile_strength=self.ring_tensile_strength,
+                source=self.source,
+            )
+        return Bearing(
+            name=self.name,
+            C=self.C,
+            C0=self.C0,
+            radial_limit=self.radial_limit,
+            speed_limit=self.speed_limit,
+            ring=ring,
+            source=self.source,
         )
-    ring = _RING if set(entry) & (_RING | _STRENGTHS) else set()
-    for key in sorted((known - _OPTIONAL | ring) - set(entry)):
-        raise InputError(f"cards.{name}.{key}", "missing", "given")
-    values = {
-        key: units.parse(entry[key], unit, f"cards.{name}.{key}")
-        for key, unit in _UNITS.items()
-        if key in entry
-    }
-    counts = {key: entry[key] for key in ("balls", "rows") if key in entry}
-    for key, count in counts.items():
-        if isinstance(count, bool) or not isinstance(count, int):
-            raise InputError(f"cards.{name}.{key}", count, "a whole number")
-    told: dict[str, Any] = {**counts, **values}
-    return BearingCard(name=str(entry["name"]), source=str(entry["source"]), **told)
 
 
-def as_case_table(card: BearingCard) -> dict[str, Any]:
-    """What a card puts into ``[roller.bearing]``, as a case file has it."""
-    ratings = {"C": "N", "C0": "N", "speed_limit": "rpm", "radial_limit": "N"}
-    table: dict[str, Any] = {"name": card.name, **_written(card, ratings), "source": card.source}
-    if card.balls is not None:
-        lengths = {"outer_diameter": "mm", "pitch_diameter": "mm", "ring_thickness": "mm"}
-        strengths = dict.fromkeys(sorted(_STRENGTHS), "MPa")
-        written = _written(card, lengths | strengths)
-        ring = {key.removeprefix("ring_"): text for key, text in written.items()}
-        counts = {"balls": card.balls, "rows": card.rows}
-        table["ring"] = {**counts, **ring, "source": card.source}
-    return table
+def read_card(name: str, entry: Mapping[str, Any]) -> BearingCard:
+    """A bearing card from its table.
 
-
-def _written(card: BearingCard, names: dict[str, str]) -> dict[str, str]:
-    return {
-        name: units.format(getattr(card, name), unit)
-        for name, unit in names.items()
-        if getattr(card, name) is not None
-    }
+    Raises
+    ------
+    InputError
+        For an unknown or missing key, a value out of its bounds, or an incomplete ring.
+    """
+    return read_part(BearingCard, entry, f"cards.{name}")

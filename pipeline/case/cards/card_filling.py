@@ -16,8 +16,9 @@ from typing import Any
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import read_toml
-from camwright.pipeline.case.cards import bearing_cards
+from camwright.pipeline.case.cards.bearing_cards import CARDS, read_card
 from camwright.pipeline.case.cards.spring_selection import put_spring
+from camwright.pipeline.case.toml_text import tables_of
 
 KINDS = ("materials", "bushes", "oils", "wires", "bearings")
 USER_FILE = "cards.toml"
@@ -53,7 +54,7 @@ def filled(data: Mapping[str, Any], folder: Path | None) -> dict[str, Any]:
             raise InputError(f"{field}.card", name, f"one of: {', '.join(sorted(cards[kind]))}")
         card = _oil(card, table, field) if kind == "oils" else card
         if kind == "bearings":
-            card = bearing_cards.as_case_table(bearing_cards.read_card(name, card))
+            card = tables_of(read_card(name, card).bearing)
         given = dict(table)
         table.update(card)
         table.update(given)
@@ -94,7 +95,7 @@ def viscosity(at_40: float, at_100: float, temperature: float) -> float:
 @cache
 def _shipped() -> Cards:
     here = Path(__file__).parent
-    files = {kind: here / f"{kind}.toml" for kind in KINDS} | {"bearings": bearing_cards.CARDS}
+    files = {kind: here / f"{kind}.toml" for kind in KINDS} | {"bearings": CARDS}
     return {
         kind: {
             name: _sourced(card, f"{kind}.{name}")

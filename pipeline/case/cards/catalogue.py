@@ -8,16 +8,17 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base import units
+from camwright.pipeline.base.quantities import marks_of
 from camwright.pipeline.case.cards.bearing_cards import BearingCard, read_card
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.cards.spring_catalogue import read_catalogue
+from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.spring import HelicalSpring
 
 SPRINGS_FILE = "springs.toml"
 SAME_RATE = 0.05  # springs nearer than this share in rate are of one kind
 
-Part = TypeVar("Part")
+Candidate = TypeVar("Candidate")
 
 
 @dataclass(frozen=True)
@@ -65,31 +66,36 @@ def catalogue_of(folder: Path | None) -> Catalogue:
 
 
 def _bush(name: str, entry: Mapping[str, Any]) -> Bush:
-    field = f"cards.bushes.{name}"
+    field, marks = f"cards.bushes.{name}", marks_of(Guide)
     for key in ("friction", "pressure_limit", "pv_limit", "material"):
         if key not in entry:
             raise InputError(f"{field}.{key}", "missing", "given")
-    friction = [entry["friction"], entry.get("friction_max", entry["friction"])]
-    for value in friction:
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value < 2:
-            raise InputError(f"{field}.friction", value, ">= 0 and < 2")
+
+    def read(key: str, default: str = "") -> float:
+        try:
+            return float(marks[key].read(entry.get(key, entry.get(default))))
+        except InputError as error:
+            raise InputError(f"{field}.{key}", error.value, error.limit) from None
+
     return Bush(
         name,
-        float(friction[0]),
-        float(friction[1]),
-        units.parse(entry["pressure_limit"], "MPa", f"{field}.pressure_limit"),
-        units.parse(entry["pv_limit"], "MPa m/s", f"{field}.pv_limit"),
+        friction=read("friction"),
+        friction_max=read("friction_max", "friction"),
+        pressure=read("pressure_limit"),
+        pv=read("pv_limit"),
     )
 
 
-def undominated(parts: Mapping[str, Part], better: Callable[[Part, Part], bool]) -> dict[str, Part]:
+def undominated(
+    parts: Mapping[str, Candidate], better: Callable[[Candidate, Candidate], bool]
+) -> dict[str, Candidate]:
     """The parts no other is as good as in every respect; of equal ones the first.
 
     Parameters
     ----------
     better : callable   (one, other) -> whether `one` is in no respect worse than `other`
     """
-    kept: dict[str, Part] = {}
+    kept: dict[str, Candidate] = {}
     for name, part in parts.items():
         if any(better(other, part) for other in kept.values()):
             continue

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base import units
 from camwright.pipeline.base.files import read_toml
-from camwright.pipeline.follower.spring import HelicalSpring, Wire
+from camwright.pipeline.base.quantities import Part, Pressure
+from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.case.renamed_keys import with_new_wire_keys
+from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.follower.spring import (
+    HelicalSpring,
+    Treatment,
+    WireDensity,
+    WireExponent,
+    WireModulus,
+)
 
 CATALOGUE = Path(__file__).parent / "springs.toml"
 _BYTES = 256 * 1024
-
-_SPRING = {
-    "wire_diameter": "mm",
-    "mean_diameter": "mm",
-    "free_length": "mm",
-}
-_WIRE = {"shear_modulus": "GPa", "density": "kg/m^3", "strength_at_1mm": "MPa"}
 
 
 @dataclass(frozen=True)
@@ -77,20 +80,23 @@ def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
     InputError
         For a file that is not TOML, an unknown or missing key, or a spring that cannot be.
     """
-    given = read_toml(Path(path), "catalogue", _BYTES)
-    _known("catalogue", given, {"wires", "spring"}, set())
-    wires, springs = given.get("wires", {}), given.get("spring", [])
+    catalogue = read_toml(Path(path), "catalogue", _BYTES)
+    for key in catalogue:
+        if key not in ("wires", "spring"):
+            raise InputError(f"catalogue.{key}", "unknown key", "one of: spring, wires")
+    wires, entries = catalogue.get("wires", {}), catalogue.get("spring", [])
     if not isinstance(wires, dict):
         raise InputError("catalogue.wires", wires, "tables [wires.NAME]")
-    if not isinstance(springs, list):
-        raise InputError("catalogue.spring", springs, "tables [[spring]]")
-    known = {name: _wire(name, entry) for name, entry in wires.items()}
-    found = tuple(_spring(k, entry, known) for k, entry in enumerate(springs))
-    names = [spring.name for spring in found]
-    for k, name in enumerate(names):
-        if name in names[:k]:
-            raise InputError(f"catalogue.spring[{k}].name", name, "unlike every other")
-    return found
+    if not isinstance(entries, list):
+        raise InputError("catalogue.spring", entries, "tables [[spring]]")
+    known = {name: _wire(f"catalogue.wires.{name}", entry) for name, entry in wires.items()}
+    springs: list[HelicalSpring] = []
+    for k, entry in enumerate(entries):
+        spring = _spring(f"catalogue.spring[{k}]", entry, known)
+        if spring.name in (other.name for other in springs):
+            raise InputError(f"catalogue.spring[{k}].name", spring.name, "unlike every other")
+        springs.append(spring)
+    return tuple(springs)
 
 
 def lightest(
@@ -103,54 +109,43 @@ def lightest(
     return best, {name: reason for name, reason in reasons.items() if reason}
 
 
-def _wire(name: str, entry: dict[str, Any]) -> Wire:
-    field = f"catalogue.wires.{name}"
-    keys = {*_WIRE, "exponent", "peened", "source"}
-    _known(field, entry, keys, {*_WIRE, "exponent", "source"})
-    values = {key: units.parse(entry[key], unit, f"{field}.{key}") for key, unit in _WIRE.items()}
-    peened = entry.get("peened", False)
-    if not isinstance(peened, bool):
-        raise InputError(f"{field}.peened", peened, "true or false")
-    return Wire(
-        **values,
-        exponent=_number(f"{field}.exponent", entry["exponent"]),
-        peened=peened,
-        source=_text(f"{field}.source", entry["source"]),
-    )
+@dataclass(frozen=True, kw_only=True)
+class _Wire(Part):
+    """The wire of a spring: those fields of `HelicalSpring` that a maker prints once."""
+
+    table: ClassVar[str] = "wire"
+
+    shear_modulus: WireModulus
+    density: WireDensity
+    strength_at_1mm: Pressure
+    strength_exponent: WireExponent
+    treatment: Treatment = "plain"
+    source: str
 
 
-def _spring(index: int, entry: dict[str, Any], wires: dict[str, Wire]) -> HelicalSpring:
-    field = f"catalogue.spring[{index}]"
-    keys = {*_SPRING, "name", "coils", "wire", "end_factor"}
-    _known(field, entry, keys, keys - {"end_factor"})
-    if not isinstance(entry["wire"], str) or entry["wire"] not in wires:
-        raise InputError(f"{field}.wire", entry["wire"], f"one of: {', '.join(sorted(wires))}")
-    values = {k: units.parse(entry[k], unit, f"{field}.{k}") for k, unit in _SPRING.items()}
-    return HelicalSpring(
-        **values,
-        coils=_number(f"{field}.coils", entry["coils"]),
-        wire=wires[entry["wire"]],
-        end_factor=_number(f"{field}.end_factor", entry.get("end_factor", 0.5)),
-        name=_text(f"{field}.name", entry["name"]),
-    )
+def _wire(field: str, entry: Any) -> _Wire:
+    return read_part(_Wire, with_new_wire_keys(entry, field), field)
 
 
-def _number(field: str, value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) < 1e9:
-        raise InputError(field, value, "a number without a unit")
-    return float(value)
-
-
-def _text(field: str, value: Any) -> str:
-    if not isinstance(value, str) or not value.strip() or not value.isprintable():
-        raise InputError(field, value, "printable text in quotes")
-    return value
-
-
-def _known(field: str, entry: Any, known: set[str], required: set[str]) -> None:
+def _spring(field: str, entry: Any, wires: Mapping[str, _Wire]) -> HelicalSpring:
+    """The spring of an entry: its own keys and those of its wire."""
     if not isinstance(entry, dict):
         raise InputError(field, entry, "a table")
-    for key in sorted(set(entry) - known):
-        raise InputError(f"{field}.{key}", "unknown key", f"one of: {', '.join(sorted(known))}")
-    for key in sorted(required - set(entry)):
-        raise InputError(f"{field}.{key}", "missing", "given")
+    own = dict(entry)
+    wire, name = own.pop("wire", None), own.pop("name", None)
+    _require_own_keys(field, entry)
+    if not isinstance(wire, str) or wire not in wires:
+        shown = "missing" if wire is None else wire
+        raise InputError(f"{field}.wire", shown, f"one of: {', '.join(sorted(wires))}")
+    if not isinstance(name, str) or not name.strip() or not name.isprintable():
+        shown = "missing" if name is None else name
+        raise InputError(f"{field}.name", shown, "printable text in quotes")
+    return replace(read_part(HelicalSpring, tables_of(wires[wire]) | own, field), name=name)
+
+
+def _require_own_keys(field: str, entry: Mapping[str, Any]) -> None:
+    of_wire = {each.name for each in fields(_Wire)}
+    known = {each.name for each in fields(HelicalSpring)} - of_wire | {"wire"}
+    for key in entry:
+        if key not in known:
+            raise InputError(f"{field}.{key}", "unknown key", f"one of: {', '.join(sorted(known))}")

@@ -6,6 +6,7 @@ A case that names a catalogue holds the spring found, every number of it, once i
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,8 @@ from camwright.pipeline.case.cards.spring_catalogue import (
     lightest,
     read_catalogue,
 )
-from camwright.pipeline.follower.spring import HelicalSpring
+from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID
+from camwright.pipeline.case.toml_text import tables_of
 
 SHIPPED = "shipped"
 _NEAREST = 3
@@ -59,7 +61,8 @@ def put_spring(case: dict[str, Any], folder: Path | None) -> None:
         why = "; ".join(f"{each}: {', '.join(reasons[each])}" for each in nearest)
         limit = f"a catalogue with a spring that will do; nearest are {why}"
         raise InputError("spring.catalogue", name, limit if springs else "not empty")
-    spring["design"] = _design(best, f"lightest of {len(springs)} in catalogue {name}")
+    why = f"lightest of {len(springs)} in catalogue {name}: {best.name}; {best.source}"
+    spring["design"] = tables_of(replace(best, source=why.rstrip("; ")))
 
 
 def _demand(case: Mapping[str, Any], spring: Mapping[str, Any]) -> SpringDemand | None:
@@ -91,8 +94,8 @@ def _demand(case: Mapping[str, Any], spring: Mapping[str, Any]) -> SpringDemand 
         preload=preload,
         travel=travel,
         rate_tolerance=spread or _MISS,
-        fatigue_safety=number(limits, "spring_fatigue", 1.2),
-        solid_clearance=number(limits, "spring_solid", 0.1),
+        fatigue_safety=number(limits, SPRING_FATIGUE.id, SPRING_FATIGUE.default),
+        solid_clearance=number(limits, SPRING_SOLID.id, SPRING_SOLID.default),
         rate_spread=spread,
         preload_spread=number(spring, "preload_tolerance", 0.0),
     )
@@ -106,21 +109,3 @@ def _path(name: Any, folder: Path | None) -> Path:
     if folder is None:
         raise InputError("spring.catalogue", name, f'"{SHIPPED}" where a case has no folder')
     return inside(folder, name, "spring.catalogue")
-
-
-def _design(found: HelicalSpring, why: str) -> dict[str, Any]:
-    """``[spring.design]`` of a spring, as a case file has it."""
-    wire = found.wire
-    return {
-        "wire_diameter": units.format(found.wire_diameter, "mm"),
-        "mean_diameter": units.format(found.mean_diameter, "mm"),
-        "coils": found.coils,
-        "free_length": units.format(found.free_length, "mm"),
-        "end_factor": found.end_factor,
-        "shear_modulus": units.format(wire.shear_modulus, "GPa"),
-        "density": units.format(wire.density, "kg/m^3"),
-        "strength_at_1mm": units.format(wire.strength_at_1mm, "MPa"),
-        "strength_exponent": wire.exponent,
-        "treatment": "peened" if wire.peened else "plain",
-        "source": f"{why}: {found.name}; {wire.source}".rstrip("; "),
-    }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -14,10 +13,17 @@ from camwright.pipeline.case.cards.catalogue import Catalogue, nearest_spring
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of
-from camwright.pipeline.follower.spring import HelicalSpring, case_spring
+from camwright.pipeline.case.limits import (
+    CAM_RADIUS,
+    MINIMUM_WALL,
+    SPRING_FATIGUE,
+    SPRING_SOLID,
+)
+from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.follower.spring import HelicalSpring
 
 AS_GIVEN = "as given"
-WIDEST_BASE = 1.5  # times the pitch base radius of the case: where a search ends
+WIDEST_PRIME = 1.5  # times the prime radius of the case: where a search ends
 _IN_HAND = 1.002
 _CHAMFER_MOST = 0.05  # of the roller's width
 _FORK = 2e-3  # m between roller and cheek where the case has no pin
@@ -49,8 +55,8 @@ def travel_of(spring: HelicalSpring, case: Case) -> float:
         spring.rate,
         given.preload if free is None else free[1],
         travel=0.0,
-        fatigue_safety=limits.spring_fatigue,
-        solid_clearance=limits.spring_solid,
+        fatigue_safety=limits[SPRING_FATIGUE],
+        solid_clearance=limits[SPRING_SOLID],
         rate_spread=given.rate_tolerance,
         preload_spread=given.preload_tolerance,
     )
@@ -67,11 +73,11 @@ def travel_of(spring: HelicalSpring, case: Case) -> float:
     return low
 
 
-def least_base_radius(case: Case, roller_radius: float) -> float:
-    """Pitch base radius (m) that leaves the wall about bore and keyway, a little in hand."""
+def least_prime_radius(case: Case, roller_radius: float) -> float:
+    """Prime radius (m) that leaves the wall about bore and keyway, a little in hand."""
     key = case.cam.keyway
     inside = case.cam.bore_radius + (0.0 if key is None else key.depth)
-    return _IN_HAND * (roller_radius + case.limits.minimum_wall * inside)
+    return _IN_HAND * (roller_radius + case.limits[MINIMUM_WALL] * inside)
 
 
 def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -> Case:
@@ -79,7 +85,7 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
 
     The roller brings its radius, width, bore, ratings, and with them the cam's width, pin,
     overhang and mass of the follower; the spring its rate, travel and mass; the bush friction and
-    limits of both guides. The cam's base radius is free within what wall and room leave. Waivers
+    limits of both guides. The cam's prime radius is free within what wall and room leave. Waivers
     are left out: nobody signed for this design.
 
     Parameters
@@ -91,7 +97,7 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
     InputError
         If the parts do not fit into the case.
     """
-    data = tomllib.loads(case.to_toml())
+    data = case.tables()
     data.pop("waivers", None)
     data["name"] = f"{case.name[:31]}-redesign"
     data["title"] = f"{case.title or case.name}: {choice.words}"
@@ -113,11 +119,11 @@ def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -
     InputError
         If the roller does not fit into the case.
     """
-    data = tomllib.loads(case.to_toml())
+    data = case.tables()
     _put_roller(data, case, card, name)
     data["follower"]["mass"] = units.format(case.follower.mass + _heavier(case, card), "g")
-    base = case.cam.pitch_base_radius + 0.5 * card.outer_diameter - case.roller.radius
-    data["cam"]["pitch_base_radius"] = _mm(base)
+    base = case.cam.prime_radius + 0.5 * card.outer_diameter - case.roller.radius
+    data["cam"]["prime_radius"] = _mm(base)
     return case_of(data, folder)
 
 
@@ -134,7 +140,7 @@ def _put_roller(data: dict[str, Any], case: Case, card: BearingCard, name: str) 
         "bearing": {"card": name},
     }
     roller.pop("inertia", None)
-    pin = {"material": case.follower.stem_material, "source": "as wide as the roller's bore"}
+    pin = {"material": case.follower.stem_material.name, "source": "as wide as the roller's bore"}
     span = card.width + 2.0 * _FORK
     if given.pin is not None:
         pin = roller["pin"]
@@ -146,24 +152,11 @@ def _put_roller(data: dict[str, Any], case: Case, card: BearingCard, name: str) 
 
 
 def _put_spring(data: dict[str, Any], case: Case, spring: HelicalSpring) -> None:
-    wire = spring.wire
     data["spring"] |= {
         "rate": units.format(spring.rate, "kN/m"),
         "travel_max": _mm(travel_of(spring, case)),
         "source": f"catalogue: {spring.name}; preload as it was",
-        "design": {
-            "wire_diameter": _mm(spring.wire_diameter),
-            "mean_diameter": _mm(spring.mean_diameter),
-            "coils": spring.coils,
-            "free_length": _mm(spring.free_length),
-            "end_factor": spring.end_factor,
-            "shear_modulus": units.format(wire.shear_modulus, "GPa"),
-            "density": units.format(wire.density, "kg/m^3"),
-            "strength_at_1mm": units.format(wire.strength_at_1mm, "MPa"),
-            "strength_exponent": wire.exponent,
-            "treatment": "peened" if wire.peened else "plain",
-            "source": wire.source,
-        },
+        "design": tables_of(spring),
     }
 
 
@@ -171,7 +164,7 @@ def _put_mass(
     data: dict[str, Any], case: Case, card: BearingCard, spring: HelicalSpring, parts: Catalogue
 ) -> None:
     """The follower with the new roller and half the new spring."""
-    old = case_spring(case) or nearest_spring(list(parts.springs.values()), case.spring.rate)
+    old = case.spring.design or nearest_spring(list(parts.springs.values()), case.spring.rate)
     mass = case.follower.mass + _heavier(case, card) + 0.5 * (spring.mass - old.mass)
     data["follower"]["mass"] = units.format(mass, "g")
 
@@ -180,7 +173,7 @@ def _heavier(case: Case, card: BearingCard) -> float:
     """What a roller weighs more than the case's, kg; each solid with its pin."""
     roller = case.roller
     disc = 0.25 * card.outer_diameter**2 * card.width - roller.radius**2 * roller.width
-    return math.pi * case.material(roller.material).density * disc
+    return math.pi * roller.material.density * disc
 
 
 def _put_bushes(data: dict[str, Any], name: str) -> None:
@@ -192,24 +185,24 @@ def _put_bushes(data: dict[str, Any], name: str) -> None:
 
 def _put_search(data: dict[str, Any], case: Case, choice: Choice, radius: float) -> None:
     smoothing = case.smoothing
-    kept = [n for n in smoothing.free if n not in ("spring_rate", "pitch_base_radius")]
-    low = least_base_radius(case, radius)
-    high = max(WIDEST_BASE * case.cam.pitch_base_radius, 1.2 * low)
-    if "pitch_base_radius" in smoothing.free and smoothing.pitch_base_radius_range is not None:
-        given = smoothing.pitch_base_radius_range
+    kept = [n for n in smoothing.free if n not in ("spring_rate", "prime_radius")]
+    low = least_prime_radius(case, radius)
+    high = max(WIDEST_PRIME * case.cam.prime_radius, 1.2 * low)
+    if "prime_radius" in smoothing.free and smoothing.prime_radius_range is not None:
+        given = smoothing.prime_radius_range
         low, high = max(low, given[0]), max(given[1], _IN_HAND * max(low, given[0]))
-    start = min(max(case.cam.pitch_base_radius, low), high)
-    data["cam"]["pitch_base_radius"] = _mm(start)
+    start = min(max(case.cam.prime_radius, low), high)
+    data["cam"]["prime_radius"] = _mm(start)
     data["smoothing"] |= {
         "kind": "constrained",
-        "free": list(dict.fromkeys([*kept, "initial_energy", "pitch_base_radius"])),
-        "pitch_base_radius_range": [_mm(low), _mm(high)],
+        "free": list(dict.fromkeys([*kept, "initial_energy", "prime_radius"])),
+        "prime_radius_range": [_mm(low), _mm(high)],
         "source": "redesign: the least ripple that these parts allow",
     }
     data["mechanism"]["compensation"] = 1.0
     if choice.cam_radius is not None:
-        data["limits"]["cam_radius"] = _mm(choice.cam_radius)
-        data["limits"].setdefault("sources", {})["cam_radius"] = "a rung of the redesign"
+        data["limits"][CAM_RADIUS.id] = _mm(choice.cam_radius)
+        data["limits"].setdefault("sources", {})[CAM_RADIUS.id] = "a rung of the redesign"
 
 
 def _mm(length: float) -> str:

@@ -12,6 +12,7 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.cycle.crank_speed import SpeedStudy, speed_study
 from camwright.pipeline.engine.crankshaft import Inertia
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
 RATIO = 2.0
@@ -20,8 +21,7 @@ POSITIONS = 720
 # Energies 2025: k, P, follower mass, b, friction; the overhang at full lift is assumed.
 FOLLOWER_2025 = FollowerSystem(
     mass=0.175,
-    spring_rate=24_200.0,
-    preload=242.0,
+    spring=Spring(rate=24_200.0, preload=242.0),
     guide_spacing=0.080,
     overhang_at_max_lift=0.030,
     friction_a=0.04,
@@ -71,7 +71,9 @@ def designed_pitch(
     """Pitch curve of a cam cut for `multiplier` times a smoothed crank torque (n,)."""
     target = multiplier * smoothed(torque - torque.mean(), smoother)
     theta = uniform_turn(torque.size)
-    lift = lift_from_torque(theta, target - target.mean(), system.spring_rate, system.preload)
+    lift = lift_from_torque(
+        theta, target - target.mean(), system.spring.rate, system.spring.preload
+    )
     return PitchCurve(lift, BASE_RADIUS)
 
 
@@ -97,7 +99,11 @@ def balanced(
     preload : float         N, at which it runs; None: as designed
     """
     pitch = designed_pitch(torque, multiplier, smoother, system)
-    runs = system if preload is None else replace(system, preload=preload)
+    runs = (
+        system
+        if preload is None
+        else replace(system, spring=replace(system.spring, preload=preload))
+    )
     loads = follower_loads(pitch, runs, mean_speed / RATIO, uniform_turn(torque.size))
     about = torque - torque.mean()
     left = about - loads.cam_torque / RATIO

@@ -11,6 +11,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.engine.torque import torque_from_cylinder
 from camwright.pipeline.follower.follower_forces import FollowerSystem
+from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.studies.papers.balancing_cam import BASE_RADIUS, RATIO, designed_pitch
 from camwright.pipeline.studies.papers.paper_engines import ENGINE_800, FULL_LOAD_800, SLOW_IDLE
@@ -19,7 +20,8 @@ from camwright.pipeline.studies.papers.published_figures import Outcome, PaperRe
 PRINTED_VALVE_SPRING = 588_000.0  # N/m, table 1
 ONE_MAGNITUDE = 15.0  # between the largest and the least of torques "of the same magnitude"
 # Table 2: k and P; guides and mass do not enter a cam without losses.
-SPRING = FollowerSystem(0.0, 100_000.0, 100.0, 0.08, 0.03, 0.0, 0.0)
+SPRING = Spring(rate=100_000.0, preload=100.0)
+FOLLOWER = FollowerSystem(0.0, SPRING, 0.08, 0.03, 0.0, 0.0)
 UNSMOOTHED = Smoother("none")
 
 
@@ -27,7 +29,7 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
     """Every row of the paper."""
     torque = torque_from_cylinder(ENGINE_800, SLOW_IDLE).without_mean()
     cams = {
-        name: designed_pitch(torque.total, multiplier, UNSMOOTHED, SPRING)
+        name: designed_pitch(torque.total, multiplier, UNSMOOTHED, FOLLOWER)
         for name, multiplier in (("full", 2.0), ("half", 1.0))
     }
     outcomes = {
@@ -40,7 +42,7 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
             "cut_for": name,
             "lift_mm": 1e3 * pitch.lift.stroke,
             "radius_max_mm": 1e3 * (BASE_RADIUS + pitch.lift.highest.value),
-            "spring_force_max_N": SPRING.preload + SPRING.spring_rate * pitch.lift.stroke,
+            "spring_force_max_N": SPRING.force(pitch.lift.stroke),
             "pressure_angle_max_deg": float(
                 np.degrees(np.abs(pitch.pressure_angle(uniform_turn(720))).max())
             ),
@@ -80,7 +82,7 @@ def _cam_rows(
     targets: Mapping[str, Target], torque: Array, pitch: PitchCurve
 ) -> dict[str, Outcome]:
     lift, slope = pitch.lift.derivatives(uniform_turn(torque.size), 1)
-    delivered = (SPRING.preload + SPRING.spring_rate * lift) * slope / RATIO
+    delivered = SPRING.force(lift) * slope / RATIO
     left = float(np.std(torque - torque.mean() - delivered))
     radius = 1e3 * (BASE_RADIUS + pitch.lift.highest.value)
     flat = left < 1e-4 * float(np.std(torque))  # the torque has corners where the valves move

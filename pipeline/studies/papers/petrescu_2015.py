@@ -16,13 +16,14 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
-from camwright.pipeline.follower.valve_cam import (
+from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, within
+from camwright.pipeline.studies.papers.valve_cam import (
     ElasticValve,
     ValveCam,
     rise_efficiency,
     shaft_speed,
 )
-from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, within
 
 ROLLER = 0.002
 GUIDE_FRICTION = 0.05  # assumed, for the true efficiency
@@ -101,10 +102,8 @@ def _figures(name: str, given: CamSet) -> dict[str, Any]:
     pitch = PitchCurve(given.motion.lift(), given.base_radius + ROLLER)
     contour = Contour(pitch, ROLLER)
     theta = np.arange(2880) * (2.0 * np.pi / 2880)
-    preload = given.rate * given.compression
-    system = FollowerSystem(
-        TAPPET, given.rate, preload, GUIDE_SPACING, OVERHANG, GUIDE_FRICTION, GUIDE_FRICTION
-    )
+    spring = Spring(rate=given.rate, preload=given.rate * given.compression)
+    system = FollowerSystem(TAPPET, spring, GUIDE_SPACING, OVERHANG, GUIDE_FRICTION, GUIDE_FRICTION)
     return {
         "set": name,
         "shape_index_mean": round(float(index.mean()), 4),
@@ -116,7 +115,7 @@ def _figures(name: str, given: CamSet) -> dict[str, Any]:
         "true_efficiency_of_rise": round(
             rise_efficiency(follower_loads(pitch, system, 0.0, theta)), 4
         ),
-        "preload_N": preload,
+        "preload_N": spring.preload,
     }
 
 

@@ -14,20 +14,16 @@ import numpy as np
 
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.torque_balance import TORQUE_REDUCTION
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.checks.registry import without_sign_off
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.camshaft_loads import unbalance
-from camwright.pipeline.follower.spring import case_spring
-from camwright.pipeline.preview import look_ahead
+from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.fe_correction import redrawn
 from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.smoothing.shadow_prices import prices
 from camwright.pipeline.smoothing.synthesis_problem import coarsened
-
-SIGNED_OFF = "signed_off"  # of a look ahead: that finite elements have not been asked
 
 
 @dataclass(frozen=True)
@@ -47,7 +43,7 @@ class Rough:
 
 @dataclass(frozen=True)
 class Point:
-    """A case as closed forms foresee it, SI.
+    """A case by its preview, SI.
 
     ripple_before and ripple_left are the standard deviations of the crank torque, N m; mass is
     that of cam, follower and the half of the spring that the follower does not count. failing and
@@ -61,7 +57,7 @@ class Point:
     ripple_left: float
     cam_radius: float
     mass: float
-    base_radius: float
+    prime_radius: float
     preload: float
     spring_rate: float
     lift_max: float
@@ -81,7 +77,7 @@ class Point:
             "torque_reduction": 1.0 - self.ripple_left / self.ripple_before,
             "cam_radius_mm": 1e3 * self.cam_radius,
             "mass_g": 1e3 * self.mass,
-            "pitch_base_radius_mm": 1e3 * self.base_radius,
+            "prime_radius_mm": 1e3 * self.prime_radius,
             "preload_N": self.preload,
             "spring_rate_N_per_mm": 1e-3 * self.spring_rate,
             "lift_max_mm": 1e3 * self.lift_max,
@@ -95,38 +91,36 @@ class Point:
 
 
 def point_of(case: Case) -> Point:
-    """The case by constrained synthesis and closed forms, as `camwright check CASE` sees it.
+    """The case by constrained synthesis and preview, as `camwright check CASE` does.
 
     Raises
     ------
     CamError
         If there is no such cam.
     """
-    seen = look_ahead(case)
-    design, drawn, contour = seen.design, seen.case, seen.contour
-    rest, torque = seen.cycles[0].residual_torque, seen.cycles[0].torque_before
+    trial = preview_case(case)
+    drawn, contour, turn = trial.case, trial.contour, trial.cycles[0].turn
+    rest, torque = turn.torque_after, turn.torque_before
     if rest is None or torque is None:
         raise InputError("engine", "missing", "given: a redesign balances its torque")
-    dearest = []
-    if design is not None and seen.problem is not None and design.feasible:
-        dearest = prices(design, seen.problem)
-    blocking = [check for check in seen.checks if check.blocks and check.id != SIGNED_OFF]
+    record = trial.synthesis or {"feasible": False, "prices": []}
+    blocking = [check for check in without_sign_off(trial.checks) if check.blocks]
     return Point(
-        feasible=design is not None and design.feasible,
+        feasible=record["feasible"],
         ripple_before=float(np.std(torque)),
         ripple_left=float(np.std(rest)),
         cam_radius=float(contour.radius_max().value),
         mass=_mass(drawn, contour),
-        base_radius=drawn.cam.pitch_base_radius,
+        prime_radius=drawn.cam.prime_radius,
         preload=drawn.spring.preload,
         spring_rate=drawn.spring.rate,
-        lift_max=float(contour.pitch.lift.highest.value),
+        lift_max=float(trial.lift.highest.value),
         pressure_angle_max=float(contour.pressure_angle_max().value),
-        normal_force_max=max(float(c.loads.normal_force.max()) for c in seen.cycles),
-        p0_max=max(float(np.max(c.contact.p0)) for c in seen.cycles),
+        normal_force_max=max(float(c.loads.normal_force.max()) for c in trial.cycles),
+        p0_max=max(float(np.max(c.contact.p0)) for c in trial.cycles),
         failing=tuple(check.id for check in blocking if check.status == "fail"),
         open=tuple(check.id for check in blocking if check.status == "not_evaluated"),
-        binding=tuple(record["limit"] for record in dearest),
+        binding=tuple(price["limit"] for price in record["prices"]),
     )
 
 
@@ -137,8 +131,8 @@ def rough_point(case: Case, torques: Mapping[str, Torque]) -> Rough:
     only keep the synthesis from telling how far off a hopeless case is.
     """
     problem = coarsened(problem_of(case, torques))
-    design = synthesise(replace(problem, left_out=frozenset({TORQUE_REDUCTION})))
-    contour = road.contour_of(redrawn(case, design), design.lift(problem.points))
+    design = synthesise(replace(problem, left_out=frozenset({TORQUE_REDUCTION.id})))
+    contour = redrawn(case, design).contour(design.lift(problem.points))
     enough = problem.ceiling is None or design.ripple <= problem.ceiling
     return Rough(
         design.feasible and enough,
@@ -149,8 +143,6 @@ def rough_point(case: Case, torques: Mapping[str, Torque]) -> Rough:
 
 
 def _mass(case: Case, contour: Contour) -> float:
-    cam = case.cam
-    density = case.material(cam.material).density
-    disc = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density).mass
-    spring = case_spring(case)
-    return float(disc + case.follower.mass + (0.0 if spring is None else 0.5 * spring.mass))
+    cam, design = case.cam, case.spring.design
+    disc = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, cam.material.density).mass
+    return float(disc + case.follower.mass + (0.0 if design is None else 0.5 * design.mass))

@@ -17,9 +17,9 @@ from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.cards.substitution import Choice, variant
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.solver import engine_torques
 from camwright.pipeline.studies.redesign.design_point import Rough
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.part_search import Branch, branches

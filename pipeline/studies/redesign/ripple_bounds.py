@@ -11,6 +11,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.limits import ROLLER_STATIC_SAFETY
 from camwright.pipeline.smoothing.cone_program import Norm, Rows, solved
 from camwright.pipeline.smoothing.constraints import Scenario
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
@@ -61,7 +62,7 @@ class RippleBound:
 
 def bearable_force(card: BearingCard, case: Case) -> float:
     """Greatest normal force (N) that a roller bears: static rating and outer ring."""
-    static = card.C0 / case.limits.roller_static_safety
+    static = card.C0 / case.limits[ROLLER_STATIC_SAFETY]
     return static if card.radial_limit is None else min(static, card.radial_limit)
 
 

@@ -1,4 +1,4 @@
-"""The shop in a case file: what it orders, and what is refused."""
+"""The workshop in a case file: what it orders, and what is refused."""
 
 from __future__ import annotations
 
@@ -14,26 +14,25 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
-from camwright.pipeline import solver as road
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.template import template
-from camwright.pipeline.results.workshop_files import write_shop
+from camwright.pipeline.results.workshop_files import write_workshop
 
 LIMITS = "[limits]\n"
-ORDER = '[shop]\ntable_step = "0.25 deg"\ntool_radius = "6 mm"\nchord_error = "2 um"\n'
+ORDER = '[workshop]\ntable_step = "0.25 deg"\ntool_radius = "6 mm"\nchord_error = "2 um"\n'
 
 
-def case(shop: str = ORDER, limits: str = "", cam: str = "") -> Case:
+def case(workshop: str = ORDER, limits: str = "", cam: str = "") -> Case:
     text = template("part")
-    own = text[text.index("[shop]") : text.index("# --- One table")]
-    text = text.replace(own, shop).replace(LIMITS, LIMITS + limits)
+    own = text[text.index("[workshop]") : text.index("# --- One table")]
+    text = text.replace(own, workshop).replace(LIMITS, LIMITS + limits)
     return parse_case(text.replace("[cam]\n", "[cam]\n" + cam))
 
 
 def contour(of: Case) -> Contour:
     theta = uniform_turn(360)
-    return road.cam_contour(of, Lift(theta, 0.005 * (1 - np.cos(theta))))
+    return of.contour(Lift(theta, 0.005 * (1 - np.cos(theta))))
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -45,7 +44,7 @@ def test_the_files_are_those_ordered(tmp_path: Path) -> None:
 
     of = case(cam='profile_tolerance = "16 um"\n')
     drawn, said = contour(of), []
-    write_shop(tmp_path, of, drawn, said.append)
+    write_workshop(tmp_path, of, drawn, said.append)
     assert said == []
     table, cutter = rows(tmp_path / "contour.csv"), rows(tmp_path / "cutter.csv")
     assert len(table) == len(cutter) == 1440
@@ -61,15 +60,15 @@ def test_the_files_are_those_ordered(tmp_path: Path) -> None:
 
 
 def test_without_an_order_the_tables_are_half_a_degree_apart_and_the_roller_is_the_tool() -> None:
-    order = case("").workshop
+    order = case("").workshop_order
     assert np.degrees(order.step) == pytest.approx(0.5)
     assert (order.tool_radius, order.chord_error, order.tolerance) == (None, None, 20e-6)
 
 
-def test_the_tool_of_the_limits_is_the_shops_unless_it_has_its_own() -> None:
-    assert case("", 'tool_radius = "9 mm"\n').workshop.tool_radius == pytest.approx(9e-3)
+def test_the_tool_of_the_limits_is_the_workshops_unless_it_has_its_own() -> None:
+    assert case("", 'tool_radius = "9 mm"\n').workshop_order.tool_radius == pytest.approx(9e-3)
     both = case(limits='tool_radius = "9 mm"\n')
-    assert both.workshop.tool_radius == pytest.approx(6e-3)
+    assert both.workshop_order.tool_radius == pytest.approx(6e-3)
     assert both.largest_tool == pytest.approx(9e-3)  # which the hollows have to let in
     assert case().largest_tool == pytest.approx(6e-3)
     assert case("").largest_tool is None
@@ -77,17 +76,19 @@ def test_the_tool_of_the_limits_is_the_shops_unless_it_has_its_own() -> None:
 
 def test_a_resolved_case_orders_the_same() -> None:
     of = case()
-    assert parse_case(of.to_toml()).workshop == of.workshop
+    again = parse_case(of.to_toml())
+    assert again.workshop == of.workshop
+    assert again.workshop_order == of.workshop_order
 
 
 def test_a_tool_too_large_for_a_hollow_leaves_its_file_out_and_says_so(tmp_path: Path) -> None:
-    of = case('[shop]\ntool_radius = "400 mm"\n')
+    of = case('[workshop]\ntool_radius = "400 mm"\n')
     theta = uniform_turn(360)
-    hollow = road.cam_contour(of, Lift(theta, 0.010 * (1 - np.cos(3 * theta))))
+    hollow = of.contour(Lift(theta, 0.010 * (1 - np.cos(3 * theta))))
     assert hollow.concave_radius_min().value < 0.4
     said: list[str] = []
-    write_shop(tmp_path, of, hollow, said.append)
-    assert "cutter.csv is left out" in said[0]
+    write_workshop(tmp_path, of, hollow, said.append)
+    assert "workshop/cutter.csv is left out" in said[0]
     assert not (tmp_path / "cutter.csv").exists()
     assert (tmp_path / "contour.dxf").is_file()
 
@@ -95,29 +96,35 @@ def test_a_tool_too_large_for_a_hollow_leaves_its_file_out_and_says_so(tmp_path:
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ('table_step = "0.099 deg"', "shop.table_step = 0.099 deg, must be >= 0.1 and <= 1 deg"),
-        ('table_step = "1.001 deg"', "shop.table_step = 1.001 deg, must be >= 0.1 and <= 1 deg"),
-        ("table_step = 0.5", "shop.table_step = 0.5, must be a number with a unit"),
-        ('table_step = "nan deg"', "shop.table_step = nan deg, must be finite"),
-        ('table_step = "0.5 mm"', "shop.table_step = 0.5 mm, must be in a unit of"),
-        ("table_step = []", "shop.table_step = "),
-        ('tool_radius = "0 mm"', "shop.tool_radius = 0 mm, must be > 0"),
-        ('tool_radius = "-5 mm"', "shop.tool_radius = -5 mm, must be > 0"),
-        ('tool_radius = "inf mm"', "shop.tool_radius = inf mm, must be finite"),
-        ('tool_radius = "1e5 mm"', "shop.tool_radius = 1e5 mm, must be > 0 and <= 10000 mm"),
-        ("tool_radius = true", "shop.tool_radius = True, must be a number with a unit"),
-        ('chord_error = "0 um"', "shop.chord_error = 0 um, must be >= 0.001 and <= 1000 um"),
-        ('chord_error = "2 mm"', "shop.chord_error = 2 mm, must be >= 0.001 and <= 1000 um"),
+        (
+            'table_step = "0.099 deg"',
+            "workshop.table_step = 0.099 deg, must be >= 0.1 and <= 1 deg",
+        ),
+        (
+            'table_step = "1.001 deg"',
+            "workshop.table_step = 1.001 deg, must be >= 0.1 and <= 1 deg",
+        ),
+        ("table_step = 0.5", "workshop.table_step = 0.5, must be a number with a unit"),
+        ('table_step = "nan deg"', "workshop.table_step = nan deg, must be finite"),
+        ('table_step = "0.5 mm"', "workshop.table_step = 0.5 mm, must be in a unit of"),
+        ("table_step = []", "workshop.table_step = "),
+        ('tool_radius = "0 mm"', "workshop.tool_radius = 0 mm, must be > 0"),
+        ('tool_radius = "-5 mm"', "workshop.tool_radius = -5 mm, must be > 0"),
+        ('tool_radius = "inf mm"', "workshop.tool_radius = inf mm, must be finite"),
+        ('tool_radius = "1e5 mm"', "workshop.tool_radius = 1e5 mm, must be > 0 and <= 10000 mm"),
+        ("tool_radius = true", "workshop.tool_radius = True, must be a number with a unit"),
+        ('chord_error = "0 um"', "workshop.chord_error = 0 um, must be >= 0.001 and <= 1000 um"),
+        ('chord_error = "2 mm"', "workshop.chord_error = 2 mm, must be >= 0.001 and <= 1000 um"),
         ('chord_eror = "1 um"', "did you mean chord_error?"),
         ('tool_radius = "<script>alert(1)</script>"', "must be a number with a unit"),
     ],
 )
-def test_what_no_shop_could_mean_is_refused(line: str, message: str) -> None:
+def test_what_no_workshop_could_mean_is_refused(line: str, message: str) -> None:
     with pytest.raises(InputError) as refusal:
-        case(f"[shop]\n{line}\n")
+        case(f"[workshop]\n{line}\n")
     assert message in str(refusal.value)
 
 
 def test_a_tool_larger_than_the_hollows_are_checked_for_is_refused() -> None:
-    with pytest.raises(InputError, match=r"shop\.tool_radius = 0\.006 m, must be <= limits"):
+    with pytest.raises(InputError, match=r"workshop\.tool_radius = 0\.006 m, must be <= limits"):
         case(limits='tool_radius = "5 mm"\n')

@@ -1,4 +1,4 @@
-"""How the checks of spring, face, numbers and plane model are tried."""
+"""How the checks of spring, face, solution and plane model are tried."""
 
 import hand_calculations as by_hand
 import made_trial as made
@@ -6,6 +6,7 @@ import numpy as np
 from check_tools import by_limit, limited, loaded, tried
 from trial_variants import (
     NAN,
+    NO_ROLLING,
     cycle_with,
     faced,
     unknown,
@@ -42,7 +43,6 @@ tried(
 by_limit(
     "spring_fatigue",
     "spring_fatigue",
-    1.0,
     lambda: with_design(strength_at_1mm=np.nan),
     1.0 / float(by_hand.SWING / by_hand.ZIMMERLI + by_hand.MIDDLE / (0.67 * by_hand.TENSILE)),
     "Goodman through Zimmerli, Shigley ch. 10",
@@ -51,7 +51,6 @@ by_limit(
 by_limit(
     "spring_solid",
     "spring_solid",
-    1.0,
     unknown,
     (by_hand.SOLID - by_hand.DEFLECTION) / by_hand.DEFLECTION,
     "L0 - d (n + 2) - x, over x",
@@ -76,7 +75,6 @@ tried(
 by_limit(
     "spring_surge",
     "spring_surge",
-    1.0,
     lambda: with_design(density=np.nan),
     float(by_hand.SURGE),
     "sqrt(k/m)/2 over w/(2 pi)",
@@ -85,7 +83,7 @@ by_limit(
 # a flat face
 tried(
     "face_width",
-    limited("face_width", lambda mm: faced(width=1e-3 * mm), faced),
+    limited("face_width", lambda width: faced(width=width), faced),
     None,
     lambda: faced(cycle_with("contact", made.cycle(made.face_contour()), half_width=NAN)),
     2.0 * (5.0 + 0.1),
@@ -93,24 +91,23 @@ tried(
     base=faced,
 )
 tried(
-    "face_sliding",
-    limited("face_sliding", lambda pv: faced(pv_limit=1e6 * pv), faced),
+    "face_pv",
+    limited("face_pv", lambda pv: faced(pv_limit=pv), faced),
     lambda: faced(pv_limit=None),
-    lambda: faced(made.cycle(made.face_contour(), rolling=None)),
+    lambda: faced(made.cycle(made.face_contour(), rolling=NO_ROLLING)),
     150.0,
     "100 + 50 sin",
     base=faced,
 )
-# evidence
+# verification of the solution
 for _name, _field, _part, _value in (
     ("guide_equilibrium_force", "equilibrium", "force_residual", 1e-13),
     ("guide_equilibrium_moment", "equilibrium", "moment_residual", 1e-12),
 ):
-    by_limit(_name, _field, 1.0, lambda p=_part: with_guides(**{p: NAN}), _value, "as solved")
+    by_limit(_name, _field, lambda p=_part: with_guides(**{p: NAN}), _value, "as solved")
 by_limit(
     "contact_complementarity",
     "complementarity",
-    1.0,
     lambda: with_contact(residual_complementarity=NAN),
     1e-11,
     "as solved",
@@ -128,7 +125,7 @@ tried(
 )
 tried(
     "hertz_difference",
-    loaded("hertz_difference", lambda off: with_contact(p0=(1.0 + 0.01 * off) * HERTZ)),
+    loaded("hertz_difference", lambda off: with_contact(p0=(1.0 + off) * HERTZ)),
     None,
     lambda: with_contact(p0=NAN),
     1.0,
@@ -136,8 +133,8 @@ tried(
 )
 tried(
     "certificate_spread",
-    loaded("certificate_spread", lambda off: with_certificate(p0_cycle=1.0 + 0.01 * off)),
-    lambda: made.evidence(certificate=()),
+    loaded("certificate_spread", lambda off: with_certificate(p0_cycle=1.0 + off)),
+    lambda: made.solution(certificate=()),
     lambda: with_certificate(p0_cycle=np.nan),
     0.4,
     "the worse of two angles",
@@ -145,21 +142,20 @@ tried(
 by_limit(
     "certificate_gci",
     "mesh_uncertainty",
-    0.01,
     lambda: with_certificate(p0=made.converged(np.nan)),
     0.5,
     "the worse of two angles",
-    missing=lambda: made.evidence(certificate=()),
+    missing=lambda: made.solution(certificate=()),
 )
-for _name, _part, _value in (
-    ("mesh_angle", "min_angle_deg", 28.0),
-    ("mesh_jacobian", "min_scaled_jacobian", 0.5),
-    ("mesh_edges", "edges_across_half_width", 10.0),
+for _name, _part, _value, _si in (
+    ("mesh_angle", "min_angle_deg", 28.0, np.radians(1.0)),
+    ("mesh_jacobian", "min_scaled_jacobian", 0.5, 1.0),
+    ("mesh_edges", "edges_across_half_width", 10.0, 1.0),
 ):
     tried(
         _name,
-        loaded(_name, lambda value, p=_part: with_mesh(**{p: value})),
-        lambda: made.evidence(mesh_quality=None),
+        loaded(_name, lambda value, p=_part, si=_si: with_mesh(**{p: value / si})),
+        lambda: made.solution(mesh=None),
         lambda p=_part: with_mesh(**{p: np.nan}),
         _value,
         "as the mesh says",
@@ -169,25 +165,25 @@ for _part, _value in (("p0", 0.5), ("half_width", 0.4), ("von_mises", 0.3), ("ta
         f"mesh_{_part}",
         loaded(
             f"mesh_{_part}",
-            lambda gci, p=_part: with_certificate(**{p: made.converged(0.01 * gci)}),
+            lambda gci, p=_part: with_certificate(**{p: made.converged(gci)}),
         ),
-        lambda: made.evidence(certificate=()),
+        lambda: made.solution(certificate=()),
         lambda p=_part: with_certificate(**{p: made.converged(np.nan)}),
         _value,
-        "the worse of two angles; the GCI's formula in test_proof_checks",
+        "the worse of two angles; the GCI's formula in test_solution_verification",
     )
 for _part in ("nafems", "hertz"):
     tried(
         f"benchmark_{_part}",
-        loaded(f"benchmark_{_part}", lambda off, p=_part: with_benchmark(p, 0.01 * off)),
-        lambda: made.evidence(benchmarks=None),
+        loaded(f"benchmark_{_part}", lambda off, p=_part: with_benchmark(p, off)),
+        lambda: made.solution(benchmarks=None),
         lambda p=_part: with_benchmark(p, np.nan),
         1.0,
         "one per cent off",
     )
 # what a plane model cannot see
 tried(
-    "edge_derating",
+    "edge_factor",
     lambda share: with_case(
         limits=made.changed(made.case().limits, edge_factor=1.3 / share),
         roller=made.changed(made.case().roller, crowned=False),
@@ -199,17 +195,17 @@ tried(
     base=lambda: with_part("roller", crowned=False),
 )
 tried(
-    "clear_of_holds",
-    loaded("clear_of_holds", lambda n: with_contact(half_width=np.full(made.POSITIONS, 4e-3 / n))),
+    "held_distance",
+    loaded("held_distance", lambda n: with_contact(half_width=np.full(made.POSITIONS, 4e-3 / n))),
     lambda: with_contact(half_width=np.zeros(made.POSITIONS)),
     lambda: with_contact(half_width=NAN),
     40.0,
     "8 - 4 mm of roller over 0.1 mm",
 )
 tried(
-    "stress_inside",
+    "subsurface_depth",
     loaded(
-        "stress_inside",
+        "subsurface_depth",
         lambda depth: with_contact(von_mises_depth=np.full(made.POSITIONS, 1e-4 * depth)),
     ),
     None,
@@ -219,7 +215,7 @@ tried(
 )
 tried(
     "excluded_zone",
-    loaded("excluded_zone", lambda mm: with_bore(excluded=1e-3 * mm)),
+    loaded("excluded_zone", lambda radius: with_bore(excluded=radius)),
     lambda: with_bore(excluded=0.0),
     lambda: with_bore(excluded=np.nan),
     0.5,
@@ -227,7 +223,7 @@ tried(
 )
 tried(
     "bore_stress",
-    limited("bore_stress", lambda p: with_material("steel", core_yield_strength=1e6 * p)),
+    limited("bore_stress", lambda p: with_material("steel", core_yield_strength=p)),
     None,
     lambda: with_bore(away_from_edges=NAN),
     200.0,

@@ -15,9 +15,11 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.elastic_response import elastic_follower
 from camwright.pipeline.cycle.turn import Turn
-from camwright.pipeline.follower.valve_cam import (
+from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.studies.papers.valve_cam import (
     ElasticValve,
     ValveCam,
     follower_acceleration,
@@ -48,24 +50,27 @@ def valve_cam(case: Case) -> ValveCam | None:
     train, lift = case.valve_train, case.lift
     if train is None or not isinstance(lift, LiftSegments):
         return None
-    flat = case.follower.face is not None
+    roller = case.roller_given
     return ValveCam(
         motion_of(lift),
         case.base_circle,
-        0.0 if flat else case.roller.radius,
+        0.0 if roller is None else roller.radius,
         case.cam.offset,
-        "C" if flat else "B",
+        "C" if roller is None else "B",
         train.cam_mass,
         case.follower.mass,
     )
 
 
-def valve_record(case: Case, turns: Sequence[Turn]) -> Mapping[str, Any] | None:
-    """``valve_train`` of ``run.json``: module and rows; None where the case does not ask for it."""
-    cam = valve_cam(case)
-    if cam is None:
-        return None
-    rows = [*_shape(cam), *(row for turn in turns for row in _motion(case, cam, turn))]
+def valve_record(trial: Trial) -> Mapping[str, Any]:
+    """Entry ``valve_train`` of ``run.json``: module and rows; null for a case without one."""
+    cam, turns = valve_cam(trial.case), [cycle.turn for cycle in trial.cycles]
+    return {"valve_train": None if cam is None else machine_motion(cam, turns)}
+
+
+def machine_motion(cam: ValveCam, turns: Sequence[Turn]) -> Mapping[str, Any]:
+    """Module of the cam, and rows of its machine motion in every load case."""
+    rows = [*_shape(cam), *(row for turn in turns for row in _motion(cam, turn))]
     return {"module": cam.module, "rows": [asdict(row) for row in rows]}
 
 
@@ -85,8 +90,8 @@ def _shape(cam: ValveCam) -> list[Row]:
     ]
 
 
-def _motion(case: Case, cam: ValveCam, turn: Turn) -> list[Row]:
-    mean, name = turn.crank_speed / case.mechanism.gear_ratio, turn.load_case
+def _motion(cam: ValveCam, turn: Turn) -> list[Row]:
+    mean, name = turn.machine.cam_speed, turn.machine.load_case
     phi, motion = turn.theta, cam.motion
     speed, turning = cam.speed(phi, mean), cam.angular_acceleration(phi, mean)
     uneven = follower_acceleration(motion(phi, 1), motion(phi, 2), speed, turning)
@@ -103,14 +108,13 @@ def _motion(case: Case, cam: ValveCam, turn: Turn) -> list[Row]:
             "m/s^2",
             "eq. 15, on the uneven speed",
         ),
-        *_elastic(case, cam, name, phi, speed),
+        *_elastic(turn.machine, cam, phi, speed),
     ]
 
 
-def _elastic(case: Case, cam: ValveCam, name: str, phi: Array, speed: Array) -> list[Row]:
+def _elastic(machine: Machine, cam: ValveCam, phi: Array, speed: Array) -> list[Row]:
     """What the train gives way at full lift, in micrometres."""
-    given = elastic_follower(case)
-    spring = case.at(name).spring
+    given, spring, name = elastic_follower(machine), machine.spring, machine.load_case
     train = ElasticValve(given.mass, given.stiffness, spring.rate, spring.preload / spring.rate)
     top = int(np.argmax(cam.motion(phi)))
     s, slope = (float(cam.motion(phi[top], order)) for order in range(2))

@@ -1,0 +1,34 @@
+"""A part read from one table of its own, outside a case file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.section import PartType, part_of, section_of
+
+
+def read_part(part: type[PartType], table: Mapping[str, Any], field: str) -> PartType:
+    """The part that a table describes.
+
+    Parameters
+    ----------
+    field : str   dotted name of the table, for messages
+
+    Raises
+    ------
+    InputError
+        For an unknown or missing key, or a value out of its bounds.
+    """
+    try:
+        section = section_of(part).model_validate(table)
+    except ValidationError as error:
+        raise first_error(error, field) from None
+    try:
+        return part_of(part, section)
+    except InputError as error:
+        raise InputError(f"{field}.{error.field}", error.value, error.limit) from None

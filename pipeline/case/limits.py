@@ -1,0 +1,339 @@
+"""The table of limits: one row for each value that a case may set in ``[limits]``.
+
+The table feeds the schema of the case file, the checks, the constrained synthesis with its shadow
+prices and conflicts, and the documentation. A row holds what a limit is; the demand that is held
+against it is bound to it in `pipeline/checks`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import radians
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Annotated, Literal, overload
+
+from pydantic import Field, create_model, field_validator
+
+from camwright.pipeline.base.quantities import In
+from camwright.pipeline.case.section import Section, Text, refusal, suggestion
+
+Sense = Literal["at_most", "at_least"]
+Slope = Literal["whole", "rest", "square", "unit"]
+
+_LENGTH = In("mm", above=0, at_most=10_000)
+_PRESSURE = In("MPa", above=0, at_most=1e6)
+_SAFETY = In(above=0, at_most=100)
+_SHARE = In(above=0, at_most=1)
+_INNER_SHARE = In(above=0, below=1)
+_RATIO = In(at_least=1, at_most=100)
+_LIFE = In("h", above=0, at_most=1e6)
+_RESIDUAL = In(above=0, at_most=1e-3)
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit with a default.
+
+    Parameters
+    ----------
+    id : str           key in ``[limits]``
+    title : str        words for shadow prices and conflicts
+    quantity : In      unit as written, and bounds
+    default : float    SI
+    source : str       clause or book behind the default
+    sense : str        "at_most": a demand at or below it passes; "at_least": at or above it
+    slope : str        fall of a utilisation with the limit: "whole" 1/limit, "rest" 1/(1 - limit)
+                       for a share that is left, "square" 2/limit where the demand grows with the
+                       square, "unit" 1 where the synthesis bounds the difference
+    """
+
+    id: str
+    title: str
+    quantity: In
+    default: float
+    source: str
+    sense: Sense = "at_most"
+    slope: Slope = "whole"
+
+
+@dataclass(frozen=True)
+class OpenLimit:
+    """A limit without a default: None unless the case sets it. Fields as of `Limit`."""
+
+    id: str
+    title: str
+    quantity: In
+    source: str
+    sense: Sense = "at_most"
+    slope: Slope = "whole"
+
+    @property
+    def default(self) -> None:
+        """None: nothing is required unless the case sets it."""
+        return None
+
+
+AnyLimit = Limit | OpenLimit
+
+
+def utilisation_slope(limit: AnyLimit, value: float) -> float:
+    """Fall of the utilisation for one more unit of a limit's value, where it is reached.
+
+    Below zero where a greater value takes room away.
+    """
+    sign = 1.0 if limit.sense == "at_most" else -1.0
+    if limit.slope == "rest":
+        return sign / (1.0 - value)
+    return sign * {"whole": 1.0 / value, "square": 2.0 / value, "unit": 1.0}[limit.slope]
+
+
+CLOSURE = Limit(
+    "closure", "lift closure", In("mm", above=0, at_most=1), 1e-9,
+    "fundamental law of cam design, Norton (2009) ch. 2",
+)  # fmt: skip
+PRESSURE_ANGLE = Limit(
+    "pressure_angle", "pressure angle", In("deg", above=0, below=90), radians(30.0),
+    "30 deg for a translating follower, Rothbart (2004) ch. 6",
+)  # fmt: skip
+CURVATURE_RATIO = Limit(
+    "curvature_ratio", "convex pitch radius over roller radius", _RATIO, 1.5,
+    "1.5 to 3 roller radii, Norton (2009) ch. 7", "at_least",
+)  # fmt: skip
+UNDERCUT_FACTOR = Limit(
+    "undercut_factor", "undercut factor", _INNER_SHARE, 0.3,
+    "a cusp at zero, Rothbart (2004) ch. 6; of a flat face Norton (2009) ch. 7", "at_least", "rest",
+)  # fmt: skip
+SECOND_CONTACT_DEPTH = Limit(  # below the form error of ground cams
+    "second_contact_depth", "depth of a second contact", In("mm", above=0, at_most=1), 1e-6,
+    "one contact at a time, Rothbart (2004) ch. 6",
+)  # fmt: skip
+TOOL_RADIUS = OpenLimit(
+    "tool_radius", "tool radius for concave flanks", _LENGTH,
+    "hollow at least a tenth above the tool radius, Rothbart (2004) ch. 6", "at_least",
+)  # fmt: skip
+CURVATURE_RATE = OpenLimit(
+    "curvature_rate", "rate of change of curvature", In("1/m/rad", above=0, at_most=1e9),
+    "bound of the case, for grinding and for wear",
+)  # fmt: skip
+MINIMUM_WALL = Limit(  # outer over inner radius of the ring about the bore
+    "minimum_wall", "contour radius over bore radius", _RATIO, 1.75,
+    "hub of 1.75 shaft diameters, common practice", "at_least",
+)  # fmt: skip
+CONTACT_SAFETY = Limit(
+    "contact_safety", "safety of the contact pressure", _SAFETY, 1.0,
+    "surface endurance of the softer body",
+)  # fmt: skip
+YIELD_SAFETY = Limit(
+    "yield_safety", "safety against first yield", _SAFETY, 1.0,
+    "yield strength; p0 = 1.79 Y, Johnson (1985) sec. 6.1",
+)  # fmt: skip
+SHAKEDOWN_SAFETY = Limit(
+    "shakedown_safety", "safety against shakedown", _SAFETY, 1.0,
+    "elastic shakedown, Johnson (1985) sec. 9.2",
+)  # fmt: skip
+CONTACT_FORCE_MARGIN = Limit(
+    "contact_force_margin", "minimum contact force over preload", _INNER_SHARE, 0.2,
+    "0.2 to 0.3 of the preload at the highest speed, Norton (2009)", "at_least", "unit",
+)  # fmt: skip
+JUMP = Limit(
+    "jump", "inertia over spring force", _SAFETY, 1.0,
+    "F_s + m w^2 s'' > 0, follower jump, Norton (2009) and Rothbart (2004)",
+)  # fmt: skip
+OVERSPEED = OpenLimit(
+    "overspeed", "overspeed", In("rpm", above=0, below=20_000), "overspeed of the case",
+)  # fmt: skip
+JUMP_SPEED = Limit(
+    "jump_speed", "jump speed over overspeed", _RATIO, 1.3,
+    "1.3 times the overspeed, Norton (2009), Rothbart (2004): verify", "at_least", "square",
+)  # fmt: skip
+GUIDE_GAP = Limit(
+    "guide_gap", "gap at guide A", In("mm", above=0, at_most=1000), 0.001,
+    "1 to 2 mm, shop practice: verify", "at_least",
+)  # fmt: skip
+CAM_RADIUS = OpenLimit("cam_radius", "cam radius", _LENGTH, "space of the case")
+TARGET_LIFE = OpenLimit(
+    "target_life", "target life", _LIFE, "log10 K = (B - log10 n)/A, Rothbart (2004) eq. 9.15",
+)  # fmt: skip
+EDGE_FACTOR = Limit(
+    "edge_factor", "edge factor", In(at_least=1, at_most=5), 1.3,
+    "factor 1.3 to 2, or crown the follower, shop practice: verify",
+)  # fmt: skip
+WAVINESS = Limit(
+    "waviness", "waviness force over contact force", _SHARE, 0.2,
+    "10 to 20 % of the force, Rothbart (2004) sec. 10.4",
+)  # fmt: skip
+CHORD_SHARE = Limit(
+    "chord_share", "chord error over profile tolerance", _SHARE, 0.25,
+    "a quarter of the profile tolerance, geometry",
+)  # fmt: skip
+JAM_INDEX = Limit(
+    "jam_index", "jam index", _INNER_SHARE, 0.5,
+    "locks at 1, Rothbart (2004) eq. 6.8; half of it held",
+)  # fmt: skip
+ROLLER_STATIC_SAFETY = Limit(
+    "roller_static_safety", "static safety of the roller bearing", _SAFETY, 1.0,
+    "s0 = C0/P0, ISO 76", "at_least",
+)  # fmt: skip
+ROLLER_LIFE = OpenLimit(
+    "roller_life", "rating life of the roller bearing", _LIFE, "ISO 281", "at_least",
+)  # fmt: skip
+ROLLER_SPEED_SHARE = Limit(
+    "roller_speed_share", "roller speed over limiting speed", _SHARE, 0.7,
+    "share of the maker's limit",
+)  # fmt: skip
+PIN_SHARE = Limit(
+    "pin_share", "pin stress over yield strength", _SHARE, 0.6, "0.6 of the yield strength",
+)  # fmt: skip
+SPRING_FATIGUE = Limit(
+    "spring_fatigue", "fatigue safety of the spring", _SAFETY, 1.2,
+    "Goodman line through Zimmerli's point, infinite life, Shigley ch. 10", "at_least",
+)  # fmt: skip
+SPRING_SOLID = Limit(
+    "spring_solid", "solid-height clearance of the spring", In(above=0, at_most=10), 0.1,
+    "10 to 15 % of the greatest working deflection, Shigley ch. 10", "at_least",
+)  # fmt: skip
+SPRING_SURGE = Limit(
+    "spring_surge", "surge frequency over cam frequency", In(above=0, at_most=1e4), 13.0,
+    "13 to 20 times the cam's frequency, Norton (2009), Shigley ch. 10", "at_least",
+)  # fmt: skip
+KEY_PRESSURE = Limit(
+    "key_pressure", "key flank pressure", _PRESSURE, 100e6,
+    "100 to 150 MPa static, DIN 6892: verify",
+)  # fmt: skip
+BORE_PRESSURE = Limit(
+    "bore_pressure", "bore pressure on the shaft", _PRESSURE, 100e6,
+    "100 MPa as for a key, DIN 6892: verify",
+)  # fmt: skip
+KEY_SHEAR = Limit(
+    "key_shear", "key shear stress", _PRESSURE, 60e6,
+    "60 MPa under reversed torque, DIN 6892: verify",
+)  # fmt: skip
+SHAFT_SAFETY = Limit(
+    "shaft_safety", "fatigue safety of the camshaft", _SAFETY, 1.5,
+    "Goodman, Shigley sec. 7-4; notch of an end-milled key, table 7-1: verify", "at_least",
+)  # fmt: skip
+SHAFT_BEARING_LIFE = OpenLimit(
+    "shaft_bearing_life", "rating life of the camshaft bearings", _LIFE, "ISO 281", "at_least",
+)  # fmt: skip
+GEAR_BENDING_SAFETY = Limit(
+    "gear_bending_safety", "safety of tooth root bending", _SAFETY, 1.4,
+    "Lewis (1892); 0.7 for a reversed load, ISO 6336-3: verify",
+)  # fmt: skip
+GEAR_CONTACT_SAFETY = Limit(
+    "gear_contact_safety", "safety of tooth contact", _SAFETY, 1.0, "ISO 6336-2: verify",
+)  # fmt: skip
+UNBALANCE = OpenLimit(
+    "unbalance", "cam unbalance", In("mm/s", above=0, at_most=1e4),
+    "e w of the balance grade, ISO 21940-11: verify",
+)  # fmt: skip
+FILM_RATIO = Limit(
+    "film_ratio", "lambda ratio", In(above=0, at_most=100), 1.0,
+    "below 1 boundary, 1 to 3 mixed, above 3 full film", "at_least",
+)  # fmt: skip
+TRACTION_SHARE = Limit(
+    "traction_share", "traction demand over friction", In(above=0, at_most=1), 0.5,
+    "half of friction, Rothbart, Cam Design Handbook (2004), eq. 10.7: verify",
+)  # fmt: skip
+FATIGUE_SAFETY = Limit(
+    "fatigue_safety", "safety against subsurface fatigue", _SAFETY, 1.0,
+    "fatigue limit in torsion",
+)  # fmt: skip
+CASE_SAFETY = Limit(
+    "case_safety", "safety of case and core", _SAFETY, 1.0, "yield strengths of case and core",
+)  # fmt: skip
+CASE_DEPTH_RATIO = Limit(
+    "case_depth_ratio", "case depth over depth of maximum shear", _SAFETY, 2.0,
+    "2 to 3 times the depth, shop practice: verify", "at_least",
+)  # fmt: skip
+BORE_SAFETY = Limit(
+    "bore_safety", "safety of the bore", _SAFETY, 1.0, "yield strength of the core",
+)  # fmt: skip
+VISCOSITY_RATIO = Limit(
+    "viscosity_ratio", "viscosity ratio", _SAFETY, 1.0, "kappa = v/v1 >= 1, ISO 281", "at_least",
+)  # fmt: skip
+WEAR_DEPTH = Limit(
+    "wear_depth", "wear depth", _LENGTH, 5e-5, "0.05 mm, shop practice: verify; Archard (1953)",
+)  # fmt: skip
+ACCELERATION_STEP = Limit(  # of the swing: a jump spreads over a few samples, a smooth law does not
+    "acceleration_step", "acceleration step", _SHARE, 0.2,
+    "finite jerk, fundamental law of cam design, Norton (2009) ch. 2",
+)  # fmt: skip
+GUIDE_LENGTH = Limit(
+    "guide_length", "guided length over overhang", _SAFETY, 2.0,
+    "bearing length at least twice the overhang, Rothbart (2004) ch. 6", "at_least",
+)  # fmt: skip
+TORQUE_REDUCTION = Limit(
+    "torque_reduction", "torque ripple reduction", _INNER_SHARE, 0.4,
+    "least value required by the case", "at_least",
+)  # fmt: skip
+SPEED_REDUCTION = OpenLimit(
+    "speed_reduction", "speed ripple reduction", _INNER_SHARE,
+    "least value required by the case", "at_least",
+)  # fmt: skip
+ENERGY_CLOSURE = Limit(
+    "energy_closure", "energy balance", _RESIDUAL, 1e-9, "conservation of energy over one turn",
+)  # fmt: skip
+FRICTION_BALANCE = Limit(
+    "friction_balance", "friction balance", _RESIDUAL, 1e-6, "conservation of energy over one turn",
+)  # fmt: skip
+EQUILIBRIUM = Limit(
+    "equilibrium", "equilibrium residual", _RESIDUAL, 1e-9,
+    "equilibrium and contact law hold; ASME V&V 10-2019, solution verification",
+)  # fmt: skip
+COMPLEMENTARITY = Limit(
+    "complementarity", "contact law residual", _RESIDUAL, 1e-9,
+    "equilibrium and contact law hold; ASME V&V 10-2019, solution verification",
+)  # fmt: skip
+MESH_UNCERTAINTY = Limit(
+    "mesh_uncertainty", "discretisation uncertainty", In(above=0, at_most=1), 0.03,
+    "grid convergence index, ASME V&V 20-2009, sec. 2-4; <= 3 %",
+)  # fmt: skip
+
+LIMITS: Mapping[str, AnyLimit] = MappingProxyType(
+    {row.id: row for row in tuple(globals().values()) if isinstance(row, (Limit, OpenLimit))}
+)
+"""Every row by its key, in the order of the file."""
+
+
+class LimitValues(Section):
+    """Limits of the checks; a safety above 1 demands more than the bare limit."""
+
+    sources: dict[str, Text] = Field(default_factory=dict)
+
+    @overload
+    def __getitem__(self, limit: Limit) -> float: ...
+    @overload
+    def __getitem__(self, limit: OpenLimit) -> float | None: ...
+    def __getitem__(self, limit: AnyLimit) -> float | None:
+        """Value of a limit, SI; None for an open one that the case leaves out."""
+        value: float | None = getattr(self, limit.id)
+        return value
+
+    def source(self, limit: AnyLimit) -> str:
+        """Source of a value: the case's own words where it has some."""
+        return self.sources.get(limit.id) or limit.source
+
+    @field_validator("sources")
+    @classmethod
+    def _name_limits(cls, sources: dict[str, str]) -> dict[str, str]:
+        for key in sources:
+            if key not in LIMITS:
+                raise refusal(f"a known limit{suggestion(key, LIMITS)}", unknown_key=key)
+        return sources
+
+
+def _field_type(limit: AnyLimit) -> object:
+    hint = Annotated[float, limit.quantity]
+    return hint if isinstance(limit, Limit) else hint | None
+
+
+if TYPE_CHECKING:
+    Limits = LimitValues
+else:
+    Limits = create_model(
+        "Limits",
+        __base__=LimitValues,
+        __doc__=LimitValues.__doc__,
+        **{row.id: (_field_type(row), row.default) for row in LIMITS.values()},
+    )

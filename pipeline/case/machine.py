@@ -1,0 +1,195 @@
+"""One load case of a case as the physics sees it: frozen, typed, SI."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.limits import Limits
+from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.contact.hertz import contact_modulus
+from camwright.pipeline.contact.oil_film import Lubricant
+from camwright.pipeline.engine.crankshaft import Crankshaft
+from camwright.pipeline.follower.camshaft_loads import Camshaft
+from camwright.pipeline.follower.flat_face import FlatFace
+from camwright.pipeline.follower.follower_forces import FollowerSystem
+from camwright.pipeline.follower.guide_friction import FrictionRange
+from camwright.pipeline.follower.guide_reactions import GuidePair
+from camwright.pipeline.follower.roller import Roller
+from camwright.pipeline.follower.spring import Spring
+from camwright.pipeline.follower.stem_beam import Stem
+
+# A load case at rest is a turn so slow (rad/s) that inertia, film and heat vanish.
+CREEP = 1e-3
+
+
+@dataclass(frozen=True)
+class Corner:
+    """Position within the tolerances: factors on the nominal; phase rad of crank, profile m."""
+
+    name: str
+    friction_a: float = 1.0
+    friction_b: float = 1.0
+    rate: float = 1.0
+    preload: float = 1.0
+    mass: float = 1.0
+    inertia: float = 1.0
+    phase: float = 0.0
+    profile: float = 0.0
+
+
+@dataclass(frozen=True)
+class Machine:
+    """The machine in one load case.
+
+    Parameters
+    ----------
+    load_case : str
+    speed : float              of the crank, rad/s, >= 0; 0: the cam creeps
+    gear_ratio : float         crank turns per cam turn
+    ripple_weight : float      weight of its torque ripple; 0: it only loads the cam
+    cam : CamBody
+    follower : Roller or FlatFace   the part that touches the cam, see `FollowerKind`
+    mass : float               that moves with the follower, kg
+    viscous_damping : float    of the guides, N s/m
+    stem : Stem
+    overhang_at_max_lift : float    guide A to roller centre or face, m
+    axial_stiffness : float    of the stem, N/m
+    damping_ratio : float      of the elastic stem
+    guides : GuidePair
+    friction : FrictionRange   of both guides
+    spring : Spring            with the preload of this load case
+    camshaft, crankshaft, lubricant : or None   None: not described
+    limits : Limits
+    """
+
+    load_case: str
+    speed: float
+    gear_ratio: float
+    ripple_weight: float
+    cam: CamBody
+    follower: Roller | FlatFace
+    mass: float
+    viscous_damping: float
+    stem: Stem
+    overhang_at_max_lift: float
+    axial_stiffness: float
+    damping_ratio: float
+    guides: GuidePair
+    friction: FrictionRange
+    spring: Spring
+    camshaft: Camshaft | None
+    crankshaft: Crankshaft | None
+    lubricant: Lubricant | None
+    limits: Limits
+
+    @property
+    def crank_speed(self) -> float:
+        """rad/s; at least that of a creeping cam."""
+        return max(self.speed, CREEP)
+
+    @property
+    def cam_speed(self) -> float:
+        """rad/s."""
+        return self.crank_speed / self.gear_ratio
+
+    @property
+    def roller(self) -> Roller | None:
+        """The roller; None under a flat face."""
+        return self.follower if isinstance(self.follower, Roller) else None
+
+    @property
+    def face(self) -> FlatFace | None:
+        """The flat face; None for a roller."""
+        return self.follower if isinstance(self.follower, FlatFace) else None
+
+    @property
+    def contact_width(self) -> float:
+        """Width of the line contact, m: that both cam and follower carry."""
+        return min(self.cam.width, self.follower.line_width)
+
+    @property
+    def contact_modulus(self) -> float:
+        """E* of the contact, Pa."""
+        cam, other = self.cam.material, self.follower.material
+        return contact_modulus(cam.E, cam.nu, other.E, other.nu)
+
+    @property
+    def base_radius(self) -> float:
+        """Radius of the cam's surface at zero lift, m."""
+        return self.cam.prime_radius - (self.follower.contact_radius or 0.0)
+
+    @property
+    def softer(self) -> Material:
+        """Material of cam or follower, whichever yields first."""
+        return min(self.cam.material, self.follower.material, key=lambda card: card.yield_strength)
+
+    @property
+    def system(self) -> FollowerSystem:
+        """Spring, mass and friction of the follower."""
+        return FollowerSystem(
+            mass=self.mass,
+            spring=self.spring,
+            guide_spacing=self.guides.spacing,
+            overhang_at_max_lift=self.overhang_at_max_lift,
+            friction_a=self.friction.nominal[0],
+            friction_b=self.friction.nominal[1],
+            viscous_damping=self.viscous_damping,
+            face_friction=self.follower.side_friction,
+        )
+
+    def at_corner(self, corner: Corner) -> Machine:
+        """The same machine at a corner of its tolerances; the contour is not its own to change."""
+        spring, shaft = self.spring, self.crankshaft
+        rate = spring.rate * corner.rate
+        # A cam that stands proud by some hundredths compresses the spring by as much.
+        preload = spring.preload * corner.preload + rate * corner.profile
+        return replace(
+            self,
+            mass=self.mass * corner.mass,
+            spring=replace(spring, rate=rate, preload=preload),
+            friction=self.friction.scaled(corner.friction_a, corner.friction_b),
+            crankshaft=shaft and replace(shaft, inertia=shaft.inertia * corner.inertia),
+        )
+
+
+def machines(case: Case) -> tuple[Machine, ...]:
+    """The machine in every load case, the design load case first."""
+    return tuple(machine(case, state) for state in case.load_cases)
+
+
+def machine(case: Case, state: LoadCase) -> Machine:
+    """The machine of a case in one of its load cases."""
+    follower, guides, spring = case.follower, case.guides, case.spring
+    card = follower.stem_material
+    length = np.inf if follower.stem_length is None else follower.stem_length
+    stem = Stem(follower.stem_diameter, card.E, card.nu, length=length)
+    stiffness = follower.stiffness
+    if stiffness is None:
+        reach = follower.overhang_at_max_lift + guides.spacing
+        stiffness = stem.elastic_modulus * 0.25 * np.pi * stem.diameter**2 / reach
+    return Machine(
+        load_case=state.name,
+        speed=state.speed,
+        gear_ratio=case.mechanism.gear_ratio,
+        ripple_weight=state.ripple_weight,
+        cam=case.cam,
+        follower=case.facing,
+        mass=follower.mass,
+        viscous_damping=follower.viscous_damping,
+        stem=stem,
+        overhang_at_max_lift=follower.overhang_at_max_lift,
+        axial_stiffness=stiffness,
+        damping_ratio=follower.damping_ratio,
+        guides=guides,
+        friction=FrictionRange.of(guides, case.tolerances.friction),
+        spring=spring if state.preload is None else replace(spring, preload=state.preload),
+        camshaft=case.camshaft,
+        crankshaft=case.crankshaft,
+        lubricant=case.lubricant,
+        limits=case.limits,
+    )

@@ -1,0 +1,313 @@
+"""Solution: turns, contact and cycles of a cam in every load case, by one tier."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.contour import Contour
+from camwright.meshes.body_mesh import BodyMesh
+from camwright.meshes.mesh_quality import Quality, gate, quality
+from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.case.machine import Machine, machines
+from camwright.pipeline.contact.certificate import EDGES, contact_meshes
+from camwright.pipeline.contact.closed_form import closed_form_history
+from camwright.pipeline.contact.contact_benchmarks import benchmarks
+from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
+from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
+from camwright.pipeline.cycle.certificate_angles import certified, positions_to_certify
+from camwright.pipeline.cycle.contact_setup import contact_pair
+from camwright.pipeline.cycle.crank_speed import speed_ripple
+from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.turn import Turn, turn
+from camwright.pipeline.engine.torque import Torque
+
+# Positions solved together: what an interruption may cost, and the grain of the progress bar.
+CHUNK = 90
+MESHING, CONTACT = "mesh", "cycle"
+CERTIFICATE, BENCHMARKS = "certificate", "benchmarks"
+
+
+@dataclass(frozen=True, eq=False)
+class ContactMesh:
+    """Cam and follower meshed for the contact at their worst angle, rad.
+
+    `name` is that of the follower's body: roller or face.
+    """
+
+    theta: float
+    half_width: float
+    cam: BodyMesh
+    follower: BodyMesh
+    name: str
+    quality: Quality
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """All that checks and results are drawn from.
+
+    Parameters
+    ----------
+    machines, cycles : tuple     one a load case, the design load case first
+    mesh : ContactMesh           None in a preview, and where the contour is no body: its contact
+                                 is NaN
+    certificate : tuple          full two-body solutions; empty unless certified
+    benchmarks : mapping         as `benchmarks` gives them; None unless certified
+    crank_speed : mapping        load case -> std of the crank speed, rad/s, without and with the
+                                 cam; empty without a crankshaft
+    final : bool                 a solution to sign: it must be certified
+    coarse : bool                coarse guide mesh, constant crank speed: its ratios of demands
+                                 count
+    """
+
+    case: Case
+    contour: Contour
+    machines: tuple[Machine, ...]
+    tier: Tier
+    mesh: ContactMesh | None
+    cycles: tuple[Cycle, ...]
+    certificate: tuple[CertificatePoint, ...] = ()
+    benchmarks: Mapping[str, float] | None = None
+    crank_speed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    final: bool = False
+    coarse: bool = False
+
+    @property
+    def machine(self) -> Machine:
+        """The machine in the design load case."""
+        return self.machines[0]
+
+
+class ContactStore(Protocol):
+    """Pieces of a contact solution that outlive an interruption."""
+
+    def load(self, load_case: str, key: str) -> Mapping[int, Mapping[str, Array]]:
+        """Pieces by index, of one load case and of one key alone."""
+        ...
+
+    def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None:
+        """Keep a piece."""
+        ...
+
+
+class NotStored:
+    """A store that keeps nothing."""
+
+    def load(self, load_case: str, key: str) -> Mapping[int, Mapping[str, Array]]:  # noqa: ARG002
+        return {}
+
+    def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None: ...
+
+
+NOT_STORED = NotStored()
+
+
+def solution(
+    case: Case,
+    contour: Contour,
+    tier: Tier = Tier.FINITE_ELEMENTS,
+    *,
+    torques: Mapping[str, Torque] | None = None,
+    positions: int | None = None,
+    coarse: bool = False,
+    store: ContactStore = NOT_STORED,
+    progress: Progress = SILENT,
+) -> Solution:
+    """Solve a cam in every load case of a case.
+
+    Parameters
+    ----------
+    torques : mapping     engine torque by load case; None: worked out from the case
+    positions : int       per cam turn; None: the case's
+    coarse : bool         coarse guide mesh, constant crank speed: where ratios of demands count
+    store : ContactStore  of the contact's pieces, to resume an interrupted solution
+
+    Raises
+    ------
+    CamError
+        If a mesh, the contact or the guides cannot be solved.
+    """
+    states = machines(case)
+    turns = turns_of(states, contour, case, torques, positions, coarse=coarse)
+    return solved_turns(
+        case, contour, turns, tier, torques, coarse=coarse, store=store, progress=progress
+    )
+
+
+def turns_of(
+    states: tuple[Machine, ...],
+    contour: Contour,
+    case: Case,
+    torques: Mapping[str, Torque] | None = None,
+    positions: int | None = None,
+    *,
+    coarse: bool = False,
+) -> tuple[Turn, ...]:
+    """Loads of the machine in every load case, before the contact is solved."""
+    known = engine_torques(case) if torques is None else torques
+    count = case.solver.positions if positions is None else positions
+    return tuple(
+        turn(each, contour, known.get(each.load_case), count, coarse=coarse) for each in states
+    )
+
+
+def solved_turns(
+    case: Case,
+    contour: Contour,
+    turns: tuple[Turn, ...],
+    tier: Tier,
+    torques: Mapping[str, Torque] | None,
+    *,
+    coarse: bool = False,
+    store: ContactStore = NOT_STORED,
+    progress: Progress = SILENT,
+    speed_contour: Contour | None = None,
+    advance: float = 0.0,
+    body: bool | None = None,
+) -> Solution:
+    """The solution of turns whose loads are known.
+
+    Parameters
+    ----------
+    coarse : bool             the turns are coarse; the crank speed is left out
+    speed_contour : Contour   cam of the crank speed, where it stands otherwise on its shaft
+    advance : float           rad of cam by which that cam leads
+    body : bool               whether the contour encloses a body; None: worked out
+    """
+    known = engine_torques(case) if torques is None else torques
+    states = tuple(each.machine for each in turns)
+    pair = contact_pair(states[0], contour)
+    mesh = bodies = None
+    if body is None:
+        body = is_body(contour)
+    if body and tier is Tier.FINITE_ELEMENTS:
+        progress.stage(MESHING)
+        mesh = meshed(pair, turns)
+        progress.stage(CONTACT)
+        # One pair of meshes, factored once, serves every load case.
+        bodies = CycleBodies.meshed(pair)
+    cycles = tuple(
+        Cycle(each, contour, pair, bodies, _contact(pair, bodies, each, body, store, progress))
+        for each in turns
+    )
+    rubbing = {c.load_case: c.loads.rubbing for c in cycles}
+    rubbing = {name: replace(each, theta=each.theta - advance) for name, each in rubbing.items()}
+    pitch = (speed_contour or contour).pitch
+    speed = {} if coarse else speed_ripple(states, known, pitch, rubbing)
+    return Solution(case, contour, states, tier, mesh, cycles, crank_speed=speed, coarse=coarse)
+
+
+def certified_solution(
+    solved: Solution, positions: int, *, jobs: int | None = None, progress: Progress = SILENT
+) -> Solution:
+    """The solution with its certificate and the benchmarks of its environment.
+
+    Parameters
+    ----------
+    positions : int   angles solved in full, both bodies on three meshes
+    jobs : int        processes; None: the processors there are, at most 4
+    """
+    final = replace(solved, final=True)
+    if solved.mesh is None:
+        return final
+    chosen = positions_to_certify(solved.cycles, positions)
+    if not chosen:
+        return final
+    progress.stage(CERTIFICATE)
+    pair = solved.cycles[0].pair
+    points = certified(pair, solved.cycles, chosen, jobs, progress.advance)
+    progress.stage(BENCHMARKS)
+    known = benchmarks(solved.case.contact_radius)
+    return replace(final, certificate=points, benchmarks=known)
+
+
+def is_body(contour: Contour) -> bool:
+    """Whether the contour encloses a body: no undercut, no crossing."""
+    return not contour.undercut().found and not contour.self_intersections()
+
+
+def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:
+    """Meshes at the angle of greatest Hertz pressure over all turns; None without a load.
+
+    Raises
+    ------
+    MeshError
+        If a mesh does not pass the quality gate.
+    """
+    worst = None
+    for each in turns:
+        history = closed_form_history(pair, each.theta, each.loads.normal_force)
+        k = int(np.argmax(history.p0))
+        if history.p0[k] > 0 and (worst is None or history.p0[k] > worst[0]):
+            worst = (history.p0[k], float(each.theta[k]), float(history.half_width[k]))
+    if worst is None:
+        return None
+    _, theta, half_width = worst
+    bodies = contact_meshes(pair, theta, half_width, EDGES[1])
+    contact = pair.contour.points(theta)
+    gated = [gate(quality(body, contact, half_width), edges_min=EDGES[1]) for body in bodies]
+    both = Quality(
+        min_angle_deg=min(q.min_angle_deg for q in gated),
+        min_scaled_jacobian=min(q.min_scaled_jacobian for q in gated),
+        edges_across_half_width=min(q.edges_across_half_width for q in gated),
+        elements=sum(q.elements for q in gated),
+        nodes=sum(q.nodes for q in gated),
+    )
+    return ContactMesh(theta, half_width, *bodies, pair.follower.name, both)
+
+
+def _contact(
+    pair: ContactPair,
+    bodies: CycleBodies | None,
+    each: Turn,
+    body: bool,
+    store: ContactStore,
+    progress: Progress,
+) -> ContactHistory:
+    """Contact of a turn: by Hertz without meshed bodies, unknown under a contour that is none."""
+    if not body:
+        return ContactHistory.unknown(each.theta.size)
+    if bodies is None:
+        return closed_form_history(pair, each.theta, each.loads.normal_force)
+    pieces = dict(_pieces(pair, bodies, each, store, progress))
+    first = pieces[0]
+    whole = {name: np.concatenate([pieces[k][name] for k in sorted(pieces)]) for name in first}
+    return ContactHistory(**whole, tier=Tier.FINITE_ELEMENTS)
+
+
+def _pieces(
+    pair: ContactPair, bodies: CycleBodies, each: Turn, store: ContactStore, progress: Progress
+) -> Iterator[tuple[int, Mapping[str, Array]]]:
+    """Pieces of a turn's contact by index, from the store where it has them."""
+    name, key = each.machine.load_case, _fingerprint(pair, each)
+    known, total = store.load(name, key), -(-each.theta.size // CHUNK)
+    for index, start in enumerate(range(0, each.theta.size, CHUNK)):
+        if index in known:
+            yield index, known[index]
+        else:
+            part = slice(start, start + CHUNK)
+            force = each.loads.normal_force[part]
+            arrays = two_scale_history(pair, bodies, each.theta[part], force).arrays
+            store.save(name, index, arrays, key)
+            yield index, arrays
+        progress.advance(index + 1, total)
+
+
+def _fingerprint(pair: ContactPair, each: Turn) -> str:
+    """Hash of all that decides the contact of a turn."""
+    digest = hashlib.sha256(pair.contour.pitch.lift.values.tobytes())
+    digest.update(each.loads.normal_force.tobytes())
+    digest.update(repr((pair.width, pair.bore_radius, pair.cam, pair.follower)).encode())
+    if pair.counter_hole is not None:
+        digest.update(np.array([*pair.counter_hole.centre, pair.counter_hole.radius]).tobytes())
+    return digest.hexdigest()

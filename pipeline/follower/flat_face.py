@@ -1,0 +1,94 @@
+"""A flat-faced follower: the face that slides on the cam."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.contour import Contour
+from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
+from camwright.geometry.lift import Lift
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.quantities import In, Length, Part
+from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.contact.contact_history import ContactHistory
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.contact.follower_body import FaceBody
+from camwright.pipeline.follower.flat_face_motion import FaceSliding, face_motion
+from camwright.pipeline.follower.follower_kind import SurfaceMotion
+from camwright.pipeline.follower.stem_beam import Stem
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlatFace(Part):
+    """The flat face of a follower, square to the stem, centred on it and held by it.
+
+    width is its length in the plane of motion, depth that along the line of contact, thickness
+    that of the block along the stem; friction is that of the face sliding on the cam.
+    """
+
+    table: ClassVar[str] = "follower.face"
+    word: ClassVar[str] = "face"
+    crowned: ClassVar[bool] = False
+
+    width: Length
+    depth: Length
+    thickness: Length
+    friction: Annotated[float, In(above=0, below=2)] | None = None
+    roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
+    pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e9)] | None = None
+    material: Material
+    source: str = ""
+
+    @property
+    def line_width(self) -> float:
+        """Width of the line contact it can carry, m."""
+        return self.depth
+
+    @property
+    def side_friction(self) -> float:
+        """Coefficient of the friction that drags the stem sideways; 0 where none is given."""
+        return self.friction or 0.0
+
+    @property
+    def contact_radius(self) -> None:
+        """None: the face is flat."""
+        return None
+
+    @property
+    def extent(self) -> float:
+        """Thickness of the block towards guide A, m."""
+        return self.thickness
+
+    @property
+    def held_depth(self) -> None:
+        """None: the stem holds the block."""
+        return None
+
+    @property
+    def body_model(self) -> str:
+        """Nothing to say: it is modelled as drawn."""
+        return ""
+
+    def contour(self, lift: Lift, cam: CamBody) -> Contour:
+        """Cam contour under the face, which must be wide enough; see `FollowerKind`."""
+        contour = FlatFaceContour(FacePath(lift, cam.prime_radius, cam.offset))
+        contour.require_face(self.width)
+        return contour
+
+    def body(self, width: float, stem: Stem, preload: float) -> FaceBody:  # noqa: ARG002
+        """The block of the face on its stem; see `FollowerKind`."""
+        elastic = Elastic(self.material.E, self.material.nu)
+        return FaceBody(self.width, self.thickness, stem.diameter, elastic)
+
+    def motion(
+        self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
+    ) -> SurfaceMotion:
+        """Full sliding; see `FollowerKind`."""
+        motion = face_motion(contour.pitch, speed, theta)
+        return SurfaceMotion(
+            motion.entrainment,
+            traction_share=(force > 0).astype(float),
+            sliding=FaceSliding.of(motion, contact.p0, force, self.side_friction, speed),
+        )

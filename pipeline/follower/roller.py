@@ -1,0 +1,168 @@
+"""A roller follower: geometry, contact body, rolling on the cam."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.contour import Contour
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.quantities import In, Length, Part
+from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.contact.contact_history import ContactHistory
+from camwright.pipeline.contact.elasticity.elastic_body import Elastic
+from camwright.pipeline.contact.follower_body import FollowerBody, RollerBody
+from camwright.pipeline.contact.oil_film import entrainment_speed
+from camwright.pipeline.contact.traction import Drag, RollingContact, ring_inertia, rolling_contact
+from camwright.pipeline.follower.bearing_ring import pin_bending_stress
+from camwright.pipeline.follower.follower_kind import SurfaceMotion
+from camwright.pipeline.follower.ring_on_balls import RingOnBalls, ring_on_balls, solid_reason
+from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motion
+from camwright.pipeline.follower.roller_parts import Bearing, Pin
+from camwright.pipeline.follower.stem_beam import Stem
+
+_NO_SLIP = 1e6  # friction coefficient of a roller whose friction is not given
+
+
+@dataclass(frozen=True, kw_only=True)
+class Roller(Part):
+    """The roller on the follower; the hub radius is that of its pin or inner ring.
+
+    friction is that of the roller sliding on the cam; roughness the rms one.
+    """
+
+    table: ClassVar[str] = "roller"
+    word: ClassVar[str] = "roller"
+
+    radius: Length
+    width: Length
+    chamfer: Annotated[float, In("mm", at_least=0, at_most=1000)] = 0.0
+    hub_radius: Length
+    inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
+    crowned: bool = False
+    friction: Annotated[float, In(above=0, below=2)] | None = None
+    roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
+    material: Material
+    bearing: Bearing
+    pin: Pin | None = None
+
+    @property
+    def line_width(self) -> float:
+        """Width of the line contact it can carry, m: chamfers left out."""
+        return self.width - 2.0 * self.chamfer
+
+    @property
+    def side_friction(self) -> float:
+        """Zero: a roller does not drag the stem sideways."""
+        return 0.0
+
+    @property
+    def contact_radius(self) -> float:
+        """Radius of its surface, m."""
+        return self.radius
+
+    @property
+    def extent(self) -> float:
+        """Distance from its centre towards guide A, m."""
+        return self.radius
+
+    @property
+    def held_depth(self) -> float:
+        """Material between its surface and its hub, m."""
+        return self.radius - self.hub_radius
+
+    @property
+    def solid_reason(self) -> str:
+        """Reason why it is modelled as solid on its hub; "" for a ring on its balls."""
+        return solid_reason(self.radius, self.bearing)
+
+    @property
+    def body_model(self) -> str:
+        """See `FollowerKind`."""
+        reason = self.solid_reason
+        if reason:
+            return f"roller solid on its hub: {reason}"
+        return "roller: outer ring of its bearing on balls, contact over a ball"
+
+    @property
+    def rotor_inertia(self) -> float:
+        """Moment of inertia of the part that rolls, kg m2: the given one, or that of the ring."""
+        if self.inertia is not None:
+            return self.inertia
+        return ring_inertia(self.radius, self.hub_radius, self.width, self.material.density)
+
+    @property
+    def pin_stress_per_newton(self) -> float | None:
+        """Bending stress of the pin under a newton of contact force, Pa; None without a pin."""
+        pin = self.pin
+        if pin is None:
+            return None
+        overhung = pin.mounting == "overhung"
+        return float(pin_bending_stress(1.0, pin.diameter, self.width, pin.span, overhung))
+
+    def contour(self, lift: Lift, cam: CamBody) -> Contour:
+        """Cam contour under the roller; see `FollowerKind`."""
+        return Contour(PitchCurve(lift, cam.prime_radius, cam.offset), self.radius)
+
+    def ring(self, width: float, preload: float) -> RingOnBalls | None:
+        """Its bearing's outer ring on balls; None where it is solid: `solid_reason`.
+
+        The balls have their stiffness under the static rating; without one, under the preload (N).
+        """
+        ring = self.bearing.ring
+        if ring is None or self.solid_reason:
+            return None
+        steel = Elastic(self.material.E, self.material.nu)
+        load = self.bearing.C0 or preload
+        return ring_on_balls(ring, steel, self.radius, self.width, width, load)
+
+    def body(self, width: float, stem: Stem, preload: float) -> FollowerBody:  # noqa: ARG002
+        """The roller on its hub, or its bearing's outer ring on balls; see `FollowerKind`."""
+        ring = self.ring(width, preload)
+        if ring is not None:
+            return ring.body
+        return RollerBody(self.radius, self.hub_radius, Elastic(self.material.E, self.material.nu))
+
+    def motion(
+        self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
+    ) -> SurfaceMotion:
+        """Rolling with creep; without friction given, rolling without slip. See `FollowerKind`."""
+        motion = roller_motion(contour.pitch, self.radius, speed, theta)
+        driven = self._driven(motion, contact, force, speed)
+        loaded = force > 0
+        demand = np.abs(driven.demand) / np.where(loaded, force, np.nan)
+        if self.friction is None:
+            return SurfaceMotion(entrainment_speed(motion.rolling_speed), traction_demand=demand)
+        carried = driven.force / np.where(loaded, self.friction * force, 1.0)
+        return SurfaceMotion(
+            entrainment_speed(motion.rolling_speed, driven.slip),
+            traction_share=np.clip(np.abs(carried), 0.0, 1.0),
+            traction_demand=demand,
+            rolling=driven,
+        )
+
+    def _driven(
+        self, motion: RollerMotion, contact: ContactHistory, force: Array, speed: float
+    ) -> RollingContact:
+        bearing = self.bearing
+        return rolling_contact(
+            force,
+            motion.spin,
+            motion.rolling_speed,
+            contact.half_width,
+            contact.relative_radius,
+            drag=Drag(
+                inertia=self.rotor_inertia,
+                friction=_NO_SLIP if self.friction is None else self.friction,
+                torque=bearing.drag_torque or 0.0,
+                bearing_friction=bearing.friction or 0.0,
+                pin_radius=self.hub_radius,
+            ),
+            radius=self.radius,
+            period=FULL_TURN / speed,
+        )

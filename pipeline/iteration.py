@@ -1,0 +1,271 @@
+"""From a case to its cam: lift and contour, and the trials until a cam passes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any, Protocol
+
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import GeometryError
+from camwright.geometry.lift import Lift
+from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.given_lift import given_lift, lift_origin
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.registry import FORECAST, checks_of, without_sign_off
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import NOT_STORED, ContactStore, is_body, solution
+from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.preview import preview_case, smoothing_record
+from camwright.pipeline.results.trial import CONSTRAINED, GIVEN_LIFT, SmoothingRecord, Trial
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.fe_correction import (
+    Moved,
+    corrections_of,
+    design_record,
+    moved,
+    redrawn,
+    refined_problem,
+    settled,
+)
+from camwright.pipeline.smoothing.infeasibility import infeasibility
+from camwright.pipeline.smoothing.multistart import Starts, explored
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.required_lift import cam_lift
+from camwright.pipeline.smoothing.roller_alternatives import roller_problems
+from camwright.pipeline.smoothing.shadow_prices import limits_in_use
+from camwright.pipeline.smoothing.smoothers import Smoother
+from camwright.pipeline.smoothing.smoothing_feedback import Stop, next_smoother
+from camwright.pipeline.smoothing.smoothing_forecast import Attempt
+from camwright.pipeline.solver import solve
+
+FORECAST_POSITIONS = 360
+
+
+@dataclass(frozen=True, eq=False)
+class Synthesis:
+    """A cam and the case it was drawn for.
+
+    case has the spring and prime radius of a constrained synthesis; record is its record, None
+    where a smoother or the case drew the lift.
+    """
+
+    case: Case
+    contour: Contour
+    record: Mapping[str, Any] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """Trials of a run, the last one the answer, and the reason why there are no more."""
+
+    trials: tuple[Trial, ...]
+    statement: str
+
+
+class TrialSink(Protocol):
+    """Receives every trial as soon as it is solved."""
+
+    def store(self, number: int) -> ContactStore:
+        """Store of the contact of a trial."""
+        ...
+
+    def keep(self, trial: Trial) -> None:
+        """A trial is solved and checked."""
+        ...
+
+
+class NotKept:
+    """A sink that keeps nothing."""
+
+    def store(self, number: int) -> ContactStore:  # noqa: ARG002
+        return NOT_STORED
+
+    def keep(self, trial: Trial) -> None: ...
+
+
+def synthesize(case: Case, *, progress: Progress = SILENT) -> Synthesis:
+    """The cam of a case: torque, lift, contour.
+
+    A smoother is taken as the case has it; `run_case` adapts it until the cam passes. A
+    constrained synthesis finds the cam of least ripple within all limits, corrected by previews.
+
+    Raises
+    ------
+    CamError
+        If the case has no such cam.
+    """
+    if case.smoothing.kind == "constrained":
+        trial = preview_case(case, progress=progress)
+        return Synthesis(trial.case, trial.contour, trial.synthesis)
+    lift = cam_lift(case, engine_torques(case))
+    return Synthesis(case, case.contour(lift))
+
+
+def trials_of(
+    case: Case,
+    torques: Mapping[str, Torque],
+    *,
+    sink: TrialSink | None = None,
+    progress: Progress = SILENT,
+) -> Trials:
+    """Trials by finite elements until one passes or none could do better.
+
+    Parameters
+    ----------
+    torques : mapping    engine torque by load case
+    sink : TrialSink     receives each trial as soon as it is solved
+
+    Raises
+    ------
+    CamError
+        If a trial cannot be solved.
+    """
+    task = _Task(case, torques, sink or NotKept(), progress)
+    if case.smoothing.kind == "constrained":
+        return _constrained(task)
+    if case.engine is None:
+        trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
+        reason = "a given lift is not smoothed" if trial.binding else "the given lift passes"
+        return Trials((trial,), reason)
+    return _smoothed(task)
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """What all trials of a case share."""
+
+    case: Case
+    torques: Mapping[str, Torque]
+    sink: TrialSink
+    progress: Progress
+
+    def solved(
+        self,
+        number: int,
+        case: Case,
+        lift: Lift,
+        why: str,
+        smoothing: SmoothingRecord,
+        **of_synthesis: Any,
+    ) -> Trial:
+        """A trial of a lift, handed to the sink."""
+        self.progress.stage(f"trial {number}: lift and contour")
+        trial = solve(
+            case,
+            case.contour(lift),
+            torques=self.torques,
+            store=self.sink.store(number),
+            progress=_Prefixed(self.progress, f"trial {number}: "),
+        )
+        # A trial of a search is judged by its design; the last one is certified afterwards.
+        checks = without_sign_off(trial.checks)
+        trial = replace(
+            trial, number=number, why=why, smoothing=smoothing, checks=checks, **of_synthesis
+        )
+        self.sink.keep(trial)
+        return trial
+
+
+def _smoothed(task: _Task) -> Trials:
+    """Trials of ever gentler smoothers."""
+    case, torques = task.case, task.torques
+    forecast = cache(lambda smoother: forecast_checks(case, torques, smoother))
+    smoother, why = Smoother.from_case(case.smoothing), "smoothing of the case"
+    trials: list[Trial] = []
+    attempts: list[Attempt] = []
+    while True:
+        lift = cam_lift(case, torques, smoother)
+        record = smoothing_record(smoother)
+        trials.append(task.solved(len(trials) + 1, case, lift, why, record))
+        attempts.append(Attempt(smoother, trials[-1].checks))
+        after = next_smoother(attempts, case.solver.max_trials, forecast)
+        if isinstance(after, Stop):
+            return Trials(tuple(trials), after.reason)
+        task.progress.note(f"trial {len(trials)} fails: {after.why}")
+        smoother, why = after.smoother, after.why
+
+
+def forecast_checks(
+    case: Case, torques: Mapping[str, Torque], smoother: Smoother
+) -> tuple[Check, ...]:
+    """The quick checks of the cam that a smoother leads to, by a coarse preview.
+
+    Raises
+    ------
+    GeometryError
+        If there is no such cam.
+    """
+    contour = case.contour(cam_lift(case, torques, smoother))
+    if not is_body(contour):
+        raise GeometryError("the contour is undercut")
+    solved = solution(
+        case, contour, Tier.PREVIEW, torques=torques, positions=FORECAST_POSITIONS, coarse=True
+    )
+    return checks_of(solved, FORECAST)
+
+
+def _constrained(task: _Task) -> Trials:
+    """Synthesis and finite elements in turn, until these move no limit in use any more."""
+    given, torques = task.case, task.torques
+    problem = problem_of(given, torques)
+    why = "the cam of least ripple within all limits"
+    trials: list[Trial] = []
+    starts: Starts | None = None
+    earlier: Moved | None = None
+    while True:
+        number = len(trials) + 1
+        task.progress.stage(f"trial {number}: synthesis")
+        if trials:  # from the trial before, whose optimum it follows
+            design = synthesise(problem)
+        else:
+            design, starts = explored(problem, given.smoothing.starts)
+        record = design_record(design, problem, None if trials else starts)
+        conflict = None
+        if not design.feasible:
+            task.progress.stage("conflicting limits")
+            conflict = infeasibility(problem, roller_problems(given, torques, problem))
+            record["infeasible"] = conflict.as_record()
+        trial = task.solved(
+            number,
+            redrawn(given, design),
+            design.lift(),
+            why,
+            CONSTRAINED,
+            synthesis=record,
+            limits_in_use=limits_in_use(design),
+        )
+        trials.append(trial)
+        if conflict is not None:
+            return Trials(tuple(trials), conflict.sentence)
+        corrections = corrections_of(trial.cycles)
+        change = moved(design, problem, corrections)
+        last = number == given.solver.max_trials
+        if settled(change, trial.checks) or trial.mesh is None or last:
+            result = "fails" if trial.binding else "passes every must-have check"
+            agree = "" if starts is None else f"; {starts.sentence}"
+            return Trials(tuple(trials), f"trial {number} {result}; {change.sentence}{agree}")
+        why = change.sentence
+        task.progress.note(f"trial {number}: {why}")
+        problem = refined_problem(problem, design, corrections, change.swing(earlier))
+        earlier = change
+
+
+@dataclass(frozen=True)
+class _Prefixed:
+    """Progress whose stages begin with the same words."""
+
+    progress: Progress
+    prefix: str
+
+    def stage(self, name: str) -> None:
+        self.progress.stage(self.prefix + name)
+
+    def advance(self, k: int, total: int) -> None:
+        self.progress.advance(k, total)
+
+    def note(self, text: str) -> None:
+        self.progress.note(text)

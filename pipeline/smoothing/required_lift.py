@@ -1,0 +1,48 @@
+"""Torque that the cam takes, and the lift that delivers it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.energy import lift_from_torque
+from camwright.geometry.lift import Lift
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
+
+
+def cam_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None = None) -> Lift:
+    """The lift that the case gives, or the one that its smoothed engine torque requires.
+
+    Parameters
+    ----------
+    torques : mapping     engine torque by load case; that of the design load case counts
+    smoother : Smoother   None: that of the case
+    """
+    if case.lift is not None:
+        return given_lift(case)
+    torque = torques[case.load_cases[0].name]
+    return required_lift(case, torque, smoother or Smoother.from_case(case.smoothing))
+
+
+def required_torque(case: Case, torque: Torque, smoother: Smoother) -> Array:
+    """Crank torque (n,) about its mean that the cam takes, N m: smoothed, times compensation."""
+    share = smoothed(torque.without_mean().total, smoother)
+    return np.asarray(case.mechanism.compensation * share)
+
+
+def required_lift(case: Case, torque: Torque, smoother: Smoother) -> Lift:
+    """Lift whose spring stores and returns the required torque.
+
+    Parameters
+    ----------
+    torque : Torque   of the design load case
+    """
+    target = case.mechanism.gear_ratio * required_torque(case, torque, smoother)
+    return lift_from_torque(
+        uniform_turn(target.size), target, case.spring.rate, case.spring.preload
+    )

@@ -1,0 +1,156 @@
+"""Bounds of the parts: the same for the text of a case file and for a value built in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass, replace
+from functools import cache
+from math import inf, isfinite, nan, nextafter
+from pathlib import Path
+
+import pytest
+from pydantic import ValidationError
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
+from camwright.pipeline.base.quantities import Count, In, Part, marks_of
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.section import section_of
+from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.contact.cam_body import BalanceHole
+from camwright.pipeline.engine.crankshaft import Crankshaft
+from camwright.pipeline.follower.flat_face import FlatFace
+from camwright.pipeline.follower.spring import Spring
+
+EVERY_PART = Path(__file__).parents[1] / "data" / "every_part.toml"
+
+
+@cache
+def case() -> Case:
+    return load_case_file(EVERY_PART)
+
+
+def parts_in(value: object) -> Iterator[Part]:
+    """The parts of a section or part, all the way down."""
+    if isinstance(value, Part):
+        yield value
+    names = (
+        [field.name for field in fields(value)]
+        if is_dataclass(value)
+        else list(getattr(type(value), "model_fields", ()))
+    )
+    for name in names:
+        yield from parts_in(getattr(value, name))
+
+
+@cache
+def every_part() -> dict[type[Part], Part]:
+    """One of each kind of part; those that the made-up case leaves out are made here."""
+    steel = case().materials["steel"]
+    rest = (
+        steel,
+        FlatFace(width=0.02, depth=0.01, thickness=0.005, material=steel),
+        Crankshaft(inertia=0.01),
+        BalanceHole(),
+    )
+    return {type(part): part for part in (*parts_in(case()), *rest)}
+
+
+def marked() -> list[tuple[type[Part], str]]:
+    return [(kind, name) for kind in every_part() for name in marks_of(kind)]
+
+
+def si(mark: In, bound: float) -> float:
+    return units.parse(f"{bound!r} {mark.unit}", mark.unit, "") if mark.unit else bound
+
+
+def beyond(mark: In | Count) -> list[float]:
+    """Values just out of the bounds, SI."""
+    if isinstance(mark, Count):
+        return [mark.at_least - 1, mark.at_most + 1]
+    excluded = [si(mark, bound) for bound in (mark.above, mark.below) if isfinite(bound)]
+    if isfinite(mark.at_least):
+        excluded.append(nextafter(si(mark, mark.at_least), -inf))
+    if isfinite(mark.at_most):
+        excluded.append(nextafter(si(mark, mark.at_most), inf))
+    return excluded
+
+
+def within(mark: In | Count) -> list[float]:
+    """The outermost values within the bounds, SI."""
+    if isinstance(mark, Count):
+        return [mark.at_least, mark.at_most]
+    edges = [si(mark, bound) for bound in (mark.at_least, mark.at_most) if isfinite(bound)]
+    if isfinite(mark.above):
+        edges.append(nextafter(si(mark, mark.above), inf))
+    if isfinite(mark.below):
+        edges.append(nextafter(si(mark, mark.below), -inf))
+    return edges
+
+
+def written(mark: In | Count, value: float) -> float | str:
+    """A value as a case file has it."""
+    return units.format(value, mark.unit) if isinstance(mark, In) and mark.unit else value
+
+
+def refused_in_python(part: Part, name: str, value: float) -> InputError:
+    with pytest.raises(InputError) as refusal:
+        replace(part, **{name: value})
+    return refusal.value
+
+
+def refused_as_text(part: Part, name: str, value: float | str) -> InputError:
+    tables = tables_of(part) | {name: value}
+    with pytest.raises(ValidationError) as refusal:
+        section_of(type(part)).model_validate(tables, context={"materials": case().materials})
+    return first_error(refusal.value)
+
+
+def test_the_made_up_case_and_the_rest_are_all_parts_of_a_case() -> None:
+    """Else a new kind of part would not be looked at below."""
+    kinds = {each for each in Part.__subclasses__() if each.__module__.startswith("camwright.")}
+    of_cards = {
+        each for each in kinds if each.__module__.startswith("camwright.pipeline.case.cards")
+    }
+    assert kinds - of_cards == set(every_part())
+
+
+@pytest.mark.parametrize(("kind", "name"), marked(), ids=lambda each: getattr(each, "table", each))
+def test_a_value_out_of_its_bounds_is_refused_in_python_as_in_text(
+    kind: type[Part], name: str
+) -> None:
+    part, mark = every_part()[kind], marks_of(kind)[name]
+    for value in beyond(mark):
+        built = refused_in_python(part, name, value)
+        assert built.field == f"{kind.table}.{name}"
+        read = refused_as_text(part, name, written(mark, value))
+        assert read.field == name
+        if isinstance(mark, In):
+            assert read.limit == built.limit == mark.limit
+    for value in within(mark):
+        mark.require(name, value)
+        assert mark.read(written(mark, value)) == value
+
+
+@pytest.mark.parametrize(("kind", "name"), marked(), ids=lambda each: getattr(each, "table", each))
+def test_what_is_not_finite_is_refused(kind: type[Part], name: str) -> None:
+    part = every_part()[kind]
+    for value in (nan, inf, -inf):
+        assert refused_in_python(part, name, value).field == f"{kind.table}.{name}"
+
+
+def test_the_refusal_names_field_value_in_its_unit_and_bounds() -> None:
+    with pytest.raises(InputError) as refusal:
+        Spring(rate=-1, preload=1)
+    message = "spring.rate = -0.001 kN/m, must be > 0 and <= 1e+06 kN/m"
+    assert str(refusal.value) == message
+    with pytest.raises(InputError) as refusal:
+        Spring(rate=24e3, preload=nan)
+    assert str(refusal.value) == "spring.preload = nan, must be > 0 and <= 1e+09 N"
+
+
+def test_a_number_that_has_to_be_given_is_not_none() -> None:
+    with pytest.raises(InputError, match=r"spring\.rate"):
+        Spring(rate=None, preload=1.0)  # type: ignore[arg-type]
