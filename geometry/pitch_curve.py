@@ -1,18 +1,24 @@
-"""Pitch curve: the path of the roller centre in the cam frame."""
+"""Pitch curve: the path of the roller centre in the cam frame.
+
+Its speed and curvature at single places are functions that a complex step passes through, so
+that the checks and the synthesis, which differentiates them, use the same formulas.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry import path
 from camwright.geometry.arrays import Array, positive
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.lift import Lift
+
+Values = Any
+"""Real, or complex while a derivative is taken by a complex step."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,12 +114,12 @@ class PitchCurve:
     def speed_and_curvature(self, theta: ArrayLike) -> tuple[Array, Array]:
         """Speed, m/rad, and curvature, 1/m, for the price of one."""
         s, s1, s2 = self.lift.derivatives(theta, 2)
-        return path.speed_and_curvature(s1 - self.offset, self.height_base + s, s1, s2)
+        return speed_and_curvature(s1 - self.offset, self.height_base + s, s1, s2)
 
     def curvature_slope(self, theta: ArrayLike) -> Array:
         """Change of the curvature per radian of cam angle, 1/(m rad)."""
         s, s1, s2, s3 = self.lift.derivatives(theta, 3)
-        return path.curvature_slope(s1 - self.offset, self.height_base + s, s1, s2, s3)
+        return curvature_slope(s1 - self.offset, self.height_base + s, s1, s2, s3)
 
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """Signed radius of curvature, m; infinite at an inflection."""
@@ -151,3 +157,40 @@ def cam_axes(theta: ArrayLike, along: Array, across: Array | float) -> Array:
 def reciprocal(values: Array) -> Array:
     """1 / values, positive infinity where they are zero."""
     return np.divide(1.0, values, out=np.full_like(values, np.inf), where=values != 0)
+
+
+def magnitude(values: Values) -> Values:
+    """|x| of the real part, its sign put to the whole, so that a complex step passes through."""
+    return values * np.sign(np.real(values))
+
+
+def speed_and_curvature(
+    along: Values, across: Values, slope: Values, bend: Values
+) -> tuple[Values, Values]:
+    """Length of the path per radian, m, and its curvature, 1/m, positive where convex.
+
+    Parameters
+    ----------
+    along, across : array (...)   s' - e and d, m/rad and m
+    slope, bend : array (...)     s' and s'', m/rad^k
+    """
+    speed = np.sqrt(along**2 + across**2)
+    turning = along * (along + slope) - across * (bend - across)
+    return speed, turning / speed**3
+
+
+def curvature_slope(
+    along: Values, across: Values, slope: Values, bend: Values, jerk: Values
+) -> Values:
+    """Change of the path's curvature per radian of cam angle, 1/(m rad).
+
+    Parameters
+    ----------
+    along, across : array (...)       s' - e and d, m/rad and m
+    slope, bend, jerk : array (...)   s', s'', s''', m/rad^k
+    """
+    square = along**2 + across**2
+    turning = along * (along + slope) - across * (bend - across)
+    change = bend * (3.0 * along + slope) - slope * (bend - across) - across * (jerk - slope)
+    stretching = along * bend + across * slope
+    return (change - 3.0 * turning * stretching / square) / square**1.5

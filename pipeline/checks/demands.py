@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from camwright.geometry.path import Values, magnitude
+from camwright.geometry.pitch_curve import Values, magnitude
 
 
 def unloading(inertia: Values, spring: Values) -> Values:

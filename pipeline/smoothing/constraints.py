@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.path import Values, curvature_slope, magnitude, speed_and_curvature
+from camwright.geometry.pitch_curve import Values, curvature_slope, magnitude, speed_and_curvature
 from camwright.pipeline.checks import demands
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.follower_forces import levers
