@@ -12,7 +12,6 @@ from scipy.interpolate import BSpline, make_interp_spline
 from camwright.geometry.arrays import FULL_TURN, Array, freeze, positive, readonly
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError, InputError, ResultError
-from camwright.geometry.pitch_curve import PitchCurve
 
 if TYPE_CHECKING:
     from ezdxf.layouts import Modelspace
@@ -107,7 +106,7 @@ def chords(contour: Contour, error: float | None = None) -> Chords:
     if error is None:
         error = AREA_ERROR * contour.area() / contour.perimeter()
     positive("chord_error", error, "m")
-    count = _FINE * contour.pitch.lift.search_count
+    count = _FINE * contour.lift.search_count
     start = contour.radius_max().theta
     theta = start + np.linspace(0.0, FULL_TURN, count + 1)
     # a share of the mean curvature everywhere: an inflection may not leave a long chord
@@ -179,7 +178,7 @@ def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float
     corners = [(x, y) for x, y in (drawn.points / _MILLIMETRE).T.tolist()]
     space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "surface"})
     _add_spline(space, outline.contour, "surface")
-    if np.isfinite(outline.contour.roller_radius):  # a face has no centre
+    if outline.contour.rolls:  # a face has no centre
         _add_spline(space, outline.contour.pitch, "pitch")
     _add_hole(space, outline)
     if outline.counter_hole is not None:
@@ -207,7 +206,7 @@ def keyway_corners(bore_radius: float, keyway: KeywayLike) -> Array:
     return readonly(np.array([[cos, -sin], [sin, cos]]) @ local)
 
 
-def _add_spline(space: Modelspace, curve: Contour | PitchCurve, layer: str) -> None:
+def _add_spline(space: Modelspace, curve: CurveLike, layer: str) -> None:
     spline = clamped_spline(curve)
     drawn: Any = space.add_spline(degree=_SPLINE_DEGREE, dxfattribs={"layer": layer})
     drawn.control_points = [(x, y, 0.0) for x, y in (spline.c / _MILLIMETRE).tolist()]
@@ -228,5 +227,5 @@ def _add_hole(space: Modelspace, outline: Outline) -> None:
 
 
 def _require_body(contour: Contour) -> None:
-    if contour.undercut().found:
+    if contour.undercut().present:
         raise GeometryError("the contour is undercut, it cannot be drawn for the shop")

@@ -95,7 +95,7 @@ def inspected(contour: Contour, points: ArrayLike) -> Inspection:
         system = np.column_stack([lever, np.full(lever.size, -1.0)])
         step = np.linalg.lstsq(system, -(distance - size), rcond=None)[0]
         phase, size = phase + step[0], size + step[1]
-        if np.hypot(step[0] * contour.pitch.base_radius, step[1]) < _ROUND_OFF:
+        if np.hypot(step[0] * contour.pitch.radius_base, step[1]) < _ROUND_OFF:
             break
     else:
         raise GeometryError("measured contour: the phase cannot be told, is the part a circle?")
@@ -124,7 +124,7 @@ def real_contour(contour: Contour, found: Inspection, *, keep_phase: bool = Fals
     height = contour.standing(surface, angles)
     rough = Lift(angles, height - height.min())
     base = float(height.min()) + min(rough.lowest.value, 0.0)
-    return replace(contour, pitch=contour.pitch.moved(Lift(angles, height - base), base))
+    return replace(contour, pitch=contour.pitch.with_lift(Lift(angles, height - base), base))
 
 
 def _checked(points: ArrayLike) -> Array:
@@ -140,7 +140,7 @@ def _checked(points: ArrayLike) -> Array:
 
 def _rough_phase(contour: Contour, measured: Array) -> float:
     """Phase at which the radii agree best, out of equal steps of the turn."""
-    theta = uniform_turn(contour.pitch.lift.search_count)
+    theta = uniform_turn(contour.lift.search_count)
     polar, radius = _polar(contour.points(theta))
     order = np.argsort(polar)
     angle, found = _polar(measured)
@@ -157,7 +157,7 @@ def _rough_phase(contour: Contour, measured: Array) -> float:
 
 def _feet(contour: Contour, points: Array) -> tuple[Array, Array]:
     """Cam angle of the contour point below each point, and the distance along its normal."""
-    grid = uniform_turn(contour.pitch.lift.search_count)
+    grid = uniform_turn(contour.lift.search_count)
     polar, _ = _polar(contour.points(grid))
     order = np.argsort(polar)
     away = np.mod(grid - polar + np.pi, FULL_TURN) - np.pi

@@ -35,7 +35,7 @@ def write_step(path: Path, outline: Outline, width: float) -> None:
         If the file cannot be written.
     """
     positive("cam.width", width, "m")
-    if outline.contour.undercut().found:
+    if outline.contour.undercut().present:
         raise GeometryError("the contour is undercut, it bounds no solid")
     try:
         with session() as gmsh:

@@ -87,7 +87,7 @@ def cam_contour(case: Case, lift: Lift) -> Contour:
 
 def is_body(contour: Contour) -> bool:
     """Whether the contour encloses a body: no undercut, no crossing."""
-    return not contour.undercut().found and not contour.self_intersections()
+    return not contour.undercut().present and not contour.self_intersections()
 
 
 def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:

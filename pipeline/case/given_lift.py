@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camwright.geometry.arrays import FULL_TURN
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.eccentric import Eccentric, face_lift
 from camwright.geometry.errors import InputError
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
@@ -69,7 +69,7 @@ def contour_of(case: Case, lift: Lift) -> Contour:
     """
     base, offset = case.cam.pitch_base_radius, case.cam.offset
     if case.follower.face is None:
-        return Contour(PitchCurve(lift, base, offset), case.roller.radius)
+        return RollerContour(PitchCurve(lift, base, offset), case.roller.radius)
     contour = FlatFaceContour(FacePath(lift, base, offset))
     contour.require_face(case.follower.face.width)
     return contour

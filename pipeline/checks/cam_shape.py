@@ -72,11 +72,12 @@ def pressure_angle(evidence: TrialEvidence) -> Check:
 @rollers_only
 def curvature_ratio(evidence: TrialEvidence) -> Check:
     """Least convex radius of the pitch curve beside that of the roller."""
-    value, theta = evidence.contour.pitch.least_convex_radius()
+    contour = evidence.contour.require_roller()
+    value, theta = contour.pitch.least_convex_radius()
     return Check(
         id="curvature_ratio",
         title="Least convex pitch radius over roller radius",
-        demand=float(value / evidence.contour.roller_radius),
+        demand=float(value / contour.roller_radius),
         limit=evidence.case.limits.curvature_ratio,
         unit="-",
         sense="at_least",
@@ -147,14 +148,14 @@ def second_contact(evidence: TrialEvidence) -> Check:
 @rollers_only
 def concave_radius(evidence: TrialEvidence) -> Check | None:
     """Room for the tool in the hollow flanks; a cam without a hollow asks for none."""
-    value, theta = evidence.contour.pitch.curvature_min()
-    if value >= 0:
+    value, theta = evidence.contour.concave_radius_min()
+    if np.isposinf(value):
         return None
     tool = evidence.case.largest_tool
     return Check(
         id="concave_radius",
         title="Least hollow radius of the contour",
-        demand=1e3 * float(evidence.contour.roller_radius - 1.0 / value),
+        demand=1e3 * value,
         limit=None if tool is None else 1e3 * TOOL_ALLOWANCE * tool,
         unit="mm",
         sense="at_least",

@@ -51,7 +51,7 @@ class TrialEvidence:
     @property
     def rolls(self) -> bool:
         """Whether the follower has a roller; else a flat face slides on the cam."""
-        return bool(np.isfinite(self.contour.roller_radius))
+        return self.contour.rolls
 
     @property
     def face(self) -> Face | None:

@@ -47,7 +47,8 @@ def clear_of_holds(evidence: TrialEvidence) -> Check:
     held = case.cam.bore_radius + (0.0 if key is None else key.depth)
     wall = evidence.contour.radius_min().value - held
     if evidence.rolls:
-        wall = min(wall, evidence.contour.roller_radius - case.roller.hub_radius)
+        roller_radius = evidence.contour.require_roller().roller_radius
+        wall = min(wall, roller_radius - case.roller.hub_radius)
     worst = greatest(evidence, lambda cycle: cycle.contact.half_width)
     loaded = worst.value > 0 or np.isnan(worst.value)
     return Check(

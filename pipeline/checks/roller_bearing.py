@@ -25,7 +25,7 @@ RPM = 30.0 / np.pi
 
 def _spin(evidence: TrialEvidence, cycle: Cycle) -> Array:
     """Speed of the roller on its pin, rad/s, (n,)."""
-    contour = evidence.contour
+    contour = evidence.contour.require_roller()
     speed = evidence.cam_speed(cycle)
     return roller_motion(contour.pitch, contour.roller_radius, speed, cycle.theta).spin
 

@@ -15,7 +15,8 @@ def guide_clearance(evidence: TrialEvidence) -> Check:
     overhang = case.follower.overhang_at_max_lift
     mouth = overhang - 0.5 * guide.length
     highest = pitch.height_base + pitch.lift.highest.value + mouth
-    behind = contour.roller_radius if evidence.face is None else evidence.face.thickness
+    face = evidence.face
+    behind = contour.require_roller().roller_radius if face is None else face.thickness
     gap = float(np.minimum(highest - contour.radius_max().value, mouth - behind))
     return Check(
         id="guide_clearance",

@@ -16,8 +16,8 @@ import numpy as np
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError
+from camwright.geometry.follower_path import FollowerPath
 from camwright.geometry.lift import Lift
-from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.parts_section import Guide
 from camwright.pipeline.checks import (
@@ -242,11 +242,10 @@ def _rubbing(guide: Guide, factor: float) -> Guide:
 
 
 def _shape(contour: Contour, corner: Corner) -> Contour:
-    pitch = contour.pitch
-    return replace(contour, pitch=replace(pitch, base_radius=pitch.base_radius + corner.profile))
+    return replace(contour, pitch=contour.pitch.enlarged(corner.profile))
 
 
-def _early(pitch: PitchCurve, case: Case, phase: float) -> PitchCurve:
+def _early(pitch: FollowerPath, case: Case, phase: float) -> FollowerPath:
     """The cam `phase` (rad of crank) early against the engine."""
     if phase == 0.0:
         return pitch

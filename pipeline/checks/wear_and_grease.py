@@ -34,7 +34,7 @@ def bearing_lubrication(evidence: TrialEvidence) -> Check | None:
         return None
     if pitch is None and ring is not None:
         pitch = ring.pitch_diameter
-    contour = evidence.contour
+    contour = evidence.contour.require_roller()
 
     def ratio(cycle: Cycle) -> float:
         motion = roller_motion(

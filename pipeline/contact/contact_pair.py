@@ -61,7 +61,7 @@ class ContactPair:
         ContactError
             If the cam is so hollow that the follower does not fit.
         """
-        curvature = 1 / self.contour.roller_radius + self.contour.curvature(theta)
+        curvature = self.contour.follower_curvature + self.contour.curvature(theta)
         if not (curvature > 0).all():
             worst = float(np.degrees(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))]))
             name = self.follower.name
@@ -74,9 +74,7 @@ class ContactPair:
         theta (n,) rad; xi (n, q) m along the tangent of a contact frame, which runs clockwise,
         against the contour's own.
         """
-        radius = self.contour.roller_radius
-        circle = xi**2 / (radius + np.sqrt(radius**2 - xi**2))
-        return circle - self.contour.surface_offset(theta, -xi)
+        return self.contour.follower_gap(xi) - self.contour.surface_offset(theta, -xi)
 
 
 @dataclass(frozen=True, eq=False)

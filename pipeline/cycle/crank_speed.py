@@ -11,8 +11,8 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import CamError
+from camwright.geometry.follower_path import FollowerPath
 from camwright.geometry.periodic_spline import periodic_quintic
-from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.cylinder_section import Cylinder
 from camwright.pipeline.case.engine_section import PressureTable
@@ -71,14 +71,14 @@ class SpeedStudy:
         return 2.0 * self.added_inertia / outer_radius**2, self.added_inertia / outer_radius**2
 
 
-def follower_inertia(pitch: PitchCurve, mass: float, gear_ratio: float, count: int) -> Array:
+def follower_inertia(pitch: FollowerPath, mass: float, gear_ratio: float, count: int) -> Array:
     """m (ds/dtheta_crank)^2 at equal angles of the cam turn, kg m2."""
     slope = pitch.lift(uniform_turn(count), 1) / gear_ratio
     return np.asarray(mass * slope**2)
 
 
 def mechanism_torque(
-    pitch: PitchCurve, system: FollowerSystem, gear_ratio: float, count: int
+    pitch: FollowerPath, system: FollowerSystem, gear_ratio: float, count: int
 ) -> MechanismTorque:
     """Torque of spring and friction on the crank; the follower's inertia is left to J(theta).
 
@@ -98,7 +98,7 @@ def speed_study(
     torque: Array,
     inertia: Inertia,
     mean_speed: float,
-    pitch: PitchCurve,
+    pitch: FollowerPath,
     system: FollowerSystem,
     *,
     gear_ratio: float = 2.0,
@@ -137,7 +137,7 @@ def speed_study(
 
 
 def study_of(
-    case: Case, torque: Torque, speed: float, pitch: PitchCurve, rubbing: Rubbing | None = None
+    case: Case, torque: Torque, speed: float, pitch: FollowerPath, rubbing: Rubbing | None = None
 ) -> SpeedStudy | None:
     """The study of one load case; None where the case tells nothing of its crankshaft.
 
@@ -175,7 +175,7 @@ def cam_speed(
     case: Case,
     torque: Torque | None,
     speed: float,
-    pitch: PitchCurve,
+    pitch: FollowerPath,
     rubbing: Rubbing,
 ) -> Array:
     """Speed of the cam at the angles of `rubbing`, equal parts of a turn, rad/s.
@@ -227,7 +227,7 @@ def speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:
 def speed_ripple(
     case: Case,
     torques: Mapping[str, Torque],
-    pitch: PitchCurve,
+    pitch: FollowerPath,
     rubbing: Mapping[str, Rubbing],
 ) -> dict[str, tuple[float, float]]:
     """Std of the crank speed (rad/s) of each running load case: engine alone, with the cam.
@@ -260,7 +260,7 @@ def consistency(
     case: Case,
     state: LoadCase,
     torque: Torque,
-    pitch: PitchCurve,
+    pitch: FollowerPath,
     study: SpeedStudy | None,
     asked: Array | None = None,
     rubbing: Rubbing | None = None,

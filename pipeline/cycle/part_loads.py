@@ -262,7 +262,8 @@ def _spin(
     """Speed and acceleration of a roller that does not slip, against the follower."""
     if case.roller_given is None:
         return None, None
-    motion = roller_motion(contour.pitch, contour.roller_radius, cam_speed, loads.theta)
+    rolling = contour.require_roller()
+    motion = roller_motion(rolling.pitch, rolling.roller_radius, cam_speed, loads.theta)
     return motion.spin, motion.spin_acceleration
 
 

@@ -143,7 +143,7 @@ def _rolled(
     contact: ContactHistory,
     cam_speed: float,
 ) -> _Ride:
-    contour, given = pair.contour, case.roller.friction
+    contour, given = pair.contour.require_roller(), case.roller.friction
     motion = roller_motion(contour.pitch, contour.roller_radius, cam_speed, theta)
     # Without friction given the roller holds: a limit that nothing reaches.
     driven = _driven(case, motion, normal_force, contact, cam_speed, given or np.inf)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import GeometryError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -34,7 +34,7 @@ def a_cam(height):
     """A lopsided cam on the template's roller of 16 mm and pitch radius of 60 mm."""
     theta = uniform_turn(720)
     bump = 0.5 * height * (1 - np.cos(theta)) + 1e-3 * (1 - np.cos(2 * theta + 0.3))
-    return Contour(PitchCurve(Lift(theta, bump - bump.min()), 0.06), 0.016)
+    return RollerContour(PitchCurve(Lift(theta, bump - bump.min()), 0.06), 0.016)
 
 
 SLIGHT, HEAVY = a_cam(2e-3), a_cam(16e-3)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector
 
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import GeometryError, InputError, MeshError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -23,7 +23,9 @@ THETA = np.arange(720) * (2 * np.pi / 720)
 
 
 def cam_contour(stroke=0.033, roller_radius=0.008):
-    return Contour(PitchCurve(Lift(THETA, 0.5 * stroke * (1 - np.cos(THETA))), 0.05), roller_radius)
+    return RollerContour(
+        PitchCurve(Lift(THETA, 0.5 * stroke * (1 - np.cos(THETA))), 0.05), roller_radius
+    )
 
 
 CONTOUR = cam_contour()
@@ -162,7 +164,7 @@ def test_half_disc_is_its_own_mirror_image():
 def test_curved_nose_gets_smaller_facets():
     """A nose of 3 mm radius asks for facets of 0.47 mm where the far size is 4 mm."""
     lift = Lift(THETA, 0.012 * np.exp(-(((THETA - np.pi) / 0.5) ** 2)))
-    nose = Contour(PitchCurve(lift, 0.03), 0.008)
+    nose = RollerContour(PitchCurve(lift, 0.03), 0.008)
     kappa = float(nose.curvature(np.array([np.pi]))[0])
     mesh = cam_mesh(nose, BORE, None, Sizing(far_size=4e-3))
     start = mesh.points[:, mesh.facet_triples("contour")[0]]
@@ -356,8 +358,8 @@ def test_widest_fillet_still_makes_a_good_mesh():
 
 def test_undercut_contour_is_refused_with_its_angle():
     sharp = Lift(THETA, 0.02 * np.exp(-(((THETA - np.pi) / 0.25) ** 2)))
-    contour = Contour(PitchCurve(sharp, 0.03), 0.012)
-    assert contour.undercut().found
+    contour = RollerContour(PitchCurve(sharp, 0.03), 0.012)
+    assert contour.undercut().present
     with pytest.raises(GeometryError, match=r"undercut at cam angle 1\d\d\.\d\d deg"):
         cam_mesh(contour, BORE, None, Sizing(far_size=3e-3))
 

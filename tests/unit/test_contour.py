@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -20,7 +20,7 @@ with_offsets = pytest.mark.parametrize("offset", [0.0, 0.012, -0.02])
 
 
 def contour(lift=WAVY, base_radius=0.05, roller_radius=0.008, offset=0.0):
-    return Contour(PitchCurve(lift, base_radius, offset), roller_radius)
+    return RollerContour(PitchCurve(lift, base_radius, offset), roller_radius)
 
 
 def lobed(phase, lobes=6, height=0.004, count=144):
@@ -140,10 +140,10 @@ def test_undercut_is_judged_at_the_limit(phase):
     lift = lobed(phase)
     limit = PitchCurve(lift, 0.05).least_convex_radius().value
     fits, cuts = (contour(lift, roller_radius=limit * part) for part in (0.99, 1.01))
-    assert not fits.undercut().found
+    assert not fits.undercut().present
     assert fits.undercut().factor == pytest.approx(0.01, rel=1e-9)
     assert fits.self_intersections() == ()
-    assert cuts.undercut().found
+    assert cuts.undercut().present
     assert cuts.undercut().factor == pytest.approx(-0.01, rel=1e-9)
     assert len(cuts.self_intersections()) == 6
     assert contour(lift, roller_radius=limit).undercut().factor == pytest.approx(0, abs=1e-14)
@@ -159,7 +159,7 @@ def test_cusp_midway_between_samples_is_caught():
     radius = 1 / (0.5 * (sampled + sharpest.value))
     cam = contour(lift, roller_radius=radius)
     assert (cam.factor(lift.theta) > 0.005).all()
-    assert cam.undercut().found
+    assert cam.undercut().present
     assert cam.undercut().factor < -0.005
     assert len(cam.self_intersections()) == 12
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -44,7 +44,7 @@ def case():
 
 def cam():
     theta = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
-    return Contour(PitchCurve(Lift(theta, 0.005 * (1.0 - np.cos(theta))), 0.05), 0.008)
+    return RollerContour(PitchCurve(Lift(theta, 0.005 * (1.0 - np.cos(theta))), 0.05), 0.008)
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import InputError
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
@@ -66,12 +66,12 @@ def test_curvature_condition_decides_at_its_limit():
          Segment("dwell", 2 * np.pi - 2.0))
     ).lift()  # fmt: skip
     least = flat(lift, 0.01).base_radius_min()
-    assert flat(lift, 0.99 * least).undercut().found
+    assert flat(lift, 0.99 * least).undercut().present
     cut = flat(lift, 0.8 * least)
     assert cut.self_intersections()
     assert cut.second_contact().touches
     sound = flat(lift, 1.01 * least)
-    assert not sound.undercut().found
+    assert not sound.undercut().present
     assert not sound.self_intersections()
     assert sound.clearance().value == np.inf
     assert sound.radius_of_curvature_min().value == pytest.approx(0.01 * least, rel=1e-6)
@@ -88,7 +88,7 @@ def test_a_roller_grown_beyond_all_bounds_is_a_face(circle):
     lift = eccentric_lift()
     missed = []
     for roller in (10.0, 20.0, 40.0):
-        drawn = Contour(PitchCurve(lift, RADIUS - ECCENTRICITY + roller), roller)
+        drawn = RollerContour(PitchCurve(lift, RADIUS - ECCENTRICITY + roller), roller)
         away = np.hypot(*(drawn.points(THETA) - circle.points(THETA))).max()
         bent = np.abs(drawn.curvature(THETA) - circle.curvature(THETA)).max()
         tilted = np.abs(drawn.pitch.pressure_angle(THETA)).max()

@@ -8,7 +8,7 @@ import made_trial as made
 import numpy as np
 
 from camwright.geometry.arrays import freeze
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.extrema import Extremum
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import DEGREE, PeriodicPolynomial
@@ -148,7 +148,7 @@ class UnknownLift(Lift):
 def unknown() -> TrialEvidence:
     """The trial on a contour of which no place is known."""
     lift = UnknownLift(made.THETA, NAN, np.nan)
-    return made.evidence(contour=Contour(PitchCurve(lift, made.BASE), made.ROLLER))
+    return made.evidence(contour=RollerContour(PitchCurve(lift, made.BASE), made.ROLLER))
 
 
 def open_ended() -> TrialEvidence:
@@ -159,7 +159,7 @@ def open_ended() -> TrialEvidence:
 
 
 @dataclass(frozen=True, eq=False)
-class SearchedContour(Contour):
+class SearchedContour(RollerContour):
     """A contour whose search for a second contact has a made-up result."""
 
     gap: Extremum

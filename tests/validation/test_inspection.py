@@ -13,7 +13,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "unit"))
 import small_run
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.measured_contour import inspected, real_contour
@@ -38,7 +38,7 @@ POINTS = np.sort(np.random.default_rng(7).uniform(0, 2 * np.pi, 720))
 
 def contour() -> Contour:
     lift = Lift(THETA, 0.005 * (1 - np.cos(2 * THETA - 0.3)) + 0.001 * (1 + np.sin(3 * THETA)))
-    return Contour(PitchCurve(lift, 0.050), 0.008)
+    return RollerContour(PitchCurve(lift, 0.050), 0.008)
 
 
 def turned(points: np.ndarray, angle: float) -> np.ndarray:
@@ -110,12 +110,12 @@ def test_rise_of_force_and_pressure_is_that_of_theory() -> None:
     """A round cam with a ripple: F = P + k e + m w^2 e'', and Hertz with the wave's curvature."""
     case, theta = small_case(), uniform_turn(720)
     base, roller = case.cam.pitch_base_radius, case.roller.radius
-    flat = Contour(PitchCurve(Lift(theta, np.zeros(720)), base), roller)
+    flat = RollerContour(PitchCurve(Lift(theta, np.zeros(720)), base), roller)
     error = RIPPLE * np.cos(WAVES * POINTS)
     points = flat.points(POINTS) + error * flat.normal(POINTS)
     # a circle has no phase of its own: the part is compared as it lies
     mark = 1e-3 * np.exp(-(((THETA - np.pi) / 0.15) ** 2))
-    nominal = Contour(PitchCurve(Lift(THETA, mark), base), roller)
+    nominal = RollerContour(PitchCurve(Lift(THETA, mark), base), roller)
     points = nominal.points(POINTS) + error * nominal.normal(POINTS)
     real = real_contour(nominal, inspected(nominal, points))
     speed = case.load_cases[0].speed / case.mechanism.gear_ratio

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline import solver as road
@@ -84,7 +84,7 @@ def judged(asking, request):
         random.normal() / k**3 * np.cos(k * theta + random.uniform(0, 6)) for k in range(1, 7)
     )
     lift = Lift(theta, 0.002 + 0.024 * (waves - waves.min()) / np.ptp(waves))
-    contour = Contour(PitchCurve(lift, asking.cam.pitch_base_radius), asking.roller.radius)
+    contour = RollerContour(PitchCurve(lift, asking.cam.pitch_base_radius), asking.roller.radius)
     torques = road.engine_torques(asking)
     pair = contact_pair(asking, contour)
     cycles = tuple(
@@ -177,7 +177,7 @@ def test_travel_of_each_check_of_the_spring_brings_it_to_its_limit(asking, judge
 def test_hollow_is_that_of_its_check(asking):
     theta = uniform_turn(720)
     lift = Lift(theta, 0.012 * (1 - np.cos(3 * theta)))
-    contour = Contour(PitchCurve(lift, asking.cam.pitch_base_radius), asking.roller.radius)
+    contour = RollerContour(PitchCurve(lift, asking.cam.pitch_base_radius), asking.roller.radius)
     check = concave_radius(TrialEvidence(asking, contour, ()))
     place = np.array([np.radians(check.cam_angle_deg)])
     found = shape_utilisations(jet(contour, place), machine_of(asking), ratings_of(asking))

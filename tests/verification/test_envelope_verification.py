@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -39,7 +39,7 @@ WIDTH = 0.005
 def pair_of(stroke, keyway=None):
     theta = uniform_turn(360)
     lift = Lift(theta, stroke * (1 - np.cos(theta)) / 2)
-    contour = Contour(PitchCurve(lift, 0.05), 0.008)
+    contour = RollerContour(PitchCurve(lift, 0.05), 0.008)
     return ContactPair(
         contour, WIDTH, 0.0085, keyway, STEEL, RollerBody(contour.roller_radius, 0.0042, STEEL)
     )

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -41,7 +41,7 @@ def height_slope(theta, offset):
 def eccentric(offset, count=720):
     theta, base = uniform_turn(count), PITCH_RADIUS - ECCENTRICITY
     lift = height(theta, offset) - np.sqrt(base**2 - offset**2)
-    return Contour(PitchCurve(Lift(theta, lift), base, offset), ROLLER_RADIUS)
+    return RollerContour(PitchCurve(Lift(theta, lift), base, offset), ROLLER_RADIUS)
 
 
 @with_offsets
@@ -105,7 +105,7 @@ def test_pressure_angle_has_its_closed_extreme(offset):
 def test_circle_has_neither_hollow_nor_double_point(offset):
     cam = eccentric(offset)
     assert cam.undercut().factor == pytest.approx(1 - ROLLER_RADIUS / PITCH_RADIUS, abs=1e-10)
-    assert not cam.undercut().found
+    assert not cam.undercut().present
     assert cam.self_intersections() == ()
     assert cam.concave_radius_min().value == np.inf
     assert cam.clearance().value == np.inf
@@ -152,7 +152,7 @@ def test_no_extreme_hides_between_samples(amplitudes, phases, roller_radius, off
         for k, (a, p) in enumerate(zip(amplitudes, phases, strict=False), 1)
     )
     lift = Lift(theta, values - values.min())
-    cam = Contour(PitchCurve(lift, 0.05, offset), roller_radius)
+    cam = RollerContour(PitchCurve(lift, 0.05, offset), roller_radius)
     dense = uniform_turn(7200) + 1e-4
     assert cam.undercut().factor <= cam.factor(dense).min() + 1e-12
     assert cam.pressure_angle_max().value >= np.abs(cam.pitch.pressure_angle(dense)).max() - 1e-12
@@ -173,8 +173,8 @@ def test_turning_the_cam_changes_nothing(turn):
     shift = round(turn / (2 * np.pi) * count)
     theta = uniform_turn(count)
     values = 0.01 * (1 - np.cos(theta)) + 0.012 * np.sin(2 * theta) ** 2
-    plain = Contour(PitchCurve(Lift(theta, values), 0.05), 0.008)
-    later = Contour(PitchCurve(Lift(theta, np.roll(values, shift)), 0.05), 0.008)
+    plain = RollerContour(PitchCurve(Lift(theta, values), 0.05), 0.008)
+    later = RollerContour(PitchCurve(Lift(theta, np.roll(values, shift)), 0.05), 0.008)
     angle = theta[shift]
     turned = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     np.testing.assert_allclose(
@@ -193,7 +193,7 @@ def wavy():
 @pytest.mark.parametrize(
     "contour",
     [
-        Contour(PitchCurve(wavy(), 0.05, 0.004), 0.008),
+        RollerContour(PitchCurve(wavy(), 0.05, 0.004), 0.008),
         FlatFaceContour(FacePath(wavy(), 0.09, 0.004)),
     ],
     ids=["roller", "face"],

@@ -5,7 +5,7 @@ import pytest
 from skfem import Basis, BilinearForm, ElementTriP2, ElementVector, FacetBasis, Functional
 from skfem.helpers import ddot, dot, sym_grad
 
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import block_mesh, cam_mesh, half_disc_mesh, roller_mesh
@@ -15,7 +15,7 @@ from camwright.meshes.mesh_quality import gate, quality
 
 HALF_WIDTH = 1e-4
 THETA = np.arange(720) * (2 * np.pi / 720)
-CONTOUR = Contour(PitchCurve(Lift(THETA, 0.0165 * (1 - np.cos(THETA))), 0.05), 0.008)
+CONTOUR = RollerContour(PitchCurve(Lift(THETA, 0.0165 * (1 - np.cos(THETA))), 0.05), 0.008)
 
 
 def contact(theta):

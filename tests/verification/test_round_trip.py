@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.follower_height import face_height, roller_height
@@ -46,8 +46,8 @@ def lifts(draw):
 @given(lifts(), st.floats(-0.012, 0.012), st.floats(0.004, 0.012))
 def test_roller_let_down_on_the_contour_moves_by_the_lift(lift, offset, roller):
     pitch = PitchCurve(lift, 0.045, offset)
-    contour = Contour(pitch, roller)
-    assume(not contour.undercut().found and contour.clearance().value > 0)
+    contour = RollerContour(pitch, roller)
+    assume(not contour.undercut().present and contour.clearance().value > 0)
     found = roller_height(contour.polygon(POINTS), roller, offset, THETA)
     np.testing.assert_allclose(
         found - pitch.height_base, lift(THETA), rtol=0, atol=TOLERANCE * lift.stroke
@@ -67,8 +67,8 @@ def test_face_let_down_on_the_contour_moves_by_the_lift(lift, offset):
 def test_undercut_contour_cannot_give_its_lift_back():
     lift = Motion((Segment("harmonic", np.pi / 8, 0.012), Segment("harmonic", np.pi / 8, -0.012),
                    Segment("dwell", 7 * np.pi / 4))).lift()  # fmt: skip
-    contour = Contour(PitchCurve(lift, 0.015), 0.002)
-    assert contour.undercut().found
+    contour = RollerContour(PitchCurve(lift, 0.015), 0.002)
+    assert contour.undercut().present
     theta = np.linspace(0.3, 0.5, 101)
     # the tails beyond the cusps stand proud of the true cam: the follower misses the motion
     away = roller_height(contour.polygon(POINTS), 0.002, 0.0, theta) - 0.015 - lift(theta)

@@ -10,7 +10,7 @@ import pytest
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.cad_drawing import LAYERS, Outline, chords, keyway_corners, write_dxf
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.lift import Lift
@@ -29,11 +29,11 @@ MM = 1e-3
 def wavy(offset: float = 0.002) -> Contour:
     """Convex and hollow flanks, an offset follower."""
     lift = Lift(THETA, 0.005 * (1 - np.cos(THETA - 0.4)) + 0.010 * np.sin(2 * THETA) ** 2)
-    return Contour(PitchCurve(lift, 0.050, offset), 0.008)
+    return RollerContour(PitchCurve(lift, 0.050, offset), 0.008)
 
 
 def circle() -> Contour:
-    return Contour(PitchCurve(Lift(THETA, np.zeros(360)), 0.050), 0.008)
+    return RollerContour(PitchCurve(Lift(THETA, np.zeros(360)), 0.050), 0.008)
 
 
 def polygon_measures(points: np.ndarray) -> tuple[float, float]:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline import solver as road
@@ -43,7 +43,7 @@ def case() -> Case:
 
 def cam() -> Contour:
     theta = uniform_turn(72)
-    return Contour(PitchCurve(Lift(theta, 0.01 * (1.0 - np.cos(theta))), 0.05), 0.008)
+    return RollerContour(PitchCurve(Lift(theta, 0.01 * (1.0 - np.cos(theta))), 0.05), 0.008)
 
 
 def cycle(at: Case) -> Cycle:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case import Case
@@ -41,7 +41,7 @@ def cam() -> Contour:
     """One and the same lift of 20 mm for every load on it."""
     theta, given = uniform_turn(72), case()
     lift = Lift(theta, 0.01 * (1.0 - np.cos(theta)))
-    return Contour(PitchCurve(lift, given.cam.pitch_base_radius), given.roller.radius)
+    return RollerContour(PitchCurve(lift, given.cam.pitch_base_radius), given.roller.radius)
 
 
 @lru_cache(maxsize=1)
