@@ -291,7 +291,7 @@ class RollerContour(Contour):
     Parameters
     ----------
     pitch : PitchCurve        path of the roller centre
-    roller_radius : float     m, > 0, below the base radius
+    roller_radius : float     m, > 0, below the prime radius
 
     Raises
     ------
@@ -308,8 +308,8 @@ class RollerContour(Contour):
 
     def __post_init__(self) -> None:
         positive("roller.radius", self.roller_radius, "m")
-        if not self.roller_radius < self.pitch.base_radius:
-            limit = f"below the pitch base radius of {self.pitch.base_radius:g} m"
+        if not self.roller_radius < self.pitch.prime_radius:
+            limit = f"below the prime radius of {self.pitch.prime_radius:g} m"
             raise InputError("roller.radius", self.roller_radius, limit)
 
     @property

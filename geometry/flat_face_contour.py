@@ -8,12 +8,12 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, positive
+from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour, Frame, Undercut
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.follower_height import face_height
-from camwright.geometry.follower_path import FollowerPath, reciprocal
+from camwright.geometry.follower_path import FollowerPath, reciprocal, require_offset
 from camwright.geometry.lift import Lift
 
 
@@ -51,10 +51,7 @@ class FacePath(FollowerPath):
     offset: float = 0.0
 
     def __post_init__(self) -> None:
-        positive("cam.pitch_base_radius", self.base_radius, "m")
-        if not abs(self.offset) < self.base_radius:
-            limit = f"below the base radius of {self.base_radius:g} m"
-            raise InputError("cam.offset", self.offset, limit)
+        require_offset(self.offset, "base radius", self.base_radius)
 
     @property
     def radius_base(self) -> float:

@@ -9,7 +9,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, positive
+from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.lift import Lift
 
@@ -119,6 +120,19 @@ class FollowerPath(ABC):
         """Minimum convex radius of curvature, m, and its cam angle."""
         curvature, theta = self.curvature_max()
         return Extremum(1.0 / curvature, theta)
+
+
+def require_offset(offset: float, name: str, radius: float) -> None:
+    """Check that a follower's offset (m) lies within its prime or base radius (m).
+
+    Raises
+    ------
+    InputError
+        If the radius is not positive or the offset not below it; NaN included.
+    """
+    positive("cam.pitch_base_radius", radius, "m")
+    if not abs(offset) < radius:
+        raise InputError("cam.offset", offset, f"below the {name} of {radius:g} m")
 
 
 def cam_axes(theta: ArrayLike, along: Array, across: Array | float) -> Array:

@@ -12,9 +12,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, positive
-from camwright.geometry.errors import InputError
-from camwright.geometry.follower_path import FollowerPath, cam_axes, reciprocal
+from camwright.geometry.arrays import Array
+from camwright.geometry.follower_path import FollowerPath, cam_axes, reciprocal, require_offset
 from camwright.geometry.lift import Lift
 
 Values = Any
@@ -30,41 +29,38 @@ class PitchCurve(FollowerPath):
     Parameters
     ----------
     lift : Lift            s(theta)
-    base_radius : float    r, radius of the roller centre at zero lift, m, > 0
+    prime_radius : float   r, of the roller centre at zero lift, m, > 0: base circle and roller
     offset : float         e, from the follower's axis to the cam's, m, |e| < r
 
     Raises
     ------
     InputError
-        If the base radius is not positive or the offset not below it; NaN included.
+        If the prime radius is not positive or the offset not below it; NaN included.
 
     References
     ----------
     Norton, Cam Design and Manufacturing Handbook (2009), ch. 7.
     """
 
-    base_radius: float
+    prime_radius: float
     offset: float = 0.0
 
     def __post_init__(self) -> None:
-        positive("cam.pitch_base_radius", self.base_radius, "m")
-        if not abs(self.offset) < self.base_radius:
-            limit = f"below the base radius of {self.base_radius:g} m"
-            raise InputError("cam.offset", self.offset, limit)
+        require_offset(self.offset, "prime radius", self.prime_radius)
 
     @property
     def radius_base(self) -> float:
-        return self.base_radius
+        return self.prime_radius
 
     @property
     def height_base(self) -> float:
-        return float(np.sqrt(self.base_radius**2 - self.offset**2))
+        return float(np.sqrt(self.prime_radius**2 - self.offset**2))
 
     def with_lift(self, lift: Lift, height_base: float) -> Self:
-        return replace(self, lift=lift, base_radius=float(np.hypot(height_base, self.offset)))
+        return replace(self, lift=lift, prime_radius=float(np.hypot(height_base, self.offset)))
 
     def enlarged(self, growth: float) -> Self:
-        return replace(self, base_radius=self.base_radius + growth)
+        return replace(self, prime_radius=self.prime_radius + growth)
 
     def _position(self, theta: ArrayLike) -> tuple[Array, float]:
         return self.height(theta), self.offset

@@ -19,8 +19,8 @@ WAVY = Lift(THETA, 0.01 * (1 - np.cos(THETA - 0.4)) + 0.012 * np.sin(2 * THETA) 
 with_offsets = pytest.mark.parametrize("offset", [0.0, 0.012, -0.02])
 
 
-def contour(lift=WAVY, base_radius=0.05, roller_radius=0.008, offset=0.0):
-    return RollerContour(PitchCurve(lift, base_radius, offset), roller_radius)
+def contour(lift=WAVY, prime_radius=0.05, roller_radius=0.008, offset=0.0):
+    return RollerContour(PitchCurve(lift, prime_radius, offset), roller_radius)
 
 
 def lobed(phase, lobes=6, height=0.004, count=144):
@@ -30,13 +30,13 @@ def lobed(phase, lobes=6, height=0.004, count=144):
     return Lift(theta, 0.5 * height * (1 + np.cos(lobes * (theta - crest))))
 
 
-def narrow_lobe(base_radius):
+def narrow_lobe(prime_radius):
     """A roller of 2 mm and a lobe 50 mm high: on a foot too small the flanks come too close."""
     theta = uniform_turn(720)
     half = np.abs(np.mod(theta + np.pi, 2 * np.pi) - np.pi)
     step = np.clip((half - 0.15) / 0.41, 0, 1)
     lift = Lift(theta, 0.05 * (1 - step**3 * (10 - 15 * step + 6 * step**2)))
-    return contour(lift, base_radius, roller_radius=0.002)
+    return contour(lift, prime_radius, roller_radius=0.002)
 
 
 # Points, normals, curvature ----------------------------------------------------------------

@@ -39,7 +39,7 @@ def test_centre_lies_offset_beside_the_follower_axis(offset):
     np.testing.assert_allclose(pitch.radius(ANGLE), np.hypot(x, y), rtol=1e-14)
 
 
-def test_base_radius_is_the_least_radius():
+def test_prime_radius_is_the_least_radius():
     pitch = PitchCurve(LIFT, 0.05, 0.012)
     lowest = pitch.lift.lowest
     assert lowest.value < 2e-3
@@ -132,7 +132,7 @@ def test_straight_places_have_infinite_radius():
 
 
 @pytest.mark.parametrize(
-    ("base_radius", "offset", "field"),
+    ("prime_radius", "offset", "field"),
     [
         (0.0, 0.0, "cam.pitch_base_radius"),
         (-0.05, 0.0, "cam.pitch_base_radius"),
@@ -142,7 +142,7 @@ def test_straight_places_have_infinite_radius():
         (0.05, np.nan, "cam.offset"),
     ],
 )
-def test_refuses(base_radius, offset, field):
+def test_refuses(prime_radius, offset, field):
     with pytest.raises(InputError) as caught:
-        PitchCurve(LIFT, base_radius, offset)
+        PitchCurve(LIFT, prime_radius, offset)
     assert caught.value.field == field

@@ -14,8 +14,8 @@ from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.studies.papers import cardoso_2024, cardoso_2025
 from camwright.pipeline.studies.papers.balancing_cam import (
-    BASE_RADIUS,
     FOLLOWER_2025,
+    PRIME_RADIUS,
     RATIO,
     TWELVE_VALUES,
 )
@@ -41,7 +41,7 @@ def test_machine_of_2025(name: str) -> None:
     assert FollowerSystem.from_case(found) == FOLLOWER_2025
     assert Smoother.from_case(found.smoothing) == TWELVE_VALUES
     assert found.mechanism.gear_ratio == RATIO
-    assert found.cam.pitch_base_radius == BASE_RADIUS
+    assert found.cam.pitch_base_radius == PRIME_RADIUS
     assert found.crankshaft is not None
     assert found.crankshaft.inertia == EFFECTIVE_INERTIA
 
