@@ -64,7 +64,7 @@ class Motion(NamedTuple):
 def motion(jet: Jet, machine: Machine, offset: float) -> Motion:
     """Pitch curve of a translating follower at each point; see `PitchCurve`."""
     along = jet.slope - offset
-    across = np.sqrt(machine.base_radius**2 - offset**2) + jet.lift
+    across = np.sqrt(machine.prime_radius**2 - offset**2) + jet.lift
     return Motion(along, across, *speed_and_curvature(along, across, jet.slope, jet.bend))
 
 

@@ -50,7 +50,7 @@ def convex_start(problem: Problem) -> Core | None:
     Demeulenaere et al., ASME J. Mech. Des. 131 (2009) 101004: splines by convex programs.
     """
     machine, ratings = problem.machine, problem.ratings
-    if ratings.offset != 0.0 or machine.base_radius * machine.rate < machine.preload:
+    if ratings.offset != 0.0 or machine.prime_radius * machine.rate < machine.preload:
         return None
     points = min(problem.points, COARSE_POINTS)
     turns = tuple(
@@ -88,14 +88,14 @@ def _program(search: Search) -> Cones:
     sigma = program.columns(csr_array(np.eye(points)), count + 1)
     if ratings.pressure_angle is not None:
         steep = np.tan(ratings.pressure_angle * (1.0 - RESERVE)) * machine.preload
-        by_root = machine.base_radius - machine.preload / machine.rate
+        by_root = machine.prime_radius - machine.preload / machine.rate
         room = steep * (by_root * sigma + (machine.preload / machine.rate) * growth)
         for side in (1.0, -1.0):
             program.at_most(side * torque - room, steep * machine.preload / machine.rate)
         program.square_at_most(sigma, growth, 1.0)
     if ratings.normal_force is not None:
         share = (ratings.normal_force * (1.0 - RESERVE) / machine.preload) ** 2
-        sideways = torque / (machine.base_radius * machine.preload)
+        sideways = torque / (machine.prime_radius * machine.preload)
         program.square_at_most(sideways, -growth, share - 1.0)
     return program
 

@@ -104,17 +104,17 @@ def lowest(coefficients: Array) -> float:
     return float((basis_matrix(theta, coefficients.size) @ coefficients).min())
 
 
-def force_moment(energy: ArrayLike, rate: float, preload: float, base_radius: float) -> Array:
+def force_moment(energy: ArrayLike, rate: float, preload: float, prime_radius: float) -> Array:
     """Spring force times radius, F_s r, N m; concave in the energy where r0 >= P / k.
 
     Parameters
     ----------
     energy : array (...)    E, J, >= 0
     rate, preload : float   k, N/m; P, N
-    base_radius : float     r0 of the pitch curve, m
+    prime_radius : float     r0 of the pitch curve, m
     """
     square = preload**2 + 2.0 * rate * np.asarray(energy, dtype=float)
-    return np.asarray((base_radius - preload / rate) * np.sqrt(square) + square / rate)
+    return np.asarray((prime_radius - preload / rate) * np.sqrt(square) + square / rate)
 
 
 def exact_start(
@@ -123,7 +123,7 @@ def exact_start(
     *,
     rate: float,
     preload: float,
-    base_radius: float,
+    prime_radius: float,
     pressure_angle: float,
     energy_max: float,
 ) -> Array:
@@ -134,7 +134,7 @@ def exact_start(
     cam_torque : array (n,)   N m at n equal cam angles, of zero mean
     count : int               splines of one turn
     rate, preload : float     of the spring, N/m and N, > 0
-    base_radius : float       of the pitch curve, m, > 0
+    prime_radius : float       of the pitch curve, m, > 0
     pressure_angle : float    limit, rad
     energy_max : float        what the spring may hold beyond its preload, J; may be infinite
 
@@ -149,7 +149,7 @@ def exact_start(
         If a value is not positive, or the torque has a mean.
     """
     for name, value in (("spring.rate", rate), ("spring.preload", preload),
-                        ("cam.pitch_base_radius", base_radius),
+                        ("cam.pitch_base_radius", prime_radius),
                         ("limits.pressure_angle", pressure_angle)):  # fmt: skip
         positive(name, value)
     coefficients = fitted_energy(cam_torque, count)
@@ -158,7 +158,7 @@ def exact_start(
     slope = np.abs(basis_matrix(theta, count, 1) @ coefficients)
 
     def excess(rise: float) -> float:
-        moment = force_moment(np.maximum(energy + rise, 0.0), rate, preload, base_radius)
+        moment = force_moment(np.maximum(energy + rise, 0.0), rate, preload, prime_radius)
         return float((slope - np.tan(pressure_angle) * moment).max())
 
     highest = float(energy.max())

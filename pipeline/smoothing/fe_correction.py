@@ -151,7 +151,7 @@ def redrawn(case: Case, design: Design) -> Case:
             "spring": case.spring.model_copy(
                 update={"rate": float(machine.rate), "preload": float(machine.preload)}
             ),
-            "cam": case.cam.model_copy(update={"pitch_base_radius": float(machine.base_radius)}),
+            "cam": case.cam.model_copy(update={"pitch_base_radius": float(machine.prime_radius)}),
         }
     )
 
@@ -175,7 +175,7 @@ def design_record(design: Design, problem: Problem, starts: Starts | None = None
         "initial_energy_J": energy,
         "spring_rate_N_per_mm": 1e-3 * machine.rate,
         "preload_N": machine.preload,
-        "pitch_base_radius_mm": 1e3 * machine.base_radius,
+        "pitch_base_radius_mm": 1e3 * machine.prime_radius,
         "phase_deg": float(np.degrees(machine.phase)),
         "reserve": RESERVE,
         "starts": None if starts is None else starts.as_record(),

@@ -13,7 +13,7 @@ from camwright.pipeline.smoothing.constraints import Jet, Mean, Values, lift_jet
 from camwright.pipeline.smoothing.scenario import Machine
 
 Function = Callable[[Jet, Values, Machine], Mapping[str, "Values | Mean"]]
-FREED = ("rate", "preload", "base_radius")
+FREED = ("rate", "preload", "prime_radius")
 _STEP = 1e-30
 
 

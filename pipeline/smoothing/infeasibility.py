@@ -143,7 +143,7 @@ def _rows(problem: Problem, conflict: list[str]) -> list[_Row]:
     for name, what, scale, unit, direction in (
         ("rate", "a spring rate of", 1e-3, "N/mm", -1),
         ("preload", "a preload of", 1.0, "N", -1),
-        ("base_radius", "a pitch base radius of", 1e3, "mm", 1),
+        ("prime_radius", "a pitch base radius of", 1e3, "mm", 1),
     ):
         if name not in problem.freed:
             rows.append(_Row(what, scale * getattr(machine, name), unit, _built(name), direction))

@@ -51,7 +51,7 @@ def problem_of(
     names = {
         "spring_rate": "rate",
         "preload": "preload",
-        "pitch_base_radius": "base_radius",
+        "pitch_base_radius": "prime_radius",
         "phase": "phase",
     }
     freed = {

@@ -67,7 +67,7 @@ class Search:
             problem.coefficients,
             rate=machine.rate,
             preload=machine.preload,
-            base_radius=machine.base_radius,
+            prime_radius=machine.prime_radius,
             pressure_angle=ratings.pressure_angle or np.pi / 3,
             energy_max=machine.preload * travel + 0.5 * machine.rate * travel**2,
         )

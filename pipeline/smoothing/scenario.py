@@ -15,14 +15,14 @@ LIFE_UNIT = 1e6 * FULL_TURN / HOUR  # rad of a million turns, per hour
 
 @dataclass(frozen=True)
 class Machine:
-    """What a synthesis may free: spring rate N/m, preload N, pitch base radius m, phase rad.
+    """What a synthesis may free: spring rate N/m, preload N, prime radius m, phase rad.
 
     The phase is how far the cam is turned ahead on its shaft against the spline of its energy.
     """
 
     rate: Values
     preload: Values
-    base_radius: Values
+    prime_radius: Values
     phase: Values = 0.0
 
 

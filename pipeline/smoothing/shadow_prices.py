@@ -155,7 +155,7 @@ def _load_share(design: Design, problem: Problem) -> float:
     binds = _binding(use)
     if not binds.any():
         return 1.0
-    pitch = PitchCurve(design.lift(), float(design.machine.base_radius), problem.ratings.offset)
+    pitch = PitchCurve(design.lift(), float(design.machine.prime_radius), problem.ratings.offset)
     bend = problem.ratings.roller_radius * pitch.curvature(theta[binds])
     return float(np.mean(np.asarray(use)[binds] - bend))
 

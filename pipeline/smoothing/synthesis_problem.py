@@ -29,7 +29,7 @@ class Problem:
     ratings : Ratings
     machine : Machine               spring and base radius to start from
     gear_ratio : float              crank turns per cam turn
-    freed : mapping                 of `rate`, `preload`, `base_radius`, `phase` to (least,
+    freed : mapping                 of `rate`, `preload`, `prime_radius`, `phase` to (least,
                                     greatest), SI
     energy : (float, float)         least and greatest energy at the lowest lift, E0, J
     coefficients : int              splines of the turn

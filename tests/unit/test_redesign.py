@@ -187,7 +187,7 @@ def test_rollers_for_a_case_without_an_answer(case):
     assert radii == sorted(radii)
     circle = case.cam.pitch_base_radius - case.roller.radius
     for _, problem in found:
-        base = problem.machine.base_radius - problem.ratings.roller_radius
+        base = problem.machine.prime_radius - problem.ratings.roller_radius
         assert base == pytest.approx(circle, rel=1e-9)
     forces = {name: problem.ratings.normal_force for name, problem in found}
     assert forces["track_roller_35x16"] == 3600.0  # of its ring; its balls bear 5.1 kN

@@ -20,7 +20,7 @@ def torque(count=720):
 
 def start(angle_deg=30.0, energy_max=np.inf):
     return exact_start(
-        torque(), 48, rate=RATE, preload=PRELOAD, base_radius=RADIUS,
+        torque(), 48, rate=RATE, preload=PRELOAD, prime_radius=RADIUS,
         pressure_angle=np.radians(angle_deg), energy_max=energy_max,
     )  # fmt: skip
 

@@ -103,7 +103,7 @@ def test_leaves_less_than_any_moving_average_within_angle_and_force(published, i
     """E0 and the base radius free for both: of all averages that keep both limits, the best."""
     case, _ = published
     bases = (0.045, 0.065)
-    freed = replace(problem(idle, normal_force=1100.0), freed={"base_radius": bases})
+    freed = replace(problem(idle, normal_force=1100.0), freed={"prime_radius": bases})
     design = synthesise(freed)
     assert design.feasible
     best = np.inf

@@ -227,7 +227,7 @@ def test_no_constraint_goes_without_its_check(asking, judged):
 
 
 RANGES = {
-    "rate": (1e4, 4e4), "preload": (100.0, 400.0), "base_radius": (0.03, 0.07),
+    "rate": (1e4, 4e4), "preload": (100.0, 400.0), "prime_radius": (0.03, 0.07),
     "phase": (-0.5, 0.5),
 }  # fmt: skip
 EVERY = Ratings(

@@ -76,7 +76,7 @@ def test_any_torque_of_zero_mean_closes(seed, waves):
 def test_start_scales_with_the_torque(seed, factor):
     """k, P and T times one factor: E grows with it and the lift is the same."""
     torque = engine(seed)
-    spring = {"base_radius": BASE, "pressure_angle": np.pi / 6, "energy_max": np.inf}
+    spring = {"prime_radius": BASE, "pressure_angle": np.pi / 6, "energy_max": np.inf}
     once = exact_start(torque, COUNT, rate=RATE, preload=PRELOAD, **spring)
     more = exact_start(
         factor * torque, COUNT, rate=factor * RATE, preload=factor * PRELOAD, **spring
@@ -135,7 +135,7 @@ def test_every_limit_holds_between_the_points(signed):
 
 
 FREED = {
-    "rate": (18e3, 30e3), "preload": (180.0, 320.0), "base_radius": (0.045, 0.06),
+    "rate": (18e3, 30e3), "preload": (180.0, 320.0), "prime_radius": (0.045, 0.06),
     "phase": (-0.3, 0.3),
 }  # fmt: skip
 
