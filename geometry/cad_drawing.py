@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from scipy.interpolate import BSpline, make_interp_spline
 
 from camwright.geometry.arrays import FULL_TURN, Array, freeze, positive, readonly
 from camwright.geometry.contour import Contour
@@ -15,6 +14,7 @@ from camwright.geometry.errors import GeometryError, InputError, ResultError
 
 if TYPE_CHECKING:
     from ezdxf.layouts import Modelspace
+    from scipy.interpolate import BSpline
 
 LAYERS = ("surface", "pitch", "bore", "keyway", "note", "counter_hole")
 """Layers of the DXF file."""
@@ -135,6 +135,8 @@ def clamped_spline(
     GeometryError
         If the finest spline is still farther than `error` (m) from the curve.
     """
+    from scipy.interpolate import make_interp_spline
+
     positive("spline_error", error, "m")
     first, last = curve.velocity(np.array([start, stop])).T
     for parts in _SPLINE_PARTS:

@@ -10,7 +10,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite
 from camwright.geometry.errors import GeometryError, InputError
@@ -69,6 +68,8 @@ def face_height(polygon: ArrayLike, theta: ArrayLike) -> Array:
 
 
 def _highest(polygon: ArrayLike, standing: Standing, theta: ArrayLike) -> Array:
+    from scipy.interpolate import CubicSpline
+
     points, angle = finite("polygon", polygon), finite("theta", theta)
     if points.ndim != 2 or points.shape[0] != 2 or points.shape[1] < _LEAST_POINTS:
         raise InputError("polygon", f"shape {points.shape}", f"(2, n) with n >= {_LEAST_POINTS}")

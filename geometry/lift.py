@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, uniform_turn
 from camwright.geometry.errors import InputError
@@ -16,6 +15,7 @@ from camwright.geometry.periodic_spline import (
     DEGREE,
     LEAST_SAMPLES,
     PeriodicPolynomial,
+    interpolant,
     periodic_quintic,
 )
 
@@ -94,8 +94,7 @@ class Lift:
         even = uniform_turn(len(angle))
         if np.abs(angle - even).max() <= ANGLE_TOLERANCE:
             return cls(even, value, closure)
-        knots = np.append(angle, angle[0] + FULL_TURN)
-        table = make_interp_spline(knots, np.append(value, value[0]), DEGREE, bc_type="periodic")
+        table = interpolant(np.append(angle, angle[0] + FULL_TURN), value)
         even = uniform_turn(max(_RESAMPLED, 4 * len(angle)))
         return cls(even, table(even), closure)
 

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import BSpline, make_interp_spline
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import ANGLE_TOLERANCE, CLOSURE_LIMIT, Lift
-from camwright.geometry.periodic_spline import DEGREE, LEAST_SAMPLES
+from camwright.geometry.periodic_spline import DEGREE, LEAST_SAMPLES, interpolant
 
 POINTS_MIN = DEGREE + 1
 _SAMPLED = 1440
@@ -65,8 +64,7 @@ def lift_through(theta: ArrayLike, values: ArrayLike) -> Lift:
     angle, value = _table(theta, values)
     if len(angle) < POINTS_MIN:
         raise InputError("lift.point", f"{len(angle)} points", f">= {POINTS_MIN} points")
-    knots = np.append(angle, angle[0] + FULL_TURN)
-    spline = make_interp_spline(knots, np.append(value, value[0]), DEGREE, bc_type="periodic")
+    spline = interpolant(np.append(angle, angle[0] + FULL_TURN), value)
     even = uniform_turn(_SAMPLED)
     return Lift(even, spline(even))
 
@@ -110,6 +108,8 @@ def fitted_lift(theta: ArrayLike, values: ArrayLike, noise: float) -> FittedLift
 
 
 def _least_squares(angle: Array, value: Array, parts: int) -> FittedLift:
+    from scipy.interpolate import BSpline
+
     step = FULL_TURN / parts
     knots = step * np.arange(-DEGREE, parts + DEGREE + 1)
     # a knot is one part wide however far the rounding of an angle takes it

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PPoly, make_interp_spline
 
 from camwright.geometry.arrays import FULL_TURN, Array, freeze
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 DEGREE = 5
 """Quintic: the lowest odd degree with a continuous fourth derivative (C4)."""
@@ -69,20 +72,35 @@ class PeriodicPolynomial:
         return PeriodicPolynomial(np.vstack([sums[:-1], raised])), float(sums[-1])
 
 
+def interpolant(knots: Array, values: Array) -> BSpline:
+    """Periodic quintic B-spline through samples at any angles of one turn.
+
+    Parameters
+    ----------
+    knots : array (n + 1,)    angles of the samples and the end of the turn, rad, increasing
+    values : array (n,)       any unit
+
+    References
+    ----------
+    de Boor, A Practical Guide to Splines (1978), ch. XIII: interpolation at the knots.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    closed = np.append(values, values[0])
+    return make_interp_spline(knots, closed, DEGREE, bc_type="periodic")
+
+
 def periodic_quintic(values: ArrayLike) -> PeriodicPolynomial:
     """The C4 quintic spline through samples at n equal angles of one turn, from angle 0.
 
     Parameters
     ----------
     values : array (n,)    any unit, n >= 12
-
-    References
-    ----------
-    de Boor, A Practical Guide to Splines (1978), ch. XIII: interpolation at the knots.
     """
+    from scipy.interpolate import PPoly
+
     samples = np.asarray(values, dtype=float)
-    knots = np.linspace(0.0, FULL_TURN, len(samples) + 1)
-    spline = make_interp_spline(knots, np.append(samples, samples[0]), DEGREE, bc_type="periodic")
+    spline = interpolant(np.linspace(0.0, FULL_TURN, len(samples) + 1), samples)
     # the spline keeps DEGREE more knots on either side of the turn
     inside = PPoly.from_spline((spline.t, spline.c, spline.k)).c[::-1, DEGREE:-DEGREE]
     return PeriodicPolynomial(inside)

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import brentq, minimize_scalar
 
 from camwright.geometry.arrays import FULL_TURN, Array, positive
 from camwright.geometry.cad_drawing import HoleLike
@@ -96,6 +94,8 @@ def contour_piece(path: Trace, sizing: Sizing) -> Piece:
     InputError
         If the contact point does not lie on the contour.
     """
+    from scipy.interpolate import PchipInterpolator
+
     theta_of = PchipInterpolator(path.arc_length, path.theta)
 
     def at(s: Array) -> Array:
@@ -112,6 +112,8 @@ def contour_piece(path: Trace, sizing: Sizing) -> Piece:
 
 def _foot(path: Trace, point: Array, tolerance: float) -> float:
     """Angle (rad) of the contour point nearest to `point`, which must be within `tolerance`."""
+    from scipy.optimize import brentq
+
     squared = ((path.points - point[:, None]) ** 2).sum(axis=0)
     near = path.theta[int(np.argmin(squared))]
     step = 2.0 * FULL_TURN / _SAMPLES
@@ -193,6 +195,7 @@ def least_wall(path: Trace, bore_radius: float, keyway: KeywayLike | None) -> tu
 
     Negative where the bore or the keyway crosses the contour.
     """
+    from scipy.optimize import minimize_scalar
 
     def outside(points: Array) -> Array:
         wall = np.hypot(*points) - bore_radius
