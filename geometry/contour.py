@@ -222,13 +222,6 @@ class Contour(ABC):
         """Minimum gap between the follower and the contour away from their contact."""
         return self._second_contact
 
-    def clearance(self) -> Extremum:
-        """Minimum gap between follower and contour away from the contact, m, and cam angle.
-
-        Negative where the follower cuts in; infinite where no other part of the contour faces it.
-        """
-        return Extremum(self._second_contact.clearance, self._second_contact.theta)
-
     @cached_property
     def _crossings(self) -> tuple[tuple[float, float], ...]:
         return crossings(self.points, self.velocity, self.factor, self.lift.search_count)

@@ -130,20 +130,6 @@ def spring_deflection(energy: ArrayLike, spring_rate: float, preload: float) -> 
     )
 
 
-def spring_energy(lift: ArrayLike, spring_rate: float, preload: float) -> Array:
-    """Energy P s + k s^2 / 2 a spring holds beyond that of its preload, J.
-
-    Parameters
-    ----------
-    lift : array (...)     s, m
-    spring_rate : float    k, N/m, > 0
-    preload : float        P, N, >= 0
-    """
-    _require_spring(spring_rate, preload)
-    s = finite("lift", lift)
-    return readonly(s * (preload + 0.5 * spring_rate * s))
-
-
 def _energy_curve(theta: Array, cam_torque: Array) -> tuple[PeriodicPolynomial, float]:
     """The integral of the torque from angle 0, J, and its gain over the turn."""
     require_uniform_turn("theta", theta)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,13 +15,6 @@ from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.follower_height import face_height
 from camwright.geometry.follower_path import FollowerPath, reciprocal, require_offset
 from camwright.geometry.lift import Lift
-
-
-class FaceTravel(NamedTuple):
-    """Minimum and maximum position of the contact on the face, from the stem's axis, m."""
-
-    low: Extremum
-    high: Extremum
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,24 +167,13 @@ class FlatFaceContour(Contour):
     def _gap(self, contact: Array, other: Array) -> Array:
         return self.pitch.height(contact) - np.sum(self.normal(contact) * self.points(other), 0)
 
-    def radius_of_curvature_min(self) -> Extremum:
-        """Minimum radius of curvature, m, and its cam angle; at or below zero: undercut."""
-        return least(self.radius_of_curvature, self.lift.search_count)
-
-    def face_travel(self) -> FaceTravel:
-        """Extremes of the contact's position s' - e on the face, m."""
+    def face_width_min(self) -> float:
+        """Minimum width 2 max|s' - e| of a face centred on the stem, m."""
         count = self.lift.search_count
-        return FaceTravel(least(self.pitch.push_arm, count), greatest(self.pitch.push_arm, count))
+        low, high = least(self.pitch.push_arm, count), greatest(self.pitch.push_arm, count)
+        return 2.0 * max(high.value, -low.value)
 
-    def face_width_min(self, half_width: float = 0.0) -> float:
-        """Minimum width of a face centred on the stem, m.
-
-        `half_width` (m) is the half-width of the contact, which both edges must clear.
-        """
-        low, high = self.face_travel()
-        return 2.0 * (max(high.value, -low.value) + half_width)
-
-    def require_face(self, width: float, half_width: float = 0.0) -> None:
+    def require_face(self, width: float) -> None:
         """Check that the contact stays on a face of `width`, m.
 
         Raises
@@ -199,11 +181,7 @@ class FlatFaceContour(Contour):
         InputError
             If the face is not wider than the travel of the contact requires.
         """
-        needed = self.face_width_min(half_width)
+        needed = self.face_width_min()
         if not width > needed:
             limit = f"> {needed:.6g} m, twice the greatest |s' - cam.offset|"
             raise InputError("follower.face.width", f"{width:g} m", limit)
-
-    def base_radius_min(self, curvature_radius: float = 0.0) -> float:
-        """Least base radius (m) that keeps the radius of curvature at `curvature_radius` (m)."""
-        return self.pitch.base_radius + curvature_radius - self.radius_of_curvature_min().value

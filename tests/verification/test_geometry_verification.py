@@ -108,7 +108,7 @@ def test_circle_has_neither_hollow_nor_double_point(offset):
     assert not cam.undercut().present
     assert cam.self_intersections() == ()
     assert cam.concave_radius_min().value == np.inf
-    assert cam.clearance().value == np.inf
+    assert cam.second_contact().clearance == np.inf
 
 
 @with_offsets
@@ -160,10 +160,10 @@ def test_no_extreme_hides_between_samples(amplitudes, phases, roller_radius, off
     # nearer to zero than this a swallow-tail is smaller than the round-off of its points
     if cam.undercut().factor > 1e-6:
         assert cam.self_intersections() == ()
-        assert cam.clearance().value > 0
+        assert cam.second_contact().clearance > 0
     if cam.undercut().factor < -1e-6:
         assert cam.self_intersections()
-        assert cam.second_contact().touches
+        assert cam.second_contact().clearance <= 0
 
 
 @pytest.mark.parametrize("turn", [0.1, 2.5])
@@ -182,7 +182,9 @@ def test_turning_the_cam_changes_nothing(turn):
     )
     assert later.area() == pytest.approx(plain.area(), rel=1e-13)
     assert later.undercut().factor == pytest.approx(plain.undercut().factor, rel=1e-10)
-    assert later.clearance().value == pytest.approx(plain.clearance().value, rel=1e-6)
+    assert later.second_contact().clearance == pytest.approx(
+        plain.second_contact().clearance, rel=1e-6
+    )
 
 
 def wavy():

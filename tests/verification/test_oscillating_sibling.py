@@ -161,7 +161,7 @@ def test_the_roller_touches_the_contour_without_cutting_it():
         assert away.min() == pytest.approx(ROLLER, abs=1e-8)  # sagitta of the polygon
     assert not CAM.undercut().present
     assert CAM.self_intersections() == ()
-    assert CAM.clearance().value > 0
+    assert CAM.second_contact().clearance > 0
 
 
 def test_speed_and_curvature_are_derivatives_of_the_points():

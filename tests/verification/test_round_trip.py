@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.extrema import least
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.follower_height import face_height, roller_height
 from camwright.geometry.motion_laws import LAWS, Motion, Segment
@@ -47,7 +48,7 @@ def lifts(draw):
 def test_roller_let_down_on_the_contour_moves_by_the_lift(lift, offset, roller):
     pitch = PitchCurve(lift, 0.045, offset)
     contour = RollerContour(pitch, roller)
-    assume(not contour.undercut().present and contour.clearance().value > 0)
+    assume(not contour.undercut().present and contour.second_contact().clearance > 0)
     found = roller_height(contour.polygon(POINTS), roller, offset, THETA)
     np.testing.assert_allclose(
         found - pitch.height_base, lift(THETA), rtol=0, atol=TOLERANCE * lift.stroke
@@ -57,8 +58,8 @@ def test_roller_let_down_on_the_contour_moves_by_the_lift(lift, offset, roller):
 @settings(max_examples=25, deadline=None)
 @given(lifts(), st.floats(-0.01, 0.01))
 def test_face_let_down_on_the_contour_moves_by_the_lift(lift, offset):
-    drawn = FlatFaceContour(FacePath(lift, 0.02, offset))
-    base = max(drawn.base_radius_min(0.003), 0.011)
+    bend = least(lambda theta: lift(theta) + lift(theta, 2), lift.search_count).value
+    base = max(0.003 - bend, 0.011)  # radius of curvature r + s + s'' of 3 mm at least
     contour = FlatFaceContour(FacePath(lift, base, offset))
     found = face_height(contour.polygon(POINTS), THETA)
     np.testing.assert_allclose(found - base, lift(THETA), rtol=0, atol=TOLERANCE * lift.stroke)
