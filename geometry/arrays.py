@@ -56,6 +56,12 @@ def uniform_turn(count: int) -> Array:
     return readonly(np.arange(count) * (FULL_TURN / count))
 
 
+def rotation(angle: float) -> Array:
+    """Matrix (2, 2) that turns vectors counter-clockwise by `angle`, rad."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
 def freeze(instance: Any, **arrays: ArrayLike) -> None:
     """Set read-only array fields of a frozen dataclass from its ``__post_init__``."""
     for name, values in arrays.items():

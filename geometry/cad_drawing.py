@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array, freeze, positive, readonly
+from camwright.geometry.arrays import FULL_TURN, Array, freeze, positive
 from camwright.geometry.contour import Contour
+from camwright.geometry.cutouts import HoleLike, KeywayLike, keyway_corners
 from camwright.geometry.errors import GeometryError, InputError, ResultError
 
 if TYPE_CHECKING:
@@ -32,17 +33,6 @@ _MILLIMETRE = 1e-3
 _METRIC = 4  # the code of millimetres in a DXF header
 
 
-class KeywayLike(Protocol):
-    """A slot into the bore: `width` across, `depth` beyond the bore radius (m), at `angle`."""
-
-    @property
-    def width(self) -> float: ...
-    @property
-    def depth(self) -> float: ...
-    @property
-    def angle(self) -> float: ...
-
-
 class CurveLike(Protocol):
     """A closed curve by cam angle: the contour or the pitch curve."""
 
@@ -60,15 +50,6 @@ class Chords:
 
     def __post_init__(self) -> None:
         freeze(self, theta=self.theta, points=self.points)
-
-
-class HoleLike(Protocol):
-    """A round hole: its middle (2,) and radius, m."""
-
-    @property
-    def centre(self) -> Array: ...
-    @property
-    def radius(self) -> float: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +83,7 @@ def chords(contour: Contour, error: float | None = None) -> Chords:
     A chord of length L leaves a curve of curvature k by k L^2 / 8; the angles are spaced so
     that this is the same everywhere. The place of the greatest radius is always a point.
     """
-    _require_body(contour)
+    contour.require_no_undercut()
     if error is None:
         error = AREA_ERROR * contour.area() / contour.perimeter()
     positive("chord_error", error, "m")
@@ -197,17 +178,6 @@ def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float
     return drawn.error
 
 
-def keyway_corners(bore_radius: float, keyway: KeywayLike) -> Array:
-    """Corners of a keyway, (2, 4), m: on the bore, at the floor twice, on the bore again."""
-    half = 0.5 * keyway.width
-    if not half < bore_radius:
-        raise InputError("cam.keyway.width", keyway.width, f"< {2 * bore_radius:g} m")
-    mouth, floor = np.sqrt(bore_radius**2 - half**2), bore_radius + keyway.depth
-    local = np.array([[mouth, floor, floor, mouth], [-half, -half, half, half]])
-    cos, sin = np.cos(keyway.angle), np.sin(keyway.angle)
-    return readonly(np.array([[cos, -sin], [sin, cos]]) @ local)
-
-
 def _add_spline(space: Modelspace, curve: CurveLike, layer: str) -> None:
     spline = clamped_spline(curve)
     drawn: Any = space.add_spline(degree=_SPLINE_DEGREE, dxfattribs={"layer": layer})
@@ -226,8 +196,3 @@ def _add_hole(space: Modelspace, outline: Outline) -> None:
     space.add_arc((0.0, 0.0), radius, turned[3], turned[0], dxfattribs={"layer": "bore"})
     points = [(x, y) for x, y in corners.T.tolist()]
     space.add_lwpolyline(points, dxfattribs={"layer": "keyway"})
-
-
-def _require_body(contour: Contour) -> None:
-    if contour.undercut().present:
-        raise GeometryError("the contour is undercut, it cannot be drawn for the shop")

@@ -111,6 +111,21 @@ class Contour(ABC):
     def undercut(self) -> Undercut:
         """Minimum undercut factor over the continuous turn."""
 
+    def require_no_undercut(self) -> None:
+        """Check that the contour bounds a body.
+
+        Raises
+        ------
+        GeometryError
+            If the contour is undercut.
+        """
+        theta, factor = self.undercut()
+        if not factor > 0:
+            where = f"at cam angle {np.degrees(theta):.2f} deg"
+            raise GeometryError(
+                f"undercut factor of the contour = {factor:.4g} {where}, must be > 0"
+            )
+
     @abstractmethod
     def curvature(self, theta: ArrayLike) -> Array:
         """Signed curvature, 1/m, positive where convex; infinite at a cusp."""

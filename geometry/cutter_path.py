@@ -38,8 +38,7 @@ def cutter_path(contour: Contour, tool_radius: float, theta: Array) -> CutterPat
     Rothbart, Cam Design Handbook (2004), sec. 6.4: the cutter's centre as a parallel curve.
     """
     positive("tool.radius", tool_radius, "m")
-    if contour.undercut().present:
-        raise GeometryError("the contour is undercut, no tool can cut it")
+    contour.require_no_undercut()
     hollow = contour.concave_radius_min()
     if not tool_radius < hollow.value:
         raise GeometryError(

@@ -48,15 +48,26 @@ def valleys(function: Function, count: int) -> tuple[Array, Array]:
     low = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
     # a flat function brackets everywhere; its lowest samples say all there is to say
     low = low[np.argsort(values[low], kind="stable")[:_VALLEYS_MAX]]
-    centre, best, half = theta[low], values[low], FULL_TURN / count
-    for _ in range(_ZOOMS):
+    best, where = refined(function, theta[low], FULL_TURN / count, _ZOOMS)
+    return best, np.mod(where, FULL_TURN)
+
+
+def refined(function: Function, centre: Array, half: float, zooms: int) -> tuple[Array, Array]:
+    """Minima (m,) within `half` of centres (m,), each by nine points a zoom, and their places.
+
+    Parameters
+    ----------
+    function : callable    (m, 9) -> (m, 9), a row per centre
+    """
+    best = np.full(centre.shape, np.nan)
+    for _ in range(zooms):
         trial = centre[:, None] + half * _ZOOM_POINTS
-        found = function(trial)
-        pick = np.argmin(found, axis=1)[:, None]
+        values = function(trial)
+        pick = np.argmin(values, axis=1)[:, None]
         centre = np.take_along_axis(trial, pick, axis=1)[:, 0]
-        best = np.take_along_axis(found, pick, axis=1)[:, 0]
+        best = np.take_along_axis(values, pick, axis=1)[:, 0]
         half /= 4.0
-    return best, np.mod(centre, FULL_TURN)
+    return best, centre
 
 
 def least(function: Function, count: int) -> Extremum:

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite
 from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.extrema import refined
 
-_ZOOM_POINTS = np.linspace(-1.0, 1.0, 9)
 _ZOOMS = 13
 _LEAST_POINTS = 24
 
@@ -80,16 +80,13 @@ def _highest(polygon: ArrayLike, standing: Standing, theta: ArrayLike) -> Array:
     curve = CubicSpline(parameter, closed, axis=1, bc_type="periodic")
     first = standing(points[0][:, None], points[1][:, None], angle[None, :])
     best = np.argmax(first, axis=0)
-    columns = np.arange(angle.size)
-    top = first[best, columns]
+    top = first[best, np.arange(angle.size)]
     if not np.isfinite(top).all():
         raise GeometryError("the follower's axis misses the contour")
-    centre, half = parameter[best], np.diff(parameter).max()
-    for _ in range(_ZOOMS):
-        trial = centre + half * _ZOOM_POINTS[:, None]
+
+    def depth(trial: Array) -> Array:
         x, y = curve(np.mod(trial, FULL_TURN))
-        found = standing(x, y, angle[None, :])
-        pick = np.argmax(found, axis=0)
-        centre, top = trial[pick, columns], np.maximum(top, found[pick, columns])
-        half /= 4.0
-    return top
+        return -standing(x, y, angle[:, None])
+
+    lowest, _ = refined(depth, parameter[best], np.diff(parameter).max(), _ZOOMS)
+    return np.maximum(top, -lowest)

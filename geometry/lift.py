@@ -88,7 +88,13 @@ class Lift:
             end, negative lifts, NaN.
         """
         angle, value = finite("lift.theta", theta), finite("lift.values", values)
-        angle, value, closure = _one_turn(angle, value)
+        angle, value, closure = one_turn(angle, value)
+        if len(angle) < LEAST_SAMPLES:
+            raise InputError("lift.theta", f"{len(angle)} angles", f">= {LEAST_SAMPLES} angles")
+        gaps = np.append(np.diff(angle), angle[0] + FULL_TURN - angle[-1])
+        if gaps.max() > GAP_MAX + ANGLE_TOLERANCE:
+            where = f"a gap of {gaps.max():.6g} rad after {angle[np.argmax(gaps)]:.6g} rad"
+            raise InputError("lift.theta", where, f"without gaps above {GAP_MAX:.6g} rad")
         if not value.min() >= -NEGATIVE_TOLERANCE:
             raise InputError("lift.values", float(value.min()), ">= 0 m")
         even = uniform_turn(len(angle))
@@ -173,28 +179,32 @@ def require_uniform_turn(field: str, theta: Array) -> None:
         raise InputError(field, wrong, "equally spaced over [0, 2 pi) rad, from 0")
 
 
-def _one_turn(theta: Array, values: Array) -> tuple[Array, Array, float]:
-    """A checked table without its repeated end, and what the end missed the start by (m)."""
+def one_turn(theta: Array, values: Array, field: str = "lift.theta") -> tuple[Array, Array, float]:
+    """A table over one turn without its repeated end, and the difference of its ends, m.
+
+    Parameters
+    ----------
+    theta : array (n,)     cam angle, rad, strictly increasing; `field` is its name in errors
+    values : array (n,)    lift, m
+
+    Raises
+    ------
+    InputError
+        For angles that do not increase, more than one turn, or an open end.
+    """
     if theta.ndim != 1 or theta.shape != values.shape:
         shapes = f"{theta.shape} angles and {values.shape} values"
         raise InputError("lift", shapes, "a row of angles and as many values")
-    steps = np.diff(theta)
-    if not (steps > ANGLE_TOLERANCE).all():
-        wrong = float(theta[1:][~(steps > ANGLE_TOLERANCE)][0])
-        raise InputError("lift.theta", wrong, "strictly increasing")
+    rising = np.diff(theta) > ANGLE_TOLERANCE
+    if not rising.all():
+        raise InputError(field, float(theta[1:][~rising][0]), "strictly increasing")
     span = float(theta[-1] - theta[0]) if len(theta) else 0.0
     closure = 0.0
     if span > FULL_TURN + ANGLE_TOLERANCE:
-        raise InputError("lift.theta", float(theta[-1]), "within one turn of the first angle")
+        raise InputError(field, float(theta[-1]), "within one turn of the first angle")
     if span > FULL_TURN - ANGLE_TOLERANCE:
         closure = float(abs(values[-1] - values[0]))
         theta, values = readonly(theta[:-1]), readonly(values[:-1])
     if not closure <= CLOSURE_LIMIT:
         raise InputError("lift.closure", closure, f"<= {CLOSURE_LIMIT:g} m: the turn must close")
-    if len(theta) < LEAST_SAMPLES:
-        raise InputError("lift.theta", f"{len(theta)} angles", f">= {LEAST_SAMPLES} angles")
-    gaps = np.append(np.diff(theta), theta[0] + FULL_TURN - theta[-1])
-    if gaps.max() > GAP_MAX + ANGLE_TOLERANCE:
-        where = f"a gap of {gaps.max():.6g} rad after {theta[np.argmax(gaps)]:.6g} rad"
-        raise InputError("lift.theta", where, f"without gaps above {GAP_MAX:.6g} rad")
     return theta, values, closure

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
-from camwright.geometry.lift import ANGLE_TOLERANCE, CLOSURE_LIMIT, Lift
+from camwright.geometry.lift import Lift, one_turn
 from camwright.geometry.periodic_spline import DEGREE, LEAST_SAMPLES, interpolant
 
 POINTS_MIN = DEGREE + 1
@@ -131,18 +131,4 @@ def _not_below_zero(values: Array) -> Array:
 
 def _table(theta: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
     angle, value = finite("lift.angle", theta), finite("lift.lift", values)
-    if angle.ndim != 1 or angle.shape != value.shape or not angle.size:
-        raise InputError("lift", f"{angle.shape} and {value.shape}", "as many angles as lifts")
-    steps = np.diff(angle)
-    if not (steps > ANGLE_TOLERANCE).all():
-        wrong = float(angle[1:][~(steps > ANGLE_TOLERANCE)][0])
-        raise InputError("lift.angle", wrong, "strictly increasing")
-    span = float(angle[-1] - angle[0])
-    if span > FULL_TURN + ANGLE_TOLERANCE:
-        raise InputError("lift.angle", float(angle[-1]), "within one turn of the first angle")
-    if span > FULL_TURN - ANGLE_TOLERANCE:
-        gap = float(abs(value[-1] - value[0]))
-        if not gap <= CLOSURE_LIMIT:
-            raise InputError("lift.closure", gap, f"<= {CLOSURE_LIMIT:g} m: the turn must close")
-        angle, value = angle[:-1], value[:-1]
-    return angle, value
+    return one_turn(angle, value, "lift.angle")[:2]

@@ -59,28 +59,28 @@ class SliderCrank:
         return self.top - self.bottom
 
     def travel(self, theta: ArrayLike) -> NDArray[Any]:
-        """Way of the slider from its top dead centre (m), at crank angles (rad), any shape.
+        """Distance of the slider from its top dead centre, m, at crank angles (...), rad.
 
-        Complex angles are taken too, for derivatives by a complex step.
+        Complex angles are allowed, for derivatives by a complex step.
         """
-        theta = np.asarray(theta)
-        across = self.crank_radius * np.sin(theta) - self.offset
-        along = np.sqrt(self.rod_length**2 - across**2)
-        return np.asarray(self.top - self.crank_radius * np.cos(theta) - along)
+        _, cos, _, along = self._rod(theta)
+        return np.asarray(self.top - self.crank_radius * cos - along)
 
     def travel_rate(self, theta: ArrayLike) -> NDArray[Any]:
         """First derivative of the travel, m/rad."""
-        theta = np.asarray(theta)
-        r, sin, cos = self.crank_radius, np.sin(theta), np.cos(theta)
-        across = r * sin - self.offset
-        along = np.sqrt(self.rod_length**2 - across**2)
+        sin, cos, across, along = self._rod(theta)
+        r = self.crank_radius
         return np.asarray(r * sin + across * r * cos / along)
 
     def travel_acceleration(self, theta: ArrayLike) -> NDArray[Any]:
         """Second derivative of the travel, m/rad^2."""
-        theta = np.asarray(theta)
-        r, sin, cos = self.crank_radius, np.sin(theta), np.cos(theta)
-        across = r * sin - self.offset
-        along = np.sqrt(self.rod_length**2 - across**2)
+        sin, cos, across, along = self._rod(theta)
+        r = self.crank_radius
         bend = ((r * cos) ** 2 - across * r * sin) / along + (across * r * cos) ** 2 / along**3
         return np.asarray(r * cos + bend)
+
+    def _rod(self, theta: ArrayLike) -> tuple[NDArray[Any], ...]:
+        """Sine and cosine of the crank angle, rod across and along the slider's line, m."""
+        sin, cos = np.sin(theta), np.cos(theta)
+        across = self.crank_radius * sin - self.offset
+        return sin, cos, across, np.sqrt(self.rod_length**2 - across**2)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, rotation, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.lift import Lift
@@ -87,7 +87,7 @@ def inspected(contour: Contour, points: ArrayLike) -> Inspection:
     measured = _checked(points)
     phase, size = _rough_phase(contour, measured), 0.0
     for _ in range(_STEPS_MAX):
-        turned = _turned(measured, -phase)
+        turned = rotation(-phase) @ measured
         theta, distance = _feet(contour, turned)
         normal = contour.normal(theta)
         # turning the part on by d(phase) takes its points back against the drawing
@@ -99,7 +99,7 @@ def inspected(contour: Contour, points: ArrayLike) -> Inspection:
             break
     else:
         raise GeometryError("measured contour: the phase cannot be told, is the part a circle?")
-    theta, distance = _feet(contour, _turned(measured, -phase))
+    theta, distance = _feet(contour, rotation(-phase) @ measured)
     cosine, sine = _harmonics(theta, distance)
     left = distance - Inspection(0, 0, theta, distance, cosine, sine, 0).form(theta)
     phase = float(np.mod(phase + np.pi, FULL_TURN) - np.pi)
@@ -119,7 +119,7 @@ def real_contour(contour: Contour, found: Inspection, *, keep_phase: bool = Fals
     theta = uniform_turn(_POLYGON)
     surface = contour.points(theta) + found.form(theta) * contour.normal(theta)
     if keep_phase:
-        surface = _turned(surface, found.phase)
+        surface = rotation(found.phase) @ surface
     angles = uniform_turn(_SAMPLES)
     height = contour.standing(surface, angles)
     rough = Lift(angles, height - height.min())
@@ -191,8 +191,3 @@ def _harmonics(theta: Array, deviation: Array) -> tuple[Array, Array]:
 
 def _polar(points: Array) -> tuple[Array, Array]:
     return np.mod(np.arctan2(points[1], points[0]), FULL_TURN), np.hypot(*points)
-
-
-def _turned(points: Array, angle: float) -> Array:
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.array([[cos, -sin], [sin, cos]]) @ points

@@ -12,12 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import Array, finite, freeze, positive
-from camwright.geometry.cad_drawing import HoleLike
+from camwright.geometry.arrays import Array, finite, freeze, positive, rotation
+from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import InputError, MeshError
 from camwright.meshes.cam_outline import (
     ContourLike,
-    KeywayLike,
     cam_size,
     contour_piece,
     hole_pieces,
@@ -79,13 +78,6 @@ class BodyMesh:
         digest.update(np.ascontiguousarray(self.triangles, dtype="<i8").tobytes())
         return digest.hexdigest()
 
-    @cached_property
-    def area(self) -> float:
-        """Area within the curved boundary, m2."""
-        # The Jacobian is quadratic, so the mean over the three edge middles is exact.
-        jacobians = (self.jacobian(*at) for at in ((0.5, 0.0), (0.5, 0.5), (0.0, 0.5)))
-        return float(sum(np.linalg.det(j).sum() for j in jacobians) / 6.0)
-
     def jacobian(self, xi: float, eta: float) -> Array:
         """Derivatives (m, 2, 2) of position by the reference coordinates (xi, eta), m.
 
@@ -115,9 +107,8 @@ class BodyMesh:
 
     def transformed(self, angle: float, shift: ArrayLike) -> BodyMesh:
         """The body turned by `angle` (rad) about the origin, then moved by `shift` (2,), m."""
-        cosine, sine = np.cos(angle), np.sin(angle)
-        turn = np.array([[cosine, -sine], [sine, cosine]])
-        return replace(self, points=turn @ self.points + finite("shift", shift)[:, None])
+        points = rotation(angle) @ self.points + finite("shift", shift)[:, None]
+        return replace(self, points=points)
 
     def to_skfem(self) -> Any:
         """The mesh as ``skfem.MeshTri2``: same elements in the same order, facets by name.

@@ -7,8 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
-from camwright.geometry.arrays import FULL_TURN, Array, positive
-from camwright.geometry.cad_drawing import HoleLike
+from camwright.geometry.arrays import FULL_TURN, Array, positive, rotation
+from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
 from camwright.meshes.outline import Piece, Zone, arc, line
@@ -24,32 +24,6 @@ class ContourLike(Protocol):
     def points(self, theta: Array) -> Array: ...
     def normal(self, theta: Array) -> Array: ...
     def curvature(self, theta: Array) -> Array: ...
-
-
-class KeywayLike(Protocol):
-    """A slot into the bore: `width` across, `depth` beyond the bore radius (m), at `angle` (rad).
-
-    `fillet` (m) rounds its two inner corners; at 0 they are sharp.
-    """
-
-    @property
-    def width(self) -> float: ...
-    @property
-    def depth(self) -> float: ...
-    @property
-    def angle(self) -> float: ...
-    @property
-    def fillet(self) -> float: ...
-
-
-@dataclass(frozen=True)
-class Keyway:
-    """A plain keyway; see `KeywayLike`."""
-
-    width: float
-    depth: float
-    angle: float = 0.0
-    fillet: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +127,7 @@ def cam_size(
     size = sizing.field()
     size = size.with_spot((0.0, 0.0), FULL_TURN * bore_radius / EDGES_PER_TURN, bore_radius)
     if keyway is not None:
-        centre = _keyway_frame(keyway) @ np.array([bore_radius + 0.5 * keyway.depth, 0.0])
+        centre = rotation(keyway.angle) @ np.array([bore_radius + 0.5 * keyway.depth, 0.0])
         extent = 0.5 * float(np.hypot(keyway.width, keyway.depth))
         size = size.with_spot(centre, min(keyway.width, keyway.depth) / 3.0, extent)
         size = _finer_at_fillets(size, bore_radius, keyway)
@@ -185,7 +159,7 @@ def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -
     if fillet > 0:
         outer, half = bore_radius + keyway.depth, 0.5 * keyway.width
         for side in (-1.0, 1.0):
-            corner = _keyway_frame(keyway) @ np.array([outer - fillet, side * (half - fillet)])
+            corner = rotation(keyway.angle) @ np.array([outer - fillet, side * (half - fillet)])
             size = size.with_spot(corner, 0.5 * np.pi * fillet / 4.0, fillet)
     return size
 
@@ -200,7 +174,7 @@ def least_wall(path: Trace, bore_radius: float, keyway: KeywayLike | None) -> tu
     def outside(points: Array) -> Array:
         wall = np.hypot(*points) - bore_radius
         if keyway is not None:
-            local = _keyway_frame(keyway).T @ points
+            local = rotation(keyway.angle).T @ points
             beyond = np.array(
                 [local[0] - bore_radius - keyway.depth, np.abs(local[1]) - 0.5 * keyway.width]
             )
@@ -250,7 +224,7 @@ def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
     fillet_max = 0.8 * min(half, outer - bore_radius * np.cos(mouth))
     if not 0 <= fillet <= fillet_max:
         raise InputError("cam.keyway.fillet", fillet, f"in 0..{fillet_max:g} m")
-    frame, x = _keyway_frame(keyway), bore_radius * np.cos(mouth)
+    frame, x = rotation(keyway.angle), bore_radius * np.cos(mouth)
     # Clockwise: along the bore from the lower edge of the mouth round to the upper one ...
     pieces = [arc("bore", bore_radius, keyway.angle + FULL_TURN - mouth, keyway.angle + mouth)]
     # ... then into the slot along its upper side, down its floor, and back.
@@ -268,8 +242,3 @@ def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
         pieces.append(arc("keyway", fillet, keyway.angle, keyway.angle - 0.5 * np.pi, centre))
     pieces.append(line("keyway", corners[4], corners[5]))
     return pieces
-
-
-def _keyway_frame(keyway: KeywayLike) -> Array:
-    cosine, sine = np.cos(keyway.angle), np.sin(keyway.angle)
-    return np.array([[cosine, -sine], [sine, cosine]])

@@ -12,7 +12,8 @@ from types import ModuleType
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, positive
-from camwright.geometry.cad_drawing import Outline, clamped_spline, keyway_corners
+from camwright.geometry.cad_drawing import Outline, clamped_spline
+from camwright.geometry.cutouts import keyway_corners
 from camwright.geometry.errors import GeometryError, MeshError, ResultError
 from camwright.meshes.element_size import MILLIMETRE
 from camwright.meshes.gmsh_mesher import session
@@ -35,8 +36,7 @@ def write_step(path: Path, outline: Outline, width: float) -> None:
         If the file cannot be written.
     """
     positive("cam.width", width, "m")
-    if outline.contour.undercut().present:
-        raise GeometryError("the contour is undercut, it bounds no solid")
+    outline.contour.require_no_undercut()
     try:
         with session() as gmsh:
             occ = gmsh.model.occ

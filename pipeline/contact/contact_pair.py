@@ -13,11 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.cad_drawing import HoleLike
 from camwright.geometry.contour import Contour
+from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import ContactError
 from camwright.meshes.body_mesh import BodyMesh, cam_mesh
-from camwright.meshes.cam_outline import KeywayLike
 from camwright.meshes.element_size import Sizing
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.body_compliance import Correction, LoadedBody

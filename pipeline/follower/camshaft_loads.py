@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize_scalar
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
-from camwright.geometry.cad_drawing import KeywayLike
 from camwright.geometry.contour import Contour
+from camwright.geometry.cutouts import KeywayLike
 from camwright.geometry.errors import GeometryError, InputError
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cam_parts import Keyway
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -17,7 +18,6 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import roller_mesh
 from camwright.meshes.calculix_deck import DeckBody, write_deck
-from camwright.meshes.cam_outline import Keyway
 from camwright.meshes.element_size import Sizing
 from camwright.pipeline.base.tables import Table
 from camwright.pipeline.contact.certificate import SolvedPair, solve_pair

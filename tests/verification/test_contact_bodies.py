@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from cam_parts import Keyway
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import roller_mesh
-from camwright.meshes.cam_outline import Keyway
 from camwright.meshes.element_size import Sizing
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact.body_compliance import LoadedBody

@@ -267,7 +267,7 @@ def test_bore_agrees_with_the_whole_field():
 
 
 def test_bore_grows_with_the_load_and_names_the_edges_of_the_keyway():
-    from camwright.meshes.cam_outline import Keyway
+    from cam_parts import Keyway
 
     pair = pair_of(0.0, Keyway(0.005, 0.0023, 0.0))
     bodies = CycleBodies.meshed(pair)

@@ -7,15 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cam_parts import Keyway
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.cad_drawing import LAYERS, Outline, chords, keyway_corners, write_dxf
+from camwright.geometry.cad_drawing import LAYERS, Outline, chords, write_dxf
 from camwright.geometry.contour import Contour, RollerContour
+from camwright.geometry.cutouts import keyway_corners
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.meshes.cam_outline import Keyway
 from camwright.meshes.gmsh_mesher import session
 from camwright.meshes.step_solid import write_step
 from camwright.pipeline.results.workshop_files import contour_table, inspection_sheet
