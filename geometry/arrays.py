@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.errors import InputError
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
 Array = NDArray[np.float64]
+
+Values = TypeVar("Values", NDArray[np.float64], NDArray[np.complex128])
+"""Real values, or complex ones while a derivative is taken by a complex step."""
 
 FULL_TURN = 2.0 * np.pi
 
@@ -62,7 +68,7 @@ def rotation(angle: float) -> Array:
     return np.array([[cosine, -sine], [sine, cosine]])
 
 
-def freeze(instance: Any, **arrays: ArrayLike) -> None:
+def freeze(instance: DataclassInstance, **arrays: ArrayLike) -> None:
     """Set read-only array fields of a frozen dataclass from its ``__post_init__``."""
     for name, values in arrays.items():
         object.__setattr__(instance, name, readonly(values))

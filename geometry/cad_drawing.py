@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -125,7 +125,7 @@ def clamped_spline(
         points = curve.points(theta)
         if stop - start == FULL_TURN:
             points[:, -1] = points[:, 0]  # not a round-off apart
-        ends: Any = ([(1, first)], [(1, last)])
+        ends = ([(1, first)], [(1, last)])
         spline = make_interp_spline(theta, points.T, _SPLINE_DEGREE, bc_type=ends)
         between = theta[:-1, None] + np.array([0.25, 0.5, 0.75]) * (theta[1] - theta[0])
         missed = spline(between.ravel()).T - curve.points(between.ravel())
@@ -180,7 +180,7 @@ def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float
 
 def _add_spline(space: Modelspace, curve: CurveLike, layer: str) -> None:
     spline = clamped_spline(curve)
-    drawn: Any = space.add_spline(degree=_SPLINE_DEGREE, dxfattribs={"layer": layer})
+    drawn = space.add_spline(degree=_SPLINE_DEGREE, dxfattribs={"layer": layer})
     drawn.control_points = [(x, y, 0.0) for x, y in (spline.c / _MILLIMETRE).tolist()]
     drawn.knots = spline.t.tolist()
     drawn.dxf.flags = drawn.dxf.flags | drawn.CLOSED

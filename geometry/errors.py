@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+Refused = str | float | tuple[float, ...] | None
+"""Value of an input that is out of bounds: text, number, shape, or None where it is missing."""
 
 
 class CamError(Exception):
@@ -15,17 +16,16 @@ class InputError(CamError):
     Parameters
     ----------
     field : str    dotted name of the input, such as ``roller.radius``
-    value : Any    what was given
+    value : Refused    value of the input
     limit : str    what would be accepted, such as ``> 0 m``
     """
 
-    def __init__(self, field: str, value: Any, limit: str) -> None:
+    def __init__(self, field: str, value: Refused, limit: str) -> None:
         self.field, self.value, self.limit = field, value, limit
         super().__init__(field, value, limit)
 
     def __str__(self) -> str:
-        shown = self.value if isinstance(self.value, (str, int, float)) else repr(self.value)
-        text = " ".join(str(shown).split())
+        text = " ".join(str(self.value).split())
         shortened = text if len(text) <= 80 else f"{text[:30]}...{text[-47:]}"  # paths end in names
         return f"{self.field} = {shortened}, must be {self.limit}"
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 
 
@@ -58,28 +58,25 @@ class SliderCrank:
     def stroke(self) -> float:
         return self.top - self.bottom
 
-    def travel(self, theta: ArrayLike) -> NDArray[Any]:
-        """Distance of the slider from its top dead centre, m, at crank angles (...), rad.
-
-        Complex angles are allowed, for derivatives by a complex step.
-        """
+    def travel(self, theta: ArrayLike) -> Array:
+        """Distance of the slider from its top dead centre, m, at crank angles (...), rad."""
         _, cos, _, along = self._rod(theta)
         return np.asarray(self.top - self.crank_radius * cos - along)
 
-    def travel_rate(self, theta: ArrayLike) -> NDArray[Any]:
+    def travel_rate(self, theta: ArrayLike) -> Array:
         """First derivative of the travel, m/rad."""
         sin, cos, across, along = self._rod(theta)
         r = self.crank_radius
         return np.asarray(r * sin + across * r * cos / along)
 
-    def travel_acceleration(self, theta: ArrayLike) -> NDArray[Any]:
+    def travel_acceleration(self, theta: ArrayLike) -> Array:
         """Second derivative of the travel, m/rad^2."""
         sin, cos, across, along = self._rod(theta)
         r = self.crank_radius
         bend = ((r * cos) ** 2 - across * r * sin) / along + (across * r * cos) ** 2 / along**3
         return np.asarray(r * cos + bend)
 
-    def _rod(self, theta: ArrayLike) -> tuple[NDArray[Any], ...]:
+    def _rod(self, theta: ArrayLike) -> tuple[Array, ...]:
         """Sine and cosine of the crank angle, rod across and along the slider's line, m."""
         sin, cos = np.sin(theta), np.cos(theta)
         across = self.crank_radius * sin - self.offset

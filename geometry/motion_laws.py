@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
+from camwright.geometry.arrays import FULL_TURN, Array, Values, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 
@@ -30,21 +30,33 @@ _QUARTER = 4.0 * np.pi
 _TRAPEZOID = 8.0 * np.pi / (2.0 + np.pi)
 _SINE = 4.0 * np.pi**2 / (4.0 + np.pi)
 
-Values = NDArray[Any]
-"""Real values; complex ones in derivatives by a complex step."""
+
+class Piece(Protocol):
+    """Value or derivative of a normalised lift at x (...)."""
+
+    def __call__(self, x: Values, order: int, /) -> Values: ...
 
 
-def _polynomial(coefficients: ArrayLike) -> Callable[[Values, int], Values]:
+def _polynomial(coefficients: ArrayLike) -> Piece:
     rising = np.polynomial.Polynomial(np.asarray(coefficients, dtype=float))
-    derivatives = [rising.deriv(k) if k else rising for k in range(JERK + 1)]
-    return lambda x, k: np.asarray(derivatives[k](x))
+    derivatives: list[list[float]] = [
+        (rising.deriv(k) if k else rising).coef.tolist() for k in range(JERK + 1)
+    ]
+
+    def piece(x: Values, order: int) -> Values:
+        value = np.zeros_like(x)
+        for coefficient in derivatives[order][::-1]:
+            value = value * x + coefficient
+        return value
+
+    return piece
 
 
 def _wave(x: Values, frequency: float, order: int) -> Values:
     """Derivative of cos(frequency x), of the given order."""
-    turned = (np.cos(frequency * x), -np.sin(frequency * x))
+    wave: Values = -np.sin(frequency * x) if order % 2 else np.cos(frequency * x)
     sign = -1.0 if order in (2, 3) else 1.0
-    return sign * frequency**order * turned[order % 2]
+    return sign * frequency**order * wave
 
 
 def _harmonic(x: Values, order: int) -> Values:
@@ -79,7 +91,7 @@ def _after(state: tuple[float, float], way: Values, frequency: float, order: int
     return _from_state(state, way, order) + swing + rest
 
 
-def _state(at: float, piece: Callable[[Values, int], Values]) -> tuple[float, float]:
+def _state(at: float, piece: Piece) -> tuple[float, float]:
     return float(piece(np.array(at), 0)), float(piece(np.array(at), 1))
 
 
@@ -95,17 +107,16 @@ _THREE_EIGHTHS = _state(0.25, _plateau)
 
 
 def _modified_trapezoid(x: Values, order: int) -> Values:
-    pieces = (
-        _start(x, order),
-        _plateau(x - 0.125, order),
-        _after(_THREE_EIGHTHS, x - 0.375, _QUARTER, order),
-    )
-    return _TRAPEZOID * np.where(x.real < 0.125, pieces[0], np.where(x.real < 0.375, *pieces[1:]))
+    late = _after(_THREE_EIGHTHS, x - 0.375, _QUARTER, order)
+    after_start: Values = np.where(x.real < 0.375, _plateau(x - 0.125, order), late)
+    whole: Values = np.where(x.real < 0.125, _start(x, order), after_start)
+    return _TRAPEZOID * whole
 
 
 def _modified_sine(x: Values, order: int) -> Values:
-    pieces = (_start(x, order), _after(_EIGHTH, x - 0.125, _QUARTER / 3.0, order))
-    return _SINE * np.where(x.real < 0.125, *pieces)
+    late = _after(_EIGHTH, x - 0.125, _QUARTER / 3.0, order)
+    whole: Values = np.where(x.real < 0.125, _start(x, order), late)
+    return _SINE * whole
 
 
 def _parabolic(x: Values, order: int) -> Values:
@@ -122,9 +133,9 @@ class Law:
     """
 
     name: str
-    first_half: Callable[[Values, int], Values]
+    first_half: Piece
 
-    def __call__(self, x: ArrayLike, derivative: int = 0) -> Values:
+    def __call__(self, x: Values, derivative: int = 0) -> Values:
         """y or a derivative of it at x (...) within 0 and 1; both ends are exact.
 
         Only the first half is computed; y(x) = 1 - y(1 - x) is the second.
@@ -136,10 +147,8 @@ class Law:
         """
         if derivative not in range(JERK + 1):
             raise InputError("derivative", derivative, "0, 1, 2 or 3")
-        given = np.asarray(x)
-        given = given if np.iscomplexobj(given) else given.astype(float)
-        second = given.real > 0.5
-        half = self.first_half(np.where(second, 1.0 - given, given), derivative)
+        second = x.real > 0.5
+        half = self.first_half(np.where(second, 1.0 - x, x), derivative)
         mirrored = 1.0 - half if derivative == 0 else (-1.0) ** (derivative + 1) * half
         return np.asarray(np.where(second, mirrored, half))
 

@@ -7,17 +7,14 @@ that the checks and the synthesis, which differentiates them, use the same formu
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Values
 from camwright.geometry.follower_path import FollowerPath, cam_axes, reciprocal, require_offset
 from camwright.geometry.lift import Lift
-
-Values = Any
-"""Real, or complex while a derivative is taken by a complex step."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +26,10 @@ from camwright.meshes.cam_outline import (
 from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
 from camwright.meshes.gmsh_mesher import Index, Triangulation, triangulate
 from camwright.meshes.outline import Facets, Piece, Zone, arc, facets, line
+
+if TYPE_CHECKING:
+    from skfem import MeshTri2
+    from skfem.assembly.basis import AbstractBasis
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +114,7 @@ class BodyMesh:
         points = rotation(angle) @ self.points + finite("shift", shift)[:, None]
         return replace(self, points=points)
 
-    def to_skfem(self) -> Any:
+    def to_skfem(self) -> MeshTri2:
         """The mesh as ``skfem.MeshTri2``: same elements in the same order, facets by name.
 
         Vertices keep their numbers. Middles need not; `dof_map` tells which is which.
@@ -133,7 +137,7 @@ class BodyMesh:
             named[name] = order[np.searchsorted(keys, wanted, sorter=order)].astype(np.int32)
         return mesh.with_boundaries(named)
 
-    def dof_map(self, basis: Any) -> NDArray[np.int64]:
+    def dof_map(self, basis: AbstractBasis) -> NDArray[np.int64]:
         """Degrees of freedom (2, n) of the x and y components at every node.
 
         `basis` is any basis of ``ElementVector(ElementTriP2())`` on the mesh of `to_skfem`.

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -75,8 +74,8 @@ def _add_body(gmsh: ModuleType, name: str, mesh: BodyMesh, first: int) -> None:
 
 def write_vtu(
     path: str | Path,
-    meshes: BodyMesh | Mapping[str, BodyMesh],
-    point_data: Fields | Mapping[str, Fields] | None = None,
+    bodies: Mapping[str, BodyMesh],
+    point_data: Mapping[str, Fields] | None = None,
     field_data: Mapping[str, float] | None = None,
 ) -> None:
     """Write bodies with fields as quadratic triangles for ParaView.
@@ -84,10 +83,10 @@ def write_vtu(
     Parameters
     ----------
     path
-    meshes : BodyMesh or mapping    one body, or bodies by name
-    point_data : mapping            field name, unit included -> (n,) or (c, n) at the nodes; for
-                                    several bodies one such mapping per body name, same fields
-                                    in each. A vector (2, n) gets a third component 0.
+    bodies : mapping                meshes by name
+    point_data : mapping            body name -> field name, unit included -> (n,) or (c, n) at the
+                                    nodes; the same fields in each body. A vector (2, n) gets a
+                                    third component 0.
     field_data : mapping            numbers that belong to the file as a whole; its units are
                                     always named there
 
@@ -100,12 +99,7 @@ def write_vtu(
     ResultError
         If the file cannot be written; one already there is left as it was.
     """
-    bodies: Mapping[str, BodyMesh]
-    data: Mapping[str, Any]
-    if isinstance(meshes, BodyMesh):
-        bodies, data = {"": meshes}, {"": point_data or {}}
-    else:
-        bodies, data = meshes, point_data or {name: {} for name in meshes}
+    data = point_data or {name: {} for name in bodies}
     if data.keys() != bodies.keys():
         raise MeshError(f"fields of bodies {sorted(data)}, must be of {sorted(bodies)}")
     starts = np.cumsum([0, *(mesh.points.shape[1] for mesh in bodies.values())])
@@ -176,7 +170,7 @@ def _write_grid(path: str | Path, grid: Grid) -> None:
         temporary.write_bytes(vtu(grid))
 
 
-def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Any]) -> dict[str, Any]:
+def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Fields]) -> dict[str, Array]:
     """Fields of all bodies one after the other, points first as the file wants them."""
     names = list(next(iter(data.values())))
     parts: dict[str, list[Array]] = {name: [] for name in names}

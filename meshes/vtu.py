@@ -8,7 +8,6 @@ from __future__ import annotations
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -21,15 +20,19 @@ _LEVEL = 1
 _TYPES = {"f8": "Float64", "i4": "Int32", "u1": "UInt8"}
 
 
+Numbers = NDArray[np.float64] | NDArray[np.int64] | NDArray[np.int32] | NDArray[np.uint8]
+"""Values of any of the types that a VTK file holds."""
+
+
 @dataclass(frozen=True, eq=False)
 class Grid:
     """Points (n, 3), cells (m, k) of one VTK type, fields at points (n, ...) and cells (m, ...)."""
 
-    points: NDArray[Any]
-    cells: NDArray[Any]
+    points: Numbers
+    cells: Numbers
     cell_type: int
-    point_data: Mapping[str, NDArray[Any]]
-    cell_data: Mapping[str, NDArray[Any]]
+    point_data: Mapping[str, Numbers]
+    cell_data: Mapping[str, Numbers]
     field_data: Mapping[str, float]
 
 
@@ -75,7 +78,7 @@ class _Appended:
         self.parts: list[bytes] = []
         self._size = 0
 
-    def tag(self, name: str, values: NDArray[Any]) -> str:
+    def tag(self, name: str, values: Numbers) -> str:
         array = np.ascontiguousarray(values)
         if array.dtype.kind == "f":
             array = array.astype("<f8")

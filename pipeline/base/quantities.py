@@ -59,14 +59,15 @@ class In:
             self.at_least
         ) <= value <= self._si(self.at_most)
         if not inside:
-            raise InputError("", given, f"{' and '.join(shown)} {self.unit}".rstrip())
+            raise InputError("", str(given), f"{' and '.join(shown)} {self.unit}".rstrip())
         return value
 
     def _number(self, given: object) -> float:
         if self.unit:
             return units.parse(given, self.unit, "")
         if isinstance(given, bool) or not isinstance(given, (int, float)):
-            raise InputError("", given, "a number without a unit")
+            shown = given if isinstance(given, str) else repr(given)
+            raise InputError("", shown, "a number without a unit")
         value = float(given) if abs(given) < 1e308 else inf
         if not isfinite(value):
             raise InputError("", given, "finite")

@@ -6,9 +6,14 @@ them below the same limits, so that a check and its constraint cannot disagree. 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from camwright.geometry.pitch_curve import Values, magnitude
+from camwright.geometry.pitch_curve import magnitude
+
+Values = Any
+"""Real, or complex while a derivative is taken by a complex step."""
 
 
 def unloading(inertia: Values, spring: Values) -> Values:

@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.pitch_curve import Values, curvature_slope, magnitude, speed_and_curvature
+from camwright.geometry.pitch_curve import curvature_slope, magnitude, speed_and_curvature
 from camwright.pipeline.checks import demands
+from camwright.pipeline.checks.demands import Values
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.follower_forces import levers
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, rolling_share, wear

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
-from camwright.geometry.pitch_curve import Values
+from camwright.pipeline.checks.demands import Values
 from camwright.pipeline.follower.roller_motion import HOUR
 
 LIFE_UNIT = 1e6 * FULL_TURN / HOUR  # rad of a million turns, per hour

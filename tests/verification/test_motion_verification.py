@@ -52,14 +52,14 @@ def test_greatest_acceleration_is_the_textbook_factor(name):
 
 @pytest.mark.parametrize("name", LAWS)
 def test_ends_are_exact_and_rest_as_far_as_the_law_promises(name):
-    law = LAWS[name]
-    assert law(0.0) == 0.0
-    assert law(1.0) == 1.0
+    law, start, end = LAWS[name], np.array(0.0), np.array(1.0)
+    assert law(start) == 0.0
+    assert law(end) == 1.0
     for order in range(1, CONTINUITY[name] + 1):
-        assert abs(law(0.0, order)) <= 1e-14
-        assert abs(law(1.0, order)) <= 1e-14
+        assert abs(law(start, order)) <= 1e-14
+        assert abs(law(end, order)) <= 1e-14
     if CONTINUITY[name] < 3:
-        assert abs(law(0.0, CONTINUITY[name] + 1)) > 1.0
+        assert abs(law(start, CONTINUITY[name] + 1)) > 1.0
 
 
 @pytest.mark.parametrize("name", LAWS)
