@@ -1,4 +1,4 @@
-"""Read-only arrays and guards for values."""
+"""Read-only arrays and checks of input values."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FULL_TURN = 2.0 * np.pi
 
 
 def readonly(values: ArrayLike) -> Array:
-    """A float copy of `values` that cannot be written to."""
+    """Read-only float copy of `values`."""
     array = np.array(values, dtype=float)
     array.setflags(write=False)
     return array
@@ -58,7 +58,7 @@ def positive(field: str, values: ArrayLike, unit: str = "") -> Array:
 
 
 def uniform_turn(count: int) -> Array:
-    """`count` equally spaced angles of one turn, from 0, the end left out (rad)."""
+    """`count` equally spaced angles over [0, 2 pi), rad."""
     return readonly(np.arange(count) * (FULL_TURN / count))
 
 

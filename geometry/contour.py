@@ -30,8 +30,8 @@ _OFFSET_STEP_MAX = 0.5
 class Undercut(NamedTuple):
     """Minimum undercut factor of a contour, and its cam angle, rad.
 
-    The factor is the contour's speed over that of the follower's path: 1 in a straight part, zero
-    at a cusp, negative where the follower cuts the contour away.
+    The factor is 1 - r kappa under a roller and (r + s + s'')/(r + s) under a flat face: zero at a
+    cusp, negative where the follower cuts the contour away.
     """
 
     theta: float

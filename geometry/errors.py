@@ -1,4 +1,4 @@
-"""The exception family. A failed check is a result, not one of these."""
+"""Exceptions of the project. A failed check is a result, not an exception."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ Refused = str | float | tuple[float, ...] | None
 
 
 class CamError(Exception):
-    """Anything the user can act upon; its message is one line."""
+    """Error that the user can correct; its message is one line."""
 
 
 class InputError(CamError):
-    """A value the user gave is out of bounds.
+    """Input value out of bounds.
 
     Parameters
     ----------
-    field : str    dotted name of the input, such as ``roller.radius``
+    field : str        dotted name of the input, such as ``roller.radius``
     value : Refused    value of the input
-    limit : str    what would be accepted, such as ``> 0 m``
+    limit : str        accepted values, such as ``> 0 m``
     """
 
     def __init__(self, field: str, value: Refused, limit: str) -> None:
@@ -31,16 +31,16 @@ class InputError(CamError):
 
 
 class GeometryError(CamError):
-    """A shape that cannot be built."""
+    """Geometry that cannot be constructed."""
 
 
 class MeshError(CamError):
-    """A mesh that cannot be made or is not good enough."""
+    """Mesh that cannot be generated or is below its quality limits."""
 
 
 class ContactError(CamError):
-    """A contact solution that did not converge or is out of its theory's range."""
+    """Contact solution that did not converge or is outside the range of its theory."""
 
 
 class ResultError(CamError):
-    """A run folder that cannot be read or written."""
+    """Result file or run folder that cannot be read or written."""

@@ -19,7 +19,7 @@ from camwright.geometry.lift import Lift
 
 @dataclass(frozen=True, eq=False)
 class FacePath(FollowerPath):
-    """Path of the contact point on a translating flat face, seen from the cam.
+    """Path of the contact point on a translating flat face, in the cam frame.
 
     The face, square to the stem, stands at r + s along u and touches the cam at s' along v. The
     pressure angle is zero; the contact force bends the stem by its lever arm instead.

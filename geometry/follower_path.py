@@ -1,4 +1,4 @@
-"""Path of a point of the follower, seen from the cam."""
+"""Path of a reference point of the follower in the cam frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lift of the follower over one cam turn: a periodic spline and its derivatives."""
+"""Lift of the follower over one cam turn, and its derivatives."""
 
 from __future__ import annotations
 
@@ -20,30 +20,30 @@ from camwright.geometry.periodic_spline import (
 )
 
 ANGLE_TOLERANCE = 1e-9
-"""rad: angles closer than this are the same; a table in degrees is read to round-off."""
+"""rad: angles closer than this are equal, the round-off of a table in degrees."""
 
 NEGATIVE_TOLERANCE = 1e-6
-"""m: a spline may dip this far below a dwell at zero; no cam is ground finer."""
+"""m: maximum undershoot of a spline below a dwell at zero, less than any grinding accuracy."""
 
 CLOSURE_LIMIT = 1e-6
-"""m: how far the last value of a closed table may miss the first."""
+"""m: maximum difference between the ends of a closed table."""
 
 GAP_MAX = np.radians(30.0)
 
 _RESAMPLED = 720
 _SEARCH = 4
-"""Search points per sample: a quintic piece turns at most four times."""
+"""Search points per sample: a quintic has at most four extremes per part."""
 
 
 @dataclass(frozen=True, eq=False)
 class Lift:
-    """Lift s of the follower against the cam angle, a periodic quintic (C4) spline.
+    """Lift s of the follower against the cam angle: a periodic quintic (C4) spline.
 
     Parameters
     ----------
     theta : array (n,)     cam angle, rad, equally spaced over [0, 2 pi), n >= 12
     values : array (n,)    s, m, >= 0
-    closure : float        |s(2 pi) - s(0)| as the source of the lift gave it, m
+    closure : float        |s(2 pi) - s(0)| of the source of the lift, m
 
     Raises
     ------
@@ -59,7 +59,7 @@ class Lift:
         theta, values = finite("lift.theta", self.theta), finite("lift.values", self.values)
         require_uniform_turn("lift.theta", theta)
         if values.shape != theta.shape:
-            raise InputError("lift.values", len(values), f"{len(theta)} values, one an angle")
+            raise InputError("lift.values", len(values), f"{len(theta)} values, one per angle")
         if not values.min() >= -NEGATIVE_TOLERANCE:
             raise InputError("lift.values", float(values.min()), ">= 0 m")
         if not 0 <= self.closure < np.inf:
@@ -68,23 +68,22 @@ class Lift:
 
     @classmethod
     def from_samples(cls, theta: ArrayLike, values: ArrayLike) -> Lift:
-        """A lift through a table of any spacing, over one turn.
+        """Lift through a table of any spacing over one turn.
 
-        Equally spaced angles from 0 are taken as they are. Any other table is interpolated by a
-        periodic quintic on its own angles, which is then sampled at 720 angles or, if that is
-        more, at four times as many as the table has. The lift then misses a table of spacing h
-        by order h^6.
+        A table at equal angles from 0 is used directly. Any other is interpolated by a periodic
+        quintic on its own angles, sampled at 720 angles or four times the table's, whichever is
+        more; the error is of order h^6 for a spacing h.
 
         Parameters
         ----------
-        theta : array (n,)     cam angle, rad, strictly increasing; the end of the turn may be
-                               given again, with the value of the start
+        theta : array (n,)     cam angle, rad, strictly increasing; the end of the turn may
+                               repeat the start
         values : array (n,)    s, m, >= 0
 
         Raises
         ------
         InputError
-            For shuffled or doubled angles, gaps above 30 degrees, more than one turn, an open
+            For angles that do not increase, gaps above 30 degrees, more than one turn, an open
             end, negative lifts, NaN.
         """
         angle, value = finite("lift.theta", theta), finite("lift.values", values)
@@ -106,11 +105,11 @@ class Lift:
 
     @cached_property
     def spline(self) -> PeriodicPolynomial:
-        """The interpolating spline, m against rad."""
+        """Interpolating spline, m against rad."""
         return periodic_quintic(self.values)
 
     def __call__(self, theta: ArrayLike, derivative: int = 0) -> Array:
-        """s or a derivative of it, m/rad^k, at any angle; the turn repeats.
+        """Lift s or a derivative of it, m/rad^k, periodic.
 
         Parameters
         ----------
@@ -120,14 +119,14 @@ class Lift:
         Raises
         ------
         InputError
-            If the order is none that is continuous.
+            If the derivative is not continuous.
         """
         if derivative not in range(DEGREE):
             raise InputError("derivative", derivative, "0, 1, 2, 3 or 4")
         return self.spline(theta, derivative)
 
     def derivatives(self, theta: ArrayLike, order: int = 3) -> Array:
-        """s, s', s'', s''' at any angle, cheaper than one call each.
+        """Lift s and its derivatives up to `order`, m/rad^k, by one look-up.
 
         Parameters
         ----------
@@ -144,32 +143,32 @@ class Lift:
 
     @property
     def search_count(self) -> int:
-        """How many equal angles bracket every extreme of functions made from this lift."""
+        """Equal angles per turn that bracket every extreme of a function of this lift."""
         return _SEARCH * len(self.theta)
 
     @cached_property
     def lowest(self) -> Extremum:
-        """Least lift, m, and its angle, between samples too."""
+        """Minimum lift, m, and its cam angle, on the continuous turn."""
         return least(self.spline, self.search_count)
 
     @cached_property
     def highest(self) -> Extremum:
-        """Greatest lift, m, and its angle, between samples too."""
+        """Maximum lift, m, and its cam angle, on the continuous turn."""
         return greatest(self.spline, self.search_count)
 
     @property
     def stroke(self) -> float:
-        """Way of the follower from its lowest to its highest place, m."""
+        """Maximum less minimum lift, m."""
         return self.highest.value - self.lowest.value
 
 
 def require_uniform_turn(field: str, theta: Array) -> None:
-    """Refuse angles that are not n >= 12 equal steps of one turn, from 0, the end left out.
+    """Check that angles are n >= 12 equal steps over [0, 2 pi), rad.
 
     Raises
     ------
     InputError
-        Naming the first angle that is out of place.
+        With the first angle that is not.
     """
     if theta.ndim != 1 or len(theta) < LEAST_SAMPLES:
         raise InputError(field, f"{theta.shape} angles", f"one row of >= {LEAST_SAMPLES} angles")

@@ -1,4 +1,4 @@
-"""Linkages: the slider-crank, with or without an offset of its pin."""
+"""Slider-crank, with or without an offset of its line of travel."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from camwright.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class SliderCrank:
-    """A crank, a rod and a slider; lengths in m.
+    """Crank, connecting rod and slider.
 
-    Crank angle 0 has the crank along the slider's line. With an offset the dead centres lie a
-    little beside 0 and pi, and the stroke is a little longer than two crank radii.
+    At crank angle 0 the crank lies along the slider's line. With an offset the dead centres are
+    near 0 and pi, and the stroke exceeds two crank radii.
 
     Parameters
     ----------
     crank_radius : float    r, m, > 0
     rod_length : float      l, m, > r + |offset|
-    offset : float          e, m: the slider's line passes the crank axis at this distance, on
-                            the side the crank pin first moves to
+    offset : float          e, m, of the slider's line from the crank axis, positive on the side
+                            to which the crank pin moves from angle 0
 
     Raises
     ------
     InputError
-        If the linkage cannot turn over.
+        If the linkage cannot rotate fully.
     """
 
     crank_radius: float
@@ -42,20 +42,21 @@ class SliderCrank:
             raise InputError("pin_offset", self.offset, "finite")
         least = self.crank_radius + abs(self.offset)
         if not least < self.rod_length < np.inf:
-            raise InputError("rod_length", self.rod_length, f"> {least:g} m to turn over")
+            raise InputError("rod_length", self.rod_length, f"> {least:g} m for a full rotation")
 
     @property
     def top(self) -> float:
-        """Greatest distance of the slider from the crank axis, m."""
+        """Maximum distance of the slider from the crank axis, m."""
         return float(np.sqrt((self.rod_length + self.crank_radius) ** 2 - self.offset**2))
 
     @property
     def bottom(self) -> float:
-        """Least distance of the slider from the crank axis, m."""
+        """Minimum distance of the slider from the crank axis, m."""
         return float(np.sqrt((self.rod_length - self.crank_radius) ** 2 - self.offset**2))
 
     @property
     def stroke(self) -> float:
+        """Maximum less minimum distance of the slider, m."""
         return self.top - self.bottom
 
     def travel(self, theta: ArrayLike) -> Array:

@@ -1,7 +1,7 @@
-"""Pitch curve: the path of the roller centre in the cam frame.
+"""Pitch curve: path of the roller centre in the cam frame.
 
-Its speed and curvature at single places are functions that a complex step passes through, so
-that the checks and the synthesis, which differentiates them, use the same formulas.
+Speed and curvature at single angles are functions of real or complex arrays: the checks evaluate
+them, and the synthesis differentiates the same functions by a complex step.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from camwright.geometry.lift import Lift
 
 @dataclass(frozen=True, eq=False)
 class PitchCurve(FollowerPath):
-    """Path of the centre of a translating roller follower, seen from the cam.
+    """Path of the centre of a translating roller follower, in the cam frame.
 
     The centre is d u + e v with d = sqrt(r^2 - e^2) + s.
 
@@ -99,14 +99,14 @@ class PitchCurve(FollowerPath):
 
 
 def magnitude(values: Values) -> Values:
-    """|x| of the real part, its sign put to the whole, so that a complex step passes through."""
+    """Value times the sign of its real part: |x|, differentiable by a complex step."""
     return values * np.sign(np.real(values))
 
 
 def speed_and_curvature(
     along: Values, across: Values, slope: Values, bend: Values
 ) -> tuple[Values, Values]:
-    """Length of the path per radian, m, and its curvature, 1/m, positive where convex.
+    """Path length per radian, m/rad, and curvature, 1/m, positive where convex.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def speed_and_curvature(
 def curvature_slope(
     along: Values, across: Values, slope: Values, bend: Values, jerk: Values
 ) -> Values:
-    """Change of the path's curvature per radian of cam angle, 1/(m rad).
+    """Derivative of the path's curvature by the cam angle, 1/(m rad).
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ def test_derived_measures_of_the_engine():
         ({"piston_mass": -0.1}, "engine.piston_mass"),
         ({"compression_ratio": 1.0}, "compression_ratio = 1.0, must be from 1 to 40"),
         ({"compression_ratio": 41.0}, "compression_ratio"),
-        ({"rod_length": 0.020}, "rod_length = 0.02, must be > 0.021 m to turn over"),
+        ({"rod_length": 0.020}, "rod_length = 0.02, must be > 0.021 m for a full rotation"),
         ({"pin_offset": 0.053}, "rod_length"),
         ({"combustion_efficiency": 1.01}, "from 0 to 1"),
         ({"ignition": "laser"}, "engine.ignition = laser, must be spark or compression"),

@@ -78,7 +78,7 @@ def test_undercut_contour_cannot_give_its_lift_back():
 
 def test_follower_beside_the_cam_is_refused():
     circle = 0.01 * np.array([np.cos(THETA), np.sin(THETA)])
-    with pytest.raises(GeometryError, match="misses"):
+    with pytest.raises(GeometryError, match="line of travel"):
         roller_height(circle, 0.002, 0.05, THETA)
     with pytest.raises(InputError, match="polygon"):
         face_height(circle[:, :5], THETA)

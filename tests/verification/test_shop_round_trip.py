@@ -178,7 +178,7 @@ def test_cutter_larger_than_a_hollow_is_refused() -> None:
     hollow = contour.concave_radius_min().value
     assert np.isfinite(hollow)
     cutter_path(contour, 0.99 * hollow, THETA)
-    with pytest.raises(GeometryError, match="hollow"):
+    with pytest.raises(GeometryError, match="concave radius"):
         cutter_path(contour, 1.01 * hollow, THETA)
     with pytest.raises(InputError):
         cutter_path(contour, 0.0, THETA)
