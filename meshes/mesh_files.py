@@ -1,4 +1,4 @@
-"""Mesh and field files: gmsh's MSH, VTK's VTU and PVD. Lengths in them are millimetres."""
+"""Mesh and field files: MSH of gmsh, VTU and PVD of VTK; lengths in mm."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from camwright.meshes.gmsh_mesher import Index, session
 from camwright.meshes.vtu import QUAD, QUADRATIC_TRIANGLE, Grid, vtu
 
 UNITS = "units_mm_N_MPa"
-"""Name of the field data by which every VTU file says its units."""
+"""Field data that names the units of every VTU file."""
 
-_LINE3, _TRIANGLE6 = 8, 9  # gmsh's element types
+_LINE3, _TRIANGLE6 = 8, 9  # element types of gmsh
 
 Fields = Mapping[str, ArrayLike]
 
 
 def write_msh(path: str | Path, meshes: Mapping[str, BodyMesh]) -> None:
-    """Write bodies to one gmsh file, format 4.1, second order.
+    """gmsh file of bodies, format 4.1, second order.
 
-    Physical names are the body's for its triangles and ``body_boundary`` for its facets, such
-    as ``cam`` and ``cam_contour``.
+    Physical groups: the body's name for its triangles, such as ``cam``, and ``body_boundary`` for
+    its facets, such as ``cam_contour``.
 
     Raises
     ------
@@ -45,11 +45,11 @@ def write_msh(path: str | Path, meshes: Mapping[str, BodyMesh]) -> None:
             first += mesh.points.shape[1]
         gmsh.write(str(temporary))
         if not temporary.read_bytes().endswith(b"$EndElements\n"):  # gmsh ignores a full disk
-            raise OSError("file was cut short")
+            raise OSError("incomplete file")
 
 
 def _add_body(gmsh: ModuleType, name: str, mesh: BodyMesh, first: int) -> None:
-    """Add `mesh` to the current model, its nodes numbered from `first`."""
+    """Add a body to the current model, its nodes numbered from `first`."""
     model = gmsh.model
     coordinates = np.vstack([mesh.points / MILLIMETRE, np.zeros(mesh.points.shape[1])])
     free = np.ones(mesh.points.shape[1], dtype=bool)
@@ -78,7 +78,7 @@ def write_vtu(
     point_data: Mapping[str, Fields] | None = None,
     field_data: Mapping[str, float] | None = None,
 ) -> None:
-    """Write bodies with fields as quadratic triangles for ParaView.
+    """VTU file of bodies with fields, as quadratic triangles.
 
     Parameters
     ----------
@@ -87,8 +87,7 @@ def write_vtu(
     point_data : mapping            body name -> field name, unit included -> (n,) or (c, n) at the
                                     nodes; the same fields in each body. A vector (2, n) gets a
                                     third component 0.
-    field_data : mapping            numbers that belong to the file as a whole; its units are
-                                    always named there
+    field_data : mapping            numbers of the file as a whole, besides its units
 
     With several bodies, cell and point data ``body`` number them from 0.
 
@@ -127,12 +126,12 @@ def write_sheet(
     point_data: Fields,
     field_data: Mapping[str, float] | None = None,
 ) -> None:
-    """Write a sheet that closes on itself as quadrilaterals for ParaView.
+    """VTU file of a closed sheet with fields, as quadrilaterals.
 
     Parameters
     ----------
     path
-    points : (2, n, k)           m; rows follow one another, the last joins the first
+    points : (2, n, k)           m; n consecutive rows, the last joined to the first
     point_data : mapping         field name, unit included -> (n, k)
     field_data : mapping         as for `write_vtu`
 
@@ -171,7 +170,7 @@ def _write_grid(path: str | Path, grid: Grid) -> None:
 
 
 def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Fields]) -> dict[str, Array]:
-    """Fields of all bodies one after the other, points first as the file wants them."""
+    """Fields of all bodies in their order, points first."""
     names = list(next(iter(data.values())))
     parts: dict[str, list[Array]] = {name: [] for name in names}
     for body, mesh in bodies.items():
@@ -191,7 +190,7 @@ def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Fields]) -> dict[
 
 
 def write_pvd(path: str | Path, entries: Iterable[tuple[float, str | Path]]) -> None:
-    """Write a ParaView collection: `entries` are (time, file relative to the collection).
+    """PVD collection of ParaView: `entries` are (time, file relative to the collection).
 
     Raises
     ------
@@ -214,7 +213,7 @@ def write_pvd(path: str | Path, entries: Iterable[tuple[float, str | Path]]) -> 
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """A name beside `path` to write to, which takes its place when all went well."""
+    """Temporary file beside `path` that replaces it on success."""
     path = Path(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:

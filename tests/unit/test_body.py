@@ -202,7 +202,7 @@ class Limacon(Circle):
 
 
 def test_contour_that_does_not_go_round_the_bore_is_refused():
-    with pytest.raises(GeometryError, match="least wall"):
+    with pytest.raises(GeometryError, match="minimum wall"):
         cam_mesh(Circle(0.03, 0.05), BORE, None, Sizing(far_size=3e-3))
 
 
@@ -343,7 +343,7 @@ def test_bore_reaching_the_contour_names_the_wall():
 
 def test_keyway_reaching_the_contour_names_the_wall():
     towards_base = Keyway(6e-3, 0.034, 0.0)
-    with pytest.raises(GeometryError, match="least wall"):
+    with pytest.raises(GeometryError, match="minimum wall"):
         cam_mesh(CONTOUR, BORE, towards_base, Sizing(far_size=3e-3))
     away = Keyway(6e-3, 0.034, np.pi)
     assert "keyway" in cam_mesh(CONTOUR, BORE, away, Sizing(far_size=3e-3)).boundaries
@@ -402,7 +402,7 @@ TRIANGLE = np.array([[0.0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])
 @pytest.mark.parametrize(
     ("points", "triangles", "text"),
     [
-        (TRIANGLE, [[0], [2], [1], [5], [4], [3]], "turned over"),
+        (TRIANGLE, [[0], [2], [1], [5], [4], [3]], "inverted triangles = 1"),
         (TRIANGLE, [[0], [1], [5], [3], [4], [2]], "corners"),
         (TRIANGLE, [[0], [1], [2], [3], [4], [6]], "node number"),
         (TRIANGLE, [[0], [1], [2]], "must be \\(6, k\\)"),
