@@ -84,10 +84,6 @@ class FollowerPath(ABC):
         """Height of the reference point along u, m."""
         return self.height_base + self.lift(theta)
 
-    def radius(self, theta: ArrayLike) -> Array:
-        """Distance of the reference point from the cam axis, m."""
-        return np.hypot(*self._position(theta))
-
     def points(self, theta: ArrayLike) -> Array:
         """Reference point, (2, ...), m."""
         return cam_axes(theta, *self._position(theta))
@@ -95,10 +91,6 @@ class FollowerPath(ABC):
     def velocity(self, theta: ArrayLike) -> Array:
         """Derivative of the reference point by the cam angle, (2, ...), m/rad."""
         return cam_axes(theta, *self._velocity(theta))
-
-    def speed(self, theta: ArrayLike) -> Array:
-        """Path length per radian of cam angle, m/rad, >= 0."""
-        return np.hypot(*self._velocity(theta))
 
     def curvature(self, theta: ArrayLike) -> Array:
         """Signed curvature, 1/m, positive where convex."""

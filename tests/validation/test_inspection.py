@@ -86,7 +86,9 @@ def test_nominal_part_runs_like_the_drawing() -> None:
     nominal = contour()
     real = real_contour(nominal, inspected(nominal, measured(nominal, 0.0)))
     theta = uniform_turn(720)
-    np.testing.assert_allclose(real.pitch.radius(theta), nominal.pitch.radius(theta), atol=1e-8)
+    np.testing.assert_allclose(
+        np.hypot(*real.pitch.points(theta)), np.hypot(*nominal.pitch.points(theta)), atol=1e-8
+    )
     # by way of two derivatives: a tenth of a per cent of the lift's own
     second = nominal.pitch.lift(theta, 2)
     np.testing.assert_allclose(real.pitch.lift(theta, 2), second, atol=2e-3 * np.abs(second).max())
@@ -97,7 +99,9 @@ def test_kept_phase_turns_the_lift() -> None:
     found = inspected(nominal, measured(nominal, 0.0))
     real = real_contour(nominal, found, keep_phase=True)
     np.testing.assert_allclose(
-        real.pitch.radius(THETA + PHASE), nominal.pitch.radius(THETA), atol=1e-8
+        np.hypot(*real.pitch.points(THETA + PHASE)),
+        np.hypot(*nominal.pitch.points(THETA)),
+        atol=1e-8,
     )
 
 

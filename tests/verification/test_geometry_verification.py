@@ -133,7 +133,7 @@ def test_second_derivative_of_the_centre_by_complex_step():
 def test_roller_centre_rolls_at_the_speed_of_the_contact():
     """Way of the contact along the contour is that along the pitch curve times the factor."""
     cam = eccentric(0.008)
-    expected = cam.pitch.speed(ANGLE) * (1 - ROLLER_RADIUS / PITCH_RADIUS)
+    expected = cam.pitch.speed_and_curvature(ANGLE)[0] * (1 - ROLLER_RADIUS / PITCH_RADIUS)
     np.testing.assert_allclose(cam.speed(ANGLE), expected, rtol=1e-10)
 
 

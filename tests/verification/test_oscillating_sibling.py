@@ -66,7 +66,7 @@ class OscillatingPath(FollowerPath):
         return self._position(theta)[0]
 
     def tangent(self, theta):
-        return self.velocity(theta) / self.speed(theta)
+        return self.velocity(theta) / self.speed_and_curvature(theta)[0]
 
     def normal(self, theta):
         x, y = self.tangent(theta)
@@ -104,7 +104,7 @@ class OscillatingContour(Contour):
         return Frame(self.pitch.points(theta) - ROLLER * normal, normal, self.pitch.tangent(theta))
 
     def speed(self, theta):
-        return self.pitch.speed(theta) * self.factor(theta)
+        return self.pitch.speed_and_curvature(theta)[0] * self.factor(theta)
 
     def factor(self, theta):
         return 1.0 - ROLLER * self.pitch.curvature(theta)
