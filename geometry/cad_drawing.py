@@ -129,9 +129,10 @@ def clamped_spline(
         spline = make_interp_spline(theta, points.T, _SPLINE_DEGREE, bc_type=ends)
         between = theta[:-1, None] + np.array([0.25, 0.5, 0.75]) * (theta[1] - theta[0])
         deviation = spline(between.ravel()).T - curve.points(between.ravel())
-        if np.hypot(*deviation).max() <= error:
+        worst = float(np.hypot(*deviation).max())
+        if worst <= error:
             return spline
-    raise GeometryError(f"error of the finest spline of the contour, must be <= {error:g} m")
+    raise GeometryError(f"error of the finest spline = {worst:.3g} m, must be <= {error:g} m")
 
 
 def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float:

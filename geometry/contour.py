@@ -93,7 +93,7 @@ class Contour(ABC):
         GeometryError
             For any other follower.
         """
-        raise GeometryError("follower = flat face, must be a roller")
+        raise GeometryError(f"contour = {type(self).__name__}, must be that of a roller")
 
     @abstractmethod
     def local_frame(self, theta: ArrayLike) -> Frame:

@@ -56,7 +56,7 @@ def trace(contour: ContourLike) -> Trace:
     forward = normal[0] * chord[1] - normal[1] * chord[0]
     if not (forward > 0).all():
         worst = np.degrees(theta[int(np.argmin(forward))])
-        raise GeometryError(f"contour = undercut at cam angle {worst:.2f} deg, must not be")
+        raise GeometryError(f"contour = undercut at cam angle {worst:.2f} deg, must be sound")
     return Trace(contour, theta, points, np.r_[0.0, np.cumsum(np.hypot(*chord))])
 
 

@@ -102,7 +102,8 @@ def triangulate(loops: Sequence[Sequence[Facets]], size: SizeField) -> Triangula
     crossed = crossing(corners, corners[:, following])
     if crossed is not None:  # gmsh would not terminate
         x, y = crossed / MILLIMETRE
-        raise GeometryError(f"outline = crosses itself at ({x:.3f}, {y:.3f}) mm, must not")
+        where = f"({x:.3f}, {y:.3f}) mm"
+        raise GeometryError(f"outline = crosses itself at {where}, must be free of crossings")
     try:
         with session() as gmsh:
             points, triangles = _fill(gmsh, corners, rings, size)
