@@ -16,7 +16,7 @@ import time
 import numpy as np
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.contact import hertz
@@ -37,7 +37,7 @@ def balancing_cam() -> tuple[ContactPair, np.ndarray, np.ndarray]:
     """A cam, roller and spring of the size of the Honda GX120 case."""
     theta = uniform_turn(POSITIONS)
     lift = Lift(theta, 8e-3 * (1 - np.cos(2 * theta)))
-    contour = Contour(PitchCurve(lift, 50e-3), 8e-3)
+    contour = RollerContour(PitchCurve(lift, 50e-3), 8e-3)
     steel = Elastic(210e9, 0.3)
     pair = ContactPair(
         contour, 4.4e-3, 8.5e-3, None, steel, RollerBody(contour.roller_radius, 4.2e-3, steel)

@@ -1,1 +1,29 @@
-"""Shape of the cam: lift, pitch curve, contour. Knows no other package of the project."""
+"""Geometry of the cam: motion law, lift, pitch curve and contour.
+
+In the order of the calculation:
+
+| module              | responsibility                              | symbol, unit                 |
+| ------------------- | ------------------------------------------- | ---------------------------- |
+| `errors`            | exceptions of the project                   |                              |
+| `arrays`            | read-only arrays, checks of input values    | theta, rad                   |
+| `extrema`           | extremes of a periodic function             |                              |
+| `periodic_spline`   | periodic quintic (C4) and its integral      |                              |
+| `lift`              | lift and its derivatives                    | s, m; s', s'', s''', m/rad^k |
+| `motion_laws`       | lift by rise, dwell and return              | s, m                         |
+| `lift_fit`          | lift through points or noisy tables         | s, m; residual, m            |
+| `eccentric`         | eccentric disc and its slider-crank         | l1, l2, m; phi, rad          |
+| `linkage`           | slider-crank                                | r, l, m                      |
+| `energy`            | lift from cam torque by stored energy       | T, N m; E, J; P, N; k, N/m   |
+| `follower_path`     | path of a follower point in the cam frame   | d, e, m                      |
+| `pitch_curve`       | path of the roller centre, pressure angle   | alpha, rad; kappa, 1/m       |
+| `interference`      | self-intersection, second contact           | theta, rad; gap, m           |
+| `follower_height`   | height of a follower on points of a contour | d, m                         |
+| `contour`           | cam surface; that under a roller            | x, y, m; rho, m              |
+| `flat_face_contour` | cam surface under a flat face               | r + s + s'', m               |
+| `measured_contour`  | measured contour against the nominal one    | phase, rad; deviation, m     |
+| `cutter_path`       | path of a milling cutter or grinding wheel  | x, y, m                      |
+| `cutouts`           | bore, keyway and counter-hole               | m                            |
+| `cad_drawing`       | chords, clamped spline, DXF file            | m; mm in the file            |
+
+Imports no other package of the project.
+"""

@@ -1,21 +1,27 @@
-"""Read-only arrays and guards for values."""
+"""Read-only arrays and checks of input values."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.errors import InputError
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
 Array = NDArray[np.float64]
+
+Values = TypeVar("Values", NDArray[np.float64], NDArray[np.complex128])
+"""Real values, or complex ones while a derivative is taken by a complex step."""
 
 FULL_TURN = 2.0 * np.pi
 
 
 def readonly(values: ArrayLike) -> Array:
-    """A float copy of `values` that cannot be written to."""
+    """Read-only float copy of `values`."""
     array = np.array(values, dtype=float)
     array.setflags(write=False)
     return array
@@ -52,11 +58,17 @@ def positive(field: str, values: ArrayLike, unit: str = "") -> Array:
 
 
 def uniform_turn(count: int) -> Array:
-    """`count` equally spaced angles of one turn, from 0, the end left out (rad)."""
+    """`count` equally spaced angles over [0, 2 pi), rad."""
     return readonly(np.arange(count) * (FULL_TURN / count))
 
 
-def freeze(instance: Any, **arrays: ArrayLike) -> None:
+def rotation(angle: float) -> Array:
+    """Matrix (2, 2) that turns vectors counter-clockwise by `angle`, rad."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
+def freeze(instance: DataclassInstance, **arrays: ArrayLike) -> None:
     """Set read-only array fields of a frozen dataclass from its ``__post_init__``."""
     for name, values in arrays.items():
         object.__setattr__(instance, name, readonly(values))

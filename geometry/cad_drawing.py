@@ -1,51 +1,40 @@
-"""Drawing of the cam: the contour as chords and as a spline, and both as a DXF file."""
+"""CAD drawing of the cam: contour as chords and as a spline, and the DXF file."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from scipy.interpolate import BSpline, make_interp_spline
 
-from camwright.geometry.arrays import FULL_TURN, Array, freeze, positive, readonly
+from camwright.geometry.arrays import FULL_TURN, Array, freeze, positive
 from camwright.geometry.contour import Contour
+from camwright.geometry.cutouts import HoleLike, KeywayLike, keyway_corners
 from camwright.geometry.errors import GeometryError, InputError, ResultError
-from camwright.geometry.pitch_curve import PitchCurve
 
 if TYPE_CHECKING:
     from ezdxf.layouts import Modelspace
+    from scipy.interpolate import BSpline
 
 LAYERS = ("surface", "pitch", "bore", "keyway", "note", "counter_hole")
 """Layers of the DXF file."""
 
 AREA_ERROR = 1e-6
-"""Of the area: what chords may cut off unless a chord error is asked for."""
+"""Default error of the area within the chords, over the area."""
 
 SPLINE_ERROR = 1e-9
-"""m: how far the spline may leave the contour between its knots; no machine sees it."""
+"""m: default distance of the spline from the contour between its knots, below any machine's."""
 
 _FINE = 8
 _SPLINE_DEGREE = 3
 _SPLINE_PARTS = (22, 45, 90, 180, 360, 720, 1440, 2880, 5760, 11520)
 _MILLIMETRE = 1e-3
-_METRIC = 4  # the code of millimetres in a DXF header
-
-
-class KeywayLike(Protocol):
-    """A slot into the bore: `width` across, `depth` beyond the bore radius (m), at `angle`."""
-
-    @property
-    def width(self) -> float: ...
-    @property
-    def depth(self) -> float: ...
-    @property
-    def angle(self) -> float: ...
+_METRIC = 4  # code of millimetres in a DXF header
 
 
 class CurveLike(Protocol):
-    """A closed curve by cam angle: the contour or the pitch curve."""
+    """Closed curve by cam angle: contour or pitch curve."""
 
     def points(self, theta: Array) -> Array: ...
     def velocity(self, theta: Array) -> Array: ...
@@ -53,7 +42,7 @@ class CurveLike(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Chords:
-    """A closed polyline on a contour: angles (n,) rad, points (2, n) m, chord error m."""
+    """Closed polyline on a contour: angles (n,), rad; points (2, n), m; chord error, m."""
 
     theta: Array
     points: Array
@@ -63,18 +52,9 @@ class Chords:
         freeze(self, theta=self.theta, points=self.points)
 
 
-class HoleLike(Protocol):
-    """A round hole: its middle (2,) and radius, m."""
-
-    @property
-    def centre(self) -> Array: ...
-    @property
-    def radius(self) -> float: ...
-
-
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """What the shop cuts: contour, bore radius (m), keyway, and a hole against unbalance."""
+    """Outline of the cam: contour, bore radius (m), keyway and counter-hole."""
 
     contour: Contour
     bore_radius: float
@@ -83,84 +63,87 @@ class Outline:
 
 
 def chords(contour: Contour, error: float | None = None) -> Chords:
-    """Points of the contour so spaced that no chord is farther from it than `error`.
+    """Chords of the contour with a uniform distance from it, at most `error`.
 
     Parameters
     ----------
     contour : Contour
-    error : float      m, > 0; by default the area within the chords misses that of the contour
-                       by no more than a millionth
+    error : float      m, > 0; by default the area within the chords differs from that of the
+                       contour by at most one millionth
 
     Raises
     ------
     GeometryError
-        If the contour is undercut: it has no inside to cut.
+        If the contour is undercut.
     InputError
-        If the error is not positive, or asks for more than a million points.
+        If the error is not positive, or requires more than a million points.
 
     Notes
     -----
-    A chord of length L leaves a curve of curvature k by k L^2 / 8; the angles are spaced so
-    that this is the same everywhere. The place of the greatest radius is always a point.
+    A chord of length L is k L^2 / 8 from a curve of curvature k; the angles are spaced so that
+    this is constant. The point of maximum radius is always included.
     """
-    _require_body(contour)
+    contour.require_no_undercut()
     if error is None:
         error = AREA_ERROR * contour.area() / contour.perimeter()
     positive("chord_error", error, "m")
-    count = _FINE * contour.pitch.lift.search_count
+    count = _FINE * contour.lift.search_count
     start = contour.radius_max().theta
     theta = start + np.linspace(0.0, FULL_TURN, count + 1)
-    # a share of the mean curvature everywhere: an inflection may not leave a long chord
-    bent = np.abs(contour.curvature(theta))
-    bent = np.maximum(bent, 0.05 * FULL_TURN / contour.perimeter())
-    wanted = np.sqrt(bent / (8 * error)) * contour.speed(theta)
-    steps = 0.5 * (wanted[1:] + wanted[:-1]) * np.diff(theta)
-    passed = np.concatenate([[0.0], np.cumsum(steps)])
-    parts = int(np.ceil(1.02 * passed[-1])) + 3
+    # at least a share of the mean curvature, or the chord over an inflection would be long
+    curvature = np.abs(contour.curvature(theta))
+    curvature = np.maximum(curvature, 0.05 * FULL_TURN / contour.perimeter())
+    density = np.sqrt(curvature / (8 * error)) * contour.speed(theta)
+    steps = 0.5 * (density[1:] + density[:-1]) * np.diff(theta)
+    count_to = np.concatenate([[0.0], np.cumsum(steps)])
+    parts = int(np.ceil(1.02 * count_to[-1])) + 3
     if parts > 1_000_000:
         raise InputError("chord_error", error, "large enough for a million chords")
-    at = np.interp(np.linspace(0.0, passed[-1], parts, endpoint=False), passed, theta)
+    at = np.interp(np.linspace(0.0, count_to[-1], parts, endpoint=False), count_to, theta)
     return Chords(at, contour.points(at), error)
 
 
 def clamped_spline(
     curve: CurveLike, error: float = SPLINE_ERROR, start: float = 0.0, stop: float = FULL_TURN
 ) -> BSpline:
-    """The cubic spline of fewest parts through a closed curve, in the cam angle.
+    """Clamped cubic spline of fewest parts within `error` of a closed curve, by cam angle.
 
-    From `start` to `stop` (rad), where it has the curve's own tangents: drawn over a turn, or
-    in pieces, it is closed and smooth in programs that know clamped splines only.
+    It has the curve's tangents at `start` and `stop`, rad: over a turn, or in pieces, it is
+    closed and smooth in CAD programs that read clamped splines alone.
 
     Raises
     ------
     GeometryError
-        If the finest spline is still farther than `error` (m) from the curve.
+        If the finest spline is farther than `error` (m) from the curve.
     """
+    from scipy.interpolate import make_interp_spline
+
     positive("spline_error", error, "m")
     first, last = curve.velocity(np.array([start, stop])).T
     for parts in _SPLINE_PARTS:
         theta = np.linspace(start, stop, parts + 1)
         points = curve.points(theta)
         if stop - start == FULL_TURN:
-            points[:, -1] = points[:, 0]  # not a round-off apart
-        ends: Any = ([(1, first)], [(1, last)])
+            points[:, -1] = points[:, 0]  # closed to the last bit
+        ends = ([(1, first)], [(1, last)])
         spline = make_interp_spline(theta, points.T, _SPLINE_DEGREE, bc_type=ends)
         between = theta[:-1, None] + np.array([0.25, 0.5, 0.75]) * (theta[1] - theta[0])
-        missed = spline(between.ravel()).T - curve.points(between.ravel())
-        if np.hypot(*missed).max() <= error:
+        deviation = spline(between.ravel()).T - curve.points(between.ravel())
+        worst = float(np.hypot(*deviation).max())
+        if worst <= error:
             return spline
-    raise GeometryError(f"contour bends too sharply for a spline within {error:g} m")
+    raise GeometryError(f"error of the finest spline = {worst:.3g} m, must be <= {error:g} m")
 
 
 def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float:
-    """Write contour, pitch curve, bore, keyway and hole as a DXF file in millimetres.
+    """DXF file in millimetres: contour, pitch curve, bore, keyway and counter-hole.
 
-    The contour is drawn twice on the layer ``surface``: as a closed LWPOLYLINE of chords and as
-    a SPLINE; the layer ``note`` states the chord error.
+    The layer ``surface`` has the contour twice, as a closed LWPOLYLINE of chords and as a SPLINE;
+    the layer ``note`` states the chord error.
 
     Returns
     -------
-    float    the chord error, m
+    float    chord error, m
 
     Raises
     ------
@@ -171,48 +154,37 @@ def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float
     """
     import ezdxf
 
-    drawn = chords(outline.contour, error)
+    polyline = chords(outline.contour, error)
     document = ezdxf.new("R2010", units=_METRIC)
     for colour, layer in enumerate(LAYERS, start=1):
         document.layers.add(layer, color=colour)
     space = document.modelspace()
-    corners = [(x, y) for x, y in (drawn.points / _MILLIMETRE).T.tolist()]
+    corners = [(x, y) for x, y in (polyline.points / _MILLIMETRE).T.tolist()]
     space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "surface"})
     _add_spline(space, outline.contour, "surface")
-    if np.isfinite(outline.contour.roller_radius):  # a face has no centre
+    if outline.contour.rolls:  # a face has no pitch curve
         _add_spline(space, outline.contour.pitch, "pitch")
     _add_hole(space, outline)
     if outline.counter_hole is not None:
         x, y = (outline.counter_hole.centre / _MILLIMETRE).tolist()
         radius = outline.counter_hole.radius / _MILLIMETRE
         space.add_circle((x, y), radius, dxfattribs={"layer": "counter_hole"})
-    said = f"chord error {drawn.error / _MILLIMETRE:.6g} mm, {len(corners)} chords, units mm"
-    low = float(drawn.points[1].min()) / _MILLIMETRE - 6.0
-    space.add_text(said, height=2.0, dxfattribs={"layer": "note", "insert": (0.0, low)})
+    note = f"chord error {polyline.error / _MILLIMETRE:.6g} mm, {len(corners)} chords, units mm"
+    low = float(polyline.points[1].min()) / _MILLIMETRE - 6.0
+    space.add_text(note, height=2.0, dxfattribs={"layer": "note", "insert": (0.0, low)})
     try:
         document.saveas(path)
-    except OSError as error_found:
-        raise ResultError(f"{path}: {error_found.strerror or error_found}") from None
-    return drawn.error
+    except OSError as failure:
+        raise ResultError(f"{path}: {failure.strerror or failure}") from None
+    return polyline.error
 
 
-def keyway_corners(bore_radius: float, keyway: KeywayLike) -> Array:
-    """Corners of a keyway, (2, 4), m: on the bore, at the floor twice, on the bore again."""
-    half = 0.5 * keyway.width
-    if not half < bore_radius:
-        raise InputError("cam.keyway.width", keyway.width, f"< {2 * bore_radius:g} m")
-    mouth, floor = np.sqrt(bore_radius**2 - half**2), bore_radius + keyway.depth
-    local = np.array([[mouth, floor, floor, mouth], [-half, -half, half, half]])
-    cos, sin = np.cos(keyway.angle), np.sin(keyway.angle)
-    return readonly(np.array([[cos, -sin], [sin, cos]]) @ local)
-
-
-def _add_spline(space: Modelspace, curve: Contour | PitchCurve, layer: str) -> None:
+def _add_spline(space: Modelspace, curve: CurveLike, layer: str) -> None:
     spline = clamped_spline(curve)
-    drawn: Any = space.add_spline(degree=_SPLINE_DEGREE, dxfattribs={"layer": layer})
-    drawn.control_points = [(x, y, 0.0) for x, y in (spline.c / _MILLIMETRE).tolist()]
-    drawn.knots = spline.t.tolist()
-    drawn.dxf.flags = drawn.dxf.flags | drawn.CLOSED
+    entity = space.add_spline(degree=_SPLINE_DEGREE, dxfattribs={"layer": layer})
+    entity.control_points = [(x, y, 0.0) for x, y in (spline.c / _MILLIMETRE).tolist()]
+    entity.knots = spline.t.tolist()
+    entity.dxf.flags = entity.dxf.flags | entity.CLOSED
 
 
 def _add_hole(space: Modelspace, outline: Outline) -> None:
@@ -225,8 +197,3 @@ def _add_hole(space: Modelspace, outline: Outline) -> None:
     space.add_arc((0.0, 0.0), radius, turned[3], turned[0], dxfattribs={"layer": "bore"})
     points = [(x, y) for x, y in corners.T.tolist()]
     space.add_lwpolyline(points, dxfattribs={"layer": "keyway"})
-
-
-def _require_body(contour: Contour) -> None:
-    if contour.undercut().found:
-        raise GeometryError("the contour is undercut, it cannot be drawn for the shop")

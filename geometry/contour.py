@@ -1,7 +1,8 @@
-"""Contour of the cam: the pitch curve offset inwards by the roller radius."""
+"""Contour of the cam: the surface under a follower, and that under a roller."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -13,11 +14,13 @@ from camwright.geometry.arrays import Array, positive, readonly, uniform_turn
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.extrema import Extremum, greatest, least
 from camwright.geometry.follower_height import roller_height
+from camwright.geometry.follower_path import FollowerPath, cam_axes, reciprocal
 from camwright.geometry.interference import SecondContact, crossings, second_contact
-from camwright.geometry.pitch_curve import PitchCurve, cam_axes, reciprocal
+from camwright.geometry.lift import Lift
+from camwright.geometry.pitch_curve import PitchCurve
 
 _OFFSET_TOLERANCE = 1e-14
-"""Of the base radius: the round-off in the coordinates of a contour point."""
+"""Over the path's radius at zero lift: round-off in the coordinates of a contour point."""
 
 _OFFSET_STEPS_MAX = 20
 _OFFSET_STEP_MAX = 0.5
@@ -25,14 +28,19 @@ _OFFSET_STEP_MAX = 0.5
 
 
 class Undercut(NamedTuple):
-    """The least of 1 - roller radius x pitch curvature over the turn, and its cam angle.
+    """Minimum undercut factor of a contour, and its cam angle, rad.
 
-    At zero the contour comes to a sharp edge, below it the roller cuts its own track away.
+    The factor is 1 - r kappa under a roller and (r + s + s'')/(r + s) under a flat face: zero at a
+    cusp, negative where the follower cuts the contour away.
     """
 
-    found: bool
     theta: float
     factor: float
+
+    @property
+    def present(self) -> bool:
+        """Whether the contour is undercut or has a cusp; true for NaN."""
+        return not self.factor > 0
 
 
 class Frame(NamedTuple):
@@ -44,13 +52,254 @@ class Frame(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Contour:
-    """Cam surface, at every cam angle the point that touches the roller then.
+class Contour(ABC):
+    """Cam surface: at every cam angle the point that touches the follower then.
+
+    A kind of follower is a class of its own that defines the abstract members: the contact point
+    with its derivatives, the undercut factor and the follower's own surface. Areas, extremes,
+    self-intersections and second contacts follow from these.
+
+    Parameters
+    ----------
+    pitch : FollowerPath    path of the follower's reference point
+    """
+
+    pitch: FollowerPath
+
+    @property
+    def lift(self) -> Lift:
+        """Lift of the follower, s(theta)."""
+        return self.pitch.lift
+
+    @property
+    @abstractmethod
+    def rolls(self) -> bool:
+        """Whether the follower rolls on the cam; otherwise it slides."""
+
+    @property
+    @abstractmethod
+    def follower_curvature(self) -> float:
+        """Curvature of the follower's surface, 1/m, >= 0."""
+
+    @abstractmethod
+    def follower_gap(self, xi: Array) -> Array:
+        """Gap between the follower and its tangent at a distance `xi` (m) along it, m, >= 0."""
+
+    def require_roller(self) -> RollerContour:
+        """This contour, where its follower is a roller.
+
+        Raises
+        ------
+        GeometryError
+            For any other follower.
+        """
+        raise GeometryError(f"contour = {type(self).__name__}, must be that of a roller")
+
+    @abstractmethod
+    def local_frame(self, theta: ArrayLike) -> Frame:
+        """Contact point with its outward normal and its tangent."""
+
+    @abstractmethod
+    def speed(self, theta: ArrayLike) -> Array:
+        """Velocity of the contact point along the tangent, m/rad; negative where undercut."""
+
+    @abstractmethod
+    def factor(self, theta: ArrayLike) -> Array:
+        """Undercut factor; see `Undercut`."""
+
+    @abstractmethod
+    def undercut(self) -> Undercut:
+        """Minimum undercut factor over the continuous turn."""
+
+    def require_no_undercut(self) -> None:
+        """Check that the contour bounds a body.
+
+        Raises
+        ------
+        GeometryError
+            If the contour is undercut.
+        """
+        theta, factor = self.undercut()
+        if not factor > 0:
+            where = f"at cam angle {np.degrees(theta):.2f} deg"
+            raise GeometryError(
+                f"undercut factor of the contour = {factor:.4g} {where}, must be > 0"
+            )
+
+    @abstractmethod
+    def curvature(self, theta: ArrayLike) -> Array:
+        """Signed curvature, 1/m, positive where convex; infinite at a cusp."""
+
+    @abstractmethod
+    def curvature_slope(self, theta: ArrayLike) -> Array:
+        """Derivative of the curvature by the cam angle, 1/(m rad)."""
+
+    @abstractmethod
+    def radius_of_curvature(self, theta: ArrayLike) -> Array:
+        """Signed radius of curvature, m, positive where convex."""
+
+    @abstractmethod
+    def concave_radius_min(self) -> Extremum:
+        """Minimum concave radius of curvature, m > 0, and its cam angle.
+
+        Infinite, at the angle of least curvature, where the cam is convex. The grinding wheel
+        must be smaller.
+        """
+
+    @property
+    @abstractmethod
+    def fitting_tool(self) -> float:
+        """Radius of a round tool that reaches every point the follower does, m."""
+
+    @abstractmethod
+    def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
+        """Height (m,) of the follower resting on another closed contour (2, n), m."""
+
+    @abstractmethod
+    def _track(self, theta: Array) -> tuple[Array, Array, Array]:
+        """Contour point, unit tangent and speed by one evaluation of the lift."""
+
+    @abstractmethod
+    def _gap(self, contact: Array, other: Array) -> Array:
+        """Gap between the follower in contact at one cam angle and the contour at another, m."""
+
+    def points(self, theta: ArrayLike) -> Array:
+        """Contour point, (2, ...), m."""
+        return self.local_frame(theta).point
+
+    def normal(self, theta: ArrayLike) -> Array:
+        """Outward unit normal, (2, ...)."""
+        return self.pitch.normal(theta)
+
+    def tangent(self, theta: ArrayLike) -> Array:
+        """Unit tangent, (2, ...), of the follower's path; opposite to the contour's if undercut."""
+        return self.pitch.tangent(theta)
+
+    def velocity(self, theta: ArrayLike) -> Array:
+        """Derivative of the contour point by the cam angle, (2, ...), m/rad."""
+        return self.speed(theta) * self.tangent(theta)
+
+    def radius(self, theta: ArrayLike) -> Array:
+        """Distance of the contour point from the cam axis, m."""
+        x, y = self.points(theta)
+        return np.hypot(x, y)
+
+    def surface_offset(self, theta: ArrayLike, xi: ArrayLike) -> Array:
+        """Height of the contour over its tangent line at the contact, m, outward positive.
+
+        Newton's method on the cam angle of the contour point whose tangential distance from the
+        contact is `xi`.
+
+        Parameters
+        ----------
+        theta : array (...)     cam angle of the contact, rad
+        xi : array (..., k)     distance from the contact along the tangent, counter-clockwise,
+                                m; (k,) applies to every angle
+
+        Returns
+        -------
+        array (..., k)    negative where the contour bends away from the follower
+
+        Raises
+        ------
+        GeometryError
+            If the contour has no such point near the contact: undercut, or `xi` too large.
+        """
+        theta = np.asarray(theta, dtype=float)[..., None]
+        contact, speed = self.local_frame(theta), self.speed(theta)
+        xi = np.asarray(xi, dtype=float)
+        miss = np.zeros(np.broadcast(theta, xi).shape) - xi
+        angle, rate, tolerance = theta, speed, _OFFSET_TOLERANCE * self.pitch.radius_base
+        for _ in range(_OFFSET_STEPS_MAX):
+            step = np.divide(miss, rate, out=np.full_like(miss, np.nan), where=rate != 0)
+            angle = angle - np.clip(step, -_OFFSET_STEP_MAX, _OFFSET_STEP_MAX)
+            point, tangent, rate = self._track(angle)
+            away = point - contact.point
+            miss = np.sum(away * contact.tangent, axis=0) - xi
+            if np.all(np.abs(miss) <= tolerance):
+                return np.sum(away * contact.normal, axis=0)
+            rate = rate * np.sum(tangent * contact.tangent, axis=0)
+        lost = ~np.all(np.abs(miss) <= tolerance, axis=-1)
+        where = float(np.broadcast_to(theta[..., 0], lost.shape)[lost][0])
+        raise GeometryError(
+            f"contour at cam angle {where:.6g} rad: no surface point at the distance xi"
+        )
+
+    def self_intersections(self) -> tuple[tuple[float, float], ...]:
+        """Pairs of cam angles, rad, at which the contour passes through the same point.
+
+        Chords of the turn, finer about every undercut so that its swallow-tail is resolved;
+        crossings are refined to round-off.
+        """
+        return self._crossings
+
+    def second_contact(self) -> SecondContact:
+        """Minimum gap between the follower and the contour away from their contact."""
+        return self._second_contact
+
+    @cached_property
+    def _crossings(self) -> tuple[tuple[float, float], ...]:
+        return crossings(self.points, self.velocity, self.factor, self.lift.search_count)
+
+    @cached_property
+    def _second_contact(self) -> SecondContact:
+        return second_contact(self._gap, len(self.lift.theta))
+
+    def least_convex_pitch_radius(self) -> Extremum:
+        """Minimum convex radius of curvature of the follower's path, m, and its cam angle."""
+        return self.pitch.least_convex_radius()
+
+    def pressure_angle_max(self) -> Extremum:
+        """Maximum magnitude of the pressure angle, rad, and its cam angle."""
+        return self.pitch.pressure_angle_max()
+
+    def radius_max(self) -> Extremum:
+        """Maximum distance of the contour from the cam axis, m, and its cam angle."""
+        return greatest(self.radius, self.lift.search_count)
+
+    def radius_min(self) -> Extremum:
+        """Minimum distance of the contour from the cam axis, m, and its cam angle."""
+        return least(self.radius, self.lift.search_count)
+
+    def polygon(self, count: int) -> Array:
+        """`count` contour points at equal steps of the cam angle, (2, count), m."""
+        return readonly(self.points(uniform_turn(count)))
+
+    def area(self) -> float:
+        """Area within the contour, m^2, including bore and keyway."""
+        x, y = self._ring
+        dx, dy = self._ring_step
+        return float(0.5 * np.sum(x * dy - y * dx))
+
+    def centroid(self) -> Array:
+        """Centroid of the area within the contour, (2,), m."""
+        x, y = self._ring
+        dx, dy = self._ring_step
+        return readonly([np.sum(x**2 * dy), -np.sum(y**2 * dx)]) / (2 * self.area())
+
+    def perimeter(self) -> float:
+        """Length of the contour, m."""
+        return float(np.sum(np.hypot(*self._ring_step)))
+
+    @cached_property
+    def _ring(self) -> Array:
+        return self.points(uniform_turn(self.lift.search_count))
+
+    @cached_property
+    def _ring_step(self) -> Array:
+        # the trapezoidal rule, which on a smooth periodic function is of spectral accuracy
+        angle = uniform_turn(self.lift.search_count)
+        return self.velocity(angle) * (angle[1] - angle[0])
+
+
+@dataclass(frozen=True, eq=False)
+class RollerContour(Contour):
+    """Cam surface under a roller: the pitch curve offset inwards by the roller radius.
 
     Parameters
     ----------
     pitch : PitchCurve        path of the roller centre
-    roller_radius : float     m, > 0, below the base radius
+    roller_radius : float     m, > 0, below the prime radius
 
     Raises
     ------
@@ -67,25 +316,27 @@ class Contour:
 
     def __post_init__(self) -> None:
         positive("roller.radius", self.roller_radius, "m")
-        if not self.roller_radius < self.pitch.base_radius:
-            limit = f"below the pitch base radius of {self.pitch.base_radius:g} m"
+        if not self.roller_radius < self.pitch.prime_radius:
+            limit = f"below the prime radius of {self.pitch.prime_radius:g} m"
             raise InputError("roller.radius", self.roller_radius, limit)
 
-    def points(self, theta: ArrayLike) -> Array:
-        """Contour point, (2, ...), m."""
-        return self.local_frame(theta).point
+    @property
+    def rolls(self) -> bool:
+        return True
 
-    def normal(self, theta: ArrayLike) -> Array:
-        """Outward unit normal, (2, ...)."""
-        return self.pitch.normal(theta)
+    @property
+    def follower_curvature(self) -> float:
+        return 1 / self.roller_radius
 
-    def tangent(self, theta: ArrayLike) -> Array:
-        """Unit tangent, (2, ...), that of the pitch curve; the contour's own if not undercut."""
-        return self.pitch.tangent(theta)
+    def follower_gap(self, xi: Array) -> Array:
+        radius = self.roller_radius
+        return xi**2 / (radius + np.sqrt(radius**2 - xi**2))
+
+    def require_roller(self) -> RollerContour:
+        return self
 
     def local_frame(self, theta: ArrayLike) -> Frame:
-        """Contact point with its outward normal and its tangent."""
-        s, s1 = self.pitch.lift.derivatives(theta, 1)
+        s, s1 = self.lift.derivatives(theta, 1)
         along, across = s1 - self.pitch.offset, self.pitch.height_base + s
         speed = np.hypot(along, across)
         along, across, height = along / speed, across / speed, across
@@ -93,81 +344,47 @@ class Contour:
         point = cam_axes(theta, height - inset * across, self.pitch.offset + inset * along)
         return Frame(point, cam_axes(theta, across, -along), cam_axes(theta, along, across))
 
-    def velocity(self, theta: ArrayLike) -> Array:
-        """Derivative of the contour point by the angle, (2, ...), m/rad."""
-        return self.speed(theta) * self.tangent(theta)
-
     def speed(self, theta: ArrayLike) -> Array:
-        """Way of the contact point along the tangent, m/rad; negative where undercut."""
         speed, curvature = self.pitch.speed_and_curvature(theta)
         return speed * (1.0 - self.roller_radius * curvature)
 
     def factor(self, theta: ArrayLike) -> Array:
-        """1 - roller radius x pitch curvature; zero at a cusp, 1 where straight."""
+        """Undercut factor 1 - roller radius x pitch curvature; zero at a cusp, 1 if straight."""
         return 1.0 - self.roller_radius * self.pitch.curvature(theta)
 
-    def radius(self, theta: ArrayLike) -> Array:
-        """Distance of the contour point from the cam axis, m."""
-        x, y = self.points(theta)
-        return np.hypot(x, y)
+    def undercut(self) -> Undercut:
+        curvature, theta = self.pitch.curvature_max()
+        return Undercut(theta, 1.0 - self.roller_radius * curvature)
 
     def curvature(self, theta: ArrayLike) -> Array:
-        """Signed curvature, 1/m, positive where convex; infinite at a cusp."""
         curvature = self.pitch.curvature(theta)
         return curvature * reciprocal(1.0 - self.roller_radius * curvature)
+
+    def curvature_slope(self, theta: ArrayLike) -> Array:
+        return self.pitch.curvature_slope(theta) * reciprocal(self.factor(theta) ** 2)
 
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """Signed radius of curvature, m, positive where convex; infinite at an inflection.
 
-        Negative both on a hollow flank and where a convex one is undercut.
+        Negative both on a concave flank and where a convex one is undercut.
         """
         return self.pitch.radius_of_curvature(theta) - self.roller_radius
 
-    def curvature_slope(self, theta: ArrayLike) -> Array:
-        """Change of the contour's curvature per radian of cam angle, 1/(m rad)."""
-        return self.pitch.curvature_slope(theta) * reciprocal(self.factor(theta) ** 2)
+    def concave_radius_min(self) -> Extremum:
+        curvature, theta = self.pitch.curvature_min()
+        if curvature >= 0:
+            return Extremum(np.inf, theta)
+        return Extremum(self.roller_radius - 1.0 / curvature, theta)
 
-    def surface_offset(self, theta: ArrayLike, xi: ArrayLike) -> Array:
-        """Height of the contour over its tangent line at the contact, m, outward positive.
+    @property
+    def fitting_tool(self) -> float:
+        """The roller radius, m."""
+        return self.roller_radius
 
-        Exact: the contour point whose tangential distance from the contact is `xi` is found by
-        Newton's method on its angle.
-
-        Parameters
-        ----------
-        theta : array (...)     cam angle of the contact, rad
-        xi : array (..., k)     way from the contact along the tangent, counter-clockwise, m;
-                                (k,) serves every angle
-
-        Returns
-        -------
-        array (..., k)    negative where the contour bends away from the roller
-
-        Raises
-        ------
-        GeometryError
-            If the contour has no such point near the contact: undercut, or `xi` too great.
-        """
-        theta = np.asarray(theta, dtype=float)[..., None]
-        contact, speed = self.local_frame(theta), self.speed(theta)
-        xi = np.asarray(xi, dtype=float)
-        miss = np.zeros(np.broadcast(theta, xi).shape) - xi
-        angle, rate, tolerance = theta, speed, _OFFSET_TOLERANCE * self.pitch.base_radius
-        for _ in range(_OFFSET_STEPS_MAX):
-            step = np.divide(miss, rate, out=np.full_like(miss, np.nan), where=rate != 0)
-            angle = angle - np.clip(step, -_OFFSET_STEP_MAX, _OFFSET_STEP_MAX)
-            point, tangent, rate = self._track(angle)
-            away = point - contact.point
-            miss = np.sum(away * contact.tangent, axis=0) - xi
-            if np.all(np.abs(miss) <= tolerance):
-                return np.sum(away * contact.normal, axis=0)
-            rate = rate * np.sum(tangent * contact.tangent, axis=0)
-        lost = ~np.all(np.abs(miss) <= tolerance, axis=-1)
-        where = float(np.broadcast_to(theta[..., 0], lost.shape)[lost][0])
-        raise GeometryError(f"contour at cam angle {where:.6g} rad: no surface as far as asked")
+    def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
+        return roller_height(polygon, self.roller_radius, self.pitch.offset, theta)
 
     def _track(self, theta: Array) -> tuple[Array, Array, Array]:
-        """Contour point, unit tangent and way per radian, sharing one look-up of the lift."""
         pitch = self.pitch
         s, s1, s2 = pitch.lift.derivatives(theta, 2)
         along, across = s1 - pitch.offset, pitch.height_base + s
@@ -181,105 +398,6 @@ class Contour:
         tangent = np.stack([along * cos - across * sin, along * sin + across * cos]) / speed
         return point, tangent, speed - self.roller_radius * turning
 
-    def undercut(self) -> Undercut:
-        """Whether the roller cuts its own track, looked for on the continuous turn."""
-        curvature, theta = self.pitch.curvature_max()
-        factor = 1.0 - self.roller_radius * curvature
-        return Undercut(not factor > 0, theta, factor)
-
-    def self_intersections(self) -> tuple[tuple[float, float], ...]:
-        """Pairs of cam angles, rad, at which the contour passes through the same point.
-
-        The turn is cut into chords, finer about every undercut however short, so that its
-        swallow-tail is seen; crossings are polished to round-off.
-        """
-        return self._crossings
-
-    def second_contact(self) -> SecondContact:
-        """Where the roller comes nearest to a part of the contour it is not rolling on."""
-        return self._second_contact
-
-    def clearance(self) -> Extremum:
-        """Least gap between the roller and the contour away from the contact, m, and cam angle.
-
-        Negative when the roller cuts in; infinite when no other part faces the roller at all.
-        """
-        return Extremum(self._second_contact.clearance, self._second_contact.theta)
-
-    @cached_property
-    def _crossings(self) -> tuple[tuple[float, float], ...]:
-        return crossings(self.points, self.velocity, self.factor, self.pitch.lift.search_count)
-
-    @cached_property
-    def _second_contact(self) -> SecondContact:
-        return second_contact(self._gap, len(self.pitch.lift.theta))
-
     def _gap(self, contact: Array, other: Array) -> Array:
-        """Gap between the follower in contact at one cam angle and the contour at another, m."""
         away = self.points(other) - self.pitch.points(contact)
         return np.hypot(away[0], away[1]) - self.roller_radius
-
-    def standing(self, polygon: ArrayLike, theta: ArrayLike) -> Array:
-        """Height (m,) of the follower let down on another closed contour (2, n), m."""
-        return roller_height(polygon, self.roller_radius, self.pitch.offset, theta)
-
-    @property
-    def fitting_tool(self) -> float:
-        """Radius of a tool that fits wherever the follower does, m."""
-        return self.roller_radius
-
-    def concave_radius_min(self) -> Extremum:
-        """Least radius of the hollow parts of the contour, m > 0, and its cam angle.
-
-        Infinite, at the flattest place, if the cam is convex. A grinding wheel must be smaller.
-        """
-        curvature, theta = self.pitch.curvature_min()
-        if curvature >= 0:
-            return Extremum(np.inf, theta)
-        return Extremum(self.roller_radius - 1.0 / curvature, theta)
-
-    def least_convex_pitch_radius(self) -> Extremum:
-        """Least radius of curvature of the convex parts of the pitch curve, m."""
-        return self.pitch.least_convex_radius()
-
-    def pressure_angle_max(self) -> Extremum:
-        """Greatest pressure angle of either sign, rad >= 0, and its cam angle."""
-        return self.pitch.pressure_angle_max()
-
-    def radius_max(self) -> Extremum:
-        """Greatest distance of the contour from the cam axis, m, and its cam angle."""
-        return greatest(self.radius, self.pitch.lift.search_count)
-
-    def radius_min(self) -> Extremum:
-        """Least distance of the contour from the cam axis, m, and its cam angle."""
-        return least(self.radius, self.pitch.lift.search_count)
-
-    def polygon(self, count: int) -> Array:
-        """`count` contour points at equal steps of the cam angle, (2, count), m."""
-        return readonly(self.points(uniform_turn(count)))
-
-    def area(self) -> float:
-        """Area within the contour, m^2, bore and keyway not taken off."""
-        x, y = self._ring
-        dx, dy = self._ring_step
-        return float(0.5 * np.sum(x * dy - y * dx))
-
-    def centroid(self) -> Array:
-        """Centre of the area within the contour, (2,), m."""
-        x, y = self._ring
-        dx, dy = self._ring_step
-        return readonly([np.sum(x**2 * dy), -np.sum(y**2 * dx)]) / (2 * self.area())
-
-    def perimeter(self) -> float:
-        """Length of the contour, m."""
-        return float(np.sum(np.hypot(*self._ring_step)))
-
-    @cached_property
-    def _ring(self) -> Array:
-        return self.points(uniform_turn(self.pitch.lift.search_count))
-
-    @cached_property
-    def _ring_step(self) -> Array:
-        # the trapezoidal rule, which on a smooth periodic function is of spectral accuracy
-        angle = uniform_turn(self.pitch.lift.search_count)
-        return self.velocity(angle) * (angle[1] - angle[0])

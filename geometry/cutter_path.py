@@ -1,4 +1,4 @@
-"""Path of the centre of a round cutter or grinding wheel along the contour."""
+"""Path of the centre of a milling cutter or grinding wheel that cuts the contour."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from camwright.geometry.errors import GeometryError
 
 
 class CutterPath(NamedTuple):
-    """Cam angle (n,) rad, centre of the tool (2, n) m, its path's radius of curvature (n,) m."""
+    """Cam angle (n,), rad; tool centre (2, n), m; radius of curvature of its path (n,), m."""
 
     theta: Array
     centre: Array
@@ -20,31 +20,30 @@ class CutterPath(NamedTuple):
 
 
 def cutter_path(contour: Contour, tool_radius: float, theta: Array) -> CutterPath:
-    """Centre of a round tool that touches the contour at given cam angles.
+    """Centre of a round tool in contact with the contour at the cam angles.
 
     Parameters
     ----------
     contour : Contour
-    tool_radius : float     m, > 0; that of the roller gives the pitch curve itself
+    tool_radius : float     m, > 0; for the roller radius the path is the pitch curve
     theta : array (n,)      cam angle, rad
 
     Raises
     ------
     GeometryError
-        If the tool is too large for a hollow of the contour, or the contour is undercut.
+        If the tool is larger than the minimum concave radius, or the contour is undercut.
 
     References
     ----------
     Rothbart, Cam Design Handbook (2004), sec. 6.4: the cutter's centre as a parallel curve.
     """
     positive("tool.radius", tool_radius, "m")
-    if contour.undercut().found:
-        raise GeometryError("the contour is undercut, no tool can cut it")
-    hollow = contour.concave_radius_min()
-    if not tool_radius < hollow.value:
+    contour.require_no_undercut()
+    concave = contour.concave_radius_min()
+    if not tool_radius < concave.value:
         raise GeometryError(
-            f"tool.radius = {tool_radius:g} m, must be < {hollow.value:.6g} m, the radius of the "
-            f"hollow at cam angle {np.degrees(hollow.theta):.2f} deg"
+            f"tool.radius = {tool_radius:g} m, must be < {concave.value:.6g} m, the minimum "
+            f"concave radius, at cam angle {np.degrees(concave.theta):.2f} deg"
         )
     centre = contour.points(theta) + tool_radius * contour.normal(theta)
     return CutterPath(

@@ -1,4 +1,4 @@
-"""Cam torque to stored energy to lift: the spring keeps what the engine has in excess."""
+"""Lift from cam torque: the torque's work is stored in the spring."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from camwright.geometry.lift import Lift, require_uniform_turn
 from camwright.geometry.periodic_spline import PeriodicPolynomial, periodic_quintic
 
 MEAN_TOLERANCE = 1e-12
-"""Of the greatest torque: a mean below this is the round-off of its removal."""
+"""Maximum mean over the maximum torque: round-off of removing the mean."""
 
 
 def without_mean(torque: ArrayLike) -> tuple[Array, float]:
-    """Torque over equal steps of one turn, less its mean, and the mean.
+    """Torque less its mean, and the mean.
 
-    Only torque of zero mean can be stored and given back within a turn.
+    Only torque of zero mean can be stored and returned within a turn.
 
     Parameters
     ----------
-    torque : array (n,)    N m
+    torque : array (n,)    N m, at equal steps of one turn
 
     Returns
     -------
@@ -35,10 +35,10 @@ def without_mean(torque: ArrayLike) -> tuple[Array, float]:
 
 
 def stored_energy(theta: ArrayLike, cam_torque: ArrayLike) -> tuple[Array, float]:
-    """Energy in the spring above its least value in the turn.
+    """Energy stored in the spring above its minimum over the turn.
 
-    The integral of the periodic quintic through the torque samples, without quadrature error;
-    the least value is that of the continuous curve, so it may lie between samples.
+    The exact integral of the periodic quintic through the torque samples; its minimum is that of
+    the continuous curve and may lie between samples.
 
     Parameters
     ----------
@@ -69,12 +69,11 @@ def lift_from_torque(
     preload: float,
     initial_energy: float = 0.0,
 ) -> Lift:
-    """Lift that makes the spring follow the torque: E0 + (E - min E) = P s + k s^2 / 2.
+    """Lift whose spring energy balances the torque: E0 + (E - min E) = P s + k s^2 / 2.
 
-    The lift keeps the phase of the torque: it is least where the stored energy is.
-    At the samples the spline gives back the torque, F_s s', within its interpolation error,
-    of order h^6 for samples h apart: below 1e-7 of the greatest torque for 720 samples of 30
-    harmonics that fade as 1/k.
+    The lift is minimal where the stored energy is. At the samples the spline's torque F_s s'
+    differs from the target by its interpolation error, of order h^6 for a sample spacing h: below
+    1e-7 of the maximum torque for 720 samples of 30 harmonics of amplitude 1/k.
 
     Parameters
     ----------
@@ -82,27 +81,27 @@ def lift_from_torque(
     cam_torque : array (n,)    N m, positive when it loads the spring, of zero mean
     spring_rate : float        k, N/m, > 0
     preload : float            P, spring force at zero lift, N, >= 0
-    initial_energy : float     E0, J, >= 0: stored above the preload at the least lift, so that
-                               the least lift is above zero
+    initial_energy : float     E0, J, >= 0: stored above the preload at the minimum lift, which
+                               is then above zero
 
     Returns
     -------
-    Lift    whose `closure` is the difference between the ends of the integral, m
+    Lift    its `closure` is the difference between the ends of the integral, m
 
     Raises
     ------
     InputError
-        If the torque has a mean, or the spring is slack at the least lift.
+        If the torque has a mean, or the spring is slack at the minimum lift.
 
     References
     ----------
-    Cardoso et al., Energies 18 (2025) 3256, sec. 2, there marched, here in closed form.
+    Cardoso et al., Energies 18 (2025) 3256, sec. 2; step by step there, in closed form here.
     """
     if not 0 <= initial_energy < np.inf:
         raise InputError("spring.initial_energy", initial_energy, ">= 0 J and finite")
     _require_spring(spring_rate, preload)
     if not preload**2 + 2 * spring_rate * initial_energy > 0:
-        raise InputError("spring.preload", preload, "> 0 N, else the lift has a corner at rest")
+        raise InputError("spring.preload", preload, "> 0 N, or the minimum lift is a corner")
     energy, gain = stored_energy(theta, cam_torque)
     stored = initial_energy + energy
     values = spring_deflection(stored, spring_rate, preload)
@@ -111,7 +110,7 @@ def lift_from_torque(
 
 
 def spring_deflection(energy: ArrayLike, spring_rate: float, preload: float) -> Array:
-    """Deflection beyond the preload at which a spring holds the energy, m.
+    """Deflection of a spring beyond its preload, from the energy it stores, m.
 
     Parameters
     ----------
@@ -124,34 +123,20 @@ def spring_deflection(energy: ArrayLike, spring_rate: float, preload: float) -> 
     if not (stored >= 0).all():
         raise InputError("spring.energy", float(stored.min()), ">= 0 J")
     force = np.sqrt(preload**2 + 2 * spring_rate * stored)
-    # 2 E / (F + P) is (F - P) / k without its cancellation at small energies
+    # 2 E / (F + P) equals (F - P) / k without cancellation at small energies
     return readonly(
         np.divide(2 * stored, force + preload, out=np.zeros_like(stored), where=force > 0)
     )
 
 
-def spring_energy(lift: ArrayLike, spring_rate: float, preload: float) -> Array:
-    """Energy P s + k s^2 / 2 a spring holds beyond that of its preload, J.
-
-    Parameters
-    ----------
-    lift : array (...)     s, m
-    spring_rate : float    k, N/m, > 0
-    preload : float        P, N, >= 0
-    """
-    _require_spring(spring_rate, preload)
-    s = finite("lift", lift)
-    return readonly(s * (preload + 0.5 * spring_rate * s))
-
-
 def _energy_curve(theta: Array, cam_torque: Array) -> tuple[PeriodicPolynomial, float]:
-    """The integral of the torque from angle 0, J, and its gain over the turn."""
+    """Integral of the torque from angle 0, J, and its change over the turn."""
     require_uniform_turn("theta", theta)
     if cam_torque.shape != theta.shape:
-        raise InputError("cam_torque", len(cam_torque), f"{len(theta)} values, one an angle")
+        raise InputError("cam_torque", len(cam_torque), f"{len(theta)} values, one per angle")
     mean = float(cam_torque.mean())
     if not abs(mean) <= MEAN_TOLERANCE * float(np.abs(cam_torque).max()):
-        raise InputError("cam_torque.mean", mean, "0 N m, or the cam does not close")
+        raise InputError("cam_torque.mean", mean, "0 N m: the lift must close")
     return periodic_quintic(cam_torque).antiderivative()
 
 

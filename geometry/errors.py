@@ -1,46 +1,46 @@
-"""The exception family. A failed check is a result, not one of these."""
+"""Exceptions of the project. A failed check is a result, not an exception."""
 
 from __future__ import annotations
 
-from typing import Any
+Refused = str | float | tuple[float, ...] | None
+"""Value of an input that is out of bounds: text, number, shape, or None where it is missing."""
 
 
 class CamError(Exception):
-    """Anything the user can act upon; its message is one line."""
+    """Error that the user can correct; its message is one line."""
 
 
 class InputError(CamError):
-    """A value the user gave is out of bounds.
+    """Input value out of bounds.
 
     Parameters
     ----------
-    field : str    dotted name of the input, such as ``roller.radius``
-    value : Any    what was given
-    limit : str    what would be accepted, such as ``> 0 m``
+    field : str        dotted name of the input, such as ``roller.radius``
+    value : Refused    value of the input
+    limit : str        accepted values, such as ``> 0 m``
     """
 
-    def __init__(self, field: str, value: Any, limit: str) -> None:
+    def __init__(self, field: str, value: Refused, limit: str) -> None:
         self.field, self.value, self.limit = field, value, limit
         super().__init__(field, value, limit)
 
     def __str__(self) -> str:
-        shown = self.value if isinstance(self.value, (str, int, float)) else repr(self.value)
-        text = " ".join(str(shown).split())
+        text = " ".join(str(self.value).split())
         shortened = text if len(text) <= 80 else f"{text[:30]}...{text[-47:]}"  # paths end in names
         return f"{self.field} = {shortened}, must be {self.limit}"
 
 
 class GeometryError(CamError):
-    """A shape that cannot be built."""
+    """Geometry that cannot be constructed."""
 
 
 class MeshError(CamError):
-    """A mesh that cannot be made or is not good enough."""
+    """Mesh that cannot be generated or is below its quality limits."""
 
 
 class ContactError(CamError):
-    """A contact solution that did not converge or is out of its theory's range."""
+    """Contact solution that did not converge or is outside the range of its theory."""
 
 
 class ResultError(CamError):
-    """A run folder that cannot be read or written."""
+    """Result file or run folder that cannot be read or written."""

@@ -1,7 +1,7 @@
-"""The motion a finished contour gives its follower, found by touching alone.
+"""Height of a follower that rests on a contour of measured or computed points.
 
-Nothing of how the contour was drawn is used: not the lift, nor its derivatives, nor the angle a
-point belongs to. The follower is let down on a closed curve until it rests on it.
+The points alone determine it: neither the lift nor its derivatives nor the cam angle of a point
+enters. An interpolated closed curve is searched for the point that supports the follower.
 """
 
 from __future__ import annotations
@@ -10,26 +10,24 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite
 from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.extrema import refined
 
-_ZOOM_POINTS = np.linspace(-1.0, 1.0, 9)
 _ZOOMS = 13
 _LEAST_POINTS = 24
 
-Standing = Callable[[Array, Array, Array], Array]
-"""Coordinates x, y of contour points (m) and angles (rad) -> height the follower stands at (m)."""
+Support = Callable[[Array, Array, Array], Array]
+"""Contour points x, y (m) and angles (rad) -> follower height at which the point touches it (m)."""
 
 
 def roller_height(
     polygon: ArrayLike, roller_radius: float, offset: float, theta: ArrayLike
 ) -> Array:
-    """Height d of the centre of a roller that rests on a contour, (m,), m.
+    """Height d of the centre of a roller resting on a contour, (m,), m.
 
-    The highest place at which the circle still touches: over every point of the curve the roller
-    would stand at p.u + sqrt(r^2 - (p.v - e)^2), and the greatest of these counts.
+    The maximum of p.u + sqrt(r^2 - (p.v - e)^2) over the points p of the contour.
 
     Parameters
     ----------
@@ -41,20 +39,20 @@ def roller_height(
     Raises
     ------
     GeometryError
-        If the follower's axis misses the contour.
+        If the roller's path does not cross the contour.
     """
 
-    def standing(x: Array, y: Array, angle: Array) -> Array:
+    def support(x: Array, y: Array, angle: Array) -> Array:
         along = x * np.cos(angle) + y * np.sin(angle)
         across = y * np.cos(angle) - x * np.sin(angle) - offset
         square = roller_radius**2 - across**2
         return np.where(square >= 0, along + np.sqrt(np.maximum(square, 0.0)), -np.inf)
 
-    return _highest(polygon, standing, theta)
+    return _highest(polygon, support, theta)
 
 
 def face_height(polygon: ArrayLike, theta: ArrayLike) -> Array:
-    """Height of a flat face that rests on a contour, (m,), m: the support of the curve.
+    """Height of a flat face resting on a contour, (m,), m: its support function.
 
     Parameters
     ----------
@@ -62,33 +60,32 @@ def face_height(polygon: ArrayLike, theta: ArrayLike) -> Array:
     theta : array (m,)         angles of the follower's axis in the cam frame, rad
     """
 
-    def standing(x: Array, y: Array, angle: Array) -> Array:
+    def support(x: Array, y: Array, angle: Array) -> Array:
         return x * np.cos(angle) + y * np.sin(angle)
 
-    return _highest(polygon, standing, theta)
+    return _highest(polygon, support, theta)
 
 
-def _highest(polygon: ArrayLike, standing: Standing, theta: ArrayLike) -> Array:
+def _highest(polygon: ArrayLike, support: Support, theta: ArrayLike) -> Array:
+    from scipy.interpolate import CubicSpline
+
     points, angle = finite("polygon", polygon), finite("theta", theta)
     if points.ndim != 2 or points.shape[0] != 2 or points.shape[1] < _LEAST_POINTS:
         raise InputError("polygon", f"shape {points.shape}", f"(2, n) with n >= {_LEAST_POINTS}")
     closed = np.concatenate([points, points[:, :1]], axis=1)
-    # chord length as parameter: the points' own angles are not known here
+    # chord length as parameter: the cam angles of the points are unknown
     chord = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=1)))])
     parameter = chord * (FULL_TURN / chord[-1])
     curve = CubicSpline(parameter, closed, axis=1, bc_type="periodic")
-    first = standing(points[0][:, None], points[1][:, None], angle[None, :])
+    first = support(points[0][:, None], points[1][:, None], angle[None, :])
     best = np.argmax(first, axis=0)
-    columns = np.arange(angle.size)
-    top = first[best, columns]
+    top = first[best, np.arange(angle.size)]
     if not np.isfinite(top).all():
-        raise GeometryError("the follower's axis misses the contour")
-    centre, half = parameter[best], np.diff(parameter).max()
-    for _ in range(_ZOOMS):
-        trial = centre + half * _ZOOM_POINTS[:, None]
+        raise GeometryError("contour = out of the follower's reach, must cross its line of travel")
+
+    def depth(trial: Array) -> Array:
         x, y = curve(np.mod(trial, FULL_TURN))
-        found = standing(x, y, angle[None, :])
-        pick = np.argmax(found, axis=0)
-        centre, top = trial[pick, columns], np.maximum(top, found[pick, columns])
-        half /= 4.0
-    return top
+        return -support(x, y, angle[:, None])
+
+    lowest, _ = refined(depth, parameter[best], np.diff(parameter).max(), _ZOOMS)
+    return np.maximum(top, -lowest)

@@ -1,4 +1,4 @@
-"""Where a closed curve meets itself, and where the roller meets it twice."""
+"""Self-intersections of the contour, and second contacts of the follower."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
-from camwright.geometry.extrema import Function, valleys
+from camwright.geometry.extrema import Function, local_minima
 
 Curve = Callable[[Array], Array]
 """Angles (...) -> coordinates (2, ...)."""
 
 _LOOP_CHORDS = 64
 _LOOP_REACH = 3.0
-"""A small swallow-tail closes at sqrt(3) times its cusps, so within this many."""
+"""Multiple of the cusps' distance within which a small swallow-tail closes: sqrt(3)."""
 
 _POLISH_STEPS = 30
 _POLISHED = 1e-12
-"""rad: Newton's method has arrived; in the smallest loops round-off keeps it farther away."""
+"""rad: step at which Newton's method has converged; in the smallest loops round-off is larger."""
 _RESOLVED = 0.01
-"""Of the angle between the two passes: what their angles must be certain to."""
+"""Maximum last step, over the angle between the two passes, of an accepted crossing."""
 
 _POSITIONS_MAX = 720
 _CANDIDATES_MAX = 32
@@ -30,36 +30,34 @@ _ZOOM_POINTS = np.linspace(-1.0, 1.0, 9)
 _ZOOMS = 20
 
 Gap = Callable[[Array, Array], Array]
-"""Cam angles of the contact and of another contour point, broadcast -> gap there, m."""
+"""Cam angles of the contact and of another contour point, broadcast -> gap at that point, m."""
 
 
 class SecondContact(NamedTuple):
-    """Least gap (m) between the follower at cam angle `theta` and the contour point of `other`.
+    """Minimum gap between follower and contour away from their contact.
 
-    Infinite, with angles that are not numbers, when no other part of the contour faces it.
+    clearance : gap, m; negative where the follower cuts in, infinite (angles NaN) where no other
+                part of the contour faces it
+    theta     : cam angle of the contact, rad
+    other     : cam angle of the contour point nearest to the follower, rad
     """
 
     clearance: float
     theta: float
     other: float
 
-    @property
-    def touches(self) -> bool:
-        """Whether the follower touches the contour in two places at once, or cuts in."""
-        return not self.clearance > 0
-
 
 def crossings(
     points: Curve, velocity: Curve, factor: Function, count: int
 ) -> tuple[tuple[float, float], ...]:
-    """Pairs of angles at which an offset curve passes through the same point.
+    """Pairs of cam angles at which an offset curve passes through the same point.
 
     Parameters
     ----------
     points, velocity : callable    angles (n,) -> (2, n), m and m/rad
-    factor : callable              angles -> speed relative to the parent curve; where it is
-                                   negative the offset runs backwards, between two cusps
-    count : int                    chords of the turn
+    factor : callable              angles -> undercut factor; negative between two cusps, where
+                                   the offset curve runs backwards
+    count : int                    chords per turn
 
     Returns
     -------
@@ -82,24 +80,24 @@ def crossings(
 
 
 def second_contact(gap: Gap, count: int) -> SecondContact:
-    """Least gap between follower and contour away from where they touch.
+    """Minimum gap between follower and contour away from their contact.
 
-    At each position every local minimum of the gap along the contour counts, but the contact
-    itself; the closest few are refined in both angles.
+    Every local minimum of the gap along the contour counts except the contact itself; the
+    smallest are refined in both angles.
 
     Parameters
     ----------
-    gap : callable    angles of contact and other point, broadcast -> gap between follower and
-                      contour there, m
-    count : int       positions of the follower, of which at most 720 are used, against twice as
-                      many contour points
+    gap : callable    angles of contact and other point, broadcast -> gap, m
+    count : int       follower positions, at most 720 of them used, against twice as many contour
+                      points
     """
     count = min(count, _POSITIONS_MAX)
     position, along = uniform_turn(count), uniform_turn(2 * count)
     distance = gap(position[:, None], along[None, :])
-    valley = (distance <= np.roll(distance, 1, axis=1)) & (distance < np.roll(distance, -1, axis=1))
-    valley[np.arange(count), 2 * np.arange(count)] = False
-    row, column = np.nonzero(valley)
+    minimum = distance <= np.roll(distance, 1, axis=1)
+    minimum &= distance < np.roll(distance, -1, axis=1)
+    minimum[np.arange(count), 2 * np.arange(count)] = False
+    row, column = np.nonzero(minimum)
     if len(row) == 0:
         return SecondContact(np.inf, np.nan, np.nan)
     near = np.argsort(distance[row, column], kind="stable")[:_CANDIDATES_MAX]
@@ -119,15 +117,15 @@ def second_contact(gap: Gap, count: int) -> SecondContact:
 
 
 def _knots(factor: Function, count: int) -> Array:
-    """Equal angles, and finer ones about each stretch that runs backwards."""
+    """Equal angles, with finer ones about each undercut."""
     step = FULL_TURN / count
-    values, bottoms = valleys(factor, count)
+    values, bottoms = local_minima(factor, count)
     bottoms, values = bottoms[values < 0], values[values < 0]
     probe = 0.1 * step
     bend = (factor(bottoms + probe) + factor(bottoms - probe) - 2 * values) / probe**2
     with np.errstate(divide="ignore", invalid="ignore"):
         cusp = np.sqrt(-2 * values / bend)
-    # a stretch many steps long shows on the equal angles
+    # the equal angles resolve an undercut of many steps
     short = cusp < _LOOP_CHORDS / 4 * step
     window = _LOOP_REACH * cusp[short, None] * np.linspace(-1, 1, _LOOP_CHORDS)
     finer = np.mod(bottoms[short, None] + window, FULL_TURN)
@@ -135,7 +133,7 @@ def _knots(factor: Function, count: int) -> Array:
 
 
 def _overlapping(start: Array, chord: Array) -> tuple[Array, Array]:
-    """Indices of chords that are no neighbours and whose boxes overlap, swept along x."""
+    """Indices of pairs of non-adjacent chords whose bounding boxes overlap, by a sweep along x."""
     low, high = np.minimum(start, start + chord), np.maximum(start, start + chord)
     order = np.argsort(low[0], kind="stable")
     count = len(order)
@@ -150,25 +148,25 @@ def _overlapping(start: Array, chord: Array) -> tuple[Array, Array]:
 
 
 def _polished(points: Curve, velocity: Curve, first: Array, second: Array) -> tuple[Array, Array]:
-    """Crossings by Newton's method; those that fall together into one angle are none."""
+    """Crossings by Newton's method; pairs that converge to one angle are discarded."""
     apart = np.abs(second - first)
-    one, two, moved = first, second, np.full_like(first, np.inf)
+    one, two, change = first, second, np.full_like(first, np.inf)
     for _ in range(_POLISH_STEPS):
-        miss, along, other = points(two) - points(one), velocity(one), velocity(two)
-        # parallel tracks meet nowhere, or touch, which the second contact of the roller tells
+        gap, along, other = points(two) - points(one), velocity(one), velocity(two)
+        # parallel passes do not cross; touching ones are second contacts
         across = _cross(along, other)
         across = np.where(across == 0, np.nan, across)
-        step = np.clip([_cross(miss, other), _cross(miss, along)] / across, -1.0, 1.0)
+        step = np.clip([_cross(gap, other), _cross(gap, along)] / across, -1.0, 1.0)
         one, two = one + step[0], two + step[1]
-        moved = np.abs(step).max(axis=0)
-        if not (moved > _POLISHED).any():
+        change = np.abs(step).max(axis=0)
+        if not (change > _POLISHED).any():
             break
-    true = (moved <= _RESOLVED * apart) & (np.abs(two - one) > 0.25 * apart)
+    true = (change <= _RESOLVED * apart) & (np.abs(two - one) > 0.25 * apart)
     return one[true], two[true]
 
 
 def _distinct(first: Array, second: Array) -> tuple[tuple[float, float], ...]:
-    """Pairs in order, each once."""
+    """Pairs in ascending order, without duplicates."""
     pairs = np.sort(np.mod([first, second], FULL_TURN), axis=0)
     kept: list[tuple[float, float]] = []
     for one, two in sorted(zip(*pairs.tolist(), strict=True)):

@@ -1,4 +1,4 @@
-"""Lift of the follower over one cam turn: a periodic spline and its derivatives."""
+"""Lift of the follower over one cam turn, and its derivatives."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, uniform_turn
 from camwright.geometry.errors import InputError
@@ -16,34 +15,35 @@ from camwright.geometry.periodic_spline import (
     DEGREE,
     LEAST_SAMPLES,
     PeriodicPolynomial,
+    interpolant,
     periodic_quintic,
 )
 
 ANGLE_TOLERANCE = 1e-9
-"""rad: angles closer than this are the same; a table in degrees is read to round-off."""
+"""rad: angles closer than this are equal, the round-off of a table in degrees."""
 
 NEGATIVE_TOLERANCE = 1e-6
-"""m: a spline may dip this far below a dwell at zero; no cam is ground finer."""
+"""m: maximum undershoot of a spline below a dwell at zero, less than any grinding accuracy."""
 
 CLOSURE_LIMIT = 1e-6
-"""m: how far the last value of a closed table may miss the first."""
+"""m: maximum difference between the ends of a closed table."""
 
 GAP_MAX = np.radians(30.0)
 
 _RESAMPLED = 720
 _SEARCH = 4
-"""Search points per sample: a quintic piece turns at most four times."""
+"""Search points per sample: a quintic has at most four extremes per part."""
 
 
 @dataclass(frozen=True, eq=False)
 class Lift:
-    """Lift s of the follower against the cam angle, a periodic quintic (C4) spline.
+    """Lift s of the follower against the cam angle: a periodic quintic (C4) spline.
 
     Parameters
     ----------
     theta : array (n,)     cam angle, rad, equally spaced over [0, 2 pi), n >= 12
     values : array (n,)    s, m, >= 0
-    closure : float        |s(2 pi) - s(0)| as the source of the lift gave it, m
+    closure : float        |s(2 pi) - s(0)| of the source of the lift, m
 
     Raises
     ------
@@ -59,7 +59,7 @@ class Lift:
         theta, values = finite("lift.theta", self.theta), finite("lift.values", self.values)
         require_uniform_turn("lift.theta", theta)
         if values.shape != theta.shape:
-            raise InputError("lift.values", len(values), f"{len(theta)} values, one an angle")
+            raise InputError("lift.values", len(values), f"{len(theta)} values, one per angle")
         if not values.min() >= -NEGATIVE_TOLERANCE:
             raise InputError("lift.values", float(values.min()), ">= 0 m")
         if not 0 <= self.closure < np.inf:
@@ -68,44 +68,48 @@ class Lift:
 
     @classmethod
     def from_samples(cls, theta: ArrayLike, values: ArrayLike) -> Lift:
-        """A lift through a table of any spacing, over one turn.
+        """Lift through a table of any spacing over one turn.
 
-        Equally spaced angles from 0 are taken as they are. Any other table is interpolated by a
-        periodic quintic on its own angles, which is then sampled at 720 angles or, if that is
-        more, at four times as many as the table has. The lift then misses a table of spacing h
-        by order h^6.
+        A table at equal angles from 0 is used directly. Any other is interpolated by a periodic
+        quintic on its own angles, sampled at 720 angles or four times the table's, whichever is
+        more; the error is of order h^6 for a spacing h.
 
         Parameters
         ----------
-        theta : array (n,)     cam angle, rad, strictly increasing; the end of the turn may be
-                               given again, with the value of the start
+        theta : array (n,)     cam angle, rad, strictly increasing; the end of the turn may
+                               repeat the start
         values : array (n,)    s, m, >= 0
 
         Raises
         ------
         InputError
-            For shuffled or doubled angles, gaps above 30 degrees, more than one turn, an open
+            For angles that do not increase, gaps above 30 degrees, more than one turn, an open
             end, negative lifts, NaN.
         """
         angle, value = finite("lift.theta", theta), finite("lift.values", values)
-        angle, value, closure = _one_turn(angle, value)
+        angle, value, closure = one_turn(angle, value)
+        if len(angle) < LEAST_SAMPLES:
+            raise InputError("lift.theta", f"{len(angle)} angles", f">= {LEAST_SAMPLES} angles")
+        gaps = np.append(np.diff(angle), angle[0] + FULL_TURN - angle[-1])
+        if gaps.max() > GAP_MAX + ANGLE_TOLERANCE:
+            where = f"a gap of {gaps.max():.6g} rad after {angle[np.argmax(gaps)]:.6g} rad"
+            raise InputError("lift.theta", where, f"without gaps above {GAP_MAX:.6g} rad")
         if not value.min() >= -NEGATIVE_TOLERANCE:
             raise InputError("lift.values", float(value.min()), ">= 0 m")
         even = uniform_turn(len(angle))
         if np.abs(angle - even).max() <= ANGLE_TOLERANCE:
             return cls(even, value, closure)
-        knots = np.append(angle, angle[0] + FULL_TURN)
-        table = make_interp_spline(knots, np.append(value, value[0]), DEGREE, bc_type="periodic")
+        table = interpolant(np.append(angle, angle[0] + FULL_TURN), value)
         even = uniform_turn(max(_RESAMPLED, 4 * len(angle)))
         return cls(even, table(even), closure)
 
     @cached_property
     def spline(self) -> PeriodicPolynomial:
-        """The interpolating spline, m against rad."""
+        """Interpolating spline, m against rad."""
         return periodic_quintic(self.values)
 
     def __call__(self, theta: ArrayLike, derivative: int = 0) -> Array:
-        """s or a derivative of it, m/rad^k, at any angle; the turn repeats.
+        """Lift s or a derivative of it, m/rad^k, periodic.
 
         Parameters
         ----------
@@ -115,14 +119,14 @@ class Lift:
         Raises
         ------
         InputError
-            If the order is none that is continuous.
+            If the derivative is not continuous.
         """
         if derivative not in range(DEGREE):
             raise InputError("derivative", derivative, "0, 1, 2, 3 or 4")
         return self.spline(theta, derivative)
 
     def derivatives(self, theta: ArrayLike, order: int = 3) -> Array:
-        """s, s', s'', s''' at any angle, cheaper than one call each.
+        """Lift s and its derivatives up to `order`, m/rad^k, by one look-up.
 
         Parameters
         ----------
@@ -139,32 +143,32 @@ class Lift:
 
     @property
     def search_count(self) -> int:
-        """How many equal angles bracket every extreme of functions made from this lift."""
+        """Equal angles per turn that bracket every extreme of a function of this lift."""
         return _SEARCH * len(self.theta)
 
     @cached_property
     def lowest(self) -> Extremum:
-        """Least lift, m, and its angle, between samples too."""
+        """Minimum lift, m, and its cam angle, on the continuous turn."""
         return least(self.spline, self.search_count)
 
     @cached_property
     def highest(self) -> Extremum:
-        """Greatest lift, m, and its angle, between samples too."""
+        """Maximum lift, m, and its cam angle, on the continuous turn."""
         return greatest(self.spline, self.search_count)
 
     @property
     def stroke(self) -> float:
-        """Way of the follower from its lowest to its highest place, m."""
+        """Maximum less minimum lift, m."""
         return self.highest.value - self.lowest.value
 
 
 def require_uniform_turn(field: str, theta: Array) -> None:
-    """Refuse angles that are not n >= 12 equal steps of one turn, from 0, the end left out.
+    """Check that angles are n >= 12 equal steps over [0, 2 pi), rad.
 
     Raises
     ------
     InputError
-        Naming the first angle that is out of place.
+        With the first angle that is not.
     """
     if theta.ndim != 1 or len(theta) < LEAST_SAMPLES:
         raise InputError(field, f"{theta.shape} angles", f"one row of >= {LEAST_SAMPLES} angles")
@@ -174,28 +178,32 @@ def require_uniform_turn(field: str, theta: Array) -> None:
         raise InputError(field, wrong, "equally spaced over [0, 2 pi) rad, from 0")
 
 
-def _one_turn(theta: Array, values: Array) -> tuple[Array, Array, float]:
-    """A checked table without its repeated end, and what the end missed the start by (m)."""
+def one_turn(theta: Array, values: Array, field: str = "lift.theta") -> tuple[Array, Array, float]:
+    """A table over one turn without its repeated end, and the difference of its ends, m.
+
+    Parameters
+    ----------
+    theta : array (n,)     cam angle, rad, strictly increasing; `field` is its name in errors
+    values : array (n,)    lift, m
+
+    Raises
+    ------
+    InputError
+        For angles that do not increase, more than one turn, or an open end.
+    """
     if theta.ndim != 1 or theta.shape != values.shape:
         shapes = f"{theta.shape} angles and {values.shape} values"
         raise InputError("lift", shapes, "a row of angles and as many values")
-    steps = np.diff(theta)
-    if not (steps > ANGLE_TOLERANCE).all():
-        wrong = float(theta[1:][~(steps > ANGLE_TOLERANCE)][0])
-        raise InputError("lift.theta", wrong, "strictly increasing")
+    rising = np.diff(theta) > ANGLE_TOLERANCE
+    if not rising.all():
+        raise InputError(field, float(theta[1:][~rising][0]), "strictly increasing")
     span = float(theta[-1] - theta[0]) if len(theta) else 0.0
     closure = 0.0
     if span > FULL_TURN + ANGLE_TOLERANCE:
-        raise InputError("lift.theta", float(theta[-1]), "within one turn of the first angle")
+        raise InputError(field, float(theta[-1]), "within one turn of the first angle")
     if span > FULL_TURN - ANGLE_TOLERANCE:
         closure = float(abs(values[-1] - values[0]))
         theta, values = readonly(theta[:-1]), readonly(values[:-1])
     if not closure <= CLOSURE_LIMIT:
         raise InputError("lift.closure", closure, f"<= {CLOSURE_LIMIT:g} m: the turn must close")
-    if len(theta) < LEAST_SAMPLES:
-        raise InputError("lift.theta", f"{len(theta)} angles", f">= {LEAST_SAMPLES} angles")
-    gaps = np.append(np.diff(theta), theta[0] + FULL_TURN - theta[-1])
-    if gaps.max() > GAP_MAX + ANGLE_TOLERANCE:
-        where = f"a gap of {gaps.max():.6g} rad after {theta[np.argmax(gaps)]:.6g} rad"
-        raise InputError("lift.theta", where, f"without gaps above {GAP_MAX:.6g} rad")
     return theta, values, closure

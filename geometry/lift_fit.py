@@ -1,4 +1,4 @@
-"""Lifts from points: a spline through all of them, or a smoother one that states its residual."""
+"""Lift from a table: interpolation of few points, or a least-squares fit of noisy ones."""
 
 from __future__ import annotations
 
@@ -6,27 +6,26 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import BSpline, make_interp_spline
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
-from camwright.geometry.lift import ANGLE_TOLERANCE, CLOSURE_LIMIT, Lift
-from camwright.geometry.periodic_spline import DEGREE, LEAST_SAMPLES
+from camwright.geometry.lift import Lift, one_turn
+from camwright.geometry.periodic_spline import DEGREE, LEAST_SAMPLES, interpolant
 
 POINTS_MIN = DEGREE + 1
 _SAMPLED = 1440
 _GROWTH = 1.25
-"""Between the numbers of spline parts that are tried in turn."""
+"""Ratio of successive numbers of spline parts."""
 _POINTS_PER_PART = 2.0
-"""Fewer would follow the noise from point to point."""
+"""Minimum: fewer would fit the noise."""
 
 
 @dataclass(frozen=True, eq=False)
 class FittedLift:
-    """A lift near a noisy table, and how near.
+    """Lift fitted to a noisy table, with its residual.
 
     lift : Lift
-    parts : int                 spline parts over the turn
+    parts : int                 spline parts per turn
     residual : array (n,)       table minus lift, m
     """
 
@@ -39,17 +38,17 @@ class FittedLift:
 
     @property
     def residual_rms(self) -> float:
-        """Root of the mean square, m."""
+        """Root mean square of the residual, m."""
         return float(np.sqrt(np.mean(self.residual**2)))
 
     @property
     def residual_max(self) -> float:
-        """Greatest miss, m."""
+        """Maximum magnitude of the residual, m."""
         return float(np.abs(self.residual).max())
 
 
 def lift_through(theta: ArrayLike, values: ArrayLike) -> Lift:
-    """The periodic B-spline of degree five through a few points of the turn.
+    """Lift as the periodic quintic B-spline through a few points of the turn.
 
     Parameters
     ----------
@@ -60,21 +59,20 @@ def lift_through(theta: ArrayLike, values: ArrayLike) -> Lift:
     Raises
     ------
     InputError
-        For shuffled or too few points, an open end, NaN, and where the spline dips below zero.
+        For points that do not increase or are too few, an open end, NaN, or a negative lift.
     """
     angle, value = _table(theta, values)
     if len(angle) < POINTS_MIN:
         raise InputError("lift.point", f"{len(angle)} points", f">= {POINTS_MIN} points")
-    knots = np.append(angle, angle[0] + FULL_TURN)
-    spline = make_interp_spline(knots, np.append(value, value[0]), DEGREE, bc_type="periodic")
+    spline = interpolant(np.append(angle, angle[0] + FULL_TURN), value)
     even = uniform_turn(_SAMPLED)
     return Lift(even, spline(even))
 
 
 def fitted_lift(theta: ArrayLike, values: ArrayLike, noise: float) -> FittedLift:
-    """The least-squares periodic quintic of fewest parts that a noisy table allows.
+    """Least-squares periodic quintic of fewest parts whose residual is within the noise.
 
-    Parts are added until the root mean square of the residual is no more than the noise.
+    Parts are added until the root mean square of the residual is at most the noise.
 
     Parameters
     ----------
@@ -85,7 +83,7 @@ def fitted_lift(theta: ArrayLike, values: ArrayLike, noise: float) -> FittedLift
     Raises
     ------
     InputError
-        If no spline with two points a part comes that near: the noise is understated or the
+        If no spline with at least two points per part fits: the noise is understated or the
         lift has corners.
 
     References
@@ -95,24 +93,26 @@ def fitted_lift(theta: ArrayLike, values: ArrayLike, noise: float) -> FittedLift
     if not 0.0 < noise < np.inf:
         raise InputError("lift.noise", noise, "> 0 m")
     angle, value = _table(theta, values)
-    most = int(len(angle) / _POINTS_PER_PART)
-    if most < LEAST_SAMPLES:
-        raise InputError("lift.file", f"{len(angle)} rows", f">= {2 * LEAST_SAMPLES} to be fitted")
+    parts_max = int(len(angle) / _POINTS_PER_PART)
+    if parts_max < LEAST_SAMPLES:
+        raise InputError("lift.file", f"{len(angle)} rows", f">= {2 * LEAST_SAMPLES} rows")
     parts = LEAST_SAMPLES
     while True:
-        found = _least_squares(angle, value, parts)
-        if found.residual_rms <= noise:
-            return found
-        if parts == most:
-            missed = f"{noise:.6g} m, but {found.residual_rms:.6g} m rms are left"
-            raise InputError("lift.noise", missed, "no less than a smooth lift leaves of the table")
-        parts = min(int(np.ceil(parts * _GROWTH)), most)
+        fit = _least_squares(angle, value, parts)
+        if fit.residual_rms <= noise:
+            return fit
+        if parts == parts_max:
+            limit = f">= {fit.residual_rms:.6g} m, the rms residual of the closest smooth lift"
+            raise InputError("lift.noise", f"{noise:.6g} m", limit)
+        parts = min(int(np.ceil(parts * _GROWTH)), parts_max)
 
 
 def _least_squares(angle: Array, value: Array, parts: int) -> FittedLift:
+    from scipy.interpolate import BSpline
+
     step = FULL_TURN / parts
     knots = step * np.arange(-DEGREE, parts + DEGREE + 1)
-    # a knot is one part wide however far the rounding of an angle takes it
+    # rounding must not move an angle past the last knot
     inside = np.clip(np.mod(angle, FULL_TURN), 0.0, np.nextafter(FULL_TURN, 0.0))
     open_basis = BSpline.design_matrix(inside, knots, DEGREE).toarray()
     basis = np.zeros((len(angle), parts))
@@ -125,24 +125,10 @@ def _least_squares(angle: Array, value: Array, parts: int) -> FittedLift:
 
 
 def _not_below_zero(values: Array) -> Array:
-    """Lifts are counted from the lowest; noise about a dwell at zero may not go below."""
+    """Values raised to zero where noise takes a dwell below it, m."""
     return values - min(float(values.min()), 0.0)
 
 
 def _table(theta: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
     angle, value = finite("lift.angle", theta), finite("lift.lift", values)
-    if angle.ndim != 1 or angle.shape != value.shape or not angle.size:
-        raise InputError("lift", f"{angle.shape} and {value.shape}", "as many angles as lifts")
-    steps = np.diff(angle)
-    if not (steps > ANGLE_TOLERANCE).all():
-        wrong = float(angle[1:][~(steps > ANGLE_TOLERANCE)][0])
-        raise InputError("lift.angle", wrong, "strictly increasing")
-    span = float(angle[-1] - angle[0])
-    if span > FULL_TURN + ANGLE_TOLERANCE:
-        raise InputError("lift.angle", float(angle[-1]), "within one turn of the first angle")
-    if span > FULL_TURN - ANGLE_TOLERANCE:
-        gap = float(abs(value[-1] - value[0]))
-        if not gap <= CLOSURE_LIMIT:
-            raise InputError("lift.closure", gap, f"<= {CLOSURE_LIMIT:g} m: the turn must close")
-        angle, value = angle[:-1], value[:-1]
-    return angle, value
+    return one_turn(angle, value, "lift.angle")[:2]

@@ -1,34 +1,34 @@
-"""Linkages: the slider-crank, with or without an offset of its pin."""
+"""Slider-crank, with or without an offset of its line of travel."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 
 
 @dataclass(frozen=True)
 class SliderCrank:
-    """A crank, a rod and a slider; lengths in m.
+    """Crank, connecting rod and slider.
 
-    Crank angle 0 has the crank along the slider's line. With an offset the dead centres lie a
-    little beside 0 and pi, and the stroke is a little longer than two crank radii.
+    At crank angle 0 the crank lies along the slider's line. With an offset the dead centres are
+    near 0 and pi, and the stroke exceeds two crank radii.
 
     Parameters
     ----------
     crank_radius : float    r, m, > 0
     rod_length : float      l, m, > r + |offset|
-    offset : float          e, m: the slider's line passes the crank axis at this distance, on
-                            the side the crank pin first moves to
+    offset : float          e, m, of the slider's line from the crank axis, positive on the side
+                            to which the crank pin moves from angle 0
 
     Raises
     ------
     InputError
-        If the linkage cannot turn over.
+        If the linkage cannot rotate fully.
     """
 
     crank_radius: float
@@ -42,50 +42,43 @@ class SliderCrank:
             raise InputError("pin_offset", self.offset, "finite")
         least = self.crank_radius + abs(self.offset)
         if not least < self.rod_length < np.inf:
-            raise InputError("rod_length", self.rod_length, f"> {least:g} m to turn over")
+            raise InputError("rod_length", self.rod_length, f"> {least:g} m for a full rotation")
 
     @property
     def top(self) -> float:
-        """Greatest distance of the slider from the crank axis, m."""
+        """Maximum distance of the slider from the crank axis, m."""
         return float(np.sqrt((self.rod_length + self.crank_radius) ** 2 - self.offset**2))
 
     @property
     def bottom(self) -> float:
-        """Least distance of the slider from the crank axis, m."""
+        """Minimum distance of the slider from the crank axis, m."""
         return float(np.sqrt((self.rod_length - self.crank_radius) ** 2 - self.offset**2))
 
     @property
     def stroke(self) -> float:
+        """Maximum less minimum distance of the slider, m."""
         return self.top - self.bottom
 
-    @property
-    def top_angle(self) -> float:
-        """Crank angle of the top dead centre, rad: 0 without offset."""
-        return float(np.arcsin(self.offset / (self.rod_length + self.crank_radius)))
+    def travel(self, theta: ArrayLike) -> Array:
+        """Distance of the slider from its top dead centre, m, at crank angles (...), rad."""
+        _, cos, _, along = self._rod(theta)
+        return np.asarray(self.top - self.crank_radius * cos - along)
 
-    def travel(self, theta: ArrayLike) -> NDArray[Any]:
-        """Way of the slider from its top dead centre (m), at crank angles (rad), any shape.
-
-        Complex angles are taken too, for derivatives by a complex step.
-        """
-        theta = np.asarray(theta)
-        across = self.crank_radius * np.sin(theta) - self.offset
-        along = np.sqrt(self.rod_length**2 - across**2)
-        return np.asarray(self.top - self.crank_radius * np.cos(theta) - along)
-
-    def travel_rate(self, theta: ArrayLike) -> NDArray[Any]:
+    def travel_rate(self, theta: ArrayLike) -> Array:
         """First derivative of the travel, m/rad."""
-        theta = np.asarray(theta)
-        r, sin, cos = self.crank_radius, np.sin(theta), np.cos(theta)
-        across = r * sin - self.offset
-        along = np.sqrt(self.rod_length**2 - across**2)
+        sin, cos, across, along = self._rod(theta)
+        r = self.crank_radius
         return np.asarray(r * sin + across * r * cos / along)
 
-    def travel_acceleration(self, theta: ArrayLike) -> NDArray[Any]:
+    def travel_acceleration(self, theta: ArrayLike) -> Array:
         """Second derivative of the travel, m/rad^2."""
-        theta = np.asarray(theta)
-        r, sin, cos = self.crank_radius, np.sin(theta), np.cos(theta)
-        across = r * sin - self.offset
-        along = np.sqrt(self.rod_length**2 - across**2)
+        sin, cos, across, along = self._rod(theta)
+        r = self.crank_radius
         bend = ((r * cos) ** 2 - across * r * sin) / along + (across * r * cos) ** 2 / along**3
         return np.asarray(r * cos + bend)
+
+    def _rod(self, theta: ArrayLike) -> tuple[Array, ...]:
+        """Sine and cosine of the crank angle, rod across and along the slider's line, m."""
+        sin, cos = np.sin(theta), np.cos(theta)
+        across = self.crank_radius * sin - self.offset
+        return sin, cos, across, np.sqrt(self.rod_length**2 - across**2)

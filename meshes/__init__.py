@@ -1,1 +1,19 @@
-"""Finite-element meshes of the bodies and of the contact patch."""
+"""Finite-element meshes of the bodies and of the contact patch.
+
+In the order of the calculation:
+
+| module          | responsibility                            | symbol, unit          |
+| --------------- | ----------------------------------------- | --------------------- |
+| `element_size`  | element size from the Hertz half-width    | a, m; h, m            |
+| `outline`       | outlines of bodies, element edges on them | m                     |
+| `cam_outline`   | contour, bore and keyway of the cam, wall | m                     |
+| `gmsh_mesher`   | triangulation within outlines, by gmsh    | m                     |
+| `body_mesh`     | meshes of cam, roller, face and patch     | x, y, m               |
+| `mesh_quality`  | angles, scaled Jacobians, edges           | deg; -                |
+| `vtu`           | VTU file of a grid                        |                       |
+| `mesh_files`    | MSH, VTU and PVD files                    | mm, N, MPa            |
+| `calculix_deck` | input deck for CalculiX and Abaqus        | mm, N, MPa            |
+| `step_solid`    | STEP file of the cam                      | mm                    |
+
+Imports `geometry` alone.
+"""

@@ -7,17 +7,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import Array, finite, freeze, positive
-from camwright.geometry.cad_drawing import HoleLike
+from camwright.geometry.arrays import Array, finite, freeze, positive, rotation
+from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import InputError, MeshError
 from camwright.meshes.cam_outline import (
     ContourLike,
-    KeywayLike,
     cam_size,
     contour_piece,
     hole_pieces,
@@ -28,25 +27,28 @@ from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
 from camwright.meshes.gmsh_mesher import Index, Triangulation, triangulate
 from camwright.meshes.outline import Facets, Piece, Zone, arc, facets, line
 
+if TYPE_CHECKING:
+    from skfem import MeshTri2
+    from skfem.assembly.basis import AbstractBasis
+
 
 @dataclass(frozen=True, eq=False)
 class BodyMesh:
-    """A body as curved quadratic triangles, in metres.
+    """Body as curved quadratic triangles.
 
     Parameters
     ----------
-    points : (2, n)        nodes, corners before middles
-    triangles : (6, m)     node numbers: corners counter-clockwise, then middles of the edges
-                           01, 12, 20
-    boundaries : mapping   name -> (3, k) node numbers of facets: start, end, middle. Along a
-                           facet the body lies on the left, so the outward normal is the
-                           direction of travel turned right. Facets follow one another.
+    points : (2, n)        nodes, m, corners before mid-side nodes
+    triangles : (6, m)     node numbers: corners counter-clockwise, then mid-side nodes of the
+                           edges 01, 12, 20
+    boundaries : mapping   name -> (3, k) node numbers of consecutive facets: start, end, middle.
+                           The body is on the left of a facet, its outward normal on the right
 
     Raises
     ------
     MeshError
-        If shapes or node numbers disagree, corners do not come first, or a triangle is
-        turned over.
+        If shapes or node numbers disagree, corners are not numbered first, or a triangle is
+        inverted.
     """
 
     points: Array
@@ -61,33 +63,26 @@ class BodyMesh:
         object.__setattr__(self, "triangles", _index(self.triangles, 6, self.points))
         object.__setattr__(self, "boundaries", MappingProxyType(named))
         if self.triangles[:3].max() >= self.triangles[3:].min():
-            raise MeshError("corners of a mesh must be numbered before the middles of edges")
+            raise MeshError("node numbers of a mesh = mixed, must be corners before mid-side nodes")
         a, b, c = (self.points[:, self.triangles[k]] for k in range(3))
         doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
         if not (doubled > 0).all():
-            raise MeshError(f"{int((~(doubled > 0)).sum())} triangles are turned over or empty")
+            raise MeshError(f"inverted triangles = {int((~(doubled > 0)).sum())}, must be 0")
 
     @property
     def corners(self) -> int:
-        """Number of corner nodes; the nodes from there on are middles of edges."""
+        """Number of corner nodes; all further nodes are mid-side nodes."""
         return int(self.triangles[:3].max()) + 1
 
     @cached_property
     def sha256(self) -> str:
-        """Fingerprint of points and triangles."""
+        """SHA-256 of points and triangles."""
         digest = hashlib.sha256(np.ascontiguousarray(self.points, dtype="<f8").tobytes())
         digest.update(np.ascontiguousarray(self.triangles, dtype="<i8").tobytes())
         return digest.hexdigest()
 
-    @cached_property
-    def area(self) -> float:
-        """Area within the curved boundary, m2."""
-        # The Jacobian is quadratic, so the mean over the three edge middles is exact.
-        jacobians = (self.jacobian(*at) for at in ((0.5, 0.0), (0.5, 0.5), (0.0, 0.5)))
-        return float(sum(np.linalg.det(j).sum() for j in jacobians) / 6.0)
-
     def jacobian(self, xi: float, eta: float) -> Array:
-        """Derivatives (m, 2, 2) of position by the reference coordinates (xi, eta), m.
+        """Jacobian (m, 2, 2) of the position by the reference coordinates (xi, eta), m.
 
         Entry [k, i, j] is component i by coordinate j; corners are (0, 0), (1, 0), (0, 1).
         """
@@ -98,34 +93,33 @@ class BodyMesh:
         return np.stack([by_xi, by_eta]).transpose(2, 1, 0)
 
     def facet_triples(self, name: str) -> Index:
-        """Facets (3, k) of a boundary: start, end and middle node.
+        """Facets (3, k) of a boundary: start, end and mid-side node.
 
         Raises
         ------
         MeshError
-            If the body has no boundary of that name.
+            If there is no boundary of that name.
         """
         if name not in self.boundaries:
             raise MeshError(f"boundary '{name}', must be one of {', '.join(self.boundaries)}")
         return self.boundaries[name]
 
     def boundary_nodes(self, name: str) -> Index:
-        """Numbers of all nodes of a boundary, ascending."""
+        """Node numbers of a boundary, ascending."""
         return np.unique(self.facet_triples(name))
 
     def transformed(self, angle: float, shift: ArrayLike) -> BodyMesh:
-        """The body turned by `angle` (rad) about the origin, then moved by `shift` (2,), m."""
-        cosine, sine = np.cos(angle), np.sin(angle)
-        turn = np.array([[cosine, -sine], [sine, cosine]])
-        return replace(self, points=turn @ self.points + finite("shift", shift)[:, None])
+        """Body rotated by `angle` (rad) about the origin, then translated by `shift` (2,), m."""
+        points = rotation(angle) @ self.points + finite("shift", shift)[:, None]
+        return replace(self, points=points)
 
-    def to_skfem(self) -> Any:
-        """The mesh as ``skfem.MeshTri2``: same elements in the same order, facets by name.
+    def to_skfem(self) -> MeshTri2:
+        """Mesh as ``skfem.MeshTri2``: same elements in the same order, boundaries by name.
 
-        Vertices keep their numbers. Middles need not; `dof_map` tells which is which.
+        Corners keep their numbers; mid-side nodes may not, see `dof_map`.
 
         ``skfem.FacetBasis`` inverts the curved mapping to 1e-12 of a facet, which round-off
-        allows only where coordinates are below some 1000 facet lengths. Move the contact to the
+        permits only for coordinates below about 1000 facet lengths. Shift the contact to the
         origin first (`transformed`), or integrate along `facet_triples`.
         """
         from skfem import MeshTri2
@@ -138,15 +132,20 @@ class BodyMesh:
         order = np.argsort(keys)
         named = {}
         for name, (start, end, _) in self.boundaries.items():
-            wanted = np.minimum(start, end) * count + np.maximum(start, end)
-            named[name] = order[np.searchsorted(keys, wanted, sorter=order)].astype(np.int32)
+            own = np.minimum(start, end) * count + np.maximum(start, end)
+            named[name] = order[np.searchsorted(keys, own, sorter=order)].astype(np.int32)
         return mesh.with_boundaries(named)
 
-    def dof_map(self, basis: Any) -> NDArray[np.int64]:
+    def dof_map(self, basis: AbstractBasis) -> NDArray[np.int64]:
         """Degrees of freedom (2, n) of the x and y components at every node.
 
-        `basis` is any basis of ``ElementVector(ElementTriP2())`` on the mesh of `to_skfem`.
-        A solution ``u`` is ``u[mesh.dof_map(basis)]``, (2, n), at the nodes of this mesh.
+        Parameters
+        ----------
+        basis : AbstractBasis    of ``ElementVector(ElementTriP2())`` on the mesh of `to_skfem`
+
+        Returns
+        -------
+        array (2, n)    ``u[mesh.dof_map(basis)]`` is a solution ``u`` at the nodes of this mesh
         """
         rows = basis.dofs.element_dofs
         if rows.shape != (12, self.triangles.shape[1]):
@@ -180,7 +179,7 @@ def _discretised(loops: list[list[Piece]], size: SizeField) -> list[list[Facets]
 
 
 def _zone(sizing: Sizing, centre: float) -> Zone | None:
-    """Equal facets about an arc length, shifted by the phase; None without a contact."""
+    """Equal facets about an arc length, m, shifted by the phase; None without a contact."""
     if sizing.contact_size is None or not sizing.refined:
         return None
     step = sizing.contact_size
@@ -188,12 +187,12 @@ def _zone(sizing: Sizing, centre: float) -> Zone | None:
 
 
 def roller_mesh(radius: float, hub_radius: float, contact_angle: float, sizing: Sizing) -> BodyMesh:
-    """A roller centred on the origin, fine at the rim point at `contact_angle`.
+    """Mesh of a roller centred on the origin, refined at the rim point at `contact_angle`.
 
     Parameters
     ----------
     radius, hub_radius : float    outer radius and radius of the hole, m; 0 makes a full disc
-    contact_angle : float         where the contact is, rad; sets ``sizing.contact_point``
+    contact_angle : float         angle of the contact, rad; sets ``sizing.contact_point``
     sizing : Sizing
 
     Returns
@@ -224,7 +223,7 @@ def roller_mesh(radius: float, hub_radius: float, contact_angle: float, sizing: 
 
 
 def block_mesh(width: float, depth: float, sizing: Sizing) -> BodyMesh:
-    """A rectangle [-width/2, width/2] x [-depth, 0], fine at ``sizing.contact_point``.
+    """Mesh of the rectangle [-width/2, width/2] x [-depth, 0], refined at the contact point.
 
     Returns
     -------
@@ -244,13 +243,13 @@ def block_mesh(width: float, depth: float, sizing: Sizing) -> BodyMesh:
 
 
 def face_mesh(width: float, thickness: float, stem_diameter: float, sizing: Sizing) -> BodyMesh:
-    """The block of a flat face on its stem, as a block whose back tells where the stem stands.
+    """Mesh of the block of a flat face, the stem's cross-section as a boundary of its back.
 
     Returns
     -------
     BodyMesh
-        With boundaries "top", "left", "right", "stem" and, where the stem is not as wide as
-        the face, "back_left" and "back_right".
+        With boundaries "top", "left", "right", "stem" and, where the stem is narrower than the
+        face, "back_left" and "back_right".
 
     Raises
     ------
@@ -261,18 +260,18 @@ def face_mesh(width: float, thickness: float, stem_diameter: float, sizing: Sizi
     positive("follower.face.thickness", thickness, "m")
     positive("follower.stem_diameter", stem_diameter, "m")
     half, stem = 0.5 * width, 0.5 * min(stem_diameter, width)
-    places = [(x, -thickness) for x in (-half, -stem, stem, half)]
+    corners = [(x, -thickness) for x in (-half, -stem, stem, half)]
     names = ("back_left", "stem", "back_right")
     back = [
         line(name, np.array(start), np.array(end))
-        for name, start, end in zip(names, places[:-1], places[1:], strict=True)
+        for name, start, end in zip(names, corners[:-1], corners[1:], strict=True)
         if start != end
     ]
     return _rectangle(width, thickness, back, sizing)
 
 
 def _rectangle(width: float, depth: float, back: list[Piece], sizing: Sizing) -> BodyMesh:
-    """[-width/2, width/2] x [-depth, 0] with a back of pieces from left to right."""
+    """Mesh of [-width/2, width/2] x [-depth, 0], its back in pieces from left to right."""
     half = 0.5 * width
     zone = None
     if sizing.contact_point is not None:
@@ -287,9 +286,9 @@ def _rectangle(width: float, depth: float, back: list[Piece], sizing: Sizing) ->
 
 
 def half_disc_mesh(radius: float, sizing: Sizing) -> BodyMesh:
-    """The half disc y <= 0 about the origin, fine at the origin: a contact patch.
+    """Mesh of the half disc y <= 0 about the origin, refined there: the contact patch.
 
-    One quarter is meshed and mirrored, so the mesh is symmetric about x = 0 to the last bit.
+    One quarter is meshed and mirrored: the mesh is symmetric about x = 0 to the last bit.
 
     Returns
     -------
@@ -299,8 +298,7 @@ def half_disc_mesh(radius: float, sizing: Sizing) -> BodyMesh:
     Raises
     ------
     InputError
-        If the radius is not positive, or ``sizing.phase`` is not 0: a shift would break
-        the symmetry.
+        If the radius is not positive, or ``sizing.phase`` is not 0, as symmetry requires.
     """
     positive("patch.radius", radius, "m")
     if sizing.phase != 0:
@@ -317,12 +315,12 @@ def half_disc_mesh(radius: float, sizing: Sizing) -> BodyMesh:
 
 
 def _mirrored(half: Triangulation, axis: str) -> BodyMesh:
-    """`half` (x >= 0) and its image in x = 0, joined at the nodes of boundary `axis`."""
+    """`half` (x >= 0) and its mirror image in x = 0, joined at the nodes of boundary `axis`."""
     shared = np.unique(half.boundaries[axis])
     count, corners = half.points.shape[1], int(half.triangles[:3].max()) + 1
     own = np.setdiff1d(np.arange(count), shared)
     new_corners = int((own < corners).sum())
-    # Middles of the half make room for the image's corners.
+    # the mid-side nodes of the half are numbered after the corners of the image
     kept = np.arange(count) + np.where(np.arange(count) < corners, 0, new_corners)
     image = kept.copy()
     image[own[:new_corners]] = corners + np.arange(new_corners)
@@ -335,9 +333,9 @@ def _mirrored(half: Triangulation, axis: str) -> BodyMesh:
     boundaries = {}
     for name, facet in half.boundaries.items():
         if name != axis:
-            turned = image[facet[[1, 0, 2], ::-1]]
-            parts = [kept[facet], turned]
-            # Facets follow one another: the half that ends on the axis comes first.
+            mirrored = image[facet[[1, 0, 2], ::-1]]
+            parts = [kept[facet], mirrored]
+            # consecutive facets: the half that ends on the axis is first
             boundaries[name] = np.hstack(parts if facet[1, -1] in shared else parts[::-1])
     return BodyMesh(points, triangles, boundaries)
 
@@ -349,7 +347,7 @@ def cam_mesh(
     sizing: Sizing,
     counter_hole: HoleLike | None = None,
 ) -> BodyMesh:
-    """A cam, fine at the contact point on its contour.
+    """Mesh of the cam, refined at the contact point on its contour.
 
     Parameters
     ----------
@@ -357,20 +355,20 @@ def cam_mesh(
     bore_radius : float             m, bore centred on the origin
     keyway : KeywayLike or None     slot into the bore: width, depth (m), angle (rad)
     sizing : Sizing
-    counter_hole : HoleLike or None   round hole clear of bore and contour
+    counter_hole : HoleLike or None   round hole, clear of bore and contour
 
     Returns
     -------
     BodyMesh
         With boundaries "contour", "bore" and, if there is one, "keyway" and "counter_hole".
-        Corners and middles of "contour" lie on the contour itself.
+        All nodes of "contour" lie on the contour itself.
 
     Raises
     ------
     InputError
         If a dimension is out of bounds or the contact point is not on the contour.
     GeometryError
-        If the contour is undercut or crosses itself, or bore, keyway or hole reach it.
+        If the contour is undercut or crosses itself, or bore, keyway or hole reaches it.
     MeshError
         If the region cannot be meshed.
     """

@@ -23,11 +23,17 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 
 @dataclass(frozen=True, eq=False)
 class DeckBody:
-    """A body of a deck in plane strain.
+    """Body of an input deck in plane strain.
 
-    mesh ; modulus (Pa) and Poisson ratio ; held: the boundary whose nodes are held, "" where
-    none is ; forces (2, nodes), N, over the whole width ; placed: node, component and
-    displacement, m, of single nodes, which keep a body in balance from drifting.
+    Parameters
+    ----------
+    mesh : BodyMesh
+    modulus : float            Young's modulus, Pa
+    poisson : float            Poisson's ratio
+    held : str                 boundary of zero displacement; "": none
+    forces : array (2, n)      nodal forces over the whole width, N
+    placed : tuple             (node, component, displacement in m) of single nodes, against rigid
+                               displacements of a body in equilibrium
     """
 
     mesh: BodyMesh
@@ -39,23 +45,30 @@ class DeckBody:
 
     def __post_init__(self) -> None:
         freeze(self, forces=self.forces)
-        wanted = (2, self.mesh.points.shape[1])
-        if self.forces.shape != wanted:
-            raise MeshError(f"forces = {self.forces.shape}, must be {wanted}")
+        shape = (2, self.mesh.points.shape[1])
+        if self.forces.shape != shape:
+            raise MeshError(f"forces = {self.forces.shape}, must be {shape}")
 
 
 def write_deck(
     path: str | Path, bodies: Mapping[str, DeckBody], width: float, heading: Iterable[str] = ()
 ) -> None:
-    """Write bodies as quadratic plane-strain triangles (CPE6) with their loads, one static step.
+    """Input deck of quadratic plane-strain triangles (CPE6) with loads and one static step.
 
-    Node and element numbers run on from body to body in their order; sets carry the body's name,
-    ``cam_contour`` and the like the nodes of its boundaries.
+    Nodes and elements are numbered consecutively over the bodies. Sets are named after the body,
+    node sets of its boundaries like ``cam_contour``.
+
+    Parameters
+    ----------
+    path
+    bodies : mapping    name -> DeckBody
+    width : float       m
+    heading             lines of the deck's heading
 
     Raises
     ------
     MeshError
-        If a name would not do as a set of both programs.
+        If a name is no valid set name of both programs.
     ResultError
         If the file cannot be written.
     """
@@ -70,9 +83,9 @@ def write_deck(
         lines += _body_lines(name, body, width, first, element)
         if body.held:
             supports.append(f"{name}_{body.held}, 1, 2")
-        for node, component, way in body.placed:
+        for node, component, displacement in body.placed:
             place = f"{first + node}, {component + 1}, {component + 1}"
-            supports.append(f"{place}, {way / MILLIMETRE:{_FORMAT}}")
+            supports.append(f"{place}, {displacement / MILLIMETRE:{_FORMAT}}")
         for component, node in zip(*np.nonzero(body.forces), strict=True):
             force = float(body.forces[component, node])
             forces.append(f"{first + node}, {component + 1}, {force:{_FORMAT}}")

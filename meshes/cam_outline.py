@@ -1,4 +1,4 @@
-"""Outline of a cam: contour, bore and keyway, and the wall between them."""
+"""Outline of the cam: contour, bore and keyway, and the wall between them."""
 
 from __future__ import annotations
 
@@ -6,57 +6,29 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import brentq, minimize_scalar
 
-from camwright.geometry.arrays import FULL_TURN, Array, positive
-from camwright.geometry.cad_drawing import HoleLike
+from camwright.geometry.arrays import FULL_TURN, Array, positive, rotation
+from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.meshes.element_size import EDGES_PER_TURN, SizeField, Sizing
 from camwright.meshes.outline import Piece, Zone, arc, line
 
-_SAMPLES = 7200  # of the contour; half a tenth of a degree
-_WALL_LEAST = 0.01  # of the bore radius
+_SAMPLES = 7200  # of the contour, 0.05 deg apart
+_WALL_MIN = 0.01  # over the bore radius
 _EDGES_ACROSS_HOLE_WALL = 4
 
 
 class ContourLike(Protocol):
-    """What the mesh asks of a contour; see ``geometry.contour.Contour``."""
+    """Contour as the mesh needs it; see ``geometry.contour.Contour``."""
 
     def points(self, theta: Array) -> Array: ...
     def normal(self, theta: Array) -> Array: ...
     def curvature(self, theta: Array) -> Array: ...
 
 
-class KeywayLike(Protocol):
-    """A slot into the bore: `width` across, `depth` beyond the bore radius (m), at `angle` (rad).
-
-    `fillet` (m) rounds its two inner corners; at 0 they are sharp.
-    """
-
-    @property
-    def width(self) -> float: ...
-    @property
-    def depth(self) -> float: ...
-    @property
-    def angle(self) -> float: ...
-    @property
-    def fillet(self) -> float: ...
-
-
-@dataclass(frozen=True)
-class Keyway:
-    """A plain keyway; see `KeywayLike`."""
-
-    width: float
-    depth: float
-    angle: float = 0.0
-    fillet: float = 0.0
-
-
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """A contour sampled finely around one turn, and its arc length (m)."""
+    """Contour sampled over one turn: cam angle, rad; points and arc length, m."""
 
     contour: ContourLike
     theta: Array
@@ -70,12 +42,12 @@ class Trace:
 
 
 def trace(contour: ContourLike) -> Trace:
-    """The contour followed once around.
+    """Samples of a contour over one turn.
 
     Raises
     ------
     GeometryError
-        If the contour runs backwards somewhere: it is undercut.
+        If the contour is undercut: its samples run backwards.
     """
     theta = np.linspace(0.0, FULL_TURN, _SAMPLES + 1)
     points = contour.points(theta)
@@ -84,18 +56,20 @@ def trace(contour: ContourLike) -> Trace:
     forward = normal[0] * chord[1] - normal[1] * chord[0]
     if not (forward > 0).all():
         worst = np.degrees(theta[int(np.argmin(forward))])
-        raise GeometryError(f"contour is undercut at cam angle {worst:.2f} deg, cannot be meshed")
+        raise GeometryError(f"contour = undercut at cam angle {worst:.2f} deg, must be sound")
     return Trace(contour, theta, points, np.r_[0.0, np.cumsum(np.hypot(*chord))])
 
 
 def contour_piece(path: Trace, sizing: Sizing) -> Piece:
-    """The contour by arc length, with equal facets about the contact.
+    """Contour by arc length, with equal facets about the contact.
 
     Raises
     ------
     InputError
         If the contact point does not lie on the contour.
     """
+    from scipy.interpolate import PchipInterpolator
+
     theta_of = PchipInterpolator(path.arc_length, path.theta)
 
     def at(s: Array) -> Array:
@@ -111,18 +85,20 @@ def contour_piece(path: Trace, sizing: Sizing) -> Piece:
 
 
 def _foot(path: Trace, point: Array, tolerance: float) -> float:
-    """Angle (rad) of the contour point nearest to `point`, which must be within `tolerance`."""
+    """Cam angle, rad, of the contour point nearest to `point`, at most `tolerance` (m) from it."""
+    from scipy.optimize import brentq
+
     squared = ((path.points - point[:, None]) ** 2).sum(axis=0)
     near = path.theta[int(np.argmin(squared))]
     step = 2.0 * FULL_TURN / _SAMPLES
 
-    def behind(theta: float) -> float:
+    def along(theta: float) -> float:
         here = np.array([theta])
         normal = path.contour.normal(here)[:, 0]
-        apart = path.contour.points(here)[:, 0] - point
-        return float(normal[0] * apart[1] - normal[1] * apart[0])
+        offset = path.contour.points(here)[:, 0] - point
+        return float(normal[0] * offset[1] - normal[1] * offset[0])
 
-    theta = float(brentq(behind, near - step, near + step, xtol=1e-15))
+    theta = float(brentq(along, near - step, near + step, xtol=1e-15))
     distance = float(np.hypot(*(path.contour.points(np.array([theta]))[:, 0] - point)))
     if not distance <= tolerance:
         raise InputError(
@@ -134,7 +110,7 @@ def _foot(path: Trace, point: Array, tolerance: float) -> float:
 def cam_size(
     path: Trace, bore_radius: float, keyway: KeywayLike | None, sizing: Sizing
 ) -> SizeField:
-    """Element size in the cam: the sizing, and no coarser than its smallest features ask.
+    """Element size in the cam: the sizing, limited by bore, keyway, fillets, wall and curvature.
 
     Raises
     ------
@@ -142,16 +118,16 @@ def cam_size(
         If the bore or the keyway reaches the contour.
     """
     wall, place = least_wall(path, bore_radius, keyway)
-    if not wall > _WALL_LEAST * bore_radius:
+    if not wall > _WALL_MIN * bore_radius:
         raise GeometryError(
-            f"least wall between bore or keyway and contour = {wall * 1e3:.3f} mm "
+            f"minimum wall between bore or keyway and contour = {wall * 1e3:.3f} mm "
             f"(bore_radius = {bore_radius * 1e3:g} mm), "
-            f"must be > {_WALL_LEAST * bore_radius * 1e3:.3f} mm"
+            f"must be > {_WALL_MIN * bore_radius * 1e3:.3f} mm"
         )
     size = sizing.field()
     size = size.with_spot((0.0, 0.0), FULL_TURN * bore_radius / EDGES_PER_TURN, bore_radius)
     if keyway is not None:
-        centre = _keyway_frame(keyway) @ np.array([bore_radius + 0.5 * keyway.depth, 0.0])
+        centre = rotation(keyway.angle) @ np.array([bore_radius + 0.5 * keyway.depth, 0.0])
         extent = 0.5 * float(np.hypot(keyway.width, keyway.depth))
         size = size.with_spot(centre, min(keyway.width, keyway.depth) / 3.0, extent)
         size = _finer_at_fillets(size, bore_radius, keyway)
@@ -164,7 +140,7 @@ def cam_size(
 
 
 def hole_size(size: SizeField, path: Trace, hole: HoleLike) -> SizeField:
-    """The field with the elements that a hole and the wall it leaves to the contour ask for.
+    """Element size limited by a hole and by the wall between it and the contour.
 
     Raises
     ------
@@ -179,45 +155,47 @@ def hole_size(size: SizeField, path: Trace, hole: HoleLike) -> SizeField:
 
 
 def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -> SizeField:
+    """Element size limited by four edges per fillet."""
     fillet = keyway.fillet
     if fillet > 0:
         outer, half = bore_radius + keyway.depth, 0.5 * keyway.width
         for side in (-1.0, 1.0):
-            corner = _keyway_frame(keyway) @ np.array([outer - fillet, side * (half - fillet)])
+            corner = rotation(keyway.angle) @ np.array([outer - fillet, side * (half - fillet)])
             size = size.with_spot(corner, 0.5 * np.pi * fillet / 4.0, fillet)
     return size
 
 
 def least_wall(path: Trace, bore_radius: float, keyway: KeywayLike | None) -> tuple[float, Array]:
-    """Least distance (m) from bore and keyway to the contour, and the contour point (2,) there.
+    """Minimum distance from bore and keyway to the contour, m, and its contour point (2,), m.
 
     Negative where the bore or the keyway crosses the contour.
     """
+    from scipy.optimize import minimize_scalar
 
     def outside(points: Array) -> Array:
         wall = np.hypot(*points) - bore_radius
         if keyway is not None:
-            local = _keyway_frame(keyway).T @ points
+            local = rotation(keyway.angle).T @ points
             beyond = np.array(
                 [local[0] - bore_radius - keyway.depth, np.abs(local[1]) - 0.5 * keyway.width]
             )
             beyond[0] = np.where(local[0] > 0, beyond[0], -local[0])
-            apart = np.hypot(*np.maximum(beyond, 0.0)) + np.minimum(beyond.max(axis=0), 0.0)
-            wall = np.minimum(wall, apart)
+            distance = np.hypot(*np.maximum(beyond, 0.0)) + np.minimum(beyond.max(axis=0), 0.0)
+            wall = np.minimum(wall, distance)
         return wall
 
     worst = int(np.argmin(outside(path.points)))
     step = FULL_TURN / _SAMPLES
-    found = minimize_scalar(
+    nearest = minimize_scalar(
         lambda theta: outside(path.contour.points(np.array([theta])))[0],
         bounds=(path.theta[worst] - step, path.theta[worst] + step),
         method="bounded",
         options={"xatol": 1e-12},
     )
-    wall = float(found.fun)
+    wall = float(nearest.fun)
     if not _winds_around_origin(path.points):
         wall = -bore_radius
-    return wall, path.contour.points(np.array([found.x]))[:, 0]
+    return wall, path.contour.points(np.array([nearest.x]))[:, 0]
 
 
 def _winds_around_origin(points: Array) -> bool:
@@ -226,7 +204,7 @@ def _winds_around_origin(points: Array) -> bool:
 
 
 def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
-    """The bore, with its keyway, as a clockwise loop.
+    """Bore with its keyway as a clockwise loop.
 
     Raises
     ------
@@ -243,14 +221,14 @@ def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
     half, outer = 0.5 * keyway.width, bore_radius + keyway.depth
     mouth = float(np.arcsin(half / bore_radius))
     fillet = keyway.fillet
-    # A sliver of a straight side between the fillets would make slivers of triangles.
+    # a short straight side between the fillets would give sliver triangles
     fillet_max = 0.8 * min(half, outer - bore_radius * np.cos(mouth))
     if not 0 <= fillet <= fillet_max:
         raise InputError("cam.keyway.fillet", fillet, f"in 0..{fillet_max:g} m")
-    frame, x = _keyway_frame(keyway), bore_radius * np.cos(mouth)
-    # Clockwise: along the bore from the lower edge of the mouth round to the upper one ...
+    frame, x = rotation(keyway.angle), bore_radius * np.cos(mouth)
+    # clockwise along the bore from the lower edge of the mouth to the upper one
     pieces = [arc("bore", bore_radius, keyway.angle + FULL_TURN - mouth, keyway.angle + mouth)]
-    # ... then into the slot along its upper side, down its floor, and back.
+    # upper side, floor and lower side of the slot
     path = [(x, half), (outer - fillet, half), (outer, half - fillet)]
     path += [(outer, fillet - half), (outer - fillet, -half), (x, -half)]
     corners = [frame @ np.array(corner) for corner in path]
@@ -265,8 +243,3 @@ def hole_pieces(bore_radius: float, keyway: KeywayLike | None) -> list[Piece]:
         pieces.append(arc("keyway", fillet, keyway.angle, keyway.angle - 0.5 * np.pi, centre))
     pieces.append(line("keyway", corners[4], corners[5]))
     return pieces
-
-
-def _keyway_frame(keyway: KeywayLike) -> Array:
-    cosine, sine = np.cos(keyway.angle), np.sin(keyway.angle)
-    return np.array([[cosine, -sine], [sine, cosine]])

@@ -1,4 +1,4 @@
-"""Element size from the contact half-width."""
+"""Element size from the Hertz half-width and the distance from the contact."""
 
 from __future__ import annotations
 
@@ -10,27 +10,26 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, finite, freeze, positive
 from camwright.geometry.errors import InputError
 
-EDGES_PER_TURN = 40  # least number of element edges around a full circle
-MILLIMETRE = 1e-3  # gmsh's tolerances are made for numbers around one
-_SPOTS_MAX = 40  # a formula longer than this slows the mesher
+EDGES_PER_TURN = 40  # minimum element edges around a full circle
+MILLIMETRE = 1e-3  # unit of lengths in gmsh, whose tolerances suit numbers around one
+_SPOTS_MAX = 40  # longer formulas slow the mesher
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Sizing:
-    """Element size of one body: fine at the contact, growing with distance.
+    """Element size of one body: constant at the contact, growing with the distance.
 
     The size is ``min(far_size, contact_size + growth * max(0, r - contact_extent))`` at the
     distance r from the contact point.
 
     Parameters
     ----------
-    far_size : float                size far from the contact, m
-    contact_size : float or None    size in the contact zone, m; None meshes with `far_size` alone
+    far_size : float                maximum size, m
+    contact_size : float or None    size in the contact zone, m; None: `far_size` everywhere
     contact_extent : float          radius of the zone of constant size, m
-    contact_point : (2,) or None    centre of the zone, m; bodies that know their own contact
-                                    (roller, half disc) fill it in
-    growth : float                  increase of size per distance
-    phase : float                   shift of the facet ends under the contact, in facets, 0..1
+    contact_point : (2,) or None    centre of the zone, m; set by the mesh of a roller or half disc
+    growth : float                  increase of size per distance, m/m
+    phase : float                   shift of the facet ends in the contact, in facets, 0..1
 
     Raises
     ------
@@ -76,10 +75,10 @@ class Sizing:
         growth: float = 0.15,
         phase: float = 0.0,
     ) -> Sizing:
-        """Sizing for a Hertz half-width: `edges` across it, constant out to `reach` of it.
+        """Sizing of `edges` per Hertz half-width (m), constant up to `reach` half-widths.
 
-        Quadratic elements with eight edges across the half-width, kept to 1.8 of it, resolve the
-        subsurface maximum of the shear stress to about 0.3 %.
+        Eight quadratic elements per half-width, up to 1.8 half-widths, resolve the maximum
+        subsurface shear stress to about 0.3 %.
         """
         positive("half_width", half_width, "m")
         positive("edges", edges)
@@ -94,18 +93,18 @@ class Sizing:
 
     @property
     def refined(self) -> bool:
-        """Whether there is a contact zone."""
+        """Whether the sizing has a contact zone."""
         return self.contact_size is not None and self.contact_point is not None
 
     @property
     def steps(self) -> int:
-        """Facets of `contact_size` on either side of the contact point (0 without a zone)."""
+        """Facets of `contact_size` on either side of the contact point; 0 without a zone."""
         if self.contact_size is None or self.contact_point is None:
             return 0
         return max(2, int(np.ceil(self.contact_extent / self.contact_size - 1e-9)))
 
     def field(self) -> SizeField:
-        """The element size as a function of position."""
+        """Element size as a function of position."""
         spots: tuple[Spot, ...] = ()
         if self.contact_size is not None and self.contact_point is not None:
             spots = (Spot(self.contact_point, self.contact_size, self.contact_extent),)
@@ -114,7 +113,7 @@ class Sizing:
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """A place of small elements: `size` within `extent` of `point` (m)."""
+    """Refinement: elements of `size` within `extent` of `point`, m."""
 
     point: Array
     size: float
@@ -123,9 +122,9 @@ class Spot:
 
 @dataclass(frozen=True, eq=False)
 class SizeField:
-    """Element size as a function of position: the least of `far_size` and of every spot's size.
+    """Element size by position, m: the minimum of `far_size` and of the size of every spot.
 
-    Away from a spot its size grows by `growth` per distance.
+    The size of a spot grows by `growth` per distance from it.
     """
 
     far_size: float
@@ -142,9 +141,9 @@ class SizeField:
         return size
 
     def formulas(self) -> tuple[str, ...]:
-        """One formula per spot, millimetres, in the language of gmsh's MathEval.
+        """Size of every spot as a formula of gmsh's MathEval, mm.
 
-        The field is the least of them and of `far_size`. MathEval has no maximum;
+        The field is the minimum of them and of `far_size`. MathEval has no maximum:
         ``max(0, a) = (a + |a|)/2``.
         """
         texts = []
@@ -155,17 +154,17 @@ class SizeField:
         return tuple(texts)
 
     def with_spot(self, point: ArrayLike, size: float, extent: float) -> SizeField:
-        """This field with elements no larger than `size` within `extent` of `point`."""
+        """Field with elements of at most `size` within `extent` of `point`, m."""
         return replace(self, spots=(*self.spots, Spot(finite("spot", point), size, extent)))
 
     def capped(self, size: float) -> SizeField:
-        """This field, nowhere larger than `size`."""
+        """Field of at most `size`, m."""
         return replace(self, far_size=min(self.far_size, size))
 
     def below(self, points: Array, limits: Array, slack: float = 1.25) -> SizeField:
-        """This field with spots added until it stays under `slack * limits` (n,) at `points`.
+        """Field with spots added until it is below `slack * limits` (n,) at `points` (2, n), m.
 
-        When that takes too many spots the whole field is capped instead.
+        If that requires too many spots, the whole field is capped instead.
         """
         result = self
         while len(result.spots) < _SPOTS_MAX:
@@ -179,5 +178,5 @@ class SizeField:
 
 
 def _number(metres: float) -> str:
-    """A length in millimetres, written so that it reads back exactly."""
+    """Length in millimetres as text that reads back exactly."""
     return repr(float(metres) / MILLIMETRE)

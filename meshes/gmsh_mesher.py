@@ -1,4 +1,4 @@
-"""Triangles between outlines: the one place that names gmsh."""
+"""Triangulation of the region within outlines, by gmsh."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from camwright.meshes.outline import Facets, crossing
 
 Index = NDArray[np.int64]
 
-# Everything that could change a mesh is said here, so that no configuration file,
-# environment or earlier user of the library has a say.
+# every option that can change a mesh, so that it depends on no configuration file, environment or
+# earlier use of the library
 _OPTIONS = {
     "General.Terminal": 0,
     "General.NumThreads": 1,
@@ -38,7 +38,7 @@ _OPTIONS = {
     "Mesh.MeshSizeMin": 0,
     "Mesh.RandomFactor": 1e-9,
     "Mesh.RandomSeed": 1,
-    "Mesh.Renumber": 0,  # outline nodes keep the numbers given to them
+    "Mesh.Renumber": 0,  # outline nodes keep their numbers
     "Mesh.RecombineAll": 0,
     "Mesh.Smoothing": 1,
 }
@@ -46,10 +46,10 @@ _OPTIONS = {
 
 @contextmanager
 def session() -> Iterator[ModuleType]:
-    """A gmsh with an empty model of its own and known options.
+    """gmsh with an empty model of its own and the options above.
 
-    Where gmsh runs already, its options and current model are given back afterwards and it
-    keeps running; otherwise it ends here.
+    If gmsh is already initialized, its options and current model are restored afterwards;
+    otherwise it is finalized.
     """
     import gmsh
 
@@ -78,7 +78,7 @@ def session() -> Iterator[ModuleType]:
 
 @dataclass(frozen=True, eq=False)
 class Triangulation:
-    """Quadratic triangles: points (2, n) m, triangles (6, m), boundaries by name (3, k)."""
+    """Quadratic triangles: points (2, n), m; triangles (6, m); boundaries by name, (3, k)."""
 
     points: Array
     triangles: Index
@@ -86,9 +86,9 @@ class Triangulation:
 
 
 def triangulate(loops: Sequence[Sequence[Facets]], size: SizeField) -> Triangulation:
-    """Quadratic triangles filling the region left of the `loops`, the outer one first.
+    """Quadratic triangles of the region on the left of the `loops`, the outer one first.
 
-    Nodes are numbered corners first (those on the outline in its order), then middles.
+    Corners are numbered first, those on the outline in its order, then mid-side nodes.
 
     Raises
     ------
@@ -100,22 +100,23 @@ def triangulate(loops: Sequence[Sequence[Facets]], size: SizeField) -> Triangula
     corners, rings = _ring_nodes(loops)
     following = np.hstack([np.roll(ring, -1) for ring in rings])
     crossed = crossing(corners, corners[:, following])
-    if crossed is not None:  # gmsh would search for ever
+    if crossed is not None:  # gmsh would not terminate
         x, y = crossed / MILLIMETRE
-        raise GeometryError(f"outline crosses itself at ({x:.3f}, {y:.3f}) mm, cannot be meshed")
+        where = f"({x:.3f}, {y:.3f}) mm"
+        raise GeometryError(f"outline = crosses itself at {where}, must be free of crossings")
     try:
         with session() as gmsh:
             points, triangles = _fill(gmsh, corners, rings, size)
     except MeshError:
         raise
     except Exception as error:
-        raise MeshError(f"gmsh could not mesh the outline: {_one_line(error)}") from error
+        raise MeshError(f"gmsh failed on the outline: {_one_line(error)}") from error
     named = _named_edges(loops, rings)
     return _quadratic(points, triangles, named)
 
 
 def _ring_nodes(loops: Sequence[Sequence[Facets]]) -> tuple[Array, list[Index]]:
-    """Distinct outline points (2, n) and, for every loop, their numbers in order."""
+    """Distinct outline points (2, n), m, and their numbers in order for every loop."""
     rings, blocks, first = [], [], 0
     for loop in loops:
         ring = np.hstack([piece.ends[:, :-1] for piece in loop])
@@ -152,40 +153,40 @@ def _fill(
     order = np.argsort(tags)
     known, fixed = tags[order].astype(np.int64), corners.shape[1]
     if not connectivity.size or not np.array_equal(known[:fixed], np.arange(1, fixed + 1)):
-        raise MeshError("gmsh left the region empty or lost nodes of the outline")
+        raise MeshError("mesh of gmsh = empty or without nodes of the outline, must fill it")
     points = coordinates.reshape(-1, 3)[order, :2].T * MILLIMETRE
-    points[:, :fixed] = corners  # bit for bit, free of the change of unit
+    points[:, :fixed] = corners  # without the round-off of the unit conversion
     triangles = np.searchsorted(known, connectivity.astype(np.int64)).reshape(-1, 3).T
     return points, _counter_clockwise(points, triangles)
 
 
 def _impose(gmsh: ModuleType, size: SizeField) -> None:
-    """Make `size` the only rule for the size of elements."""
+    """Set `size` as the only element size."""
     fields = gmsh.model.mesh.field
     gmsh.option.setNumber("Mesh.MeshSizeMax", size.far_size / MILLIMETRE)
-    rules = []
+    tags = []
     for formula in size.formulas():
-        rules.append(fields.add("MathEval"))
-        fields.setString(rules[-1], "F", formula)
-    if rules:
+        tags.append(fields.add("MathEval"))
+        fields.setString(tags[-1], "F", formula)
+    if tags:
         least = fields.add("Min")
-        fields.setNumbers(least, "FieldsList", rules)
+        fields.setNumbers(least, "FieldsList", tags)
         fields.setAsBackgroundMesh(least)
 
 
 def _counter_clockwise(points: Array, triangles: Index) -> Index:
-    """`triangles` (3, m) with clockwise ones turned round."""
+    """`triangles` (3, m), all counter-clockwise."""
     a, b, c = (points[:, triangles[k]] for k in range(3))
     clockwise = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) < 0
-    turned = triangles.copy()
-    turned[1, clockwise], turned[2, clockwise] = triangles[2, clockwise], triangles[1, clockwise]
-    return turned
+    oriented = triangles.copy()
+    oriented[1:, clockwise] = triangles[:0:-1, clockwise]
+    return oriented
 
 
 def _named_edges(
     loops: Sequence[Sequence[Facets]], rings: Sequence[Index]
 ) -> list[tuple[str, Index, Array]]:
-    """For every piece its name, edges (2, k) as node numbers, and edge middles (2, k)."""
+    """Name, edges (2, k) as node numbers and edge middles (2, k), m, of every piece."""
     named = []
     for loop, ring in zip(loops, rings, strict=True):
         ends = np.vstack([ring, np.roll(ring, -1)])
@@ -200,7 +201,7 @@ def _named_edges(
 def _quadratic(
     points: Array, triangles: Index, named: Sequence[tuple[str, Index, Array]]
 ) -> Triangulation:
-    """Quadratic triangles from linear ones: middles of outline edges on the curve itself."""
+    """Quadratic triangles from linear ones, mid-side nodes of outline edges on the curve."""
     count = points.shape[1]
     sides = np.stack([triangles, np.roll(triangles, -1, axis=0)])  # 01, 12, 20
     keys = sides.min(axis=0) * count + sides.max(axis=0)
@@ -213,7 +214,7 @@ def _quadratic(
         key = ends.min(axis=0) * count + ends.max(axis=0)
         place = np.minimum(np.searchsorted(edges, key), edges.size - 1)
         if not np.array_equal(edges[place], key):
-            raise MeshError(f"gmsh changed the facets of '{name}'")
+            raise MeshError(f"facets of '{name}' = changed by gmsh, must be those of the outline")
         middles[:, place] = on_curve
         boundaries.setdefault(name, []).append(np.vstack([ends, count + place]))
     return Triangulation(

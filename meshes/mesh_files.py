@@ -1,4 +1,4 @@
-"""Mesh and field files: gmsh's MSH, VTK's VTU and PVD. Lengths in them are millimetres."""
+"""Mesh and field files: MSH of gmsh, VTU and PVD of VTK; lengths in mm."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -21,18 +20,18 @@ from camwright.meshes.gmsh_mesher import Index, session
 from camwright.meshes.vtu import QUAD, QUADRATIC_TRIANGLE, Grid, vtu
 
 UNITS = "units_mm_N_MPa"
-"""Name of the field data by which every VTU file says its units."""
+"""Field data that names the units of every VTU file."""
 
-_LINE3, _TRIANGLE6 = 8, 9  # gmsh's element types
+_LINE3, _TRIANGLE6 = 8, 9  # element types of gmsh
 
 Fields = Mapping[str, ArrayLike]
 
 
 def write_msh(path: str | Path, meshes: Mapping[str, BodyMesh]) -> None:
-    """Write bodies to one gmsh file, format 4.1, second order.
+    """gmsh file of bodies, format 4.1, second order.
 
-    Physical names are the body's for its triangles and ``body_boundary`` for its facets, such
-    as ``cam`` and ``cam_contour``.
+    Physical groups: the body's name for its triangles, such as ``cam``, and ``body_boundary`` for
+    its facets, such as ``cam_contour``.
 
     Raises
     ------
@@ -46,11 +45,11 @@ def write_msh(path: str | Path, meshes: Mapping[str, BodyMesh]) -> None:
             first += mesh.points.shape[1]
         gmsh.write(str(temporary))
         if not temporary.read_bytes().endswith(b"$EndElements\n"):  # gmsh ignores a full disk
-            raise OSError("file was cut short")
+            raise OSError("incomplete file")
 
 
 def _add_body(gmsh: ModuleType, name: str, mesh: BodyMesh, first: int) -> None:
-    """Add `mesh` to the current model, its nodes numbered from `first`."""
+    """Add a body to the current model, its nodes numbered from `first`."""
     model = gmsh.model
     coordinates = np.vstack([mesh.points / MILLIMETRE, np.zeros(mesh.points.shape[1])])
     free = np.ones(mesh.points.shape[1], dtype=bool)
@@ -75,21 +74,20 @@ def _add_body(gmsh: ModuleType, name: str, mesh: BodyMesh, first: int) -> None:
 
 def write_vtu(
     path: str | Path,
-    meshes: BodyMesh | Mapping[str, BodyMesh],
-    point_data: Fields | Mapping[str, Fields] | None = None,
+    bodies: Mapping[str, BodyMesh],
+    point_data: Mapping[str, Fields] | None = None,
     field_data: Mapping[str, float] | None = None,
 ) -> None:
-    """Write bodies with fields as quadratic triangles for ParaView.
+    """VTU file of bodies with fields, as quadratic triangles.
 
     Parameters
     ----------
     path
-    meshes : BodyMesh or mapping    one body, or bodies by name
-    point_data : mapping            field name, unit included -> (n,) or (c, n) at the nodes; for
-                                    several bodies one such mapping per body name, same fields
-                                    in each. A vector (2, n) gets a third component 0.
-    field_data : mapping            numbers that belong to the file as a whole; its units are
-                                    always named there
+    bodies : mapping                meshes by name
+    point_data : mapping            body name -> field name, unit included -> (n,) or (c, n) at the
+                                    nodes; the same fields in each body. A vector (2, n) gets a
+                                    third component 0.
+    field_data : mapping            numbers of the file as a whole, besides its units
 
     With several bodies, cell and point data ``body`` number them from 0.
 
@@ -100,12 +98,7 @@ def write_vtu(
     ResultError
         If the file cannot be written; one already there is left as it was.
     """
-    bodies: Mapping[str, BodyMesh]
-    data: Mapping[str, Any]
-    if isinstance(meshes, BodyMesh):
-        bodies, data = {"": meshes}, {"": point_data or {}}
-    else:
-        bodies, data = meshes, point_data or {name: {} for name in meshes}
+    data = point_data or {name: {} for name in bodies}
     if data.keys() != bodies.keys():
         raise MeshError(f"fields of bodies {sorted(data)}, must be of {sorted(bodies)}")
     starts = np.cumsum([0, *(mesh.points.shape[1] for mesh in bodies.values())])
@@ -133,12 +126,12 @@ def write_sheet(
     point_data: Fields,
     field_data: Mapping[str, float] | None = None,
 ) -> None:
-    """Write a sheet that closes on itself as quadrilaterals for ParaView.
+    """VTU file of a closed sheet with fields, as quadrilaterals.
 
     Parameters
     ----------
     path
-    points : (2, n, k)           m; rows follow one another, the last joins the first
+    points : (2, n, k)           m; n consecutive rows, the last joined to the first
     point_data : mapping         field name, unit included -> (n, k)
     field_data : mapping         as for `write_vtu`
 
@@ -176,8 +169,8 @@ def _write_grid(path: str | Path, grid: Grid) -> None:
         temporary.write_bytes(vtu(grid))
 
 
-def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Any]) -> dict[str, Any]:
-    """Fields of all bodies one after the other, points first as the file wants them."""
+def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Fields]) -> dict[str, Array]:
+    """Fields of all bodies in their order, points first."""
     names = list(next(iter(data.values())))
     parts: dict[str, list[Array]] = {name: [] for name in names}
     for body, mesh in bodies.items():
@@ -197,7 +190,7 @@ def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Any]) -> dict[str
 
 
 def write_pvd(path: str | Path, entries: Iterable[tuple[float, str | Path]]) -> None:
-    """Write a ParaView collection: `entries` are (time, file relative to the collection).
+    """PVD collection of ParaView: `entries` are (time, file relative to the collection).
 
     Raises
     ------
@@ -220,7 +213,7 @@ def write_pvd(path: str | Path, entries: Iterable[tuple[float, str | Path]]) -> 
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """A name beside `path` to write to, which takes its place when all went well."""
+    """Temporary file beside `path` that replaces it on success."""
     path = Path(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:

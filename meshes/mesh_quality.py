@@ -1,4 +1,4 @@
-"""Quality of a mesh: angles, Jacobians and edges across the contact."""
+"""Mesh quality: corner angles, scaled Jacobians and edges per contact half-width."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from camwright.geometry.arrays import Array, finite, positive
 from camwright.geometry.errors import MeshError
 from camwright.meshes.body_mesh import BodyMesh
 
-# Reference coordinates of the six nodes of a triangle: corners, then middles 01, 12, 20.
+# Reference coordinates of the six nodes of a triangle: corners, then mid-side 01, 12, 20.
 _NODES = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.0), (0.5, 0.5), (0.0, 0.5))
 _EQUILATERAL = 2.0 / np.sqrt(3.0)
 
-# Bounds of a mesh that may be solved on: usual in finite elements, verify.
+# Limits of a mesh to be solved on: usual in finite elements, verify.
 LEAST_ANGLE_DEG = 20.0
 LEAST_SCALED_JACOBIAN = 0.3
 FACET_SHARE = 0.99
-"""Of the edges demanded: a facet drawn on the curve is a hair longer than its size."""
+"""Of the required edges: a facet on a curve is slightly longer than its size."""
 
 
 @dataclass(frozen=True)
 class Quality:
-    """What a mesh is worth.
+    """Quality figures of a mesh.
 
     Parameters
     ----------
-    min_angle_deg : float              least angle at a corner, between the curved edges
-    min_scaled_jacobian : float        least over all nodes; 1 for an equilateral triangle, <= 0
+    min_angle_deg : float              minimum corner angle between the curved edges, deg
+    min_scaled_jacobian : float        minimum over all nodes; 1 for an equilateral triangle, <= 0
                                        where a curved triangle folds
-    edges_across_half_width : float    half-width over the longest facet in the contact;
-                                       0 for a mesh without a contact
+    edges_across_half_width : float    half-width over the longest facet in the contact; 0 for a
+                                       mesh without a contact
     elements, nodes : int
     """
 
@@ -46,7 +46,7 @@ class Quality:
 def quality(
     mesh: BodyMesh, contact_point: ArrayLike | None = None, half_width: float | None = None
 ) -> Quality:
-    """Quality of `mesh`, and of its facets within `half_width` (m) of `contact_point` (2,), m.
+    """Quality of a mesh, and of its facets within `half_width` (m) of `contact_point` (2,), m.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def quality(
 
 
 def corner_angles(mesh: BodyMesh) -> Array:
-    """Angles (3, m), rad, between the curved edges at the corners."""
+    """Corner angles between the curved edges, (3, m), rad."""
     sides = np.array([[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]])  # along edges 01, 12, 20
     angles = []
     for k, (xi, eta) in enumerate(_NODES[:3]):
@@ -79,10 +79,10 @@ def corner_angles(mesh: BodyMesh) -> Array:
 
 
 def scaled_jacobians(mesh: BodyMesh) -> Array:
-    """Scaled Jacobian (6, m) at the nodes of every triangle.
+    """Scaled Jacobian at the nodes of every triangle, (6, m).
 
-    Twice the area spanned by the edge directions there, over the product of the longer two;
-    normed to 1 for the equilateral triangle.
+    Jacobian determinant over the product of the two longer edge vectors at the node, 1 for the
+    equilateral triangle.
 
     References
     ----------
@@ -102,24 +102,24 @@ def scaled_jacobians(mesh: BodyMesh) -> Array:
 
 
 def longest_facet(mesh: BodyMesh, contact_point: ArrayLike, half_width: float) -> float:
-    """Length (m) of the longest boundary facet that reaches into the contact."""
+    """Length of the longest boundary facet that overlaps the contact, m."""
     point = finite("contact_point", contact_point)
     triples = np.hstack(list(mesh.boundaries.values()))
     start, end, middle = (mesh.points[:, row] for row in triples)
     length = np.hypot(*(middle - start)) + np.hypot(*(end - middle))
-    apart = np.hypot(*(middle - point[:, None])) - 0.5 * length
-    inside = apart < max(half_width * (1 - 1e-9), float(apart.min()) * (1 + 1e-9))
+    distance = np.hypot(*(middle - point[:, None])) - 0.5 * length
+    inside = distance < max(half_width * (1 - 1e-9), float(distance.min()) * (1 + 1e-9))
     return float(length[inside].max())
 
 
 def gate(
-    found: Quality,
+    measured: Quality,
     *,
     angle_min_deg: float = LEAST_ANGLE_DEG,
     scaled_jacobian_min: float = LEAST_SCALED_JACOBIAN,
     edges_min: float = 0.0,
 ) -> Quality:
-    """`found`, if it is good enough.
+    """Quality figures that meet their limits.
 
     Raises
     ------
@@ -127,11 +127,11 @@ def gate(
         If a figure is below its limit; NaN included.
     """
     limits = (
-        ("min_angle_deg", found.min_angle_deg, angle_min_deg),
-        ("min_scaled_jacobian", found.min_scaled_jacobian, scaled_jacobian_min),
-        ("edges_across_half_width", found.edges_across_half_width, FACET_SHARE * edges_min),
+        ("min_angle_deg", measured.min_angle_deg, angle_min_deg),
+        ("min_scaled_jacobian", measured.min_scaled_jacobian, scaled_jacobian_min),
+        ("edges_across_half_width", measured.edges_across_half_width, FACET_SHARE * edges_min),
     )
     for name, value, limit in limits:
         if not value >= limit:
             raise MeshError(f"mesh.{name} = {value:.4g}, must be >= {limit:.4g}")
-    return found
+    return measured

@@ -1,7 +1,7 @@
 """Outlines of bodies, and the element edges along them.
 
-Edge ends are put on the curve itself, spaced by arc length after the size field. No CAD spline
-stands between the contour and the mesh, and the facets under the contact are equal.
+The nodes lie on the curve itself, not on a CAD spline, spaced by arc length according to the size
+field; the facets in the contact are equal.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.errors import MeshError
 from camwright.meshes.element_size import SizeField
 
-_SAMPLES = 4001  # of the size along a piece of outline; clusters at its ends come on top
+_SAMPLES = 4001  # of the size along a piece of outline, besides those clustered at its ends
 
-_CROSSING_BLOCK = 256  # segments compared with all others at a time
+_CROSSING_BLOCK = 256  # segments compared with all others at once
 
 
 @dataclass(frozen=True, eq=False)
 class Zone:
-    """Facets of equal length around an arc length: `steps` of length `step` on either side."""
+    """Equal facets about the arc length `centre`, m: `steps` of length `step`, m, on each side."""
 
     centre: float
     step: float
@@ -31,10 +31,10 @@ class Zone:
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A named piece of outline, body on its left.
+    """Named piece of outline, the body on its left.
 
-    `at` maps arc length (n,), m, 0..`length`, to points (2, n), m. A piece that is a loop by
-    itself is `closed`, and `at` then takes any arc length.
+    `at` maps arc length (n,), 0..`length`, m, to points (2, n), m. A `closed` piece is a loop of
+    its own, and its `at` is periodic.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Facets:
-    """Element edges along a piece: ends (2, k + 1) and middles (2, k), all on the curve, m."""
+    """Element edges along a piece: ends (2, k + 1) and middles (2, k) on the curve, m."""
 
     name: str
     ends: Array
@@ -57,7 +57,7 @@ class Facets:
 
 
 def facets(piece: Piece, size: SizeField) -> Facets:
-    """The element edges along `piece`, as long as `size` asks there.
+    """Element edges along `piece`, of the local element size.
 
     Raises
     ------
@@ -90,11 +90,11 @@ def facets(piece: Piece, size: SizeField) -> Facets:
 
 
 def _graded(at: Callable[[Array], Array], start: float, stop: float, size: SizeField) -> Array:
-    """Arc lengths from `start` to `stop`, both included, as far apart as `size` asks."""
+    """Arc lengths from `start` to `stop` inclusive, m, spaced by the local element size."""
     span = stop - start
     if not span > 1e-3 * float(size(at(np.array([start])))[0]):
         return np.array([stop])
-    # Sizes are smallest at the ends of a piece, next to the contact: the samples gather there.
+    # samples clustered at the ends, where the size is smallest, next to the contact
     near = np.geomspace(1e-8, 0.5, 1500)
     u = np.unique(np.r_[np.linspace(0.0, 1.0, _SAMPLES), near, 1.0 - near])
     density = span / size(at(start + span * u))
@@ -104,9 +104,9 @@ def _graded(at: Callable[[Array], Array], start: float, stop: float, size: SizeF
 
 
 def crossing(starts: Array, ends: Array) -> Array | None:
-    """A point (2,) where two of the segments from `starts` to `ends`, each (2, n), cross.
+    """Point (2,) near a crossing of two segments from `starts` to `ends`, each (2, n), or None.
 
-    Segments that merely share an end do not cross. None if there is no crossing.
+    Segments that share an end do not cross.
     """
     low, high = np.minimum(starts, ends), np.maximum(starts, ends)
     for first in range(0, starts.shape[1], _CROSSING_BLOCK):
@@ -121,19 +121,19 @@ def crossing(starts: Array, ends: Array) -> Array | None:
             starts[:, j + first],
             ends[:, j + first],
         )
-        apart = (_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0)
-        if apart.any():
-            return 0.5 * (a[:, apart] + b[:, apart])[:, 0]
+        cross = (_side(a, b, c) * _side(a, b, d) < 0) & (_side(c, d, a) * _side(c, d, b) < 0)
+        if cross.any():
+            return 0.5 * (a[:, cross] + b[:, cross])[:, 0]
     return None
 
 
 def _side(a: Array, b: Array, p: Array) -> Array:
-    """Positive where `p` lies left of the line from `a` to `b`."""
+    """Positive where `p` is on the left of the line from `a` to `b`."""
     return np.sign((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]))
 
 
 def line(name: str, start: Array, stop: Array, zone: Zone | None = None) -> Piece:
-    """A straight piece."""
+    """Straight piece from `start` to `stop`, (2,), m."""
     length = float(np.hypot(*(stop - start)))
     along = (stop - start) / length
     return Piece(name, lambda s: start[:, None] + along[:, None] * s, length, zone)
@@ -147,7 +147,7 @@ def arc(
     centre: tuple[float, float] = (0.0, 0.0),
     zone: Zone | None = None,
 ) -> Piece:
-    """A circular piece between two angles (rad), clockwise when `stop` is below `start`."""
+    """Circular piece of `radius` (m) between two angles, rad, clockwise if `stop` < `start`."""
     sense = 1.0 if stop > start else -1.0
 
     def at(s: Array) -> Array:

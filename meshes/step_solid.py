@@ -1,4 +1,4 @@
-"""The cam as a solid, extruded with its bore, keyway and hole, for CAD programs."""
+"""STEP file of the cam: the outline with bore, keyway and counter-hole, extruded."""
 
 from __future__ import annotations
 
@@ -12,31 +12,37 @@ from types import ModuleType
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, positive
-from camwright.geometry.cad_drawing import Outline, clamped_spline, keyway_corners
+from camwright.geometry.cad_drawing import Outline, clamped_spline
+from camwright.geometry.cutouts import keyway_corners
 from camwright.geometry.errors import GeometryError, MeshError, ResultError
 from camwright.meshes.element_size import MILLIMETRE
 from camwright.meshes.gmsh_mesher import session
 
-_STEP_ERROR = 1e-8  # m; gmsh's kernel keeps shapes to 1e-7 mm, finer would only swell the file
+_STEP_ERROR = 1e-8  # m; a smaller one only enlarges the file
 _PIECES = 8
-"""Of the contour; over longer splines the kernel's own areas are off by more than a millionth."""
+"""Splines of the contour; on longer ones the areas of the CAD kernel err by more than 1e-6."""
 
 
 def write_step(path: Path, outline: Outline, width: float) -> None:
-    """Write the cam as one solid, from z = 0 to its width, in millimetres.
+    """STEP file of the cam as one solid from z = 0 to its width, mm.
+
+    Parameters
+    ----------
+    path
+    outline : Outline
+    width : float        m
 
     Raises
     ------
     GeometryError
         If the contour is undercut.
     MeshError
-        If the solid kernel refuses the outline.
+        If the CAD kernel rejects the outline.
     ResultError
         If the file cannot be written.
     """
     positive("cam.width", width, "m")
-    if outline.contour.undercut().found:
-        raise GeometryError("the contour is undercut, it bounds no solid")
+    outline.contour.require_no_undercut()
     try:
         with session() as gmsh:
             occ = gmsh.model.occ
@@ -45,20 +51,20 @@ def write_step(path: Path, outline: Outline, width: float) -> None:
             face = occ.addPlaneSurface([outer, hole, *_counter_hole(occ, outline)])
             occ.extrude([(2, face)], 0.0, 0.0, width / MILLIMETRE)
             occ.synchronize()
-            with _unheard():
+            with _without_stdout():
                 gmsh.write(str(path))
     except (GeometryError, MeshError):
         raise
     except Exception as error:
         raise MeshError(
-            f"the cam cannot be made a solid: {' '.join(str(error).split())}"
+            f"outline of the solid = rejected by gmsh: {' '.join(str(error).split())}"
         ) from error
     if not path.is_file() or b"END-ISO-10303-21" not in path.read_bytes()[-200:]:
-        raise ResultError(f"{path}: the solid was not written whole")
+        raise ResultError(f"{path}: incomplete file")
 
 
 def _contour_curves(occ: ModuleType, outline: Outline) -> list[int]:
-    """The contour as splines over equal parts of the turn, which share their end points."""
+    """Contour as splines over equal parts of the turn with common end points."""
     seams = np.linspace(0.0, FULL_TURN, _PIECES + 1)
     corners = (outline.contour.points(seams[:-1]) / MILLIMETRE).T.tolist()
     ends = [occ.addPoint(x, y, 0.0) for x, y in corners]
@@ -85,7 +91,7 @@ def _hole_curves(occ: ModuleType, outline: Outline) -> list[int]:
     corners = keyway_corners(outline.bore_radius, outline.keyway) / MILLIMETRE
     points = [occ.addPoint(x, y, 0.0) for x, y in corners.T.tolist()]
     sides = [occ.addLine(points[k], points[k + 1]) for k in range(3)]
-    # the bore in two arcs: the kernel takes none of half a turn or more
+    # two arcs, since the kernel accepts none of half a turn or more
     centre = occ.addPoint(0.0, 0.0, 0.0)
     back = -corners.mean(axis=1) / np.hypot(*corners.mean(axis=1)) * radius
     far = occ.addPoint(back[0], back[1], 0.0)
@@ -97,7 +103,7 @@ def _hole_curves(occ: ModuleType, outline: Outline) -> list[int]:
 
 
 def _counter_hole(occ: ModuleType, outline: Outline) -> list[int]:
-    """The loop of the hole against unbalance, where there is one."""
+    """Loop of the counter-hole, if there is one."""
     if outline.counter_hole is None:
         return []
     x, y = (outline.counter_hole.centre / MILLIMETRE).tolist()
@@ -105,15 +111,15 @@ def _counter_hole(occ: ModuleType, outline: Outline) -> list[int]:
 
 
 @contextmanager
-def _unheard() -> Iterator[None]:
-    """The standard output shut: the solid kernel talks past every option, and past Python."""
+def _without_stdout() -> Iterator[None]:
+    """Standard output closed: the CAD kernel prints regardless of gmsh's options."""
     sys.stdout.flush()
     kept = os.dup(1)
-    shut = os.open(os.devnull, os.O_WRONLY)
+    null = os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(shut, 1)
+        os.dup2(null, 1)
         yield
     finally:
         os.dup2(kept, 1)
-        os.close(shut)
+        os.close(null)
         os.close(kept)

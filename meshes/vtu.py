@@ -1,6 +1,6 @@
-"""VTK's XML file of an unstructured grid: values compressed and appended, bit for bit.
+"""VTU file of an unstructured grid: values appended in binary, compressed without loss.
 
-ParaView, pyvista and meshio read it. Text in field data would stop meshio, so there is none.
+ParaView, pyvista and meshio read it; meshio fails on text in field data, which is left out.
 """
 
 from __future__ import annotations
@@ -8,33 +8,35 @@ from __future__ import annotations
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
-QUADRATIC_TRIANGLE, QUAD = 22, 9  # VTK's cell types
+QUADRATIC_TRIANGLE, QUAD = 22, 9  # cell types of VTK
 _BLOCK = 1 << 16
-# What is left to gain beyond the first level is a tenth of the size, for thrice the time.
-_LEVEL = 1
+_LEVEL = 1  # the highest saves a tenth of the size for three times the time
 _TYPES = {"f8": "Float64", "i4": "Int32", "u1": "UInt8"}
+
+
+Numbers = NDArray[np.float64] | NDArray[np.int64] | NDArray[np.int32] | NDArray[np.uint8]
+"""Values of a point or cell field, or node numbers."""
 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
     """Points (n, 3), cells (m, k) of one VTK type, fields at points (n, ...) and cells (m, ...)."""
 
-    points: NDArray[Any]
-    cells: NDArray[Any]
+    points: Numbers
+    cells: Numbers
     cell_type: int
-    point_data: Mapping[str, NDArray[Any]]
-    cell_data: Mapping[str, NDArray[Any]]
+    point_data: Mapping[str, Numbers]
+    cell_data: Mapping[str, Numbers]
     field_data: Mapping[str, float]
 
 
 def vtu(grid: Grid) -> bytes:
-    """The file's text and binary part."""
+    """Content of the VTU file."""
     appended = _Appended()
     count, corners = grid.cells.shape
     cells = {
@@ -69,13 +71,14 @@ def vtu(grid: Grid) -> bytes:
 
 
 class _Appended:
-    """The binary part as it grows, and the tags that point into it."""
+    """Appended binary data, and the XML tags that refer to it."""
 
     def __init__(self) -> None:
         self.parts: list[bytes] = []
         self._size = 0
 
-    def tag(self, name: str, values: NDArray[Any]) -> str:
+    def tag(self, name: str, values: Numbers) -> str:
+        """Append values; XML tag that refers to them."""
         array = np.ascontiguousarray(values)
         if array.dtype.kind == "f":
             array = array.astype("<f8")
@@ -84,16 +87,16 @@ class _Appended:
         packed = _packed(array.tobytes())
         offset, self._size = self._size, self._size + len(packed)
         self.parts.append(packed)
-        # A scalar says nothing of components, or meshio makes a column of it.
-        width = "" if array.ndim == 1 else f' NumberOfComponents="{array.shape[1]}"'
+        # without the attribute for scalars, of which meshio would make columns
+        components = "" if array.ndim == 1 else f' NumberOfComponents="{array.shape[1]}"'
         return (
             f'<DataArray type="{_TYPES[array.dtype.str[1:]]}" Name={quoteattr(name)}'
-            f'{width} format="appended" offset="{offset}"/>'
+            f'{components} format="appended" offset="{offset}"/>'
         )
 
 
 def _packed(data: bytes) -> bytes:
-    """Bytes in VTK's blocks: their number, size, size of the last, sizes packed, then they."""
+    """Compressed blocks of VTK after their number, size, last size and compressed sizes."""
     blocks = [data[k : k + _BLOCK] for k in range(0, len(data), _BLOCK)]
     packed = [zlib.compress(block, _LEVEL) for block in blocks]
     last = len(data) % _BLOCK

@@ -85,4 +85,5 @@ def _write_patch(path: Path, g, k: int, half_width: float, degrees: float) -> No
         "normal_x": normal[0], "normal_y": normal[1],
     }  # fmt: skip
     mises = 600.0 * np.exp(-np.hypot(whole[:, 0], whole[:, 1] + 0.7))
-    write_vtu(path, BodyMesh(points, triangles.T, {}), {"von_mises_MPa": mises}, notes)
+    mesh = BodyMesh(points, triangles.T, {})
+    write_vtu(path, {"cam": mesh}, {"cam": {"von_mises_MPa": mises}}, notes)

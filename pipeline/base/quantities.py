@@ -69,7 +69,7 @@ class In:
         """
         number = self._number(value)
         if not self.holds(number):
-            raise InputError("", value, self.limit)
+            raise InputError("", str(value), self.limit)
         return number
 
     def require(self, field: str, value: object) -> None:
@@ -104,7 +104,7 @@ class In:
         if self.unit:
             return units.parse(value, self.unit, "")
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise InputError("", value, "a number without a unit")
+            raise InputError("", str(value), "a number without a unit")
         number = float(value) if abs(value) < 1e308 else inf
         if not isfinite(number):
             raise InputError("", value, "finite")
@@ -143,7 +143,7 @@ class Count:
     def read(self, value: object) -> int:
         """A whole number as a case file has it, as `In.read` does."""
         if isinstance(value, bool) or not isinstance(value, int):
-            raise InputError("", value, "a whole number")
+            raise InputError("", str(value), "a whole number")
         self.require("", value)
         return value
 

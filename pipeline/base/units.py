@@ -94,7 +94,7 @@ def parse(text: object, unit: str, field: str) -> float:
     """
     example = f'a number with a unit, such as "1 {unit}"'
     if not isinstance(text, str):
-        raise InputError(field, text, example)
+        raise InputError(field, repr(text), example)
     match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None or not match.group(2):
         raise InputError(field, text, example)

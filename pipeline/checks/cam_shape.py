@@ -98,7 +98,7 @@ def pressure_angle(solution: Solution) -> Demand:
 )
 def curvature_ratio(solution: Solution) -> Demand:
     """Least convex radius of the pitch curve over the roller radius."""
-    contour = solution.contour
+    contour = solution.contour.require_roller()
     extremum = contour.pitch.least_convex_radius()
     ratio = float(extremum.value / contour.roller_radius)
     return Demand(ratio, solution.machine.limits[CURVATURE_RATIO], _at(extremum))
@@ -149,9 +149,10 @@ def self_intersection(solution: Solution) -> Demand:
 )
 def second_contact(solution: Solution) -> Demand:
     """Depth of the follower in contour parts away from its contact, m."""
-    extremum = solution.contour.clearance()
-    depth = float(np.maximum(0.0, -extremum.value))  # NaN stays, nothing in sight is no depth
-    return Demand(depth, solution.machine.limits[SECOND_CONTACT_DEPTH], _at(extremum))
+    nearest = solution.contour.second_contact()
+    depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinity is no depth
+    place = _place(float(nearest.theta))
+    return Demand(depth, solution.machine.limits[SECOND_CONTACT_DEPTH], place)
 
 
 @check(
@@ -165,14 +166,13 @@ def second_contact(solution: Solution) -> Demand:
 )
 def concave_radius(solution: Solution) -> Demand | None:
     """Least concave radius of the contour, m; None for a convex cam."""
-    contour, tool = solution.contour, solution.case.largest_tool
-    extremum = contour.pitch.curvature_min()
-    if extremum.value >= 0:
+    tool, least = solution.case.largest_tool, solution.contour.concave_radius_min()
+    if np.isposinf(least.value):
         return None
     return Demand(
-        float(contour.roller_radius - 1.0 / extremum.value),
+        float(least.value),
         None if tool is None else TOOL_ALLOWANCE * tool,
-        _at(extremum),
+        _at(least),
         note="" if tool is not None else "no tool radius is given",
     )
 

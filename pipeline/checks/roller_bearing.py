@@ -31,7 +31,7 @@ def bearing_of(solution: Solution) -> Bearing:
 
 def spin(cycle: Cycle) -> Array:
     """Speed of the roller on its pin, rad/s, (n,)."""
-    contour = cycle.contour
+    contour = cycle.contour.require_roller()
     return roller_motion(contour.pitch, contour.roller_radius, cycle.cam_speed, cycle.theta).spin
 
 

@@ -181,8 +181,7 @@ def _turn(state: Machine, shape: Contour, torques: Mapping[str, Torque], corner:
 
 
 def _shape(contour: Contour, corner: Corner) -> Contour:
-    pitch = contour.pitch
-    return replace(contour, pitch=replace(pitch, base_radius=pitch.base_radius + corner.profile))
+    return replace(contour, pitch=contour.pitch.enlarged(corner.profile))
 
 
 def _early(contour: Contour, advance: float) -> Contour:

@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.cad_drawing import HoleLike
 from camwright.geometry.contour import Contour
+from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import ContactError
 from camwright.meshes.body_mesh import BodyMesh
-from camwright.meshes.cam_outline import KeywayLike
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, ElasticBody, Springs
 from camwright.pipeline.contact.follower_body import FollowerBody
@@ -45,7 +44,7 @@ class ContactPair:
         ContactError
             If the cam is so hollow that the follower does not fit.
         """
-        curvature = 1 / self.contour.roller_radius + self.contour.curvature(theta)
+        curvature = self.contour.follower_curvature + self.contour.curvature(theta)
         if not (curvature > 0).all():
             worst = float(np.degrees(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))]))
             name = self.follower.name
@@ -58,9 +57,7 @@ class ContactPair:
         theta (n,) rad; xi (n, q) m along the tangent of a contact frame, which runs clockwise,
         against the contour's own.
         """
-        radius = self.contour.roller_radius
-        circle = xi**2 / (radius + np.sqrt(radius**2 - xi**2))
-        return circle - self.contour.surface_offset(theta, -xi)
+        return self.contour.follower_gap(xi) - self.contour.surface_offset(theta, -xi)
 
 
 def elastic_body(

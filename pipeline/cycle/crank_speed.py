@@ -10,8 +10,8 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import CamError
+from camwright.geometry.follower_path import FollowerPath
 from camwright.geometry.periodic_spline import periodic_quintic
-from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.engine.crankshaft import (
     CrankMotion,
@@ -67,14 +67,14 @@ class SpeedStudy:
         return 2.0 * self.added_inertia / outer_radius**2, self.added_inertia / outer_radius**2
 
 
-def follower_inertia(pitch: PitchCurve, mass: float, gear_ratio: float, count: int) -> Array:
+def follower_inertia(pitch: FollowerPath, mass: float, gear_ratio: float, count: int) -> Array:
     """m (ds/dtheta_crank)^2 at equal angles of the cam turn, kg m2."""
     slope = pitch.lift(uniform_turn(count), 1) / gear_ratio
     return np.asarray(mass * slope**2)
 
 
 def mechanism_torque(
-    pitch: PitchCurve, system: FollowerSystem, gear_ratio: float, count: int
+    pitch: FollowerPath, system: FollowerSystem, gear_ratio: float, count: int
 ) -> MechanismTorque:
     """Torque of spring and friction on the crank; the follower's inertia is left to J(theta).
 
@@ -94,7 +94,7 @@ def speed_study(
     torque: Array,
     inertia: Inertia,
     mean_speed: float,
-    pitch: PitchCurve,
+    pitch: FollowerPath,
     system: FollowerSystem,
     *,
     gear_ratio: float = 2.0,
@@ -133,7 +133,7 @@ def speed_study(
 
 
 def study_of(
-    machine: Machine, torque: Torque, pitch: PitchCurve, rubbing: Rubbing | None = None
+    machine: Machine, torque: Torque, pitch: FollowerPath, rubbing: Rubbing | None = None
 ) -> SpeedStudy | None:
     """Crank speed of one load case; None without a crankshaft.
 
@@ -161,7 +161,7 @@ def study_of(
 
 
 def driven_cam_speed(
-    machine: Machine, torque: Torque | None, pitch: PitchCurve, rubbing: Rubbing
+    machine: Machine, torque: Torque | None, pitch: FollowerPath, rubbing: Rubbing
 ) -> Array:
     """Speed of the cam at the angles of `rubbing`, equal parts of a turn, rad/s.
 
@@ -183,7 +183,7 @@ def driven_cam_speed(
 def speed_ripple(
     machines: Iterable[Machine],
     torques: Mapping[str, Torque],
-    pitch: PitchCurve,
+    pitch: FollowerPath,
     rubbing: Mapping[str, Rubbing],
 ) -> dict[str, tuple[float, float]]:
     """Std of the crank speed, rad/s, of each running load case: engine alone, with the cam.
@@ -209,7 +209,7 @@ def speed_ripple(
 def consistency(
     machine: Machine,
     torque: Torque,
-    pitch: PitchCurve,
+    pitch: FollowerPath,
     study: SpeedStudy | None,
     *,
     demand: Array | None = None,

@@ -220,7 +220,8 @@ def _roller_motion(machine: Machine, contour: Contour, loads: Loads) -> RollerMo
     """Motion of a roller that does not slip; None under a flat face."""
     if machine.roller is None:
         return None
-    return roller_motion(contour.pitch, machine.roller.radius, machine.cam_speed, loads.theta)
+    pitch = contour.require_roller().pitch
+    return roller_motion(pitch, machine.roller.radius, machine.cam_speed, loads.theta)
 
 
 def _ring(

@@ -233,7 +233,7 @@ def certified_solution(
 
 def is_body(contour: Contour) -> bool:
     """Whether the contour encloses a body: no undercut, no crossing."""
-    return not contour.undercut().found and not contour.self_intersections()
+    return not contour.undercut().present and not contour.self_intersections()
 
 
 def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize_scalar
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
-from camwright.geometry.cad_drawing import KeywayLike
 from camwright.geometry.contour import Contour
+from camwright.geometry.cutouts import KeywayLike
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Angle, Count, Force, In, Length, Part, Pressure

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
-from camwright.geometry.pitch_curve import PitchCurve
+from camwright.geometry.follower_path import FollowerPath
 
 _MEAN_SHARE = pi / 4.0  # mean over greatest pressure of Hertz's ellipse
 
@@ -32,12 +32,12 @@ class FaceMotion:
         freeze(self, place=self.place, sliding=self.sliding, entrainment=self.entrainment)
 
 
-def face_motion(path: PitchCurve, cam_speed: float, theta: ArrayLike) -> FaceMotion:
+def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> FaceMotion:
     """Sliding w (r + s) and entrainment w |(r + s)/2 + s''| of a face.
 
     Parameters
     ----------
-    path : PitchCurve    a `FacePath`, whose height is r + s
+    path : FollowerPath  of a flat face, its height is r + s
     cam_speed : float    w, rad/s
     theta : array (n,)   rad
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.errors import InputError
-from camwright.geometry.pitch_curve import PitchCurve
+from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.follower.spring import Spring
 
 REST = 1e-9  # of the stroke per radian: what a spline leaves of the slope of a dwell
@@ -51,7 +51,7 @@ class Push:
     spacing: float
 
     @classmethod
-    def of(cls, pitch: PitchCurve, system: FollowerSystem, theta: Array) -> Push:
+    def of(cls, pitch: FollowerPath, system: FollowerSystem, theta: Array) -> Push:
         """Through a roller's centre, or on a face beside the axis and dragged by its friction."""
         side = np.tan(pitch.pressure_angle(theta)) + system.face_friction
         return cls(side, pitch.push_arm(theta), system.guide_spacing)
@@ -233,14 +233,16 @@ def turn_integral(theta: Array, values: Array) -> float:
     return float(np.sum(0.5 * (steps + np.roll(steps, 1)) * values))
 
 
-def jump_speed(pitch: PitchCurve, system: FollowerSystem, theta: ArrayLike) -> tuple[float, float]:
+def jump_speed(
+    pitch: FollowerPath, system: FollowerSystem, theta: ArrayLike
+) -> tuple[float, float]:
     """Least constant cam speed at which the follower leaves the cam, and where it does.
 
     sqrt((P + k s + m g) / (-m s'')), least over the angles with s'' < 0.
 
     Parameters
     ----------
-    pitch : PitchCurve
+    pitch : FollowerPath
     system : FollowerSystem
     theta : array (n,)   cam angles, rad
 
@@ -284,7 +286,7 @@ def levers(overhang: Any, guide_spacing: float) -> tuple[Any, Any]:
 
 
 def follower_loads(
-    pitch: PitchCurve,
+    pitch: FollowerPath,
     system: FollowerSystem,
     cam_speed: ArrayLike,
     theta: ArrayLike,
@@ -310,7 +312,7 @@ def follower_loads(
 
     Parameters
     ----------
-    pitch : PitchCurve
+    pitch : FollowerPath
     system : FollowerSystem
     cam_speed : float or array (n,)         d theta/dt, rad/s, >= 0; 0 is quasi-static
     theta : array (n,)                      cam angles, rad

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import ContactError
-from camwright.geometry.pitch_curve import PitchCurve
+from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.follower.follower_forces import (
     JAM_FLOOR,
     FollowerSystem,
@@ -57,7 +57,7 @@ class Guided:
 
 
 def guided_loads(
-    pitch: PitchCurve,
+    pitch: FollowerPath,
     system: FollowerSystem,
     stem: Stem,
     guides: GuidePair,
@@ -85,7 +85,7 @@ def guided_loads(
 
     Parameters
     ----------
-    pitch : PitchCurve
+    pitch : FollowerPath
     system : FollowerSystem   its `rubbing` is not used
     stem : Stem
     guides : GuidePair        its friction is not used, that of the system is

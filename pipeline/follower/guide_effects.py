@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
-from camwright.geometry.pitch_curve import PitchCurve
+from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.follower.follower_forces import (
     FollowerSystem,
     Loads,
@@ -62,7 +62,7 @@ class GuideShares:
 
 
 def guide_shares(
-    pitch: PitchCurve,
+    pitch: FollowerPath,
     system: FollowerSystem,
     stem: Stem,
     guides: GuidePair,

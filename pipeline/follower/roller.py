@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.material import Material
@@ -107,7 +107,7 @@ class Roller(Part):
 
     def contour(self, lift: Lift, cam: CamBody) -> Contour:
         """Cam contour under the roller; see `FollowerKind`."""
-        return Contour(PitchCurve(lift, cam.prime_radius, cam.offset), self.radius)
+        return RollerContour(PitchCurve(lift, cam.prime_radius, cam.offset), self.radius)
 
     def ring(self, width: float, preload: float) -> RingOnBalls | None:
         """Its bearing's outer ring on balls; None where it is solid: `solid_reason`.
@@ -132,7 +132,7 @@ class Roller(Part):
         self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
     ) -> SurfaceMotion:
         """Rolling with creep; without friction given, rolling without slip. See `FollowerKind`."""
-        motion = roller_motion(contour.pitch, self.radius, speed, theta)
+        motion = roller_motion(contour.require_roller().pitch, self.radius, speed, theta)
         driven = self._driven(motion, contact, force, speed)
         loaded = force > 0
         demand = np.abs(driven.demand) / np.where(loaded, force, np.nan)

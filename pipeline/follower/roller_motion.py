@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.errors import InputError
-from camwright.geometry.path import magnitude
-from camwright.geometry.pitch_curve import PitchCurve
+from camwright.geometry.pitch_curve import PitchCurve, magnitude
 
 BALL_LIFE_EXPONENT = 3.0  # ISO 281: 3 for ball bearings, 10/3 for roller bearings
 HOUR = 3600.0

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, finite
 from camwright.geometry.energy import spring_deflection
 from camwright.geometry.errors import InputError
-from camwright.geometry.path import Values
 from camwright.pipeline.base.quantities import In, Length, Part, Preload, Pressure, Rate
 
 DEAD_COILS = 2.0  # squared and ground ends
@@ -190,11 +189,11 @@ class Spring(Part):
     design: HelicalSpring | None = None
     source: str = ""
 
-    def force(self, lift: Values) -> Values:
+    def force(self, lift: Array) -> Array:
         """Force P + k s at a lift (...), m, in N."""
         return self.preload + self.rate * lift
 
-    def stiffness(self, lift: Values) -> Values:
+    def stiffness(self, lift: Array) -> Array:
         """Slope k of the force over the lift (...), N/m."""
         return self.rate + 0.0 * lift
 

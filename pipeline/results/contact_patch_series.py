@@ -58,7 +58,8 @@ def write_patches(
             name = f"patch_{round(1000 * angle):06d}.vtu"
             mesh = BodyMesh(_placed(pair, cycle, k, points), triangles, {})
             notes = position_notes(pair, cycle, k, number)
-            write_vtu(pieces / name, mesh, _fields(nodal, pair.cam.poisson), notes)
+            fields = _fields(nodal, pair.cam.poisson)
+            write_vtu(pieces / name, {"cam": mesh}, {"cam": fields}, notes)
             entries.append((angle, f"patch/{name}"))
         tell(min(start + _TOGETHER, count), count)
     index = folder / INDEX

@@ -16,8 +16,8 @@ from scipy import sparse
 from scipy.spatial import cKDTree
 
 from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.cutouts import KeywayLike
 from camwright.meshes.body_mesh import BodyMesh
-from camwright.meshes.cam_outline import KeywayLike
 from camwright.pipeline.contact.body_compliance import LoadedBody, hertz_stress
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity import plane_stress_measures

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.geometry.path import Values, curvature_slope, magnitude, speed_and_curvature
+from camwright.geometry.pitch_curve import curvature_slope, magnitude, speed_and_curvature
 from camwright.pipeline.checks import demands
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.follower_forces import levers
@@ -24,13 +24,13 @@ from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scen
 class Jet(NamedTuple):
     """Lift and its derivatives by the cam angle, m/rad^k, each (n,)."""
 
-    lift: Values
-    slope: Values
-    bend: Values
-    jerk: Values = 0.0
+    lift: Array
+    slope: Array
+    bend: Array
+    jerk: Array
 
 
-def lift_jet(energy: tuple[Values, ...], variables: DesignVariables) -> Jet:
+def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
     """Lift at which the spring holds the energy, with three derivatives, from those of E.
 
     F_s = sqrt(P^2 + 2 k E), s = 2 E / (F_s + P), and E' = F_s s' differentiated.
@@ -50,13 +50,13 @@ def lift_jet(energy: tuple[Values, ...], variables: DesignVariables) -> Jet:
 class Motion(NamedTuple):
     """What the geometry makes of a jet: velocity of the roller's centre and its path."""
 
-    along: Values
-    across: Values
-    speed: Values
-    curvature: Values
+    along: Array
+    across: Array
+    speed: Array
+    curvature: Array
 
     @property
-    def tangent(self) -> Values:
+    def tangent(self) -> Array:
         """Of the pressure angle."""
         return self.along / self.across
 
@@ -74,18 +74,18 @@ class Forces(NamedTuple):
     lever is that of point supports; push and rub are of the guides as they are.
     """
 
-    spring: Values
-    inertia: Values
-    axial: Values
-    normal: Values
-    jam: Values
-    lever: tuple[Values, Values]
-    push: tuple[Values, Values]
-    rub: tuple[Values, Values]
+    spring: Array
+    inertia: Array
+    axial: Array
+    normal: Array
+    jam: Array
+    lever: tuple[Array, Array]
+    push: tuple[Array, Array]
+    rub: tuple[Array, Array]
 
 
 def forces(
-    jet: Jet, path: Motion, highest: Values, variables: DesignVariables, scenario: Scenario
+    jet: Jet, path: Motion, highest: float, variables: DesignVariables, scenario: Scenario
 ) -> Forces:
     """Follower forces with implicit guide friction; see `follower_loads`.
 
@@ -118,7 +118,7 @@ def forces(
 class Mean(NamedTuple):
     """The power of a mean over the turn; terms (n,) at equal angles."""
 
-    terms: Values
+    terms: Array
     power: float = 1.0
 
     @property
@@ -127,11 +127,11 @@ class Mean(NamedTuple):
         return np.array([max(float(np.mean(self.terms)), 0.0) ** self.power])
 
 
-def shape_utilisations(jet: Jet, variables: DesignVariables, ratings: Ratings) -> dict[str, Values]:
+def shape_utilisations(jet: Jet, variables: DesignVariables, ratings: Ratings) -> dict[str, Array]:
     """Limits on the shape of the cam, whatever it carries; each (n,)."""
     path = motion(jet, variables, ratings.offset)
     bend = ratings.roller_radius * path.curvature
-    found: dict[str, Values] = {}
+    found: dict[str, Array] = {}
     if ratings.travel is not None:
         found["spring_travel"] = jet.lift / ratings.travel
     if ratings.pressure_angle is not None:
@@ -153,8 +153,8 @@ def shape_utilisations(jet: Jet, variables: DesignVariables, ratings: Ratings) -
 
 
 def load_utilisations(
-    jet: Jet, highest: Values, variables: DesignVariables, ratings: Ratings, scenario: Scenario
-) -> dict[str, Values]:
+    jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
+) -> dict[str, Array | Mean]:
     """Limits on what the cam carries in one scenario; each (n,), or a `Mean` of the turn.
 
     The stress limit is r kappa + N / F_lim <= 1, which is p0 <= p_allowed: the pressure of a
@@ -181,8 +181,8 @@ def _contact_utilisations(
     variables: DesignVariables,
     ratings: Ratings,
     scenario: Scenario,
-) -> dict[str, Values | Mean]:
-    found: dict[str, Values | Mean] = {}
+) -> dict[str, Array | Mean]:
+    found: dict[str, Array | Mean] = {}
     preload = variables.preload * scenario.preload_factor
     if ratings.pressure is not None:
         flat = peak_pressure_square(
@@ -209,9 +209,9 @@ def _contact_utilisations(
 
 def _roller_utilisations(
     load: Forces, path: Motion, ratings: Ratings, scenario: Scenario
-) -> dict[str, Values | Mean]:
+) -> dict[str, Array | Mean]:
     spin = scenario.cam_speed * rolling_share(path.speed, ratings.roller_radius)
-    found: dict[str, Values | Mean] = {}
+    found: dict[str, Array | Mean] = {}
     if ratings.normal_force is not None:
         found["roller_static"] = load.normal / ratings.normal_force
     if ratings.roller_spin is not None:
@@ -225,10 +225,10 @@ def _roller_utilisations(
 
 def _bush_utilisations(
     load: Forces, path: Motion, jet: Jet, ratings: Ratings, scenario: Scenario
-) -> dict[str, Values | Mean]:
+) -> dict[str, Array | Mean]:
     side = load.axial * path.tangent
     velocity = scenario.cam_speed * jet.slope
-    found: dict[str, Values | Mean] = {}
+    found: dict[str, Array | Mean] = {}
     for place, name in enumerate("AB"):
         area = ratings.guide_area[place]
         limit, product = ratings.guide_pressure[place], ratings.guide_pv[place]
@@ -242,8 +242,8 @@ def _bush_utilisations(
 
 
 def delivered_torque(
-    jet: Jet, highest: Values, variables: DesignVariables, scenario: Scenario, offset: float
-) -> Values:
+    jet: Jet, highest: float, variables: DesignVariables, scenario: Scenario, offset: float
+) -> Array:
     """Cam torque F_a s' with friction and inertia inside, N m, (n,)."""
     load = forces(jet, motion(jet, variables, offset), highest, variables, scenario)
     return load.axial * jet.slope

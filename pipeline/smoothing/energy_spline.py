@@ -30,7 +30,7 @@ def _pieces() -> Array:
 
 
 def basis_matrix(theta: ArrayLike, count: int, derivative: int = 0) -> csr_array:
-    """Values, or derivatives, of the periodic quintic B-splines, (n, count), six a row.
+    """Array, or derivatives, of the periodic quintic B-splines, (n, count), six a row.
 
     Parameters
     ----------

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.smoothing.constraints import Jet, Mean, Values, lift_jet
+from camwright.pipeline.smoothing.constraints import Jet, Mean, lift_jet
 from camwright.pipeline.smoothing.scenario import DesignVariables
 
-Function = Callable[[Jet, Values, DesignVariables], Mapping[str, "Values | Mean"]]
+Function = Callable[[Jet, float, DesignVariables], Mapping[str, "Array | Mean"]]
 FREED = ("rate", "preload", "prime_radius")
+Number = TypeVar("Number", float, Array)
 _STEP = 1e-30
 
 
@@ -37,7 +38,7 @@ def differentiated(
     variables: DesignVariables,
     freed: bool,
 ) -> dict[str, Gradient]:
-    """Values of a function of the jets with all its derivatives.
+    """Value of a function of the jets with all its derivatives.
 
     Parameters
     ----------
@@ -52,18 +53,17 @@ def differentiated(
     Squire and Trapp, SIAM Review 40 (1998) 110: the complex step has no cancellation.
     """
 
-    def sides(parts: tuple[Any, ...], top: Values, given: DesignVariables) -> dict[str, Array]:
+    def sides(parts: tuple[Array, ...], top: float, given: DesignVariables) -> dict[str, Array]:
         found = function(lift_jet(parts, given), top, given)
         return {name: np.imag(_terms(value)) / _STEP for name, value in found.items()}
 
-    step = 1j * _STEP
     directions = [
-        sides(tuple(part + step * (j == k) for j, part in enumerate(energy)), highest, variables)
+        sides((*energy[:k], _stepped(energy[k]), *energy[k + 1 :]), highest, variables)
         for k in range(len(energy))
     ]
-    directions.append(sides(energy, highest + step, variables))
+    directions.append(sides(energy, _stepped(highest), variables))
     for name in FREED if freed else ():
-        other = replace(variables, **{name: getattr(variables, name) + step})
+        other = replace(variables, **{name: _stepped(getattr(variables, name))})
         directions.append(sides(energy, highest, other))
     values = function(lift_jet(energy, variables), highest, variables)
     return {
@@ -72,11 +72,17 @@ def differentiated(
     }
 
 
-def _terms(value: Values | Mean) -> Values:
+def _stepped(value: Number) -> Number:
+    """A value with the imaginary step, under the type of the real one it stands for."""
+    stepped: Number = np.add(value, 1j * _STEP)
+    return stepped
+
+
+def _terms(value: Array | Mean) -> Array:
     return value.terms if isinstance(value, Mean) else value
 
 
-def _gradient(value: Values | Mean, sides: list[Array], orders: int) -> Gradient:
+def _gradient(value: Array | Mean, sides: list[Array], orders: int) -> Gradient:
     none = np.zeros_like(sides[0])
     local = np.stack(sides[:orders])
     shared = np.stack([*sides[orders:], *[none] * (orders + 1 + len(FREED) - len(sides))])

@@ -1,4 +1,4 @@
-"""Values of the energy's spline at a set of cam angles, six entries a row."""
+"""Array of the energy's spline at a set of cam angles, six entries a row."""
 
 from __future__ import annotations
 

@@ -15,7 +15,6 @@ from camwright.pipeline.smoothing.cone_program import Norm
 from camwright.pipeline.smoothing.constraints import (
     Jet,
     Mean,
-    Values,
     delivered_torque,
     lift_jet,
     load_utilisations,
@@ -288,27 +287,27 @@ def _unit(name: str, variables: DesignVariables) -> float:
     return 1.0 if name == "phase" else float(getattr(variables, name))
 
 
-def _lift(jet: Jet, _top: Values, _machine: DesignVariables) -> Mapping[str, Values | Mean]:
+def _lift(jet: Jet, _top: float, _machine: DesignVariables) -> Mapping[str, Array | Mean]:
     return {"lift": jet.lift}
 
 
-def _jerk(jet: Jet, _top: Values, _machine: DesignVariables) -> Mapping[str, Values | Mean]:
+def _jerk(jet: Jet, _top: float, _machine: DesignVariables) -> Mapping[str, Array | Mean]:
     return {"jerk": jet.jerk}
 
 
 def _torque(
-    scenario: Scenario, offset: float, jet: Jet, top: Values, variables: DesignVariables
-) -> Mapping[str, Values | Mean]:
+    scenario: Scenario, offset: float, jet: Jet, top: float, variables: DesignVariables
+) -> Mapping[str, Array | Mean]:
     return {"torque": delivered_torque(jet, top, variables, scenario, offset)}
 
 
 def _shape(
-    ratings: Ratings, jet: Jet, _top: Values, variables: DesignVariables
-) -> Mapping[str, Values | Mean]:
+    ratings: Ratings, jet: Jet, _top: float, variables: DesignVariables
+) -> Mapping[str, Array | Mean]:
     return shape_utilisations(jet, variables, ratings)
 
 
 def _loads(
-    scenario: Scenario, ratings: Ratings, jet: Jet, top: Values, variables: DesignVariables
-) -> Mapping[str, Values | Mean]:
+    scenario: Scenario, ratings: Ratings, jet: Jet, top: float, variables: DesignVariables
+) -> Mapping[str, Array | Mean]:
     return load_utilisations(jet, top, variables, ratings, scenario)

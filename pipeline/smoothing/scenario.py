@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
-from camwright.geometry.path import Values
 
 
 @dataclass(frozen=True)
@@ -17,10 +16,10 @@ class DesignVariables:
     The phase is how far the cam is turned ahead on its shaft against the spline of its energy.
     """
 
-    rate: Values
-    preload: Values
-    prime_radius: Values
-    phase: Values = 0.0
+    rate: float
+    preload: float
+    prime_radius: float
+    phase: float = 0.0
 
 
 @dataclass(frozen=True)

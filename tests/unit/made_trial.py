@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.flat_face_contour import FacePath, FlatFaceContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -130,7 +130,7 @@ def with_card(whole: Any, card: Material) -> Any:
 def contour(stroke: float = STROKE, base: float = BASE, roller: float = ROLLER) -> Contour:
     """A simple harmonic lift: s = stroke (1 - cos theta) / 2."""
     lift = Lift(THETA, 0.5 * stroke * (1.0 - np.cos(THETA)))
-    return Contour(PitchCurve(lift, base), roller)
+    return RollerContour(PitchCurve(lift, base), roller)
 
 
 @cache
@@ -148,14 +148,14 @@ def ring() -> Contour:
 def hollow() -> Contour:
     """Three lobes on a small base: convex tips and hollow flanks."""
     lift = Lift(THETA, 0.005 * (1.0 - np.cos(3.0 * THETA)))
-    return Contour(PitchCurve(lift, 0.03), ROLLER)
+    return RollerContour(PitchCurve(lift, 0.03), ROLLER)
 
 
 @cache
 def undercut() -> Contour:
     """Five lobes under a roller too large for their tips: cusps, and a contour that crosses."""
     theta = uniform_turn(360)
-    return Contour(PitchCurve(Lift(theta, 0.006 * (1.0 - np.cos(5.0 * theta))), 0.03), 0.02)
+    return RollerContour(PitchCurve(Lift(theta, 0.006 * (1.0 - np.cos(5.0 * theta))), 0.03), 0.02)
 
 
 # --- the cycle -------------------------------------------------------------------------------

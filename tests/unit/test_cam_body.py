@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.motion_laws import Motion, Segment
@@ -31,7 +31,7 @@ def eccentric():
     """A disc of radius 40 mm out of centre by 2 mm: pitch curve a circle of 48 mm."""
     far = DISC + ROLLER
     d = ECCENTRICITY * np.cos(THETA) + np.sqrt(far**2 - (ECCENTRICITY * np.sin(THETA)) ** 2)
-    return Contour(PitchCurve(Lift(THETA, d - d.min()), float(d.min())), ROLLER)
+    return RollerContour(PitchCurve(Lift(THETA, d - d.min()), float(d.min())), ROLLER)
 
 
 def test_key():
@@ -178,7 +178,7 @@ def tripled(*, notch=None):
         (Segment("harmonic", rise, 0.01), Segment("harmonic", rise, -0.01),
          Segment("dwell", 4 * np.pi / 9)), repeat=3,
     ).lift()  # fmt: skip
-    contour = Contour(PitchCurve(lift, 0.025), 0.004)
+    contour = RollerContour(PitchCurve(lift, 0.025), 0.004)
     return contour, unbalance(contour, 8.5e-3, notch, WIDTH, DENSITY)
 
 

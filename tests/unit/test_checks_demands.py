@@ -25,7 +25,7 @@ from trial_variants import (
 )
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.machine import CREEP
@@ -206,7 +206,7 @@ def test_pressure_angle_of_an_eccentric_disc():
     )
     base = radius - eccentricity
     lift = Lift(theta, np.maximum(distance - base, 0.0))
-    shape = Contour(PitchCurve(lift, base), made.ROLLER)
+    shape = RollerContour(PitchCurve(lift, base), made.ROLLER)
     solution = made.solution(contour=shape)
     # 360 quintic pieces follow the disc to 1e-9 of the lift; its derivatives less well.
     angle = cam_shape.pressure_angle(solution)

@@ -47,7 +47,7 @@ def test_derived_measures_of_the_engine():
         ({"piston_mass": -0.1}, "engine.piston_mass"),
         ({"compression_ratio": 1.0}, "compression_ratio = 1.0, must be from 1 to 40"),
         ({"compression_ratio": 41.0}, "compression_ratio"),
-        ({"rod_length": 0.020}, "rod_length = 0.02, must be > 0.021 m to turn over"),
+        ({"rod_length": 0.020}, "rod_length = 0.02, must be > 0.021 m for a full rotation"),
         ({"pin_offset": 0.053}, "rod_length"),
         ({"combustion_efficiency": 1.01}, "from 0 to 1"),
         ({"ignition": "laser"}, "engine.ignition = laser, must be spark or compression"),
@@ -80,8 +80,9 @@ def test_slider_crank_dead_centres():
     assert linkage.travel(pi) == pytest.approx(0.042, rel=1e-14)
     offset = SliderCrank(0.021, 0.073, 0.004)
     assert offset.stroke > 0.042
-    assert offset.travel(offset.top_angle) == pytest.approx(0.0, abs=1e-16)
-    assert offset.travel_rate(offset.top_angle) == pytest.approx(0.0, abs=1e-16)
+    stretched = np.arcsin(0.004 / (0.021 + 0.073))
+    assert offset.travel(stretched) == pytest.approx(0.0, abs=1e-16)
+    assert offset.travel_rate(stretched) == pytest.approx(0.0, abs=1e-16)
     assert offset.travel(DEGREES).min() >= 0.0
 
 

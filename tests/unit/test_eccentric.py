@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.eccentric import Eccentric
 from camwright.geometry.errors import InputError
 from camwright.geometry.linkage import SliderCrank
@@ -52,7 +52,7 @@ def test_cam_of_its_lift_is_the_circle(offset):
     pair = Eccentric(0.02, 0.08, offset)
     lift = pair.lift()
     pitch = PitchCurve(lift, pair.prime_radius, offset)
-    contour = Contour(pitch, 0.0475)
+    contour = RollerContour(pitch, 0.0475)
     theta = PHI + 0.5 * np.pi
     np.testing.assert_allclose(pitch.height(theta), pair.height(PHI), rtol=0, atol=1e-12)
     np.testing.assert_allclose(lift(theta, 1), pair.height_rate(PHI), rtol=0, atol=1e-11)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from camwright.geometry.extrema import greatest, least, valleys
+from camwright.geometry.extrema import greatest, least, local_minima
 
 
 @pytest.mark.parametrize("place", [0.0, 1e-9, 1.234567, 3.0, 6.28])
@@ -22,8 +22,8 @@ def test_extreme_of_a_lopsided_hump(place, sharpness):
 
 
 def test_every_valley_is_refined():
-    """sin 3t + 0.1 sin t: three valleys, against the roots of the derivative."""
-    values, theta = valleys(lambda t: np.sin(3 * t) + 0.1 * np.sin(t), 24)
+    """sin 3t + 0.1 sin t: three minima, against the roots of the derivative."""
+    values, theta = local_minima(lambda t: np.sin(3 * t) + 0.1 * np.sin(t), 24)
     assert len(values) == 3
     np.testing.assert_allclose(3 * np.cos(3 * theta) + 0.1 * np.cos(theta), 0, atol=1e-6)
     np.testing.assert_allclose(values, np.sin(3 * theta) + 0.1 * np.sin(theta), rtol=1e-14)

@@ -68,7 +68,7 @@ def test_msh_is_format_4_1_and_repeats_bit_for_bit(tmp_path, bodies):
 def test_vtu_keeps_fields_units_and_curved_triangles(tmp_path, bodies):
     mesh = bodies["roller"]
     fields = {"displacement_mm": 2 * mesh.points, "von_mises_MPa": mesh.points[0]}
-    write_vtu(tmp_path / "field.vtu", mesh, fields)
+    write_vtu(tmp_path / "field.vtu", {"roller": mesh}, {"roller": fields})
     grid = meshio.read(tmp_path / "field.vtu")
     np.testing.assert_allclose(grid.points[:, :2].T, mesh.points * 1e3, rtol=1e-15)
     assert np.array_equal(grid.cells_dict["triangle6"].T, mesh.triangles)
@@ -94,7 +94,7 @@ def test_vtu_carries_numbers_of_the_whole(tmp_path, bodies):
     import pyvista
 
     values = {"cam_angle_deg": 12.5, 'p0 "idle" <MPa>': 1234.5678901234567}
-    write_vtu(tmp_path / "field.vtu", bodies["cam"], field_data=values)
+    write_vtu(tmp_path / "field.vtu", {"cam": bodies["cam"]}, field_data=values)
     grid = pyvista.read(tmp_path / "field.vtu")
     assert {name: grid.field_data[name][0] for name in values} == values
     assert set(grid.celltypes) == {22}  # VTK_QUADRATIC_TRIANGLE
@@ -141,7 +141,7 @@ def test_a_sheet_closes_on_itself(tmp_path):
 
 def test_vtu_refuses_a_field_that_does_not_fit(tmp_path, bodies):
     with pytest.raises(MeshError, match="field 'p_MPa'"):
-        write_vtu(tmp_path / "bad.vtu", bodies["cam"], {"p_MPa": np.zeros(3)})
+        write_vtu(tmp_path / "bad.vtu", {"cam": bodies["cam"]}, {"cam": {"p_MPa": np.zeros(3)}})
     with pytest.raises(MeshError, match="fields of bodies"):
         write_vtu(tmp_path / "bad.vtu", bodies, {"cam": {}})
     with pytest.raises(MeshError, match="fields of 'roller'"):

@@ -30,10 +30,10 @@ SPEED = 70.0
 STROKE = 0.02
 
 
-def harmonic(stroke=STROKE, base_radius=0.05, offset=0.0):
+def harmonic(stroke=STROKE, prime_radius=0.05, offset=0.0):
     """s = h (1 - cos theta)/2, exact at the samples to 1e-12."""
     theta = uniform_turn(720)
-    return PitchCurve(Lift(theta, 0.5 * stroke * (1.0 - np.cos(theta))), base_radius, offset)
+    return PitchCurve(Lift(theta, 0.5 * stroke * (1.0 - np.cos(theta))), prime_radius, offset)
 
 
 @pytest.mark.parametrize("angle", [0.5 * np.pi, 1.5 * np.pi], ids=["rise", "return"])
@@ -140,7 +140,7 @@ def test_a_massless_follower_never_jumps():
 
 
 def test_jamming_keeps_forces_finite_and_is_told_by_the_index():
-    steep = harmonic(stroke=0.2, base_radius=0.02)
+    steep = harmonic(stroke=0.2, prime_radius=0.02)
     rough = replace(SYSTEM, friction_a=0.5, friction_b=0.9)
     theta = uniform_turn(360)
     loads = follower_loads(steep, rough, 0.0, theta)

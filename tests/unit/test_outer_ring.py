@@ -7,7 +7,7 @@ import pytest
 from bearing_files import read_cards
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -46,7 +46,7 @@ def ring_of(given, width=0.01):
 
 def a_contour():
     theta = uniform_turn(360)
-    return Contour(PitchCurve(Lift(theta, 4e-3 * (1 - np.cos(theta))), 0.06), 0.016)
+    return RollerContour(PitchCurve(Lift(theta, 4e-3 * (1 - np.cos(theta))), 0.06), 0.016)
 
 
 def test_a_case_may_tell_of_the_ring_itself():

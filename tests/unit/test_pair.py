@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.contact import hertz
@@ -21,7 +21,7 @@ STEEL = Elastic(210e9, 0.3)
 def round_cam(cam: Elastic = STEEL) -> ContactPair:
     """A circle of 42 mm under a roller of 8 mm."""
     theta = uniform_turn(36)
-    contour = Contour(PitchCurve(Lift(theta, np.zeros(36)), 50e-3), 8e-3)
+    contour = RollerContour(PitchCurve(Lift(theta, np.zeros(36)), 50e-3), 8e-3)
     return ContactPair(
         contour, 5e-3, 10e-3, None, cam, RollerBody(contour.roller_radius, 4e-3, STEEL)
     )

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -402,7 +402,7 @@ def test_a_lift_with_a_step_of_acceleration_fails():
     tent = np.where(turn < 0.5, turn, 1.0 - turn) * 2.0
     parabola = np.where(tent < 0.5, 2.0 * tent**2, 1.0 - 2.0 * (1.0 - tent) ** 2)
     for values, status in ((parabola, "fail"), (0.5 * (1 - np.cos(theta)), "pass")):
-        contour = Contour(PitchCurve(Lift(theta, 0.01 * values), 0.05), 0.008)
+        contour = RollerContour(PitchCurve(Lift(theta, 0.01 * values), 0.05), 0.008)
         case = full_case()
         check = acceleration_step(
             Solution(case, contour, machines(case), Tier.PREVIEW, mesh=None, cycles=())

@@ -36,14 +36,13 @@ def test_centre_lies_offset_beside_the_follower_axis(offset):
     np.testing.assert_allclose(
         axis[0] * x + axis[1] * y, np.sqrt(0.05**2 - offset**2) + LIFT(ANGLE), rtol=1e-14
     )
-    np.testing.assert_allclose(pitch.radius(ANGLE), np.hypot(x, y), rtol=1e-14)
 
 
-def test_base_radius_is_the_least_radius():
+def test_prime_radius_is_the_least_radius():
     pitch = PitchCurve(LIFT, 0.05, 0.012)
     lowest = pitch.lift.lowest
     assert lowest.value < 2e-3
-    assert pitch.radius(lowest.theta) == pytest.approx(
+    assert np.hypot(*pitch.points(lowest.theta)) == pytest.approx(
         np.hypot(np.sqrt(0.05**2 - 0.012**2) + lowest.value, 0.012), rel=1e-14
     )
 
@@ -54,8 +53,10 @@ def test_tangent_and_speed_are_the_derivative(offset):
     pitch = PitchCurve(LIFT, 0.05, offset)
     velocity = derivative(pitch.points, ANGLE)
     np.testing.assert_allclose(pitch.velocity(ANGLE), velocity, rtol=0, atol=1e-10)
-    np.testing.assert_allclose(pitch.speed(ANGLE), np.hypot(*velocity), rtol=1e-9)
-    np.testing.assert_allclose(pitch.tangent(ANGLE) * pitch.speed(ANGLE), velocity, atol=1e-10)
+    np.testing.assert_allclose(pitch.speed_and_curvature(ANGLE)[0], np.hypot(*velocity), rtol=1e-9)
+    np.testing.assert_allclose(
+        pitch.tangent(ANGLE) * pitch.speed_and_curvature(ANGLE)[0], velocity, atol=1e-10
+    )
 
 
 @with_offsets
@@ -65,7 +66,7 @@ def test_curvature_is_the_turning_of_the_tangent(offset):
     left = -pitch.normal(ANGLE)
     np.testing.assert_allclose(
         np.sum(turning * left, axis=0),
-        pitch.curvature(ANGLE) * pitch.speed(ANGLE),
+        pitch.curvature(ANGLE) * pitch.speed_and_curvature(ANGLE)[0],
         rtol=0,
         atol=1e-6,
     )
@@ -132,7 +133,7 @@ def test_straight_places_have_infinite_radius():
 
 
 @pytest.mark.parametrize(
-    ("base_radius", "offset", "field"),
+    ("prime_radius", "offset", "field"),
     [
         (0.0, 0.0, "cam.pitch_base_radius"),
         (-0.05, 0.0, "cam.pitch_base_radius"),
@@ -142,7 +143,7 @@ def test_straight_places_have_infinite_radius():
         (0.05, np.nan, "cam.offset"),
     ],
 )
-def test_refuses(base_radius, offset, field):
+def test_refuses(prime_radius, offset, field):
     with pytest.raises(InputError) as caught:
-        PitchCurve(LIFT, base_radius, offset)
+        PitchCurve(LIFT, prime_radius, offset)
     assert caught.value.field == field

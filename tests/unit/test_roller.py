@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -76,7 +76,7 @@ def test_spin_of_an_eccentric_cam():
 def test_rolled_length_in_a_turn_is_the_perimeter_of_the_contour():
     pitch, theta = wavy_pitch(), uniform_turn(2000)
     motion = roller_motion(pitch, RADIUS, SPEED, theta)
-    perimeter = Contour(pitch, RADIUS).perimeter()
+    perimeter = RollerContour(pitch, RADIUS).perimeter()
     assert motion.rolling_speed.mean() * 2 * np.pi / SPEED == pytest.approx(perimeter, rel=1e-6)
 
 

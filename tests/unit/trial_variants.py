@@ -8,8 +8,8 @@ import made_trial as made
 import numpy as np
 
 from camwright.geometry.arrays import freeze
-from camwright.geometry.contour import Contour
-from camwright.geometry.extrema import Extremum
+from camwright.geometry.contour import RollerContour
+from camwright.geometry.interference import SecondContact
 from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import DEGREE, PeriodicPolynomial
 from camwright.geometry.pitch_curve import PitchCurve
@@ -157,7 +157,7 @@ class UnknownLift(Lift):
 def unknown() -> Solution:
     """The solution on a contour of which no place is known."""
     lift = UnknownLift(made.THETA, NAN, np.nan)
-    return made.solution(contour=Contour(PitchCurve(lift, made.BASE), made.ROLLER))
+    return made.solution(contour=RollerContour(PitchCurve(lift, made.BASE), made.ROLLER))
 
 
 def open_ended() -> Solution:
@@ -168,12 +168,12 @@ def open_ended() -> Solution:
 
 
 @dataclass(frozen=True, eq=False)
-class SearchedContour(Contour):
+class SearchedContour(RollerContour):
     """A contour whose search for a second contact has a made-up result."""
 
-    gap: Extremum
+    gap: SecondContact
 
-    def clearance(self) -> Extremum:
+    def second_contact(self) -> SecondContact:
         return self.gap
 
 
@@ -181,7 +181,7 @@ def with_gap(gap: float, theta: float = np.nan) -> Solution:
     """The solution with a least gap, m, between roller and cam away from the contact."""
     shape = made.contour()
     return made.solution(
-        contour=SearchedContour(shape.pitch, shape.roller_radius, Extremum(gap, theta))
+        contour=SearchedContour(shape.pitch, shape.roller_radius, SecondContact(gap, theta, np.nan))
     )
 
 

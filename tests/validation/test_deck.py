@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cam_parts import Keyway
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import InputError, MeshError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import roller_mesh
 from camwright.meshes.calculix_deck import DeckBody, write_deck
-from camwright.meshes.cam_outline import Keyway
 from camwright.meshes.element_size import Sizing
 from camwright.pipeline.base.tables import Table
 from camwright.pipeline.contact.certificate import SolvedPair, solve_pair
@@ -44,7 +44,7 @@ FOLLOWERS = {
 def solved(request: pytest.FixtureRequest) -> tuple[ContactPair, SolvedPair]:
     theta = uniform_turn(360)
     lift = Lift(theta, 0.008 * (1 - np.cos(theta)))
-    contour = Contour(PitchCurve(lift, 0.045), 0.008)
+    contour = RollerContour(PitchCurve(lift, 0.045), 0.008)
     pair = ContactPair(
         contour, 0.0044, 0.010, Keyway(0.004, 0.002, 3.0),
         Elastic(206e9, 0.3), FOLLOWERS[request.param],

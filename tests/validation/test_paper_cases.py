@@ -18,8 +18,8 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.studies.papers import cardoso_2024, cardoso_2025
 from camwright.pipeline.studies.papers.balancing_cam import (
-    BASE_RADIUS,
     FOLLOWER_2025,
+    PRIME_RADIUS,
     RATIO,
     TWELVE_VALUES,
 )
@@ -47,7 +47,7 @@ def test_machine_of_2025(name: str) -> None:
     assert replace(system, spring=bare) == FOLLOWER_2025
     assert Smoother.from_case(paper.smoothing) == TWELVE_VALUES
     assert paper.mechanism.gear_ratio == RATIO
-    assert paper.cam.prime_radius == BASE_RADIUS
+    assert paper.cam.prime_radius == PRIME_RADIUS
     assert paper.crankshaft is not None
     assert paper.crankshaft.inertia == EFFECTIVE_INERTIA
 

@@ -7,7 +7,7 @@ value is about 0.30; the equations are tested here, not those numbers.
 import numpy as np
 import pytest
 
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import ContactError, InputError
 from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
@@ -60,15 +60,15 @@ def test_shape_index_to_four_digits(name):
 @pytest.mark.parametrize("name", SETS)
 def test_third_and_fourth_cam_are_undercut(name):
     r0, h, angle, *_, radius, undercut = SETS[name]
-    contour = Contour(PitchCurve(harmonic(h, angle).lift(), r0 + 0.002), 0.002)
+    contour = RollerContour(PitchCurve(harmonic(h, angle).lift(), r0 + 0.002), 0.002)
     assert round(1e3 * contour.least_convex_pitch_radius().value, 2) == radius
-    assert contour.undercut().found is undercut
+    assert contour.undercut().present is undercut
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.004])
 def test_contour_radius_is_that_of_the_contour(offset):
     found = ValveCam(harmonic(0.006, 80), 0.013, 0.002, offset)
-    contour = Contour(PitchCurve(found.motion.lift(11520), 0.015, offset), 0.002)
+    contour = RollerContour(PitchCurve(found.motion.lift(11520), 0.015, offset), 0.002)
     theta = np.linspace(0.05, 2.7, 50)  # off the joints
     # 1e-7: the lift's rounding of the jump of acceleration
     np.testing.assert_allclose(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import load_case_file
@@ -71,7 +71,7 @@ def judged(case, request):
         random.normal() / k**3 * np.cos(k * theta + random.uniform(0, 6)) for k in range(1, 7)
     )
     lift = Lift(theta, 0.002 + 0.024 * (waves - waves.min()) / np.ptp(waves))
-    contour = Contour(PitchCurve(lift, case.cam.prime_radius), case.roller.radius)
+    contour = RollerContour(PitchCurve(lift, case.cam.prime_radius), case.roller.radius)
     torques = engine_torques(case)
     solved = solution(case, contour, Tier.PREVIEW, torques=torques, positions=POSITIONS)
     checks = {check.id: check for check in checks_of(solved)}
@@ -156,7 +156,7 @@ def test_travel_of_each_check_of_the_spring_brings_it_to_its_limit(case, judged,
 def test_hollow_is_that_of_its_check(case):
     theta = uniform_turn(720)
     lift = Lift(theta, 0.012 * (1 - np.cos(3 * theta)))
-    contour = Contour(PitchCurve(lift, case.cam.prime_radius), case.roller.radius)
+    contour = RollerContour(PitchCurve(lift, case.cam.prime_radius), case.roller.radius)
     check = concave_radius(Solution(case, contour, machines(case), Tier.PREVIEW, None, ()))
     place = np.array([check.cam_angle])
     shape = shape_utilisations(jet(contour, place), variables_of(case), ratings_of(case))

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from cam_parts import Keyway
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import roller_mesh
-from camwright.meshes.cam_outline import Keyway
 from camwright.meshes.element_size import Sizing
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact.body_compliance import LoadedBody
@@ -30,7 +30,7 @@ SLOT = Keyway(4e-3, 2e-3, np.pi)
 def pair(cam=STEEL, roller=STEEL, *, lift=0.0, pitch=0.03, bore=6e-3, hub=4e-3, keyway=None):
     """A roller of 10 mm on a cam with two lobes, round without lift."""
     law = Lift(THETA, lift / 2 * (1 - np.cos(2 * THETA)))
-    contour = Contour(PitchCurve(law, pitch), 0.01)
+    contour = RollerContour(PitchCurve(law, pitch), 0.01)
     return ContactPair(
         contour, WIDTH, bore, keyway, cam, RollerBody(contour.roller_radius, hub, roller)
     )

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.contact.certificate import solve_pair
@@ -26,7 +26,9 @@ THETA = 0.3
 def round_cam(ratio, cam, roller):
     """A roller of 10 mm on a round cam `ratio` times as large, of walls as thick as its half."""
     radius = ratio * ROLLER
-    contour = Contour(PitchCurve(Lift(uniform_turn(90), np.zeros(90)), radius + ROLLER), ROLLER)
+    contour = RollerContour(
+        PitchCurve(Lift(uniform_turn(90), np.zeros(90)), radius + ROLLER), ROLLER
+    )
     return ContactPair(
         contour, WIDTH, radius / 2, None, cam, RollerBody(ROLLER, ROLLER / 2, roller)
     )

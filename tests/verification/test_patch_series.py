@@ -222,7 +222,7 @@ def test_view_lays_the_follower_against_the_cam(series, view) -> None:
 
 
 def test_edge_of_bore_and_keyway() -> None:
-    from camwright.meshes.cam_outline import Keyway
+    from cam_parts import Keyway
 
     angle = np.radians([0.0, 20.0, 90.0, 180.0])
     np.testing.assert_allclose(bore_reach(0.01, None, angle), 0.01)

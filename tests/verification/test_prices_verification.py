@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.smoothing.bounds import bounds_of
@@ -21,9 +21,9 @@ from camwright.pipeline.smoothing.synthesis_problem import Problem
 def test_room_for_the_cam_is_that_of_its_contour(offset):
     theta = uniform_turn(360)
     lift = Lift(theta, 0.01 * (1 - np.cos(2 * theta)))
-    radius = np.hypot(*Contour(PitchCurve(lift, 0.05, offset), 0.008).points(theta))
+    radius = np.hypot(*RollerContour(PitchCurve(lift, 0.05, offset), 0.008).points(theta))
     ratings = Ratings(roller_radius=0.008, offset=offset, cam_radius=0.06)
-    jet, variables = Jet(*lift.derivatives(theta, 2)), DesignVariables(1e4, 1e2, 0.05)
+    jet, variables = Jet(*lift.derivatives(theta, 3)), DesignVariables(1e4, 1e2, 0.05)
     utilisations = shape_utilisations(jet, variables, ratings)
     np.testing.assert_allclose(0.06 * utilisations["cam_radius"], radius, rtol=1e-12)
 

@@ -8,7 +8,7 @@ from ring_beams import beam_ring_bending
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.eccentric import Eccentric
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.contact.body_compliance import LoadedBody
@@ -155,7 +155,7 @@ def test_stress_inside_is_that_of_the_whole_field():
 
 @pytest.fixture(scope="module")
 def eccentric_pair():
-    contour = Contour(PitchCurve(Eccentric(8e-3, 52e-3).lift(), 44e-3), 8e-3)
+    contour = RollerContour(PitchCurve(Eccentric(8e-3, 52e-3).lift(), 44e-3), 8e-3)
     return ContactPair(
         contour=contour,
         width=5e-3,

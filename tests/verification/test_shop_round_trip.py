@@ -7,15 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cam_parts import Keyway
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.cad_drawing import LAYERS, Outline, chords, keyway_corners, write_dxf
-from camwright.geometry.contour import Contour
+from camwright.geometry.cad_drawing import LAYERS, Outline, chords, write_dxf
+from camwright.geometry.contour import Contour, RollerContour
+from camwright.geometry.cutouts import keyway_corners
 from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.meshes.cam_outline import Keyway
 from camwright.meshes.gmsh_mesher import session
 from camwright.meshes.step_solid import write_step
 from camwright.pipeline.results.workshop_files import contour_table, inspection_sheet
@@ -29,11 +30,11 @@ MM = 1e-3
 def wavy(offset: float = 0.002) -> Contour:
     """Convex and hollow flanks, an offset follower."""
     lift = Lift(THETA, 0.005 * (1 - np.cos(THETA - 0.4)) + 0.010 * np.sin(2 * THETA) ** 2)
-    return Contour(PitchCurve(lift, 0.050, offset), 0.008)
+    return RollerContour(PitchCurve(lift, 0.050, offset), 0.008)
 
 
 def circle() -> Contour:
-    return Contour(PitchCurve(Lift(THETA, np.zeros(360)), 0.050), 0.008)
+    return RollerContour(PitchCurve(Lift(THETA, np.zeros(360)), 0.050), 0.008)
 
 
 def polygon_measures(points: np.ndarray) -> tuple[float, float]:
@@ -177,7 +178,7 @@ def test_cutter_larger_than_a_hollow_is_refused() -> None:
     hollow = contour.concave_radius_min().value
     assert np.isfinite(hollow)
     cutter_path(contour, 0.99 * hollow, THETA)
-    with pytest.raises(GeometryError, match="hollow"):
+    with pytest.raises(GeometryError, match="concave radius"):
         cutter_path(contour, 1.01 * hollow, THETA)
     with pytest.raises(InputError):
         cutter_path(contour, 0.0, THETA)

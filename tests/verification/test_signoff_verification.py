@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.cards.card_filling import known_cards
@@ -44,7 +44,7 @@ def machine() -> Machine:
 
 def cam() -> Contour:
     theta = uniform_turn(72)
-    return Contour(PitchCurve(Lift(theta, 0.01 * (1.0 - np.cos(theta))), 0.05), 0.008)
+    return RollerContour(PitchCurve(Lift(theta, 0.01 * (1.0 - np.cos(theta))), 0.05), 0.008)
 
 
 def cycle(of: Machine) -> Cycle:

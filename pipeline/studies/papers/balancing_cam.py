@@ -27,7 +27,7 @@ FOLLOWER_2025 = FollowerSystem(
     friction_a=0.04,
     friction_b=0.20,
 )
-BASE_RADIUS = 0.050
+PRIME_RADIUS = 0.050
 TWELVE_VALUES = Smoother("moving_average", points=12, spacing=float(np.radians(5.0)))
 TWELVE_DEGREES = replace(TWELVE_VALUES, spacing=float(np.radians(1.0)))
 
@@ -61,7 +61,7 @@ class Balanced:
             "torque_std_without_friction_and_inertia_Nm": float(self.ideal.std()),
             "speed_std_rad_per_s": ripple.std,
             "speed_p2p_rad_per_s": ripple.peak_to_peak,
-            "radius_max_mm": 1e3 * (BASE_RADIUS + self.pitch.lift.highest.value),
+            "radius_max_mm": 1e3 * (PRIME_RADIUS + self.pitch.lift.highest.value),
         }
 
 
@@ -74,7 +74,7 @@ def designed_pitch(
     lift = lift_from_torque(
         theta, target - target.mean(), system.spring.rate, system.spring.preload
     )
-    return PitchCurve(lift, BASE_RADIUS)
+    return PitchCurve(lift, PRIME_RADIUS)
 
 
 def balanced(

@@ -13,7 +13,7 @@ from camwright.pipeline.engine.torque import torque_from_cylinder
 from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.smoothing.smoothers import Smoother
-from camwright.pipeline.studies.papers.balancing_cam import BASE_RADIUS, RATIO, designed_pitch
+from camwright.pipeline.studies.papers.balancing_cam import PRIME_RADIUS, RATIO, designed_pitch
 from camwright.pipeline.studies.papers.paper_engines import ENGINE_800, FULL_LOAD_800, SLOW_IDLE
 from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, within
 
@@ -41,8 +41,8 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
         {
             "cut_for": name,
             "lift_mm": 1e3 * pitch.lift.stroke,
-            "radius_max_mm": 1e3 * (BASE_RADIUS + pitch.lift.highest.value),
-            "spring_force_max_N": SPRING.force(pitch.lift.stroke),
+            "radius_max_mm": 1e3 * (PRIME_RADIUS + pitch.lift.highest.value),
+            "spring_force_max_N": float(SPRING.force(np.array(pitch.lift.stroke))),
             "pressure_angle_max_deg": float(
                 np.degrees(np.abs(pitch.pressure_angle(uniform_turn(720))).max())
             ),
@@ -84,7 +84,7 @@ def _cam_rows(
     lift, slope = pitch.lift.derivatives(uniform_turn(torque.size), 1)
     delivered = SPRING.force(lift) * slope / RATIO
     left = float(np.std(torque - torque.mean() - delivered))
-    radius = 1e3 * (BASE_RADIUS + pitch.lift.highest.value)
+    radius = 1e3 * (PRIME_RADIUS + pitch.lift.highest.value)
     flat = left < 1e-4 * float(np.std(torque))  # the torque has corners where the valves move
     return {
         "C24-03": Outcome(

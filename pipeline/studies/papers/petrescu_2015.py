@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.geometry.contour import Contour
+from camwright.geometry.contour import RollerContour
 from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
@@ -100,7 +100,7 @@ def _figures(name: str, given: CamSet) -> dict[str, Any]:
     cam, phi = given.cam, given.cam.rise()
     index, delta = cam.shape_index(phi), cam.pressure_angle(phi)
     pitch = PitchCurve(given.motion.lift(), given.base_radius + ROLLER)
-    contour = Contour(pitch, ROLLER)
+    contour = RollerContour(pitch, ROLLER)
     theta = np.arange(2880) * (2.0 * np.pi / 2880)
     spring = Spring(rate=given.rate, preload=given.rate * given.compression)
     system = FollowerSystem(TAPPET, spring, GUIDE_SPACING, OVERHANG, GUIDE_FRICTION, GUIDE_FRICTION)
@@ -111,7 +111,7 @@ def _figures(name: str, given: CamSet) -> dict[str, Any]:
         "sin_squared_mean": round(float(np.mean(np.sin(delta) ** 2)), 4),
         "pressure_angle_max_deg": round(float(np.degrees(delta.max())), 1),
         "least_pitch_radius_mm": round(1e3 * contour.least_convex_pitch_radius().value, 2),
-        "undercut": contour.undercut().found,
+        "undercut": contour.undercut().present,
         "true_efficiency_of_rise": round(
             rise_efficiency(follower_loads(pitch, system, 0.0, theta)), 4
         ),

@@ -1,0 +1,51 @@
+"""Bore, keyway and counter-hole of the cam."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from camwright.geometry.arrays import Array, readonly, rotation
+from camwright.geometry.errors import InputError
+
+
+class KeywayLike(Protocol):
+    """Slot in the bore: `width` across and `depth` beyond the bore radius, m, at `angle`, rad.
+
+    `fillet` (m) is the radius of its two inner corners; 0: sharp.
+    """
+
+    @property
+    def width(self) -> float: ...
+    @property
+    def depth(self) -> float: ...
+    @property
+    def angle(self) -> float: ...
+    @property
+    def fillet(self) -> float: ...
+
+
+class HoleLike(Protocol):
+    """Round hole: centre (2,) and radius, m."""
+
+    @property
+    def centre(self) -> Array: ...
+    @property
+    def radius(self) -> float: ...
+
+
+def keyway_corners(bore_radius: float, keyway: KeywayLike) -> Array:
+    """Corners (2, 4) of a keyway without fillets, m: on the bore, twice on the floor, on the bore.
+
+    Raises
+    ------
+    InputError
+        If the keyway is as wide as the bore.
+    """
+    half = 0.5 * keyway.width
+    if not half < bore_radius:
+        raise InputError("cam.keyway.width", keyway.width, f"< {2 * bore_radius:g} m")
+    mouth, floor = np.sqrt(bore_radius**2 - half**2), bore_radius + keyway.depth
+    local = np.array([[mouth, floor, floor, mouth], [-half, -half, half, half]])
+    return readonly(rotation(keyway.angle) @ local)

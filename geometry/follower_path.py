@@ -1,0 +1,138 @@
+"""Path of a reference point of the follower in the cam frame."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from camwright.geometry.arrays import Array, positive
+from camwright.geometry.errors import InputError
+from camwright.geometry.extrema import Extremum, greatest, least
+from camwright.geometry.lift import Lift
+
+
+@dataclass(frozen=True, eq=False)
+class FollowerPath(ABC):
+    """Path of a reference point of the follower in the cam frame.
+
+    The follower's axes are u = (cos theta, sin theta), outwards along its line of travel, and
+    v = (-sin theta, cos theta); angles grow counter-clockwise. With an offset the cam angle is
+    that of the follower's axis, not the polar angle of the point.
+
+    Parameters
+    ----------
+    lift : Lift    s(theta)
+    """
+
+    lift: Lift
+
+    @property
+    @abstractmethod
+    def radius_base(self) -> float:
+        """Distance of the reference point from the cam axis at zero lift, m."""
+
+    @property
+    @abstractmethod
+    def height_base(self) -> float:
+        """Height of the reference point along u at zero lift, m."""
+
+    @abstractmethod
+    def with_lift(self, lift: Lift, height_base: float) -> Self:
+        """The same follower with another lift, from another height (m) at zero lift."""
+
+    @abstractmethod
+    def enlarged(self, growth: float) -> Self:
+        """The same follower with a `radius_base` larger by `growth`, m."""
+
+    @abstractmethod
+    def _position(self, theta: ArrayLike) -> tuple[Array, Array | float]:
+        """Reference point along u and v, m."""
+
+    @abstractmethod
+    def _velocity(self, theta: ArrayLike) -> tuple[Array, Array]:
+        """Derivative of the reference point by the cam angle, along u and v, m/rad."""
+
+    @abstractmethod
+    def tangent(self, theta: ArrayLike) -> Array:
+        """Unit tangent of the contact, counter-clockwise, (2, ...)."""
+
+    @abstractmethod
+    def normal(self, theta: ArrayLike) -> Array:
+        """Outward unit normal of the contact, (2, ...)."""
+
+    @abstractmethod
+    def pressure_angle(self, theta: ArrayLike) -> Array:
+        """Angle from the follower's travel to the contact normal, rad, positive on the rise."""
+
+    @abstractmethod
+    def push_arm(self, theta: ArrayLike) -> Array:
+        """Lever arm of the contact force about the stem's axis, along v, m."""
+
+    @abstractmethod
+    def speed_and_curvature(self, theta: ArrayLike) -> tuple[Array, Array]:
+        """Path length per radian, m, and signed curvature, 1/m, by one evaluation of the lift."""
+
+    @abstractmethod
+    def radius_of_curvature(self, theta: ArrayLike) -> Array:
+        """Signed radius of curvature, m, positive where convex."""
+
+    def height(self, theta: ArrayLike) -> Array:
+        """Height of the reference point along u, m."""
+        return self.height_base + self.lift(theta)
+
+    def points(self, theta: ArrayLike) -> Array:
+        """Reference point, (2, ...), m."""
+        return cam_axes(theta, *self._position(theta))
+
+    def velocity(self, theta: ArrayLike) -> Array:
+        """Derivative of the reference point by the cam angle, (2, ...), m/rad."""
+        return cam_axes(theta, *self._velocity(theta))
+
+    def curvature(self, theta: ArrayLike) -> Array:
+        """Signed curvature, 1/m, positive where convex."""
+        return self.speed_and_curvature(theta)[1]
+
+    def pressure_angle_max(self) -> Extremum:
+        """Maximum magnitude of the pressure angle, rad, and its cam angle."""
+        return greatest(lambda theta: np.abs(self.pressure_angle(theta)), self.lift.search_count)
+
+    def curvature_max(self) -> Extremum:
+        """Maximum signed curvature, 1/m, and its cam angle."""
+        return greatest(self.curvature, self.lift.search_count)
+
+    def curvature_min(self) -> Extremum:
+        """Minimum signed curvature, 1/m, and its cam angle: negative on a concave flank."""
+        return least(self.curvature, self.lift.search_count)
+
+    def least_convex_radius(self) -> Extremum:
+        """Minimum convex radius of curvature, m, and its cam angle."""
+        curvature, theta = self.curvature_max()
+        return Extremum(1.0 / curvature, theta)
+
+
+def require_offset(offset: float, name: str, radius: float) -> None:
+    """Check that a follower's offset (m) lies within its prime or base radius (m).
+
+    Raises
+    ------
+    InputError
+        If the radius is not positive or the offset not below it; NaN included.
+    """
+    positive("cam.pitch_base_radius", radius, "m")
+    if not abs(offset) < radius:
+        raise InputError("cam.offset", offset, f"below the {name} of {radius:g} m")
+
+
+def cam_axes(theta: ArrayLike, along: Array, across: Array | float) -> Array:
+    """Vector (2, ...) in the cam frame from its components along the follower's u and v."""
+    cos, sin = np.cos(theta), np.sin(theta)
+    return np.stack([along * cos - across * sin, along * sin + across * cos])
+
+
+def reciprocal(values: Array) -> Array:
+    """1 / values, positive infinity where a value is zero."""
+    return np.divide(1.0, values, out=np.full_like(values, np.inf), where=values != 0)
