@@ -1,8 +1,8 @@
 """Cost of a report beside what it may cost: python benchmarks/report.py [RUN]
 
 Of a run folder; by default of runs/gx120, which ``make run`` makes, else of a run of 72 positions
-made here: seconds and memory of the whole
-report without the film, size of the page, and how soon a browser has it: the load event, the first
+made here: seconds and memory of the
+whole report, size of the page, and how soon a browser has it: the load event, the first
 plot and the last that answer. Work is done on a copy. Times by the clock are those of a machine
 with nothing else to do; its load is told beside them.
 """

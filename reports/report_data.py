@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,29 +15,22 @@ from camwright.reports.verdict_text import governing_load_case
 
 FIGURES = "figures"
 """Folder of the pictures, in a run folder."""
-Tell = Callable[[int, int], None]
-
-
-def silent(_done: int, _whole: int) -> None:
-    """Tells nobody."""
 
 
 @dataclass(frozen=True, eq=False)
 class Material:
     """A run folder, what was read from it, and the turn that its sheet draws.
 
-    Each is itself alone, so that what parts have in common can be kept by it. What takes long
-    calls `tell` with how much is done and how much there is.
+    Each is itself alone, so that what parts have in common can be kept by it.
     """
 
     folder: Path
     run: Run
     case: Mapping[str, Any]
     turn: Turn
-    tell: Tell = silent
 
 
-def read_material(folder: Path, tell: Tell = silent) -> Material:
+def read_material(folder: Path) -> Material:
     """The material of a run folder.
 
     Raises
@@ -47,7 +40,7 @@ def read_material(folder: Path, tell: Tell = silent) -> Material:
     """
     run = load_run(folder)
     case = _case(run)
-    return Material(Path(folder), run, case, the_turn(run, case), tell)
+    return Material(Path(folder), run, case, the_turn(run, case))
 
 
 def the_turn(run: Run, case: Mapping[str, Any]) -> Turn:

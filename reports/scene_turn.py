@@ -1,4 +1,4 @@
-"""The recorded view of a turn, ``fields/turn.npz``: what film and scene show of the bodies."""
+"""The recorded view of a turn, ``fields/turn.npz``: what the scene shows of the bodies."""
 
 from __future__ import annotations
 

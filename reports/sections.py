@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 
 from camwright.geometry.errors import InputError, ResultError
-from camwright.reports import drawings, film, page, pdf, picture_list, scene_page
-from camwright.reports.report_data import FIGURES, Material, Tell, read_material, silent
+from camwright.reports import drawings, page, pdf, picture_list, scene_page
+from camwright.reports.report_data import FIGURES, Material, read_material
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,6 @@ PARTS = (
     Part("page", page.PAGE, page.write),
     Part("scene", f"{scene_page.FILE}, the cam in space", scene_page.write),
     Part("pdf", pdf.PDF, pdf.write, asked=True),
-    Part("film", "the turn as MP4 and GIF", film.write, asked=True),
 )  # fmt: skip
 
 
@@ -57,12 +56,8 @@ def chosen(names: Iterable[str] = ()) -> tuple[Part, ...]:
     return tuple(part for part in PARTS if part.name in wanted or not (wanted or part.asked))
 
 
-def build(
-    folder: Path, parts: Iterable[Part] | None = None, tell: Tell = silent
-) -> dict[str, Sequence[Path]]:
+def build(folder: Path, parts: Iterable[Part] | None = None) -> dict[str, Sequence[Path]]:
     """Draw parts of a report again from the run folder alone; nothing is solved.
-
-    `tell` hears how far a part is that takes long.
 
     Returns
     -------
@@ -73,7 +68,7 @@ def build(
     ResultError
         If the folder does not hold a finished run, or a file cannot be written.
     """
-    material = read_material(Path(folder), tell)
+    material = read_material(Path(folder))
     try:
         (material.folder / FIGURES).mkdir(exist_ok=True)
         return {part.name: part.write(material) for part in (chosen() if parts is None else parts)}

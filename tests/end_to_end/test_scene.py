@@ -14,10 +14,11 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 import turn_fixture
 
+from camwright.geometry.errors import ResultError
 from camwright.reports import browser, scene_page, sections
 from camwright.reports.report_data import read_material
 from camwright.reports.scene_solids import Solid, box, joined, ring, tube
-from camwright.reports.scene_turn import read_turn_view
+from camwright.reports.scene_turn import TurnView, read_turn_view
 
 POSITIONS = 36
 BYTES_MAX = 10 << 20
@@ -32,6 +33,11 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     turn_fixture.add_turn(folder, POSITIONS)
     (made,) = sections.build(folder, sections.chosen(["scene"]))["scene"]
     return made
+
+
+@pytest.fixture(scope="module")
+def view(page: Path) -> TurnView:
+    return read_turn_view(page.parent)
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +64,31 @@ def test_a_run_without_its_turn_has_no_scene(tmp_path: Path) -> None:
     folder = report_fixture.write_run(tmp_path / "old", POSITIONS, field=False)
     assert sections.build(folder, sections.chosen(["scene"]))["scene"] == []
     assert not (folder / scene_page.FILE).exists()
+    with pytest.raises(ResultError, match="run the case again"):
+        read_turn_view(folder)
+
+
+def test_follower_stands_on_its_axis_and_touches_the_cam(view: TurnView) -> None:
+    lab = view.lab_origin()
+    np.testing.assert_allclose(lab[0], 0.0, atol=1e-9)  # no offset in this case
+    turn = view.to_lab
+    for k in range(turn_fixture.FRAMES):
+        surface = view.cam[:, :, 0]
+        cosine, sine = np.cos(turn[k]), np.sin(turn[k])
+        there = np.array([[cosine, -sine], [sine, cosine]]) @ surface
+        gap = np.hypot(*(there - lab[:, k : k + 1])).min()
+        assert gap == pytest.approx(1e3 * report_fixture.ROLLER, abs=1e-3)
+
+
+def test_a_roller_rolls_the_length_of_the_contour(view: TurnView) -> None:
+    arc = view.arc()
+    surface = view.cam[:, :, 0]
+    whole = np.hypot(*(np.roll(surface, -1, axis=1) - surface)).sum()
+    assert arc[0] == 0.0 and (np.diff(arc) > 0).all()
+    assert arc[3] == pytest.approx(
+        np.hypot(*np.diff(surface[:, : POSITIONS // 2 + 1], axis=1)).sum(), rel=1e-9
+    )
+    assert arc[-1] < whole
 
 
 def test_slider_and_keys_turn_the_cam(page: Path, tab: browser.Tab) -> None:
