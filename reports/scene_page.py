@@ -61,7 +61,7 @@ def scene(material: Material, view: TurnView) -> dict[str, Any]:
     lab = view.lab_origin()
     rows = material.run.final.cycle.where("load_case", view.load_case).columns
     bodies = {"flank": _flank(material, view, width), "cam": _cam(view, width).as_record(_DIGITS)}
-    bodies["bore"] = ring(view.cam[:, :, -1], width).as_record(_DIGITS)
+    bodies["bore"] = ring(view.bore, width).as_record(_DIGITS)
     bodies["follower"] = _follower(material, view, width, stem).as_record(_DIGITS)
     guide = _guide(material, view, stem)
     if guide is not None:
@@ -83,7 +83,7 @@ def scene(material: Material, view: TurnView) -> dict[str, Any]:
         ],
         "ratio": float(rows["crank_angle_deg"][1] / rows["cam_angle_deg"][1]),
         "reach": {
-            "side": float(np.hypot(*view.cam[:, :, 0]).max()),
+            "side": float(np.hypot(*view.contour).max()),
             "top": float(lab[1].min()) + _stem_end(material, view, stem),
         },
     }
@@ -91,7 +91,7 @@ def scene(material: Material, view: TurnView) -> dict[str, Any]:
 
 def _flank(material: Material, view: TurnView, width: float) -> dict[str, Any]:
     """The contour drawn out to the width, with the greatest stress of the turn under each place."""
-    outer = view.cam[:, :, 0]
+    outer = view.contour
     record = ring(outer, width).as_record(_DIGITS)
     greatest = _greatest(material, view, outer.shape[1])
     if greatest is not None:
@@ -113,8 +113,7 @@ def _greatest(material: Material, view: TurnView, stations: int) -> Array | None
 
 def _cam(view: TurnView, width: float) -> Solid:
     """Both faces of the cam."""
-    outer, inner = view.cam[:, :, 0], view.cam[:, :, -1]
-    return joined([tube(outer, inner, side * width / 2) for side in (-1, 1)])
+    return joined([tube(view.contour, view.bore, side * width / 2) for side in (-1, 1)])
 
 
 def _roller(view: TurnView, width: float) -> dict[str, Any]:
@@ -196,7 +195,7 @@ def _contacts(view: TurnView, lab: Array) -> Array:
     if view.is_roller:
         reach = float(np.hypot(*view.follower).max())
         return np.asarray(lab + reach * np.stack([-np.sin(angle), np.cos(angle)]))
-    surface = view.cam[:, :, 0]
+    surface = view.contour
     lowest = []
     for turn in view.to_lab:
         there = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]) @ surface

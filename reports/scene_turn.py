@@ -13,29 +13,26 @@ from camwright.geometry.errors import ResultError
 
 FILE = Path("fields") / "turn.npz"
 _NAMES = (
-    *("position", "cam_angle_deg", "cam_mm", "cam_MPa", "follower_mm", "follower_triangles"),
-    *("follower_origin_mm", "follower_turn_deg", "follower_MPa"),
+    *("position", "cam_angle_deg", "cam_mm", "follower_mm", "follower_origin_mm"),
+    "follower_turn_deg",
 )
 
 
 @dataclass(frozen=True, eq=False)
 class TurnView:
-    """Von Mises stress, MPa, of both bodies at f cam angles, of one load case.
+    """Outlines and positions of both bodies at f cam angles, of one load case.
 
-    position (f,) rows of the load case's turn; angle (f,) deg; cam (2, stations, layers) mm in
-    the cam's frame, the surface first and the bore last, cam_stress (f, stations, layers);
-    follower (2, n) mm in its own frame with triangles (6, m) and follower_stress (f, n); origin
-    (f, 2) mm and turn (f,) rad place that frame in the cam's.
+    position (f,) rows of the load case's turn; angle (f,) deg; contour and bore (2, stations) mm
+    in the cam's frame; follower (2, n) mm, points of its body in its own frame; origin (f, 2) mm
+    and turn (f,) rad place that frame in the cam's.
     """
 
     load_case: str
     position: Any
     angle: Array
-    cam: Array
-    cam_stress: Array
+    contour: Array
+    bore: Array
     follower: Array
-    triangles: Any
-    follower_stress: Array
     origin: Array
     turn: Array
 
@@ -57,8 +54,7 @@ class TurnView:
 
     def arc(self) -> Array:
         """Length of the contour, mm, from the first angle to each (f,), straight between points."""
-        surface = self.cam[:, :, 0]
-        steps = np.hypot(*np.diff(surface, axis=1, append=surface[:, :1]))
+        steps = np.hypot(*np.diff(self.contour, axis=1, append=self.contour[:, :1]))
         along = np.r_[0.0, np.cumsum(steps)]
         return np.interp(self.angle, np.linspace(0.0, 360.0, along.size), along)
 
@@ -80,8 +76,7 @@ def read_turn_view(folder: Path) -> TurnView:
     except (OSError, ValueError, EOFError, KeyError) as error:
         raise ResultError(f"{path}: {error}") from None
     return TurnView(
-        str(found["load_case"]), found["position"], found["cam_angle_deg"], found["cam_mm"],
-        found["cam_MPa"].astype(float), found["follower_mm"], found["follower_triangles"],
-        found["follower_MPa"].astype(float), found["follower_origin_mm"],
-        np.radians(found["follower_turn_deg"]),
+        str(found["load_case"]), found["position"], found["cam_angle_deg"],
+        found["cam_mm"][:, :, 0], found["cam_mm"][:, :, -1], found["follower_mm"],
+        found["follower_origin_mm"], np.radians(found["follower_turn_deg"]),
     )  # fmt: skip

@@ -73,7 +73,7 @@ def test_follower_stands_on_its_axis_and_touches_the_cam(view: TurnView) -> None
     np.testing.assert_allclose(lab[0], 0.0, atol=1e-9)  # no offset in this case
     turn = view.to_lab
     for k in range(turn_fixture.FRAMES):
-        surface = view.cam[:, :, 0]
+        surface = view.contour
         cosine, sine = np.cos(turn[k]), np.sin(turn[k])
         there = np.array([[cosine, -sine], [sine, cosine]]) @ surface
         gap = np.hypot(*(there - lab[:, k : k + 1])).min()
@@ -82,7 +82,7 @@ def test_follower_stands_on_its_axis_and_touches_the_cam(view: TurnView) -> None
 
 def test_a_roller_rolls_the_length_of_the_contour(view: TurnView) -> None:
     arc = view.arc()
-    surface = view.cam[:, :, 0]
+    surface = view.contour
     whole = np.hypot(*(np.roll(surface, -1, axis=1) - surface)).sum()
     assert arc[0] == 0.0 and (np.diff(arc) > 0).all()
     assert arc[3] == pytest.approx(
@@ -99,7 +99,7 @@ def test_slider_and_keys_turn_the_cam(page: Path, tab: browser.Tab) -> None:
     assert tab.evaluate("document.documentElement.scrollWidth") <= 390
     view = read_turn_view(page.parent)
     place = "(([flank]) => [flank.x[7], flank.y[7]])(document.getElementById('scene').data)"
-    corner = view.cam[:, 7, 0]
+    corner = view.contour[:, 7]
 
     def expected(n: int) -> np.ndarray:
         cosine, sine = np.cos(view.to_lab[n]), np.sin(view.to_lab[n])
