@@ -17,8 +17,8 @@ import turn_fixture
 from camwright.geometry.errors import ResultError
 from camwright.reports import browser, scene_page, sections
 from camwright.reports.report_data import read_material
+from camwright.reports.scene_page import TurnView, read_turn_view
 from camwright.reports.scene_solids import Solid, box, joined, ring, tube
-from camwright.reports.scene_turn import TurnView, read_turn_view
 
 POSITIONS = 36
 BYTES_MAX = 10 << 20
