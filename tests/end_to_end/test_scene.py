@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +14,10 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 import turn_fixture
+from browser_fixture import Tab, chromium
 
 from camwright.geometry.errors import ResultError
-from camwright.reports import browser, scene_page, sections
+from camwright.reports import scene_page, sections
 from camwright.reports.report_data import read_material
 from camwright.reports.scene_page import TurnView, read_turn_view
 from camwright.reports.scene_solids import Solid, box, joined, ring, tube
@@ -23,7 +25,7 @@ from camwright.reports.scene_solids import Solid, box, joined, ring, tube
 POSITIONS = 36
 BYTES_MAX = 10 << 20
 HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </script><!--"
-SHOWN = "document.getElementById('scene').dataset.shown === '{}'"
+SHOWN = "#scene[data-shown='{}']"
 
 
 @pytest.fixture(scope="module")
@@ -41,10 +43,8 @@ def view(page: Path) -> TurnView:
 
 
 @pytest.fixture(scope="module")
-def tab():
-    if browser.executable() is None:
-        pytest.skip("no Chromium here: Debian has it in the package chromium")
-    with browser.tab() as opened:
+def tab() -> Iterator[Tab]:
+    with chromium() as opened:
         yield opened
 
 
@@ -91,13 +91,10 @@ def test_a_roller_rolls_the_length_of_the_contour(view: TurnView) -> None:
     assert arc[-1] < whole
 
 
-def test_slider_and_keys_turn_the_cam(page: Path, tab: browser.Tab) -> None:
-    tab.events.clear()
-    tab.size(390, 700)
-    tab.open(page)
-    tab.wait(SHOWN.format(0))
+def test_slider_and_keys_turn_the_cam(page: Path, view: TurnView, tab: Tab) -> None:
+    tab.open(page, 390, 700)
+    tab.page.wait_for_selector(SHOWN.format(0))
     assert tab.evaluate("document.documentElement.scrollWidth") <= 390
-    view = read_turn_view(page.parent)
     place = "(([flank]) => [flank.x[7], flank.y[7]])(document.getElementById('scene').data)"
     corner = view.contour[:, 7]
 
@@ -107,22 +104,19 @@ def test_slider_and_keys_turn_the_cam(page: Path, tab: browser.Tab) -> None:
 
     # five digits of each coordinate are kept
     np.testing.assert_allclose(tab.evaluate(place), expected(0), atol=2e-3)
-    tab.evaluate(
-        "(() => { const e = document.getElementById('turn'); e.value = '3';"
-        " e.dispatchEvent(new Event('input')); })()"
-    )
-    tab.wait(SHOWN.format(3))
+    slider = tab.page.locator("#turn")
+    slider.fill("3")
+    tab.page.wait_for_selector(SHOWN.format(3))
     np.testing.assert_allclose(tab.evaluate(place), expected(3), atol=2e-3)
-    tab.evaluate("document.getElementById('turn').focus()")
-    tab.call("Input.dispatchKeyEvent", type="rawKeyDown", key="ArrowRight", code="ArrowRight",
-             windowsVirtualKeyCode=39)  # fmt: skip
-    tab.wait(SHOWN.format(4))
-    said = tab.evaluate("document.getElementById('told').textContent")
+    slider.press("ArrowRight")
+    tab.page.wait_for_selector(SHOWN.format(4))
+    said = tab.page.locator("#told").text_content()
     assert said.startswith("cam 240.0°, crank 480.0°") and "MPa" in said
-    assert tab.evaluate("document.getElementById('turn').getAttribute('aria-valuetext')")
-    assert tab.complaints() == []
+    assert slider.get_attribute("aria-valuetext")
+    assert tab.errors == []
+    assert tab.outside == []
     assert tab.evaluate("window.broken") is None
-    assert "עברית" in tab.evaluate("document.querySelector('h1').textContent")
+    assert "עברית" in tab.page.locator("h1").text_content()
 
 
 def test_scene_says_what_the_run_found(page: Path) -> None:
