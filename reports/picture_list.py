@@ -13,13 +13,12 @@ import numpy as np
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
 from camwright.reports import (
-    contact_pressure,
     field_picture,
+    field_raster,
     guide_pressure_figure,
     report_tables,
     stress_map,
 )
-from camwright.reports.contact_pressure import over_the_contact
 from camwright.reports.report_data import FIGURES, Material
 
 FIELD = Path("fields") / "contact_worst.vtu"
@@ -65,8 +64,8 @@ def stress_pictures(material: Material) -> Sequence[Picture]:
     angle = report_tables.number(float(given))
     peak = report_tables.quantity(views[0].clim[1], "MPa")
     final = material.run.final
-    above = over_the_contact(
-        final.path / contact_pressure.FILE, final.cycle, float(given), half_width
+    above = field_raster.over_the_contact(
+        final.path / field_raster.PRESSURE, final.cycle, float(given), half_width
     )
     return (
         Picture(
