@@ -1,4 +1,4 @@
-"""The cam analysis sheet: which figures a run shows, made from its columns."""
+"""The cam analysis sheet: which figures a run shows, and those of torque, shape and contact."""
 
 from __future__ import annotations
 
@@ -7,23 +7,44 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.reports.figures import SERIES, Curve, Figure, LimitLine, OutlineFigure, Panel
+from camwright.reports.figures import (
+    SERIES,
+    AngleFigure,
+    Curve,
+    Figure,
+    LimitLine,
+    OutlineFigure,
+    Panel,
+)
+from camwright.reports.part_figures import PART_FIGURES
 from camwright.reports.report_tables import quantity, words
-from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
+from camwright.reports.sheet_turn import Columns, Turn, angle_figure, curves_of
 
+GROUPS = (
+    ("Torque", ("torque", "torque-components", "crank-speed")),
+    ("Shape", ("outline", "pressure-angle", "face", "lift", "radii")),
+    ("Limits", ("limits",)),
+    ("Contact", ("pressure", "half-width", "stress")),
+    ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
+    ("Parts", ("bushes", "elastic", "roller", "film", "parts")),
+)
 LARGEST_RADIUS_MM = 150.0
 HARD_STOP_DEG = 45.0
 """Beyond it no translating follower is designed; Rothbart (2004), ch. 6."""
+BINDS = 0.997  # share in use from which a limit binds: the synthesis keeps a little in hand
+_SHOWN, _MOST = 0.5, 6  # share from which a limit is shown, and how many of them
 
 
-def figures(turn: Turn) -> tuple[Figure, ...]:
-    """Every figure the run has columns for, in reading order."""
+def groups(turn: Turn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
+    """The figures that a run has columns for, by group, in reading order."""
     makers: tuple[Callable[[Turn], Figure | None], ...] = (
         _torque, _components, _crank_speed, _lift, _outline, _pressure_angle, _face, _radii,
-        _forces, _normal_force, _pressure, _half_width, _stress, _guides, _jamming, _speed,
+        _limits_strip, _pressure, _half_width, _stress, *PART_FIGURES,
     )  # fmt: skip
     made = (maker(turn) for maker in makers)
-    return tuple(figure for figure in made if figure is not None)
+    by_id = {figure.id: figure for figure in made if figure is not None}
+    grouped = ((title, tuple(by_id[n] for n in names if n in by_id)) for title, names in GROUPS)
+    return tuple((title, figures) for title, figures in grouped if figures)
 
 
 def _torque(turn: Turn) -> Figure | None:
@@ -231,42 +252,6 @@ def _radius_span(curves: Sequence[Curve]) -> tuple[float, float]:
     return min([0.0, *lows]) * 1.05, LARGEST_RADIUS_MM * 1.12
 
 
-def _forces(turn: Turn) -> Figure | None:
-    curves = curves_of(
-        turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
-        ("tangential_force_N", "side force"), ("friction_A_N", "friction A"),
-        ("friction_B_N", "friction B"), ("viscous_force_N", "viscous drag"),
-    )  # fmt: skip
-    return angle_figure(
-        turn, "forces", "Force components on the follower",
-        "Along the stem, but for the side force, which the guides carry.",
-        Panel("force", "N", curves, height=1.25),
-    )  # fmt: skip
-
-
-def _normal_force(turn: Turn) -> Figure | None:
-    limits: tuple[LimitLine, ...] = ()
-    rating, safety = turn.length("roller", "bearing", "C0", unit="N"), turn.bound("roller_static")
-    if rating and safety:
-        limits = (LimitLine(rating / safety, "roller static rating allows"),)
-    curves = curves_of(
-        turn, ("normal_force_N", "normal force"), ("axial_force_N", "axial force"),
-        ("normal_force_statics_N", "normal force, guides as points"), dashed=(2,),
-    )  # fmt: skip
-    shares = (
-        ("normal_force_by_length_N", "by length of the guides"),
-        ("normal_force_by_clearance_N", "by clearance"),
-    )
-    return angle_figure(
-        turn, "normal-force", "Normal force",
-        "Between roller and cam, with its component along the stem, friction of the guides "
-        "included; and what their length, then their clearance changes in it. Contact is lost "
-        "where the normal force reaches zero.",
-        Panel("force", "N", curves, (LimitLine(0.0, "contact lost at"), *limits)),
-        Panel("change", "N", curves_of(turn, *shares), height=0.6),
-    )  # fmt: skip
-
-
 def _pressure(turn: Turn) -> Figure | None:
     limits = turn.limit("endurance", "MPa", "contact_pressure")
     limits += turn.limit("shakedown", "MPa", "shakedown")
@@ -305,58 +290,36 @@ def _stress(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _guides(turn: Turn) -> Figure | None:
-    pairs = (
-        ("reaction_A_N", "A, finite elements"), ("reaction_A_statics_N", "A, statics"),
-        ("reaction_B_N", "B, finite elements"), ("reaction_B_statics_N", "B, statics"),
-    )  # fmt: skip
-    shares = (
-        ("reaction_by_length_N", "by length, of A and B alike"),
-        ("reaction_by_clearance_N", "by clearance"),
-    )  # fmt: skip
-    rubbing = (("rubbing_load_A_N", "A, both sides"), ("rubbing_load_B_N", "B, both sides"))
-    return angle_figure(
-        turn, "guides", "Guide reactions",
-        "The follower as a beam on elastic one-sided guides of finite length, against two point "
-        "supports; what length alone and then clearance add to these; and the pushes of both "
-        "sides of a bore, which rub.",
-        Panel("reaction", "N", curves_of(turn, *pairs, dashed=(1, 3)), height=1.25),
-        Panel("difference", "N", curves_of(turn, *shares), height=0.7),
-        Panel("rubbing load", "N", curves_of(turn, *rubbing), height=0.7),
-    )  # fmt: skip
+def _limits_strip(turn: Turn) -> Figure | None:
+    return limits_strip(turn.limits, turn.gear_ratio, strokes=turn.strokes)
 
 
-def _jamming(turn: Turn) -> Figure | None:
-    limits = turn.limit("limit", "", "jam_index")
-    indices = (
-        ("jam_index", "finite guides"), ("jam_index_statics", "point supports"),
-        ("jam_index_friction_max", "greatest friction, way out"),
-    )  # fmt: skip
-    return angle_figure(
-        turn, "jamming", "Jam index",
-        "Share of the axial force that guide friction takes; at 1 the follower locks. On the way "
-        "back it locks nothing.",
-        Panel("jam index", "", curves_of(turn, *indices, dashed=(1,)), limits, height=0.8),
-    )  # fmt: skip
+def limits_strip(limits: Columns | None, gear_ratio: float, *, strokes: bool) -> Figure | None:
+    """A strip for each limit that is used by half or more; None where nothing was recorded.
 
-
-def _speed(turn: Turn) -> Figure | None:
-    velocity = turn.columns.get("velocity_m_per_s")
-    if velocity is None:
+    Parameters
+    ----------
+    limits : mapping or None   columns of 2_limits.csv, the most used first
+    strokes : bool             whether the strokes of an engine are named
+    """
+    if limits is None or "cam_angle_deg" not in limits:
         return None
-    curves: list[Curve] = []
-    limits: list[LimitLine] = []
-    for name, colour in (("A", "blue"), ("B", "vermillion")):
-        length = turn.length("guides", name.lower(), "length")
-        diameter = turn.length("guides", name.lower(), "diameter")
-        load = turn.columns.get(f"rubbing_load_{name}_N", turn.columns.get(f"reaction_{name}_N"))
-        if length and diameter and load is not None:
-            pv = np.abs(load * velocity) / (length * diameter)
-            curves.append(Curve(f"guide {name}", pv, colour))
-            limits += turn.limit(f"mean PV limit {name}", "MPa m/s", f"bush_pv_{name}")
-    return angle_figure(
-        turn, "speed", "Follower velocity and guide PV",
-        "PV is the guide pressure on its projected area times the sliding speed.",
-        Panel("velocity", "m/s", curves_of(turn, ("velocity_m_per_s", "")), height=0.8),
-        Panel("PV", "MPa m/s", tuple(curves), tuple(dict.fromkeys(limits)), height=0.9),
+    uses = {name: use for name, use in limits.items() if name != "cam_angle_deg"}
+    shown = [name for name, use in uses.items() if use.size and float(np.max(use)) >= _SHOWN]
+    panels = tuple(_strip(name, uses[name]) for name in shown[:_MOST])
+    if not panels:
+        return None
+    return AngleFigure(
+        "limits", "Which limit binds where",
+        "Share in use of each limit as the synthesis sees it, the most used first; thick where "
+        "it binds and ripple is given up for it. A limit on a mean of the turn is level.",
+        gear_ratio * limits["cam_angle_deg"], panels, gear_ratio, strokes,
     )  # fmt: skip
+
+
+def _strip(name: str, use: Array) -> Panel:
+    """Share in use from nothing to all, and again where it binds."""
+    tight = np.where(use >= BINDS, use, np.nan)
+    curves = (Curve("share in use", np.clip(use, 0.0, None), "blue"),
+              Curve("binds", tight, "vermillion"))  # fmt: skip
+    return Panel(words(name), "", curves, (LimitLine(1.0, ""),), height=0.62, span=(0.0, 1.3))

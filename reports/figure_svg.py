@@ -10,17 +10,23 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import MaxNLocator
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.files import write_atomic
+from camwright.reports.analysis_sheet import groups
 from camwright.reports.figures import (
     STROKES,
     AngleFigure,
@@ -30,6 +36,7 @@ from camwright.reports.figures import (
     placed_limits,
     vertical_span,
 )
+from camwright.reports.report_data import FIGURES, Material
 
 COLOURS = {
     "blue": "#0072b2",
@@ -77,6 +84,35 @@ BACKING = {"facecolor": COLOURS["card"], "alpha": 0.75, "linewidth": 0, "pad": 0
 FIGURE_WIDTH = 5.6
 LEFT, RIGHT, TOP, BOTTOM, GAP = 0.68, 0.16, 0.66, 0.42, 0.14
 LEGEND_ROW = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A figure of the sheet with its drawings."""
+
+    figure: Figure
+    svg: Markup
+    png: bytes
+
+
+@lru_cache(maxsize=1)
+def drawn_groups(material: Material) -> Sequence[tuple[str, Sequence[Drawn]]]:
+    """The figures that a run has columns for, by group, in reading order."""
+    return tuple((t, tuple(map(_drawn, figures))) for t, figures in groups(material.turn))
+
+
+def write(material: Material) -> list[Path]:
+    """Write ``figures/ID.png`` for every figure of the sheet."""
+    return [
+        write_atomic(material.folder / FIGURES / f"{one.figure.id}.png", one.png)
+        for _, drawn in drawn_groups(material)
+        for one in drawn
+    ]
+
+
+def _drawn(figure: Figure) -> Drawn:
+    svg, png = svg_and_png(figure)
+    return Drawn(figure, Markup(svg), png)  # noqa: S704 - matplotlib's, its texts escaped
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.results.run_reader import TrialRecord
 from camwright.reports import interactive, report_tables, verification_tables
-from camwright.reports.drawings import drawn_groups
+from camwright.reports.figure_svg import drawn_groups
 from camwright.reports.picture_list import PICTURES
 from camwright.reports.report_data import Material
 from camwright.reports.sheet_turn import Turn

@@ -55,6 +55,7 @@ def the_turn(run: Run, case: Mapping[str, Any]) -> Turn:
         by_name[drawn], tuple(by_name.values()), final.lift.columns, final.contour.columns,
         None if run.torque is None else run.torque.columns, final.checks, case, drawn,
         None if run.speed is None else run.speed.columns, final.record.get("balance") or {},
+        None if final.limits is None else final.limits.columns,
     )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from camwright.geometry.errors import InputError, ResultError
-from camwright.reports import drawings, page, pdf, picture_list, scene_page
+from camwright.reports import figure_svg, page, pdf, picture_list, scene_page
 from camwright.reports.report_data import FIGURES, Material, read_material
 
 
@@ -27,7 +27,7 @@ class Part:
 
 
 PARTS = (
-    Part("figures", "the plots as PNG", drawings.write),
+    Part("figures", "the plots as PNG", figure_svg.write),
     Part("fields", "pictures of the stress at the worst angle",
          partial(picture_list.write_pictures, picture_list.stress_pictures)),
     Part("bushes", "picture of the pressure in the guides",

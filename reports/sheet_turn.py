@@ -31,6 +31,7 @@ class Turn:
     case : mapping        case.toml as read
     speed : mapping or None    columns of 1_speed.csv
     balance : mapping     of trial.json; empty in runs that had none
+    limits : mapping or None   columns of 2_limits.csv
     """
 
     columns: Columns
@@ -43,6 +44,7 @@ class Turn:
     load_case: str = ""
     speed: Columns | None = None
     balance: Mapping[str, Any] = field(default_factory=dict)
+    limits: Columns | None = None
 
     @property
     def counter_hole(self) -> tuple[float, float, float, bool] | None:
@@ -62,6 +64,11 @@ class Turn:
     def gear_ratio(self) -> float:
         ratio = self.case.get("mechanism", {}).get("gear_ratio", 2.0)
         return float(ratio) if isinstance(ratio, (int, float)) and ratio > 0 else 2.0
+
+    @property
+    def strokes(self) -> bool:
+        """Whether the turn is a four-stroke cycle whose strokes can be named."""
+        return self.gear_ratio == 2.0 and self.torque is not None
 
     @property
     def worst(self) -> int:
@@ -142,6 +149,6 @@ def angle_figure(
         return None
     return AngleFigure(
         figure_id, title, caption, turn.crank if crank is None else crank, full, turn.gear_ratio,
-        strokes=turn.gear_ratio == 2.0 and turn.torque is not None,
+        strokes=turn.strokes,
         worst=float(turn.crank[turn.worst]) if mark else None,
     )  # fmt: skip

@@ -18,7 +18,7 @@ import report_fixture
 
 from camwright.geometry.errors import ResultError
 from camwright.reports import browser, page, pdf, sections
-from camwright.reports.drawings import drawn_groups
+from camwright.reports.figure_svg import drawn_groups
 from camwright.reports.report_data import Material, read_material
 
 HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </script><!--"

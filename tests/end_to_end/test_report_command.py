@@ -13,7 +13,7 @@ import pytest
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.cli import PASSED, app
-from camwright.reports import drawings, page, sections
+from camwright.reports import figure_svg, page, sections
 from camwright.reports import pdf as printing
 
 ROOT = Path(__file__).parents[2]
@@ -47,7 +47,7 @@ def run(tmp_path: Path) -> Path:
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures left blank, where what counts is which files come."""
-    monkeypatch.setattr(drawings, "svg_and_png", lambda figure: ("<svg></svg>", b"\x89PNG"))
+    monkeypatch.setattr(figure_svg, "svg_and_png", lambda figure: ("<svg></svg>", b"\x89PNG"))
 
 
 def digests(folder: Path) -> dict[str, str]:

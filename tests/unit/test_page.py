@@ -15,7 +15,7 @@ import report_fixture
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base import files
-from camwright.reports import drawings, interactive, page
+from camwright.reports import analysis_sheet, figure_svg, interactive, page
 
 HOSTILE = "<script>alert(1)</script>\"'&lt;../../x " + "אבג \u202e \U0001f527 "
 
@@ -71,7 +71,7 @@ def built(tmp_path_factory):
 def undrawn(monkeypatch):
     """Figures left blank, for tests of words."""
     monkeypatch.setattr(
-        drawings, "svg_and_png", lambda figure: (f"<svg>{figure.id}</svg>", b"\x89PNG")
+        figure_svg, "svg_and_png", lambda figure: (f"<svg>{figure.id}</svg>", b"\x89PNG")
     )
 
 
@@ -122,7 +122,7 @@ def test_the_outline_tells_of_the_counter_hole(html):
 def test_every_figure_of_the_sheet_is_there_with_words_for_it(built, html):
     # the run has a roller, and no synthesis within limits
     without = {"face", "limits"}
-    wanted = [name for _, names in drawings.GROUPS for name in names if name not in without]
+    wanted = [name for _, names in analysis_sheet.GROUPS for name in names if name not in without]
     assert not any(f'<figure id="{name}">' in html for name in without)
     for name in wanted:
         assert f'<figure id="{name}">' in html
@@ -205,7 +205,7 @@ def test_several_load_cases_show_the_governing_one_and_a_ribbon(tmp_path, monkey
     (trial / "6_checks.json").write_text(json.dumps(records))
     seen = []
     monkeypatch.setattr(
-        drawings, "svg_and_png", lambda figure: (seen.append(figure) or "", b"\x89PNG")
+        figure_svg, "svg_and_png", lambda figure: (seen.append(figure) or "", b"\x89PNG")
     )
     html = report_fixture.page_of(folder).read_text(encoding="utf-8")
     pressure = next(figure for figure in seen if figure.id == "pressure")
