@@ -13,6 +13,7 @@ from camwright.pipeline.base.files import write_atomic
 from camwright.reports import browser, page
 from camwright.reports.figure_svg import COLOURS
 from camwright.reports.report_data import Material
+from camwright.reports.report_tables import shortened
 
 PDF = "8_report.pdf"
 _NUMBERED = """@page {
@@ -30,8 +31,8 @@ def write(material: Material) -> list[Path]:
         If there is nothing to print with, or the file cannot be written.
     """
     pdf = material.folder / PDF
-    footer = f"Camwright · {page.shortened(str(material.run.summary['case']), 60)}"
-    text = page.text(material, live=False)
+    footer = f"Camwright · {shortened(str(material.run.summary['case']), 60)}"
+    text = page.text(material)
     if browser.executable() is not None:
         _by_chromium(text, pdf, footer)
     elif importlib.util.find_spec("weasyprint") is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isclose, isfinite, isnan, log10, pi
@@ -10,6 +11,8 @@ from typing import Any
 
 MINUS = "\N{MINUS SIGN}"
 DASH = "\N{EN DASH}"
+UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+TURNING = {"R", "AL", "RLE", "RLO", "LRE", "LRO", "RLI", "LRI", "FSI", "PDF", "PDI"}
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 SHOWN_AS = {
     "Pa": ("MPa", 1e-6),
@@ -104,9 +107,58 @@ def in_unit(value: float, unit: str, wanted: str) -> float | None:
     return value if unit == wanted else None
 
 
+def plain(text: str) -> str:
+    """Text without control characters that a page cannot hold; everything else stays."""
+    return UNPRINTABLE.sub("\ufffd", text)
+
+
+def shortened(text: str, length: int) -> str:
+    """One line of at most `length` characters."""
+    line = " ".join(plain(text).split())
+    return line if len(line) <= length else line[: length - 1] + "…"
+
+
+def isolated(text: str) -> str:
+    """Text that may stand in a sentence: where it runs right to left, it alone does."""
+    turns = any(unicodedata.bidirectional(character) in TURNING for character in text)
+    return f"\u2068{text}\u2069" if turns else text
+
+
 def words(name: str) -> str:
     """A snake_case name as words."""
     return name.replace("_", " ").strip()
+
+
+@dataclass(frozen=True)
+class Status:
+    """Status of a check, or a verdict, as a cell: its id, for the colour, and its words."""
+
+    id: str
+    words: str
+
+
+Cell = str | Status
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table: the first `text` columns hold words, the next `numbers` numbers; None: the rest.
+
+    One that is `wide` is scrolled sideways on a narrow screen; others are stacked.
+    """
+
+    label: str
+    head: Sequence[str]
+    rows: Sequence[Sequence[Cell]]
+    text: int = 1
+    numbers: int | None = None
+    wide: bool = False
+
+    @property
+    def numeric(self) -> range:
+        """Columns of numbers."""
+        end = len(self.head) if self.numbers is None else self.text + self.numbers
+        return range(self.text, end)
 
 
 @dataclass(frozen=True)
@@ -115,8 +167,7 @@ class CheckRow:
 
     id: str
     title: str
-    status: str
-    status_text: str
+    status: Status
     demand: str
     limit: str
     utilisation: str
@@ -130,6 +181,22 @@ class CheckRow:
     must_have: bool
     error: str = ""
     corner: str = ""
+
+    @property
+    def place(self) -> str:
+        """Load case and cam angle of the demand; a dash where it has neither."""
+        return ", ".join(filter(None, (isolated(self.load_case), self.where))) or DASH
+
+    @property
+    def remarks(self) -> list[tuple[str, bool]]:
+        """What stands below the title, line by line, each with whether it is to stand out."""
+        limit = f"Limit: {self.source}" if self.source else ""
+        corner = f"At the worst corner of the tolerances, {self.corner}" if self.corner else ""
+        lines = [
+            (" · ".join(filter(None, (self.method, limit))), False), (self.note, True),
+            (corner, False), (f"Waiver: {self.waiver}" if self.waiver else "", True),
+        ]  # fmt: skip
+        return [line for line in lines if line[0]]
 
 
 def utilisation(check: Mapping[str, Any]) -> float | None:
@@ -157,13 +224,14 @@ def check_rows(checks: Sequence[Mapping[str, Any]]) -> list[CheckRow]:
     for check in sorted_checks(checks):
         value = utilisation(check)
         status = str(check.get("status", "not_evaluated"))
+        status_words = STATUS.get(status, words(status))
         unit = str(check.get("unit") or "")
         sense = "≥" if check.get("sense") == "at_least" else "≤"
         limit = quantity(check.get("limit"), unit)
         angle = check.get("cam_angle_deg")
         rows.append(CheckRow(
-            id=str(check.get("id", "")), title=str(check.get("title", "")), status=status,
-            status_text=STATUS.get(status, words(status)),
+            id=str(check.get("id", "")), title=str(check.get("title", "")),
+            status=Status(status, status_words),
             demand=quantity(check.get("demand"), unit),
             limit=limit if limit == DASH else f"{sense}\N{NO-BREAK SPACE}{limit}",
             utilisation=_ratio(value), bar=_bar(value),
@@ -283,60 +351,6 @@ def headline_rows(headline: Mapping[str, Any]) -> list[tuple[str, str]]:
         title, unit = HEADLINES.get(key, (words(key), ""))
         rows.append((title, quantity(value, unit)))
     return rows
-
-
-CERTIFICATE_HEAD = (
-    "cam angle, deg", "edges over a", "unknowns", "p0 per mesh, MPa", "p0 extrapolated, MPa",
-    "order", "GCI, %", "p0 Hertz, MPa", "p0 in the cycle, MPa", "spread, %", "equilibrium",
-)  # fmt: skip
-FIGURES_HEAD = (
-    "cam angle, deg", "quantity", "per mesh", "extrapolated", "order", "GCI, %", "in the cycle",
-)  # fmt: skip
-CERTIFIED = {
-    "half_width_mm": "half-width a, mm",
-    "tau_max_MPa": "greatest shear stress, MPa",
-    "von_mises_MPa": "greatest von Mises stress, MPa",
-}
-
-
-def certificate_rows(points: Sequence[Mapping[str, Any]]) -> list[list[str]]:
-    """One row per certificate point: the pressure on each mesh and what follows from it."""
-    rows = []
-    for point in points:
-        pressure = _figure(point, "p0_MPa")
-        rows.append([
-            number(point.get("cam_angle_deg")), _several(point.get("edges_across_half_width"), 3),
-            _several(point.get("dofs")), _several(pressure.get("meshes"), 5),
-            number(pressure.get("extrapolated"), 5), number(pressure.get("order"), 3),
-            number(pressure.get("gci_percent"), 2), number(point.get("p0_hertz_MPa"), 5),
-            number(pressure.get("cycle"), 5), number(point.get("spread_percent"), 2),
-            number(point.get("residual_equilibrium"), 2),
-        ])  # fmt: skip
-    return rows
-
-
-def certified_rows(points: Sequence[Mapping[str, Any]]) -> list[list[str]]:
-    """A row per certificate point and quantity other than the pressure."""
-    rows = []
-    for point in points:
-        for name, title in CERTIFIED.items():
-            figure = _figure(point, name)
-            if figure:
-                rows.append([
-                    number(point.get("cam_angle_deg")), title, _several(figure.get("meshes"), 5),
-                    number(figure.get("extrapolated"), 5), number(figure.get("order"), 3),
-                    number(figure.get("gci_percent"), 2), number(figure.get("cycle"), 5),
-                ])  # fmt: skip
-    return rows
-
-
-def _figure(point: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    figure = point.get(name)
-    return figure if isinstance(figure, Mapping) else {}
-
-
-def _several(values: Any, digits: int = 4) -> str:
-    return ", ".join(number(v, digits) for v in values) if isinstance(values, list) else DASH
 
 
 @dataclass(frozen=True)

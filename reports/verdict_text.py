@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from camwright.reports.report_tables import check_rows, sorted_checks, utilisation, words
+from camwright.reports.report_tables import check_rows, isolated, sorted_checks, utilisation, words
 
 Check = Mapping[str, Any]
 
@@ -31,6 +31,23 @@ class Verdict:
     def word(self) -> str:
         return "PASS" if self.passed else "FAIL"
 
+    @property
+    def lines(self) -> list[tuple[str, str]]:
+        """(label, words) of what else is said beside the sentence."""
+        missing = f"{'; '.join(self.missing)}. The checks below say which input each of them lacks."
+        lines = (
+            ("Governing", self.governing),
+            ("Binding", f"{'; '.join(self.binding)}." if self.binding else ""),
+            ("Not evaluated", missing if self.missing else ""),
+            ("Why it ended", self.stopped[0] if self.stopped else ""),
+        )
+        return [line for line in lines if line[1]]
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Further clauses of why the trials ended."""
+        return self.stopped[1:]
+
 
 def verdict(said: str, checks: Sequence[Check], binding: Sequence[str], stopped: str) -> Verdict:
     """The verdict in words.
@@ -49,8 +66,8 @@ def verdict(said: str, checks: Sequence[Check], binding: Sequence[str], stopped:
     failed = [c for c in required if c["status"] == "fail"]
     missing = [c for c in required if c["status"] == "not_evaluated"]
     passed = said == "pass" and bool(checks) and not failed and not missing
-    titles = {str(c["id"]): str(c["title"]) for c in checks}
-    unknown = {str(c["id"]): str(c["title"]) for c in missing}
+    titles = {str(c["id"]): isolated(str(c["title"])) for c in checks}
+    unknown = {str(c["id"]): titles[str(c["id"])] for c in missing}
     clauses = (clause for clause in stopped.split("; ") if clause)
     return Verdict(
         passed,
@@ -101,10 +118,10 @@ def governing(checks: Sequence[Check]) -> str:
     if not known:
         return ""
     row = check_rows([max(known, key=lambda c: utilisation(c) or 0.0)])[0]
-    place = f", load case {row.load_case}" if row.load_case else ""
+    place = f", load case {isolated(row.load_case)}" if row.load_case else ""
     angle = f", cam angle {row.where}" if row.where else ""
     return (
-        f"{row.title}{place}{angle}: {row.demand} where the limit is {row.limit}"
+        f"{isolated(row.title)}{place}{angle}: {row.demand} where the limit is {row.limit}"
         f" (utilisation {row.utilisation})."
     )
 

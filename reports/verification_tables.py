@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from camwright.reports.report_tables import DASH, number, quantity, words, worst_corner
-
-Rows = list[list[str]]
+from camwright.reports.report_tables import DASH, Table, number, quantity, words, worst_corner
 
 PRICES_HEAD = (
     "limit", "stands at", "ripple for one unit more", "ripple where it gives way by 1 %",
@@ -18,6 +15,20 @@ CONSISTENCY_HEAD = ("quantity", "load case", "how", "given", "implied", "differe
 SPEED_HEAD = ("load case", "crank", "standard deviation", "peak to peak", "fluctuation")
 VALVE_HEAD = ("figure", "load case", "what it is", "value")
 CORNERS_HEAD = ("check", "corner", "nominal", "there")
+CERTIFICATE_HEAD = (
+    "cam angle, deg", "edges over a", "unknowns", "p0 per mesh, MPa", "p0 extrapolated, MPa",
+    "order", "GCI, %", "p0 Hertz, MPa", "p0 in the cycle, MPa", "spread, %", "equilibrium",
+)  # fmt: skip
+CERTIFIED_HEAD = (
+    "cam angle, deg", "quantity", "per mesh", "extrapolated", "order", "GCI, %", "in the cycle",
+)  # fmt: skip
+CERTIFIED = {
+    "half_width_mm": "half-width a, mm",
+    "tau_max_MPa": "greatest shear stress, MPa",
+    "von_mises_MPa": "greatest von Mises stress, MPa",
+}
+
+
 BENCHMARKS = {
     "nafems_p0": "NAFEMS R0094 case 1, peak pressure",
     "nafems_half_width": "NAFEMS R0094 case 1, half-width",
@@ -29,16 +40,6 @@ STATES = {
     "inertia_alone": "with the added inertia alone",
     "after": "with the cam",
 }
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table of the page; the first `text` columns hold words, the others numbers."""
-
-    label: str
-    head: Sequence[str]
-    rows: Rows
-    text: int = 1
 
 
 def prices(records: Any) -> Table:
@@ -104,6 +105,46 @@ def benchmarks(record: Any) -> list[tuple[str, str]]:
         for name, title in BENCHMARKS.items()
         if isinstance(known.get(name), float)
     ]
+
+
+def certificate(points: Sequence[Mapping[str, Any]]) -> Table:
+    """One row per certificate point: the pressure on each mesh and what follows from it."""
+    rows = []
+    for point in points:
+        pressure = _figure(point, "p0_MPa")
+        rows.append([
+            number(point.get("cam_angle_deg")), _several(point.get("edges_across_half_width"), 3),
+            _several(point.get("dofs")), _several(pressure.get("meshes"), 5),
+            number(pressure.get("extrapolated"), 5), number(pressure.get("order"), 3),
+            number(pressure.get("gci_percent"), 2), number(point.get("p0_hertz_MPa"), 5),
+            number(pressure.get("cycle"), 5), number(point.get("spread_percent"), 2),
+            number(point.get("residual_equilibrium"), 2),
+        ])  # fmt: skip
+    return Table("Certificate points", CERTIFICATE_HEAD, rows, 0, wide=True)
+
+
+def certified(points: Sequence[Mapping[str, Any]]) -> Table:
+    """A row per certificate point and quantity other than the pressure."""
+    rows = [
+        [
+            number(point.get("cam_angle_deg")), title, _several(figure.get("meshes"), 5),
+            number(figure.get("extrapolated"), 5), number(figure.get("order"), 3),
+            number(figure.get("gci_percent"), 2), number(figure.get("cycle"), 5),
+        ]
+        for point in points
+        for name, title in CERTIFIED.items()
+        if (figure := _figure(point, name))
+    ]  # fmt: skip
+    return Table("Other certified quantities", CERTIFIED_HEAD, rows, 0, wide=True)
+
+
+def _figure(point: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    figure = point.get(name)
+    return figure if isinstance(figure, Mapping) else {}
+
+
+def _several(values: Any, digits: int = 4) -> str:
+    return ", ".join(number(v, digits) for v in values) if isinstance(values, list) else DASH
 
 
 def corners(checks: Sequence[Mapping[str, Any]]) -> Table:

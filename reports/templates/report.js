@@ -75,6 +75,7 @@
       height: layout.height + more });
   }
 
+  for (const hint of document.querySelectorAll(".pointing")) hint.hidden = false;
   const places = [...document.querySelectorAll(".live")].filter((p) => specs[p.dataset.figure]);
   function drawn(place) {
     if (place.dataset.drawn) return;

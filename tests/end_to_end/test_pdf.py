@@ -43,7 +43,7 @@ def by_weasyprint(material: Material) -> bytes:
         importlib.import_module("weasyprint")
     except (ImportError, OSError) as error:
         pytest.skip(f"no WeasyPrint here, or no Pango for it: {error}")
-    text = page.text(material, live=False).decode()
+    text = page.text(material).decode()
     return pdf.by_weasyprint(text, "Camwright · gx120")
 
 

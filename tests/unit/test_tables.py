@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from camwright.reports import report_tables
+from camwright.reports import report_tables, verification_tables
 from camwright.reports.verdict_text import governing, governing_load_case, verdict
 
 
@@ -162,20 +162,23 @@ def test_certificate_rows_follow_their_heads():
     point = {"p0_MPa": figure, "half_width_mm": figure, "cam_angle_deg": 30.0, "dofs": [10, 20, 40],
              "edges_across_half_width": [6.0, 9.0, 13.5], "p0_hertz_MPa": 999.0,
              "spread_percent": 0.05, "residual_equilibrium": 1e-13}  # fmt: skip
-    (row,) = report_tables.certificate_rows([point])
+    table = verification_tables.certificate([point])
+    (row,) = table.rows
     assert row == [
         "30", "6, 9, 13.5", "10, 20, 40", "1000, 1001, 1001.2", "1001.5", "–", "0.031", "999",
         "1002", "0.05", "1×10⁻¹³",
     ]  # fmt: skip
-    assert len(row) == len(report_tables.CERTIFICATE_HEAD)
-    (other,) = report_tables.certified_rows([point])
+    assert len(row) == len(table.head)
+    table = verification_tables.certified([point])
+    (other,) = table.rows
     assert other[:2] == ["30", "half-width a, mm"]
-    assert len(other) == len(report_tables.FIGURES_HEAD)
+    assert len(other) == len(table.head)
 
 
 def test_a_point_without_figures_gives_dashes():
-    assert report_tables.certificate_rows([{}]) == [["–"] * len(report_tables.CERTIFICATE_HEAD)]
-    assert report_tables.certified_rows([{}]) == []
+    table = verification_tables.certificate([{}])
+    assert table.rows == [["–"] * len(table.head)]
+    assert verification_tables.certified([{}]).rows == []
 
 
 def test_a_record_shows_units_and_what_is_inside():
