@@ -38,21 +38,9 @@ from camwright.reports.figures import (
 )
 from camwright.reports.report_data import FIGURES, Material
 
-COLOURS = {
-    "blue": "#0072b2",
-    "vermillion": "#d55e00",
-    "green": "#009e73",
-    "orange": "#b27a00",
-    "sky": "#2f8fc6",
-    "purple": "#c069a0",
-    "ink": "#1b1f24",
-    "muted": "#59616b",
-    "grid": "#e2e6eb",
-    "shade": "#f3f5f8",
-    "card": "#ffffff",
-    "steel": "#dfe4ea",
-    "fail": "#b3261e",
-}
+_CSS = (Path(__file__).parent / "templates" / "report.css").read_text(encoding="utf-8")
+COLOURS = dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", _CSS[: _CSS.index("}")]))
+"""Colours of the page's light theme by name."""
 STYLE: dict[str, Any] = {
     "svg.fonttype": "none",
     "font.family": "sans-serif",
@@ -91,8 +79,13 @@ class Drawn:
     """A figure of the sheet with its drawings."""
 
     figure: Figure
-    svg: Markup
+    svg: str
     png: bytes
+
+    @property
+    def themed(self) -> Markup:
+        """The SVG in the colours of the page's theme."""
+        return Markup(themed(self.svg, self.figure.id))  # noqa: S704 - its texts are escaped
 
 
 @lru_cache(maxsize=1)
@@ -111,8 +104,7 @@ def write(material: Material) -> list[Path]:
 
 
 def _drawn(figure: Figure) -> Drawn:
-    svg, png = svg_and_png(figure)
-    return Drawn(figure, Markup(svg), png)  # noqa: S704 - matplotlib's, its texts escaped
+    return Drawn(figure, *svg_and_png(figure))
 
 
 @contextmanager
@@ -129,7 +121,7 @@ def draw(figure: Figure) -> Canvas:
 
 
 def svg_and_png(figure: Figure) -> tuple[str, bytes]:
-    """The figure as themed SVG text and as a PNG file in the colours of the light theme."""
+    """The figure as SVG text and as a PNG file, both in the colours of the light theme."""
     with style(figure.id):
         canvas = draw(figure)
         svg, png = io.StringIO(), io.BytesIO()
@@ -137,7 +129,7 @@ def svg_and_png(figure: Figure) -> tuple[str, bytes]:
         canvas.savefig(
             png, format="png", dpi=150, facecolor=COLOURS["card"], metadata={"Software": None}
         )
-    return themed(svg.getvalue(), figure.id), png.getvalue()
+    return svg.getvalue(), png.getvalue()
 
 
 def themed(svg: str, figure_id: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure as Canvas
 
 from camwright.reports.figure_svg import COLOURS, style
+from camwright.reports.figures import SERIES
 
 _PAIRS = {
     "shaft": ("shaft", "blue"),
@@ -81,7 +82,7 @@ def _turn(document: Mapping[str, Any]) -> Canvas:
         upper, lower = canvas.subplots(2, 1, sharex=True)
         strokes = ("-", "--", ":", "-.")
         for k, found in enumerate(document["mechanisms"]):
-            look = {"linestyle": strokes[k % 4], "color": list(COLOURS.values())[k % 6]}
+            look = {"linestyle": strokes[k % 4], "color": COLOURS[SERIES[k % len(SERIES)]]}
             upper.plot(document["phi_deg"], found["motor_torque_Nm"], label=found["name"], **look)
             lower.plot(document["phi_deg"], found["reduced_inertia_kg_m2"], **look)
         upper.set_ylabel("motor torque, N m")

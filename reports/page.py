@@ -10,7 +10,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from camwright.pipeline.base.files import write_atomic
 from camwright.reports import interactive
 from camwright.reports.figure_svg import drawn_groups
-from camwright.reports.report_content import report_content
+from camwright.reports.report_content import SHORT, report_content
 from camwright.reports.report_data import Material
 from camwright.reports.report_tables import plain, shortened
 
@@ -39,6 +39,6 @@ def environment() -> Environment:
         undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     made.filters["plain"] = plain
-    made.filters["cut"] = partial(shortened, length=140)
+    made.filters["cut"] = partial(shortened, length=SHORT)
     made.globals["LONG"] = LONG
     return made

@@ -22,10 +22,13 @@ from camwright.reports.report_tables import (
     Table,
     Tile,
     isolated,
+    shortened,
 )
 from camwright.reports.sheet_turn import Turn
 from camwright.reports.verdict_text import Verdict, verdict
 
+SHORT = 140
+"""Characters of a title or name that is to stay on one line."""
 TRIALS_HEAD = (
     "Trial", "Smoothing", "Strength", "Width, crank", "Why", "Verdict",
     "Required checks that do not hold",
@@ -170,7 +173,13 @@ class Report:
     verdict: Verdict
     tiles: Sequence[Tile]
     sections: Sequence[Section]
+    footer: str
     kicker: str = "Cam sign-off"
+
+    @property
+    def short_title(self) -> str:
+        """The title on a line of its own."""
+        return shortened(self.title, SHORT)
 
 
 def report_content(material: Material) -> Report:
@@ -201,6 +210,7 @@ def report_content(material: Material) -> Report:
             ),
             _versions(material),
         ),
+        f"Camwright · {shortened(str(run.summary['case']), 60)}",
     )  # fmt: skip
 
 
@@ -216,8 +226,8 @@ def _facts(material: Material) -> list[tuple[str, str]]:
     versions = summary["versions"]
     code = [str(versions.get("camwright", "")), str(versions.get("source", ""))[:8]]
     return [
-        ("Case", str(material.case.get("name") or summary["case"])),
-        ("Load case drawn", material.turn.load_case),
+        ("Case", shortened(str(material.case.get("name") or summary["case"]), SHORT)),
+        ("Load case drawn", shortened(material.turn.load_case, SHORT)),
         ("Trials", str(count)),
         ("Input", str(summary["input_sha256"])[:12]),
         ("Camwright", " · ".join(filter(None, code))),

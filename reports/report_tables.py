@@ -95,6 +95,7 @@ def quantity(value: Any, unit: str = "", digits: int = 4) -> str:
         unit, scale = SHOWN_AS[unit]
         value = value * scale if scale != 1.0 else value
     text = number(value, digits)
+    unit = re.sub(r"\^([23])", lambda power: power[1].translate(SUPERSCRIPT), unit)
     unit = unit.replace(" ", "\N{NO-BREAK SPACE}")
     return f"{text}\N{NO-BREAK SPACE}{unit}" if unit and text != DASH else text
 

@@ -120,7 +120,7 @@ def certificate(points: Sequence[Mapping[str, Any]]) -> Table:
             number(pressure.get("cycle"), 5), number(point.get("spread_percent"), 2),
             number(point.get("residual_equilibrium"), 2),
         ])  # fmt: skip
-    return Table("Certificate points", CERTIFICATE_HEAD, rows, 0, wide=True)
+    return Table("Certificate points", CERTIFICATE_HEAD, rows, wide=True)
 
 
 def certified(points: Sequence[Mapping[str, Any]]) -> Table:
@@ -135,7 +135,7 @@ def certified(points: Sequence[Mapping[str, Any]]) -> Table:
         for name, title in CERTIFIED.items()
         if (figure := _figure(point, name))
     ]  # fmt: skip
-    return Table("Other certified quantities", CERTIFIED_HEAD, rows, 0, wide=True)
+    return Table("Other certified quantities", CERTIFIED_HEAD, rows, 2, wide=True)
 
 
 def _figure(point: Mapping[str, Any], name: str) -> Mapping[str, Any]:

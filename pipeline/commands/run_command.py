@@ -81,7 +81,7 @@ def _finished(out: Path, sha256: str) -> bool:
 
 def report(
     folder: DirArgument,
-    pdf: Annotated[bool, typer.Option("--pdf", help="Print it as 8_report.pdf as well.")] = False,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Write 8_report.pdf as well.")] = False,
     only: Annotated[
         list[str] | None,
         typer.Option("--only", metavar="PART", help="This part alone; may be given several times."),

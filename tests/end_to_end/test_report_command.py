@@ -98,10 +98,7 @@ def test_a_report_has_all_parts_but_those_to_ask_for(run: Path) -> None:
 
 @pytest.mark.usefixtures("quick")
 def test_pdf_comes_beside_the_rest_when_asked(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(printing.browser, "executable", lambda: "chromium")
-    monkeypatch.setattr(
-        printing.browser, "print_pdf", lambda still, pdf, footer: pdf.write_bytes(b"%PDF")
-    )
+    monkeypatch.setattr(printing, "typeset", lambda report: b"%PDF")
     assert report(run, "--pdf") == PASSED
     assert (run / page.PAGE).is_file()
     assert (run / printing.PDF).is_file()

@@ -214,7 +214,7 @@ def test_several_load_cases_show_the_governing_one_and_a_ribbon(tmp_path, monkey
     (trial / "6_checks.json").write_text(json.dumps(records))
     seen = []
     monkeypatch.setattr(
-        figure_svg, "svg_and_png", lambda figure: (seen.append(figure) or "", b"\x89PNG")
+        figure_svg, "svg_and_png", lambda figure: (seen.append(figure) or "<svg/>", b"\x89PNG")
     )
     html = report_fixture.page_of(folder).read_text(encoding="utf-8")
     pressure = next(figure for figure in seen if figure.id == "pressure")

@@ -99,8 +99,10 @@ def test_the_alternative_text_tells_range_place_and_limit():
 
 
 def test_the_svg_is_well_formed_themed_and_free_of_clashing_ids():
-    svg = figure_svg.svg_and_png(figure())[0]
-    other = figure_svg.svg_and_png(AngleFigure("second", "", "", CRANK, figure().panels))[0]
+    svg, other = (
+        figure_svg.themed(figure_svg.svg_and_png(made)[0], made.id)
+        for made in (figure(), AngleFigure("second", "", "", CRANK, figure().panels))
+    )
     ET.fromstring(svg)
     assert 'role="img"' in svg
     assert "var(--blue)" in svg
@@ -134,7 +136,7 @@ def test_words_of_near_limits_stand_clear_of_each_other():
 
 def test_trimming_coordinates_leaves_numbers_to_read_alone():
     small = Panel("depth", "mm", (Curve("", 0.004 + 0.004 * WAVE),), (LimitLine(0.0075, "limit"),))
-    svg = figure_svg.svg_and_png(figure(small))[0]
+    svg = figure_svg.themed(figure_svg.svg_and_png(figure(small))[0], "small")
     assert re.search(r">0\.00\d+<", svg)
     assert "limit 0.0075 mm" in svg
     assert not re.search(r'"[^"<>]*\d\.\d{3}', svg)
