@@ -1,7 +1,7 @@
-"""What a figure says, apart from how it is drawn.
+"""What a figure shows: curves, limits, units, title and caption, apart from how it is drawn.
 
-A sheet is a tuple of these values. `plots.py` draws them as SVG and PNG; an interactive renderer
-can draw the same values, since every curve still carries its numbers, label and unit.
+`figure_svg` draws these values by matplotlib, `interactive` by Plotly in the page. Both take
+numbers, words, colours by name and dashes from here, and add only sizes and fonts of their own.
 """
 
 from __future__ import annotations
@@ -19,6 +19,17 @@ FAR_LIMIT = 1.6
 WORDS_HEIGHT = 0.09
 """Of a panel: what the words of a limit take up."""
 STROKES = ("intake", "compression", "expansion", "exhaust")
+"""Of a four-stroke engine, 180 deg of crank each; every second one is shaded."""
+CRANK_AXIS, CAM_AXIS = "crank angle, deg", "cam angle, deg"
+CRANK_STEP, CAM_STEP = 90, 45
+"""Between the labels of the angle axes, deg."""
+X_AXIS, Y_AXIS = "x, mm (cam angle 0 points along x)", "y, mm"
+_ROUND = 121  # points of a circle
+
+
+def closed(values: Array) -> Array:
+    """Values (..., n) over a turn with the first one again at its end: (..., n + 1)."""
+    return np.concatenate([values, values[..., :1]], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +72,11 @@ class Panel:
     limits: tuple[LimitLine, ...] = ()
     height: float = 1.0
     span: tuple[float, float] | None = None
+
+    @property
+    def title(self) -> str:
+        """The quantity with its unit, along the vertical axis."""
+        return f"{self.quantity}, {self.unit}" if self.unit else self.quantity
 
     @property
     def legend_entries(self) -> int:
@@ -140,10 +156,32 @@ class AngleFigure:
     worst: float | None = None
 
     @property
-    def one_legend(self) -> bool:
-        """Whether the names of the first panel's curves serve all panels."""
+    def period(self) -> float:
+        """Crank angle of one turn of the cam, deg."""
+        return 360.0 * self.gear_ratio
+
+    @property
+    def closed_crank(self) -> Array:
+        """Crank angles (n + 1,) of closed curves, deg."""
+        return np.append(self.crank, self.period + self.crank[0])
+
+    @property
+    def mark(self) -> float | None:
+        """Crank angle of the dotted line, deg within the turn."""
+        return None if self.worst is None else self.worst % self.period
+
+    @property
+    def named_strokes(self) -> tuple[tuple[float, str, bool], ...]:
+        """Crank angle at which each stroke begins, deg, its name, and whether it is shaded."""
+        names = STROKES if self.strokes else ()
+        return tuple((180.0 * k, name, k % 2 == 1) for k, name in enumerate(names))
+
+    @property
+    def legends(self) -> tuple[bool, ...]:
+        """Whether each panel has a legend: none where the first panel's names serve all."""
         first = [curve.label for curve in self.panels[0].curves]
-        return all([c.label for c in p.curves] == first or len(p.curves) < 2 for p in self.panels)
+        shared = all(len(p.curves) < 2 or [c.label for c in p.curves] == first for p in self.panels)
+        return tuple(p.legend_entries > 1 and not (k and shared) for k, p in enumerate(self.panels))
 
     @property
     def alt(self) -> str:
@@ -161,6 +199,33 @@ class AngleFigure:
                 )
             parts += [f"limit {line.label}: {line.value:.4g} {panel.unit}" for line in panel.limits]
         return f"{self.title} over one turn of the cam. " + ". ".join(parts) + "."
+
+
+@dataclass(frozen=True, eq=False)
+class OutlineCurve:
+    """A curve of the outline, points (2, n) in mm; the inside of one with a `fill` is painted.
+
+    angle (n,) is the cam angle of each point, deg, where the curve has one; `dash` is solid,
+    dashed or dashdot, `marker` a dot or a cross at every point.
+    """
+
+    points: Array
+    colour: str
+    label: str = ""
+    width: float = 1.0
+    dash: str = "solid"
+    fill: str = ""
+    marker: str = ""
+    angle: Array | None = None
+
+
+@dataclass(frozen=True)
+class OutlineText:
+    """Words along a line of the outline: middle, mm, and turn, deg counter-clockwise."""
+
+    words: str
+    place: tuple[float, float]
+    turn: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,10 +250,74 @@ class OutlineFigure:
     counter_hole: tuple[float, float, float, bool] | None = None
 
     @property
+    def curves(self) -> tuple[OutlineCurve, ...]:
+        """Everything that is drawn but words, from the lowest to the highest."""
+        angle = np.linspace(0.0, 360.0, self.contour.shape[1] + 1)
+        made = [
+            OutlineCurve(closed(self.contour), "blue", "cam contour", 1.4, fill="steel",
+                         angle=angle),
+            *self._openings(),
+        ]  # fmt: skip
+        if self.pitch is not None:
+            made.append(OutlineCurve(
+                closed(self.pitch), "muted", "pitch curve (roller centre)", 0.9, "dashdot",
+                angle=angle,
+            ))  # fmt: skip
+        for k in self.radii:
+            made.append(
+                OutlineCurve(np.stack([np.zeros(2), self.contour[:, k]], 1), "ink", "", 0.7)
+            )
+            made.append(OutlineCurve(self.contour[:, k : k + 1], "ink", marker="dot"))
+        cross = np.array([[-2.0, 2.0], [0.0, 0.0]])
+        made += [OutlineCurve(cross, "ink", "", 0.7), OutlineCurve(cross[::-1], "ink", "", 0.7)]
+        if self.follower is not None:
+            label = f"{self.follower_name} {self.worst_label}"
+            made.append(OutlineCurve(self.follower, "vermillion", label, 1.2))
+        touch = slice(self.worst, self.worst + 1)
+        made.append(OutlineCurve(self.contour[:, touch], "vermillion", marker="dot"))
+        if self.pitch is not None:
+            made.append(OutlineCurve(self.pitch[:, touch], "vermillion", marker="cross"))
+        return tuple(made)
+
+    def _openings(self) -> list[OutlineCurve]:
+        """Bore, keyway and counter-hole; a hole that is only proposed is dashed."""
+        made = []
+        if self.bore_radius is not None:
+            bore = circle((0.0, 0.0), self.bore_radius)
+            made.append(OutlineCurve(bore, "blue", fill="card"))
+            if self.keyway is not None:
+                slot = _slot(self.bore_radius, *self.keyway)
+                made.append(OutlineCurve(slot, "blue", fill="card"))
+        if self.counter_hole is not None:
+            x, y, radius, drilled = self.counter_hole
+            dash, fill = ("solid", "card") if drilled else ("dashed", "")
+            made.append(OutlineCurve(circle((x, y), radius), "blue", dash=dash, fill=fill))
+        return made
+
+    @property
     def radii(self) -> tuple[int, int]:
         """Where the contour is nearest to the shaft, and where farthest."""
         radius = np.hypot(*self.contour)
         return int(np.argmin(radius)), int(np.argmax(radius))
+
+    @property
+    def texts(self) -> tuple[OutlineText, ...]:
+        """The least and the greatest radius, along their lines outside the bore."""
+        made = []
+        for word, k in zip(("min", "max"), self.radii, strict=True):
+            x, y = self.contour[:, k]
+            radius = float(np.hypot(x, y))
+            share = 0.5 + 0.5 * (self.bore_radius or 0.0) / radius
+            turn = (np.degrees(np.arctan2(y, x)) + 90.0) % 180.0 - 90.0  # not upside down
+            place = (float(share * x), float(share * y))
+            made.append(OutlineText(f"{word} {radius:.4g} mm", place, float(turn)))
+        return tuple(made)
+
+    @property
+    def reach(self) -> float:
+        """Half the side of a square about the shaft that holds all of it, mm."""
+        shown = [c for c in (self.contour, self.pitch, self.follower) if c is not None]
+        return 1.06 * max(float(np.abs(points).max()) for points in shown)
 
     @property
     def alt(self) -> str:
@@ -199,6 +328,20 @@ class OutlineFigure:
             f" the shaft, with {'' if self.pitch is None else 'pitch curve, '}bore and the"
             f" {self.follower_name} {self.worst_label}."
         )
+
+
+def circle(centre: tuple[float, float], radius: float) -> Array:
+    """Closed circle (2, n)."""
+    angle = np.linspace(0.0, 2 * np.pi, _ROUND)
+    return np.array(centre)[:, None] + radius * np.stack([np.cos(angle), np.sin(angle)])
+
+
+def _slot(bore_radius: float, width: float, depth: float, angle: float) -> Array:
+    """Sides and floor (2, 4) of a keyway that opens into the bore; angle in rad."""
+    inner, outer = np.sqrt(max(bore_radius**2 - width**2 / 4, 0.0)), bore_radius + depth
+    corners = np.array([[inner, outer, outer, inner], np.array([-1, -1, 1, 1]) * width / 2])
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]]) @ corners
 
 
 Figure = AngleFigure | OutlineFigure

@@ -14,8 +14,10 @@
   function themed(spec) {
     const data = spec.data.map((trace) => {
       const line = trace.line && { ...trace.line, color: colour(trace.line.color) };
-      const fill = trace.fillcolor && faded(trace.fillcolor, "2e");
-      return { ...trace, ...(line && { line }), ...(fill && { fillcolor: fill }) };
+      const marker = trace.marker && { ...trace.marker, color: colour(trace.marker.color) };
+      const fill = trace.fillcolor && /* an area is opaque, a ribbon pale */
+        (trace.fill === "toself" ? colour(trace.fillcolor) : faded(trace.fillcolor, "2e"));
+      return { ...trace, ...(line && { line }), ...(marker && { marker }), ...(fill && { fillcolor: fill }) };
     });
     const ink = colour("ink"), muted = colour("muted"), grid = colour("grid");
     const layout = {
