@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +17,7 @@ from matplotlib.tri import Triangulation
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.tables import Table
-from camwright.reports.figure_svg import COLOURS, style
+from camwright.reports.figure_svg import COLOURS, png, style
 from camwright.reports.figures import SERIES
 
 PRESSURE = "5_pressure.npz"
@@ -96,11 +95,7 @@ def framed(
             low = 0.46 + inner * tall + _GAP
             place = (0.62 / width, low / height, inner / width, _ABOVE / height)
             _draw_above(canvas.add_axes(place), (extent[0], extent[1]), above)
-        stream = io.BytesIO()
-        canvas.savefig(
-            stream, format="png", dpi=190, facecolor="white", metadata={"Software": None}
-        )
-    return stream.getvalue()
+        return png(canvas, 190)
 
 
 def _draw_above(ax: Axes, span: tuple[float, float], above: Above) -> None:

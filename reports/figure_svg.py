@@ -130,13 +130,18 @@ def draw(figure: Figure) -> Canvas:
 def svg_and_png(figure: Figure) -> tuple[str, bytes]:
     """The figure as SVG text and as a PNG file, both in the colours of the light theme."""
     with style(figure.id):
-        canvas = draw(figure)
-        svg, png = io.StringIO(), io.BytesIO()
+        canvas, svg = draw(figure), io.StringIO()
         canvas.savefig(svg, format="svg", metadata={"Date": None})
-        canvas.savefig(
-            png, format="png", dpi=150, facecolor=COLOURS["card"], metadata={"Software": None}
-        )
-    return svg.getvalue(), png.getvalue()
+        return svg.getvalue(), png(canvas)
+
+
+def png(canvas: Canvas, dpi: int = 150) -> bytes:
+    """The canvas as a PNG file on white; the same drawing gives the same bytes."""
+    stream = io.BytesIO()
+    canvas.savefig(
+        stream, format="png", dpi=dpi, facecolor=COLOURS["card"], metadata={"Software": None}
+    )
+    return stream.getvalue()
 
 
 def themed(svg: str, figure_id: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +17,7 @@ from matplotlib.ticker import FuncFormatter, NullLocator
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
-from camwright.reports.figure_svg import COLOURS, style
+from camwright.reports.figure_svg import COLOURS, png, style
 
 FILE = "5_bushes.npz"
 COLOUR_MAP = "viridis"
@@ -96,11 +95,7 @@ def drawn(bushes: tuple[Bush, Bush]) -> bytes:
             norm = Normalize(0.0, bush.peak if bush.peak > 0 else 1.0)
             _unrolled(canvas, canvas.add_subplot(grid[number, 1]), bush, norm)
             _across(canvas.add_subplot(grid[number, 2], projection="polar"), bush, norm)
-        stream = io.BytesIO()
-        canvas.savefig(
-            stream, format="png", dpi=150, facecolor="white", metadata={"Software": None}
-        )
-    return stream.getvalue()
+        return png(canvas)
 
 
 def _over_the_turn(canvas: Figure, ax: Axes, bush: Bush) -> None:

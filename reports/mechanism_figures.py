@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from camwright.reports.figure_svg import COLOURS, style
+from camwright.pipeline.base.files import write_atomic
+from camwright.reports.figure_svg import COLOURS, png, style
 from camwright.reports.figures import SERIES
 
 _PAIRS = {
@@ -19,12 +20,10 @@ _PAIRS = {
     "pin_b": ("pin B", "vermillion"),
     "sliding": ("sliding", "purple"),
 }
-_DPI = 150
 
 
 def draw(document: Mapping[str, Any], out: Path) -> tuple[Path, ...]:
     """Energies by pair, torque and reduced inertia over a turn, both workspaces; PNG files."""
-    out.mkdir(parents=True, exist_ok=True)
     space = document["workspace"]
     drawn = {
         "energies": _energies(document),
@@ -45,10 +44,8 @@ def draw(document: Mapping[str, Any], out: Path) -> tuple[Path, ...]:
     }
     paths = []
     for name, canvas in drawn.items():
-        path = out / f"{name}.png"
         with style(name):
-            canvas.savefig(path, dpi=_DPI, facecolor=COLOURS["card"])
-        paths.append(path)
+            paths.append(write_atomic(out / f"{name}.png", png(canvas)))
     return tuple(paths)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from camwright.pipeline.base.files import write_atomic
 from camwright.reports import interactive
 from camwright.reports.figure_svg import drawn_groups
-from camwright.reports.report_content import SHORT, report_content
+from camwright.reports.report_content import SHORT, Section, report_content
 from camwright.reports.report_data import Material
 from camwright.reports.report_tables import plain, shortened
 
@@ -30,6 +31,14 @@ def text(material: Material) -> bytes:
         report=report_content(material), live=interactive.bundle(figures)
     )  # fmt: skip
     return page.encode("utf-8", "replace")
+
+
+def study_page(title: str, sections: Sequence[Section], lead: str = "") -> str:
+    """The page of a study: tables and pictures without scripts."""
+    page: str = environment().get_template("study.html").render(
+        title=title, lead=lead, sections=sections
+    )  # fmt: skip
+    return page
 
 
 def environment() -> Environment:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import html
-import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,8 +9,11 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import COLOURS
-from camwright.reports.report_tables import number
+from camwright.reports.figure_svg import COLOURS, png
+from camwright.reports.page import study_page
+from camwright.reports.picture_list import Picture
+from camwright.reports.report_content import Block, Note, Pictures, Section, Tabular
+from camwright.reports.report_tables import Table, listed
 
 COLUMNS = (
     ("file", "case"),
@@ -42,7 +42,7 @@ def write(folder: Path, document: Mapping[str, Any]) -> Path:
     """
     picture = drawn(document)
     write_atomic(folder / "redesign.png", picture)
-    return write_atomic(folder / "redesign.html", _page(document, picture).encode())
+    return write_atomic(folder / "redesign.html", _page(document, picture))
 
 
 def drawn(document: Mapping[str, Any]) -> bytes:
@@ -72,50 +72,36 @@ def drawn(document: Mapping[str, Any]) -> bytes:
     axes.set_ylim(bottom=0.0)
     axes.grid(color=COLOURS["grid"], lw=0.6)
     axes.legend(fontsize=8, frameon=False)
-    held = io.BytesIO()
-    canvas.savefig(held, format="png", dpi=150, metadata={"Software": None})
-    return held.getvalue()
-
-
-def shown(value: Any) -> str:
-    """A value of a point as the table has it."""
-    if isinstance(value, (list, tuple)):
-        return ", ".join(str(one).replace("_", " ") for one in value) or "none"
-    return number(value)
+    return png(canvas)
 
 
 def _page(document: Mapping[str, Any], picture: bytes) -> str:
     title = f"{document['case']}: redesign, ripple against {document['against']}"
-    image = base64.b64encode(picture).decode()
-    refused = [
-        [f"{row['roller']}, {row['spring']}, {row['bush']}", row["why"]]
-        for row in document["refused"]
-    ]
-    pruned = [[row["part"], row["why"]] for row in document["pruned"]]
     words = (
         "Each point is a case file, drawn by constrained synthesis and judged by closed forms, as "
-        "<code>camwright check</code> does; <code>camwright run</code> signs it off by finite "
-        "elements."
+        "camwright check does; camwright run signs it off by finite elements."
     )
-    points = [[shown(row.get(name)) for name, _ in COLUMNS] for row in document["points"]]
-    return (
-        f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{html.escape(title)}</title>'
-        "<style>body{font:15px sans-serif;margin:2em;max-width:80em}td,th{padding:.3em .7em;"
-        "text-align:left;border-bottom:1px solid #ccc}img{max-width:100%}</style>"
-        f"<h1>{html.escape(title)}</h1><p>{words}</p>"
-        f"{_table([words for _, words in COLUMNS], points)}"
-        f'<img alt="Torque ripple left over {html.escape(AXES[document["against"]][1])}"'
-        f' src="data:image/png;base64,{image}">'
-        f"<h2>Solved whole and not on the front</h2>{_table(['parts', 'why'], refused)}"
-        f"<h2>Left out before anything was solved</h2>{_table(['part', 'why'], pruned)}</html>"
-    )
+    points = [[listed(row.get(name)) for name, _ in COLUMNS] for row in document["points"]]
+    refused = [
+        [f"{row['roller']}, {row['spring']}, {row['bush']}", str(row["why"])]
+        for row in document["refused"]
+    ]
+    pruned = [[str(row["part"]), str(row["why"])] for row in document["pruned"]]
+    alt = f"Torque ripple left over {AXES[document['against']][1]}"
+    front = [
+        _table("Points of the front", [words for _, words in COLUMNS], points, 4, 7),
+        Block(Pictures([Picture("Front", alt=alt, png=picture)])),
+    ]
+    return study_page(title, [
+        Section("points", "", front),
+        Section("refused", "Solved whole and not on the front",
+                [_table("Not on the front", ("parts", "why"), refused, 2)]),
+        Section("pruned", "Left out before anything was solved",
+                [_table("Left out", ("part", "why"), pruned, 2)]),
+    ], words)  # fmt: skip
 
 
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    if not rows:
-        return "<p>None.</p>"
-    first = "".join(f"<th>{html.escape(words)}</th>" for words in head)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return f"<table><tr>{first}</tr>{body}</table>"
+def _table(
+    label: str, head: Sequence[str], rows: Sequence[Sequence[str]], text: int, numbers: int = 0
+) -> Block:
+    return Block(Tabular(Table(label, head, rows, text, numbers)) if rows else Note("None."))

@@ -89,6 +89,13 @@ def number(value: Any, digits: int = 4) -> str:
     return shown.replace("-", MINUS)
 
 
+def listed(value: Any) -> str:
+    """A value as `number` writes it; a list as words, "none" where it is empty."""
+    if isinstance(value, (list, tuple)):
+        return ", ".join(words(str(one)) for one in value) or "none"
+    return number(value)
+
+
 def quantity(value: Any, unit: str = "", digits: int = 4) -> str:
     """A number with its unit, SI scaled to what a drawing uses (Pa to MPa, rad to deg)."""
     if isinstance(value, (int, float)) and not isinstance(value, bool) and unit in SHOWN_AS:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,7 @@ from matplotlib.figure import Figure
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
-from camwright.reports.figure_svg import COLOURS, FIGURE_WIDTH, style
+from camwright.reports.figure_svg import COLOURS, FIGURE_WIDTH, png, style
 
 FILE = "5_envelope.npz"
 MAPS = (("von_mises_MPa", "von Mises"), ("shear_range_MPa", "range of shear along the surface"))
@@ -66,7 +65,7 @@ def drawn(envelope: dict[str, Array]) -> bytes:
             canvas.colorbar(shown, ax=ax, label="MPa", pad=0.01)
         ax.set_xlabel("cam angle, deg")
         ax.set_xticks(np.arange(0, 361, 45))
-        return _png(canvas)
+        return png(canvas)
 
 
 def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Array) -> bytes:
@@ -105,7 +104,7 @@ def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Arr
         ax.set(aspect="equal", xlabel="x, mm", ylabel="y, mm", xlim=span[0], ylim=span[1])
         ax.set_title(f"depths drawn {scale:g} times as large", fontsize=8.5, loc="left")
         canvas.colorbar(mesh, ax=ax, label="greatest von Mises stress of the turn, MPa", pad=0.01)
-        return _png(canvas)
+        return png(canvas)
 
 
 def _between(at: Array, angle: Array, values: Array) -> Array:
@@ -117,12 +116,6 @@ def _enlarged(wanted: float) -> float:
     """The round number next below: 1, 2 or 5 times a power of ten."""
     power = 10.0 ** np.floor(np.log10(wanted))
     return float(max(step for step in (1.0, 2.0, 5.0) if step * power <= wanted) * power)
-
-
-def _png(canvas: Figure) -> bytes:
-    stream = io.BytesIO()
-    canvas.savefig(stream, format="png", dpi=150, facecolor="white", metadata={"Software": None})
-    return stream.getvalue()
 
 
 def worst(envelope: dict[str, Array], name: str) -> tuple[float, float, float]:
