@@ -1,10 +1,9 @@
-"""Pictures of fields: a raster set in axes, and the flat drawing used where nothing renders."""
+"""Pictures of fields: axes around a raster, the pressure above it, drawing without OpenGL."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,6 +13,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from matplotlib.tri import Triangulation
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.tables import Table
@@ -28,16 +28,17 @@ _ELLIPSE = np.linspace(-1.0, 1.0, 201)
 
 @dataclass(frozen=True, eq=False)
 class Above:
-    """Curves on the horizontal axis of a raster: label, places (n,), values (n,); first filled."""
+    """Curves above a raster: label, positions (n,), values (n,); the first one is filled."""
 
     title: str
     curves: tuple[tuple[str, Array, Array], ...]
 
 
 def over_the_contact(path: Path, cycle: Table, angle: float, half_width: float) -> Above | None:
-    """Pressure and Hertz's ellipse over places in half-widths (mm), at a cam angle, deg.
+    """Contact pressure by finite elements and of Hertz theory at a cam angle, deg.
 
-    Of several load cases the one with the greatest pressure there; None where the run keeps none.
+    Positions are in units of the half-width, mm. Of several load cases the one with the highest
+    pressure is taken; None if the run has no record of the pressure at this angle.
     """
     try:
         with np.load(path, allow_pickle=False) as entry:
@@ -61,10 +62,10 @@ def over_the_contact(path: Path, cycle: Table, angle: float, half_width: float) 
 
 def framed(
     image: Array, extent: tuple[float, float, float, float], labels: tuple[str, str], title: str,
-    colour_map: Any, clim: tuple[float, float], log: bool, bar: tuple[float, str] | None,
+    colour_map: str, clim: tuple[float, float], log: bool, bar: tuple[float, str] | None,
     notes: tuple[tuple[str, float], ...] = (), above: Above | None = None,
 ) -> bytes:  # fmt: skip
-    """A rendered raster (rows, columns, 3) inside axes, with colour bar and scale bar, as PNG."""
+    """PNG of a raster (rows, columns, 3) in axes with colour bar and scale bar."""
     with style("picture"):
         width = 6.4
         tall = (extent[3] - extent[2]) / (extent[1] - extent[0])
@@ -126,10 +127,11 @@ def _scale_bar(ax: Axes, extent: tuple[float, float, float, float], bar: tuple[f
 
 
 def triangles_picture(
-    points: Array, triangles: Array, values: Array, window: tuple[float, float, float, float],
-    clim: tuple[float, float], log: bool, colour_map: Any,
+    points: Array, triangles: NDArray[np.int64], values: Array,
+    window: tuple[float, float, float, float], clim: tuple[float, float], log: bool,
+    colour_map: str,
 ) -> Array:  # fmt: skip
-    """A raster of a field on triangles, for machines that cannot render in three dimensions.
+    """Raster of a field on triangles, drawn by matplotlib.
 
     `points` (2, n), `triangles` (3, m), `values` (n,); `window` is xmin, xmax, ymin, ymax.
     """
@@ -140,9 +142,8 @@ def triangles_picture(
     ax.axis("off")
     norm = LogNorm(*clim) if log else Normalize(*clim)
     shown = np.clip(values, *clim)
-    mesh: Any = Triangulation(points[0], points[1], triangles.T)
-    paint: Any = ax.tripcolor
-    paint(mesh, shown, norm=norm, cmap=colour_map, shading="gouraud")
+    mesh = Triangulation(points[0], points[1], triangles.T)
+    ax.tripcolor(mesh, shown, norm=norm, cmap=colour_map, shading="gouraud")
     ax.set_xlim(window[0], window[1])
     ax.set_ylim(window[2], window[3])
     agg.draw()

@@ -1,9 +1,8 @@
-"""Figures as SVG that follows the page's light or dark theme, and as PNG files.
+"""Figures drawn by matplotlib: SVG for page and PDF, PNG files.
 
-Every colour has a name. In the SVG it becomes a style variable of the page, so one drawing reads
-on white paper and on a dark screen; in the PNG it is the colour of the light theme. The hues are
-those of Okabe and Ito (2008), told apart by the colour-blind, the pale ones darkened to stand off
-white paper; dashes repeat what hue says.
+Drawings use the colours of the light theme. For the page each colour becomes a style variable, so
+that one SVG serves the light and the dark theme. The hues are those of Okabe and Ito (2008), safe
+for colour-blind readers, darkened for contrast on white; dashes distinguish curves as well.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from markupsafe import Markup
@@ -23,6 +22,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import ArrayLike
 
 from camwright.pipeline.base.files import write_atomic
 from camwright.reports.analysis_sheet import groups
@@ -43,10 +43,13 @@ from camwright.reports.figures import (
 )
 from camwright.reports.report_data import FIGURES, Material
 
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType
+
 _CSS = (Path(__file__).parent / "templates" / "report.css").read_text(encoding="utf-8")
 COLOURS = dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", _CSS[: _CSS.index("}")]))
 """Colours of the page's light theme by name."""
-STYLE: dict[str, Any] = {
+STYLE: dict[RcKeyType, str | float] = {
     "svg.fonttype": "none",
     "font.family": "sans-serif",
     "font.size": 8.5,
@@ -77,13 +80,14 @@ BACKING = {"facecolor": COLOURS["card"], "alpha": 0.75, "linewidth": 0, "pad": 0
 FIGURE_WIDTH = 5.6
 LEFT, RIGHT, TOP, BOTTOM, GAP = 0.68, 0.16, 0.66, 0.42, 0.14
 LEGEND_ROW = 5
-DASHES: dict[str, Any] = {"solid": "-", "dashed": "--", "dashdot": (0, (6, 2, 1, 2))}
+Dash: TypeAlias = str | tuple[float, tuple[float, ...]]
+DASHES: dict[str, Dash] = {"solid": "-", "dashed": "--", "dashdot": (0, (6, 2, 1, 2))}
 MARKERS = {"dot": "o", "cross": "+"}
 
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A figure of the sheet with its drawings."""
+    """A figure with its drawings."""
 
     figure: Figure
     svg: str
@@ -91,18 +95,18 @@ class Drawn:
 
     @property
     def themed(self) -> Markup:
-        """The SVG in the colours of the page's theme."""
-        return Markup(themed(self.svg, self.figure.id))  # noqa: S704 - its texts are escaped
+        """The SVG with colours of the page theme."""
+        return Markup(themed(self.svg, self.figure.id))  # noqa: S704 - matplotlib escapes text
 
 
 @lru_cache(maxsize=1)
 def drawn_groups(material: Material) -> Sequence[tuple[str, Sequence[Drawn]]]:
-    """The figures that a run has columns for, by group, in reading order."""
+    """Drawings of the sheet, by group; cached."""
     return tuple((t, tuple(map(_drawn, figures))) for t, figures in groups(material.turn))
 
 
 def write(material: Material) -> list[Path]:
-    """Write ``figures/ID.png`` for every figure of the sheet."""
+    """Write ``figures/ID.png`` of each figure."""
     return [
         write_atomic(material.folder / FIGURES / f"{one.figure.id}.png", one.png)
         for _, drawn in drawn_groups(material)
@@ -116,19 +120,18 @@ def _drawn(figure: Figure) -> Drawn:
 
 @contextmanager
 def style(salt: str) -> Iterator[None]:
-    """The house style; `salt` keeps the ids of several drawings on one page apart."""
-    settings: Any = STYLE | {"svg.hashsalt": salt}
-    with rc_context(settings):
+    """Settings of all drawings; `salt` makes the ids in the SVG unique on a page."""
+    with rc_context({**STYLE, "svg.hashsalt": salt}):
         yield
 
 
 def draw(figure: Figure) -> Canvas:
-    """The matplotlib figure of a sheet figure, closed curves and all."""
+    """The matplotlib figure of a figure."""
     return _angles(figure) if isinstance(figure, AngleFigure) else _outline(figure)
 
 
 def svg_and_png(figure: Figure) -> tuple[str, bytes]:
-    """The figure as SVG text and as a PNG file, both in the colours of the light theme."""
+    """SVG text and PNG file of a figure, in the colours of the light theme."""
     with style(figure.id):
         canvas, svg = draw(figure), io.StringIO()
         canvas.savefig(svg, format="svg", metadata={"Date": None})
@@ -136,7 +139,7 @@ def svg_and_png(figure: Figure) -> tuple[str, bytes]:
 
 
 def png(canvas: Canvas, dpi: int = 150) -> bytes:
-    """The canvas as a PNG file on white; the same drawing gives the same bytes."""
+    """PNG file of a canvas on white; equal drawings give equal bytes."""
     stream = io.BytesIO()
     canvas.savefig(
         stream, format="png", dpi=dpi, facecolor=COLOURS["card"], metadata={"Software": None}
@@ -145,7 +148,7 @@ def png(canvas: Canvas, dpi: int = 150) -> bytes:
 
 
 def themed(svg: str, figure_id: str) -> str:
-    """Matplotlib's SVG made fit for a page: no header, no ids that clash, colours by name."""
+    """SVG for inclusion in a page: no header, unique ids, two decimals, colours by name."""
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
     svg = re.sub(r'<g id="[^"]*"', "<g", svg)
@@ -162,7 +165,7 @@ def themed(svg: str, figure_id: str) -> str:
 
 
 def _angles(figure: AngleFigure) -> Canvas:
-    """Panels sharing the crank axis, with the cam axis on top."""
+    """Panels with a common crank axis below and the cam axis above."""
     rows = -(-max(panel.legend_entries for panel in figure.panels) // LEGEND_ROW)
     heights = [panel.height * 1.62 for panel in figure.panels]
     gaps = [GAP + (0.2 if legend else 0.0) for legend in figure.legends]
@@ -202,7 +205,7 @@ def _legend(ax: Axes, panel: Panel, height: float) -> None:
 
 
 def _panel(ax: Axes, figure: AngleFigure, panel: Panel) -> None:
-    """Curves, limits, grid and the mark of the worst angle on one pair of axes."""
+    """Curves, limits, grid and the line of the worst angle on one pair of axes."""
     crank = figure.closed_crank
     for start, _, shaded in figure.named_strokes:
         if shaded:
@@ -238,7 +241,7 @@ def _panel(ax: Axes, figure: AngleFigure, panel: Panel) -> None:
 
 
 def _limits(ax: Axes, panel: Panel, low: float, high: float) -> None:
-    """Limit lines; one that lies off the axes is told in words at the edge it lies beyond."""
+    """Limit lines; limits outside the axes are written at their edge."""
     placed = placed_limits(panel, low, high)
     for line, above in placed.inside:
         ax.axhline(
@@ -262,8 +265,12 @@ def _limits(ax: Axes, panel: Panel, low: float, high: float) -> None:
 
 
 def _cam_axis(ax: Axes, gear_ratio: float) -> None:
-    to_cam: Any = lambda crank: crank / gear_ratio  # noqa: E731 - matplotlib wants a pair
-    to_crank: Any = lambda cam: cam * gear_ratio  # noqa: E731
+    def to_cam(crank: ArrayLike) -> ArrayLike:
+        return np.asarray(crank) / gear_ratio
+
+    def to_crank(cam: ArrayLike) -> ArrayLike:
+        return np.asarray(cam) * gear_ratio
+
     cam = ax.secondary_xaxis("top", functions=(to_cam, to_crank))
     cam.set_xticks(np.arange(0.0, 361.0, CAM_STEP))
     cam.spines["top"].set_color(COLOURS["muted"])
@@ -272,7 +279,7 @@ def _cam_axis(ax: Axes, gear_ratio: float) -> None:
 
 
 def _outline(figure: OutlineFigure) -> Canvas:
-    """Curves and words of the outline on equal axes."""
+    """Curves and text of the outline on equal axes."""
     canvas = Canvas(figsize=(FIGURE_WIDTH, FIGURE_WIDTH - 0.1))
     ax = canvas.add_axes((LEFT / FIGURE_WIDTH, 0.42 / 5.5, 4.84 / FIGURE_WIDTH, 4.84 / 5.5))
     for order, curve in enumerate(figure.curves, start=1):

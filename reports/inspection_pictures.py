@@ -1,4 +1,4 @@
-"""Pictures of an inspected cam, from its files alone."""
+"""Picture of an inspected cam: deviation, normal force, contact pressure."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from camwright.pipeline.results.run_reader import CYCLE, load_run
 from camwright.reports.figure_svg import png
 
 _EXAGGERATED = 0.12
-"""Of the mean radius: how large the greatest deviation is drawn on the part."""
+"""Maximum deviation as drawn on the contour, as a share of the mean radius."""
 
 
 def draw(run: Path, tolerance_um: float) -> Path:
-    """Draw ``inspection/deviation.png``: deviation over the turn and on the part, force, pressure.
+    """Write ``inspection/deviation.png``.
 
     Returns
     -------
-    Path    the picture
+    Path   the picture
     """
     folder = run / "inspection"
     deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv", CYCLE)

@@ -1,7 +1,7 @@
-"""The sheet's figures for an interactive library: plain values that Plotly draws in the page.
+"""Figures as data for Plotly, which draws them in the page.
 
-The library is bundled into the page, so that it opens without a network. Colours stay names here;
-the page fills in those of its light or dark theme.
+The library is part of the page, which therefore needs no network. Colours are names; the script of
+the page replaces them by those of its theme.
 """
 
 from __future__ import annotations
@@ -10,10 +10,9 @@ import base64
 import hashlib
 import html
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
 
 import numpy as np
 from markupsafe import Markup
@@ -36,8 +35,8 @@ from camwright.reports.figures import (
     placed_limits,
     vertical_span,
 )
+from camwright.reports.report_tables import Json
 
-Json: TypeAlias = "str | float | Sequence[Json] | Mapping[str, Json] | None"
 Spec = dict[str, Json]
 
 _HERE = Path(__file__).parent
@@ -51,7 +50,7 @@ _HOVER_TITLE, _HOVER_CAM = "crank %{x:.1f}°", " · cam %{customdata:.1f}°"
 
 @dataclass(frozen=True)
 class Bundle:
-    """What an interactive page carries: scripts, their hashes for its policy, the figures' data."""
+    """Scripts of a page, their hashes for its content security policy, data of its figures."""
 
     scripts: tuple[Markup, ...]
     hashes: tuple[str, ...]
@@ -59,7 +58,7 @@ class Bundle:
 
 
 def bundle(figures: Iterable[Figure]) -> Bundle:
-    """Scripts and data of some figures."""
+    """Scripts and data of figures."""
     specs = {figure.id: specification(figure) for figure in figures}
     return Bundle(
         *scripts(_SCRIPTS),
@@ -68,7 +67,7 @@ def bundle(figures: Iterable[Figure]) -> Bundle:
 
 
 def scripts(sources: Iterable[Path]) -> tuple[tuple[Markup, ...], tuple[str, ...]]:
-    """Scripts that may stand in a page, the library's and our own, and their hashes."""
+    """Scripts escaped for inclusion in a page, and their hashes."""
     safe = [
         source.read_text(encoding="utf-8")
         .replace("</script", "<\\/script")
@@ -79,12 +78,12 @@ def scripts(sources: Iterable[Path]) -> tuple[tuple[Markup, ...], tuple[str, ...
 
 
 def specification(figure: Figure) -> Spec:
-    """Traces and layout of a figure in Plotly's terms, colours by name."""
+    """Traces and layout of a figure for Plotly, colours by name."""
     return _angles(figure) if isinstance(figure, AngleFigure) else _outline(figure)
 
 
-def script_safe_json(value: object) -> str:
-    """JSON that may stand in a script element: nothing in it can end the element."""
+def script_safe_json(value: Json) -> str:
+    """JSON for a script element, with <, > and & escaped."""
     text = json.dumps(value, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
@@ -115,7 +114,7 @@ def _angles(figure: AngleFigure) -> Spec:
         for curve in panel.curves:
             common = {"type": "scatter", "mode": "lines", "x": crank, "xaxis": "x", "yaxis": axis}
             traces += [common | band for band in _band(curve)]
-            # the cam angle once for all curves that the pointer names together
+            # one curve of the figure shows the cam angle
             hover = _HOVER_CAM if not any("hovertemplate" in trace for trace in traces) else ""
             traces.append(
                 common | _curve(curve, panel, hover) | legend
@@ -139,7 +138,7 @@ def _angles(figure: AngleFigure) -> Spec:
 
 @dataclass(frozen=True)
 class _Lines:
-    """Pixels of a figure: its height, the margin at its top, and each panel's share of the rest."""
+    """Height and top margin of a figure, pixels, and the vertical domain of each panel, 0 to 1."""
 
     height: int
     top: int
@@ -159,14 +158,14 @@ class _Lines:
 
 
 def _limits(panel: Panel, axis: str, low: float, high: float) -> tuple[list[Spec], list[Spec]]:
-    """Lines of a panel's limits, and the words beside them."""
+    """Lines and labels of the limits of a panel."""
     placed = placed_limits(panel, low, high)
     shapes: list[Spec] = [
         {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "yref": axis, "y0": line.value,
          "y1": line.value, "line": {"color": "fail", "width": 1.2, "dash": "dash"}}
         for line, _ in placed.inside
     ]  # fmt: skip
-    # words beyond the axes stand at the edge, at the top below the names of the strokes
+    # a limit outside the axes is written at the edge; the upper edge has the stroke names
     words = [(line.words(panel.unit), line.value, above, 0) for line, above in placed.inside]
     if placed.beyond:
         shift = -_STROKE_PIXELS if placed.above else 0
@@ -181,7 +180,7 @@ def _limits(panel: Panel, axis: str, low: float, high: float) -> tuple[list[Spec
 
 
 def _stroke_names(figure: AngleFigure) -> list[Spec]:
-    """Names of the engine's strokes along the top of the first panel."""
+    """Names of the strokes at the top of the first panel."""
     return [
         {"xref": "x", "x": start + 90, "yref": "paper", "y": 1, "yanchor": "top",
          "showarrow": False, "text": name, "font": {"color": "muted", "size": 10}}
@@ -199,7 +198,7 @@ def _curve(curve: Curve, panel: Panel, hover: str) -> Spec:
 
 
 def _band(curve: Curve) -> list[Spec]:
-    """Lower and upper edge of a curve's ribbon, filled between."""
+    """Lower and upper edge of the ribbon of a curve."""
     if curve.band is None:
         return []
     edge: Spec = {"showlegend": False, "hoverinfo": "skip",
@@ -209,7 +208,7 @@ def _band(curve: Curve) -> list[Spec]:
 
 
 def _shades(figure: AngleFigure) -> list[Spec]:
-    """Shaded strokes, and the dotted line at the worst angle."""
+    """Shaded strokes and the dotted line of the worst angle."""
     common: Spec = {"xref": "x", "yref": "paper", "y0": 0, "y1": 1}
     shapes = [
         common | {"type": "rect", "x0": start, "x1": start + 180, "fillcolor": "shade",

@@ -1,4 +1,4 @@
-"""One self-contained page from a run folder; nothing is solved again."""
+"""The report as one self-contained HTML page, and the pages of studies."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def text(material: Material) -> bytes:
 
 
 def study_page(title: str, sections: Sequence[Section], lead: str = "") -> str:
-    """The page of a study: tables and pictures without scripts."""
+    """Page of a study: tables and pictures, no scripts."""
     page: str = environment().get_template("study.html").render(
         title=title, lead=lead, sections=sections
     )  # fmt: skip
@@ -42,7 +42,7 @@ def study_page(title: str, sections: Sequence[Section], lead: str = "") -> str:
 
 
 def environment() -> Environment:
-    """The templates, what they print escaped."""
+    """The templates, with escaping of all text."""
     made = Environment(
         loader=FileSystemLoader(Path(__file__).parent / "templates"), autoescape=True,
         undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,

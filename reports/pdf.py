@@ -1,4 +1,4 @@
-"""The report on A4 as PDF/A with page numbers, typeset by typst."""
+"""The report as PDF/A on A4, set by typst."""
 
 from __future__ import annotations
 
@@ -22,19 +22,18 @@ from camwright.reports.figure_svg import COLOURS, Drawn
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_content import Report, report_content
 from camwright.reports.report_data import Material
-from camwright.reports.report_tables import isolated, plain
+from camwright.reports.report_tables import Json, isolated, plain
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 Value: TypeAlias = "str | float | Sequence[Value] | DataclassInstance | None"
-Json: TypeAlias = "str | float | Sequence[Json] | Mapping[str, Json] | None"
 
 PDF = "8_report.pdf"
 MISSING = "a PDF needs the package typst: pip install 'camwright[pdf]'"
 _TEMPLATE = Path(__file__).parent / "templates" / "report.typ"
 _FONTS = Path(mpl.get_data_path()) / "fonts" / "ttf"
-_LONG_WORD = re.compile(r"(?![0-9a-f]{64}\b)\S{20,}")  # but for a SHA-256
+_LONG_WORD = re.compile(r"(?![0-9a-f]{64}\b)\S{20,}")  # except SHA-256
 _BREAK = "\u200b"
 
 
@@ -50,16 +49,16 @@ def write(material: Material) -> list[Path]:
 
 
 def typeset(report: Report) -> bytes:
-    """A report as PDF; the same report gives the same bytes.
+    """PDF of a report; equal reports give equal bytes.
 
-    Its words are data to typst, never source, and the only files typst can read are pictures of
-    the report. The fonts are those that matplotlib brings; fonts of the system serve for
-    characters that the report's own font lacks.
+    All text is passed as data, never as source, and typst can read no file but the pictures of
+    the report. Fonts are those of the matplotlib package; system fonts are used only for
+    characters that DejaVu Sans lacks.
 
     Raises
     ------
     ResultError
-        If typst is not installed, or refuses the document.
+        If typst is not installed or cannot set the document.
     """
     if importlib.util.find_spec("typst") is None:
         raise ResultError(MISSING)
@@ -78,7 +77,7 @@ def typeset(report: Report) -> bytes:
         words = json.dumps(record, ensure_ascii=False, allow_nan=False)
         try:
             return compiled(words, folder)
-        except typst.TypstError:  # PDF/A refuses characters of private use
+        except typst.TypstError:  # PDF/A excludes private-use characters
             pass
         try:
             return compiled(_drawable(words), folder)
@@ -87,7 +86,7 @@ def typeset(report: Report) -> bytes:
 
 
 def _fields(value: DataclassInstance, folder: Path) -> Mapping[str, Json]:
-    """Fields and properties of a part of the report; pictures become files of `folder`."""
+    """Fields and properties as JSON; pictures are written to `folder`."""
     if isinstance(value, Drawn):
         figure = value.figure
         words = {"title": figure.title, "caption": figure.caption, "alt": figure.alt}
@@ -117,13 +116,13 @@ def _json(value: Value, folder: Path) -> Json:
 
 
 def _broken(text: str) -> str:
-    """Text as typst is to show it: a long word may break, text from right to left is isolated."""
+    """Text on one line, with break opportunities in long words, bidirectionally isolated."""
     line = re.sub(r"[ \t\r\n]+", " ", plain(text))
     return isolated(_LONG_WORD.sub(lambda word: _BREAK.join(word.group()), line))
 
 
 def _drawable(text: str) -> str:
-    """Text with replacement characters for what the font of the report lacks."""
+    """Text with U+FFFD for the characters that DejaVu Sans lacks."""
     known = FT2Font(_FONTS / "DejaVuSans.ttf").get_charmap()
     invisible = ("Cc", "Cf")
     return "".join(

@@ -1,11 +1,11 @@
-"""What a report says, section by section; the page and the PDF are drawn from it."""
+"""Contents of a report by section: text, tables, figures. Page and PDF render it."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from camwright.reports.report_tables import (
     DASH,
     CheckRow,
     InputTable,
+    Record,
     Status,
     Table,
     Tile,
@@ -28,40 +29,40 @@ from camwright.reports.sheet_turn import Turn
 from camwright.reports.verdict_text import Verdict, verdict
 
 SHORT = 140
-"""Characters of a title or name that is to stay on one line."""
+"""Maximum number of characters of a title or name on one line."""
 TRIALS_HEAD = (
-    "Trial", "Smoothing", "Strength", "Width, crank", "Why", "Verdict",
-    "Required checks that do not hold",
+    "Trial", "Smoothing", "Strength", "Width, crank angle", "Reason", "Verdict",
+    "Required checks not passed",
 )  # fmt: skip
 CHECKS_HEAD = ("Check", "Status", "Demand", "Limit", "Utilisation", "Where")
 ASSUMPTIONS = (
-    "The contact is two-dimensional and in plane strain: every slice across the width carries the "
-    "same load. Edge stress at its ends, tilt and crowning are not in the numbers.",
-    "Both bodies are linear elastic. Where the shakedown or yield check fails, the true stresses "
-    "differ from those shown.",
-    "Surfaces are smooth, dry and free of traction where the contact is solved. Film, mixed "
-    "friction and the stress of traction are closed forms beside it, where the case gives oil, "
-    "roughness and friction; they do not feed back. A flat face drags on the follower by the "
-    "friction given.",
-    "The roller is solid on its hub, unless the case tells of its outer ring and balls. The "
-    "ratings of its bearing are taken as the maker states them.",
-    "Loads are those of a constant cam speed; the ripple of the engine's speed acts on the elastic "
-    "stem alone, where the case gives the crankshaft's inertia.",
-    "The camshaft, its bearings and the drive between crank and cam are rigid and without play.",
-    "The loads are those of a rigid follower. One mass on an elastic stem, with impacts after a "
-    "loss of contact, and the surge of the spring are solved beside them and do not feed back.",
-    "Guide friction is of Coulomb's kind with constant coefficients and changes sign with the "
-    "direction of motion; it is in balance with guides of finite length and clearance.",
-    "Stress at the keyway's corners and at the edge of the bore depends on fillets the case does "
-    "not give, and is excluded from every check.",
-    "The pressure of Hertz's theory takes both bodies for half-planes; bodies of finite size "
-    "differ a little, which is part of the difference shown.",
+    "The contact is two-dimensional in plane strain, with a uniform load over the width. Edge "
+    "stress at its ends, tilt and crowning are not included.",
+    "Both bodies are linear elastic. Where the shakedown or yield check fails, the real stresses "
+    "differ from those reported.",
+    "Surfaces are smooth and dry, and the contact is solved without traction. Film thickness, "
+    "mixed friction and traction stress are closed-form results without effect on the contact "
+    "pressure, computed where the case states lubricant, roughness and friction. The friction of "
+    "a flat face loads the follower.",
+    "The roller is solid on its hub unless the case states outer ring and balls. Ratings of its "
+    "bearing are those of the manufacturer.",
+    "The cam speed is constant in each load case. The speed ripple of the engine acts on the "
+    "elastic stem only, where the case states the inertia of the crankshaft.",
+    "Camshaft, camshaft bearings and the drive from crank to cam are rigid, without backlash.",
+    "The follower is rigid. One mass on an elastic stem, with impacts after loss of contact, and "
+    "the surge of the spring are solved in addition, without effect on the loads.",
+    "Guide friction is Coulomb friction with constant coefficients, opposed to the motion, in "
+    "equilibrium with guides of finite length and clearance.",
+    "Stress at the keyway corners and at the edge of the bore depends on fillets that the case "
+    "does not state; it is excluded from all checks.",
+    "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference "
+    "between Hertz theory and finite elements.",
 )
 
 
 @dataclass(frozen=True)
 class Checks:
-    """Checks as a table of their own, with bars of utilisation."""
+    """Table of checks with utilisation bars."""
 
     kind: ClassVar[str] = "checks"
     head: Sequence[str]
@@ -79,7 +80,7 @@ class Tabular:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Names with their values, in one or two columns; `code` is text for machines."""
+    """Names and values in one or two columns; `code` sets values in a monospaced font."""
 
     kind: ClassVar[str] = "pairs"
     label: str
@@ -90,7 +91,7 @@ class Pairs:
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """Plots over the turn, and the outline."""
+    """Figures of the sheet."""
 
     kind: ClassVar[str] = "figures"
     figures: Sequence[Drawn]
@@ -98,7 +99,7 @@ class Figures:
 
 @dataclass(frozen=True, eq=False)
 class Pictures:
-    """Rasters of fields."""
+    """Pictures of fields."""
 
     kind: ClassVar[str] = "pictures"
     pictures: Sequence[Picture]
@@ -106,7 +107,7 @@ class Pictures:
 
 @dataclass(frozen=True)
 class Inputs:
-    """Sections of the case."""
+    """Sections of the case file."""
 
     kind: ClassVar[str] = "inputs"
     tables: Sequence[InputTable]
@@ -114,7 +115,7 @@ class Inputs:
 
 @dataclass(frozen=True)
 class Points:
-    """Statements in a list."""
+    """List of statements."""
 
     kind: ClassVar[str] = "points"
     points: Sequence[str]
@@ -122,7 +123,7 @@ class Points:
 
 @dataclass(frozen=True)
 class Note:
-    """A remark in small type."""
+    """Paragraph in small type."""
 
     kind: ClassVar[str] = "note"
     text: str
@@ -130,7 +131,7 @@ class Note:
 
 @dataclass(frozen=True)
 class Signatures:
-    """Places to sign."""
+    """Fields for signatures."""
 
     kind: ClassVar[str] = "signatures"
     roles: Sequence[str] = ("Prepared", "Checked", "Approved")
@@ -142,10 +143,7 @@ Content = Checks | Tabular | Pairs | Figures | Pictures | Inputs | Points | Note
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """A part of a section: title and lead, either may be empty, then what is shown.
-
-    Blocks that are `narrow` may stand side by side.
-    """
+    """Part of a section: title, introduction, content; `narrow` ones are set side by side."""
 
     content: Content | None
     title: str = ""
@@ -155,7 +153,7 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """A section of a report; `brief` is its title in the list of contents."""
+    """Section of a report; `brief` is its title in the contents."""
 
     id: str
     title: str
@@ -166,7 +164,7 @@ class Section:
 
 @dataclass(frozen=True, eq=False)
 class Report:
-    """All that a report says."""
+    """Contents of a report."""
 
     title: str
     facts: Sequence[tuple[str, str]]
@@ -178,12 +176,12 @@ class Report:
 
     @property
     def short_title(self) -> str:
-        """The title on a line of its own."""
+        """The title, cut to one line."""
         return shortened(self.title, SHORT)
 
 
 def report_content(material: Material) -> Report:
-    """The report of a run."""
+    """Contents of the report of a run."""
     run = material.run
     final = run.final
     statement = titled(str(run.summary.get("statement") or ""), final.checks)
@@ -194,15 +192,15 @@ def report_content(material: Material) -> Report:
         (
             _checks(material), _numbers(material), _sheet(material),
             Section(
-                "fields", "Stress field at the worst angle",
+                "fields", "Stress fields",
                 (Block(Pictures([picture for draw in PICTURES for picture in draw(material)])),),
-                brief="Stress field",
+                brief="Stress fields",
             ),
             _trials(material), _evidence(material),
             Section(
-                "inputs", "Inputs and where they come from",
+                "inputs", "Inputs and sources",
                 (Block(Inputs(report_tables.input_tables(material.case))),),
-                "The case as resolved, defaults included.", "Inputs",
+                "Resolved case, defaults included.", "Inputs",
             ),
             Section(
                 "assumptions", "Assumptions and limitations", (Block(Points(ASSUMPTIONS)),),
@@ -214,20 +212,20 @@ def report_content(material: Material) -> Report:
     )  # fmt: skip
 
 
-def titled(text: str, checks: Sequence[Mapping[str, Any]]) -> str:
-    """A statement with the checks it names by their ids named by their titles."""
+def titled(text: str, checks: Sequence[Record]) -> str:
+    """A statement with ids of checks replaced by their titles."""
     titles = {str(check["id"]): f"\u201c{isolated(check['title'])}\u201d" for check in checks}
     return re.sub(r"\b\w+\b", lambda word: titles.get(word.group(), word.group()), text)
 
 
 def _facts(material: Material) -> list[tuple[str, str]]:
-    """What tells this run from any other, for the head of the page."""
+    """Identification of the run."""
     summary, count = material.run.summary, len(material.run.trials)
     versions = summary["versions"]
     code = [str(versions.get("camwright", "")), str(versions.get("source", ""))[:8]]
     return [
         ("Case", shortened(str(material.case.get("name") or summary["case"]), SHORT)),
-        ("Load case drawn", shortened(material.turn.load_case, SHORT)),
+        ("Governing load case", shortened(material.turn.load_case, SHORT)),
         ("Trials", str(count)),
         ("Input", str(summary["input_sha256"])[:12]),
         ("Camwright", " · ".join(filter(None, code))),
@@ -235,14 +233,11 @@ def _facts(material: Material) -> list[tuple[str, str]]:
 
 
 def _checks(material: Material) -> Section:
-    """Required checks, then optional ones: first what could not be evaluated, then what fails.
-
-    Of the optional ones, what could not be evaluated comes last.
-    """
+    """Required checks: not evaluated, failed, passed. Optional checks: not evaluated last."""
     rows = report_tables.check_rows(material.run.final.checks)
     required = [row for row in rows if row.must_have]
-    pressing = {"not_evaluated": 0, "fail": 1}  # nobody knows how bad an unknown is
-    required.sort(key=lambda row: pressing.get(row.status.id, 2))
+    order = {"not_evaluated": 0, "fail": 1}
+    required.sort(key=lambda row: order.get(row.status.id, 2))
     optional = [row for row in rows if not row.must_have]
     optional.sort(key=lambda row: row.status.id == "not_evaluated")
     return Section(
@@ -251,32 +246,30 @@ def _checks(material: Material) -> Section:
             Block(Checks(CHECKS_HEAD, part, f"{title} checks"), title)
             for title, part in (("Required", required), ("Optional", optional)) if part
         ],
-        "What is required and could not be evaluated comes first, then what fails, then what "
-        "holds, each by utilisation. The tick on each bar is the limit; ± is the numerical "
-        "uncertainty, left out where it is below the digits shown.",
+        "Required checks: not evaluated first, then failed, then passed, by decreasing "
+        "utilisation. The tick on each bar marks the limit; ± is the numerical uncertainty, "
+        "omitted below the last digit shown.",
     )  # fmt: skip
 
 
 def _numbers(material: Material) -> Section:
     summary = material.run.summary
     headline = report_tables.headline_rows(summary["headline"])
-    blocks = [Block(Pairs("Headline numbers", headline, 2))]
+    blocks = [Block(Pairs("Key figures", headline, 2))]
     speed = verification_tables.crank_speed(summary.get("speed"))
     blocks += _tables((speed, "Crank speed", ""))
-    return Section(
-        "numbers", "Headline numbers", blocks, "Over one turn of the final trial.", "Numbers"
-    )
+    return Section("numbers", "Key figures", blocks, "Over one turn of the final trial.")
 
 
 def _sheet(material: Material) -> Section:
     turn = material.turn
     count = len(turn.others)
-    governs = f", which governs; pale ribbons span all {count} load cases" if count > 1 else ""
+    others = f", the governing one; ribbons: range of all {count} load cases" if count > 1 else ""
     return Section(
         "sheet", "Cam analysis sheet",
         [Block(Figures(drawn), title) for title, drawn in drawn_groups(material)],
-        f"Load case {isolated(turn.load_case)}{governs}. The dotted vertical line marks the angle "
-        "of the greatest contact pressure; red dashes are limits.",
+        f"Load case {isolated(turn.load_case)}{others}. Dotted line: cam angle of the maximum "
+        "contact pressure. Red dashed lines: limits.",
     )  # fmt: skip
 
 
@@ -287,19 +280,19 @@ def _trials(material: Material) -> Section:
         run.summary.get("prices") or run.final.record.get("prices")
     )  # fmt: skip
     lead = (
-        "By how much the ripple of the crank's torque would change if a limit gave way, to first "
-        "order; limits not named here cost nothing."
+        "First-order change of the torque ripple at the crank when a limit is relaxed. Limits not "
+        "listed are inactive."
     )
     return Section(
-        "trials", "Trials and prices",
-        [Block(Tabular(table)), *_tables((prices, "What the limits cost", lead))],
-        "Each trial recomputes every stage from its own lift; the last one is the answer.",
+        "trials", "Trials and shadow prices",
+        [Block(Tabular(table)), *_tables((prices, "Shadow prices of the limits", lead))],
+        "Each trial recomputes all stages from its own lift; the last trial is the result.",
         "Trials",
     )  # fmt: skip
 
 
 def _trial(trial: TrialRecord) -> list[str | Status]:
-    """One row of the trials table."""
+    """A trial as a row."""
     record = trial.record
     rows = [row for row in report_tables.check_rows(trial.checks) if row.id in trial.binding]
     width = record.get("angular_width_deg")
@@ -328,48 +321,48 @@ def _evidence(material: Material) -> Section:
     blocks = [
         Block(
             Tabular(certificate), "Certificate points",
-            "The contact solved again, both bodies meshed for the one angle, on three "
-            "successively finer meshes. Edges are counted across the half-width a. The order is "
-            "the one observed, left out where values scatter instead of converging; GCI is the "
-            "grid convergence index of the finest mesh; the spread is the cycle's pressure "
-            "against the extrapolated one.",
+            "The contact is solved again at these cam angles, with both bodies meshed, on three "
+            "successively finer meshes. Edges are counted across the half-width a. Order: observed "
+            "order of convergence, omitted if the values do not converge. GCI: grid convergence "
+            "index of the finest mesh. Deviation: pressure of the cycle relative to the "
+            "extrapolated one.",
         ) if certificate.rows else Block(
-            None, "Certificate points", "This trial has no certificate points."
+            None, "Certificate points", "The final trial has no certificate points."
         ),
         *_tables(
-            (verification_tables.certified(points), "Other quantities at these angles", ""),
+            (verification_tables.certified(points), "Half-width and stresses", ""),
             (
                 verification_tables.corners(final.checks), "Tolerance corners",
-                "Where a check asks for more within the tolerances of the case than at its "
-                "nominal values.",
+                "Checks whose demand within the tolerances exceeds the nominal one.",
             ),
             (
-                consistency, "Whether the inputs agree",
-                "Some inputs contradict what the others imply." if contradicted else
-                "Each quantity as given, beside what the other inputs imply of it.",
+                consistency, "Consistency of the inputs",
+                "Some inputs contradict each other." if contradicted else
+                "Each input beside the value that the other inputs imply.",
             ),
             (
                 verification_tables.valve_train(summary.get("valve_train")),
                 "Machine motion of the valve cam",
-                "As Petrescu and Petrescu (2015) study it. Their systems 1 to 15 are lost but for "
-                "11 and 15: what stands in for the others is marked reconstructed. Their yield is "
-                "a shape index, no efficiency; the true one stands beside it.",
+                "Equations of Petrescu and Petrescu (2015). Of their systems 1 to 15 only 11 and "
+                "15 are published; replacements of the others are marked reconstructed. Their "
+                "yield is a shape index, not an efficiency; the efficiency is listed as well.",
             ),
         ),
     ]  # fmt: skip
     if benchmarks:
         blocks.append(Block(
             Pairs("Benchmarks", benchmarks), "Benchmarks",
-            "Solved in the environment of this run, off the known answer by", narrow=True,
+            "Relative difference to the reference solution, in the environment of this run.",
+            narrow=True,
         ))  # fmt: skip
     blocks += [
         Block(Pairs("Residuals", residuals(material.turn)), "Residuals",
-              "Relative, greatest over the turn.", narrow=True),
+              "Maximum over the turn, relative.", narrow=True),
         Block(Pairs("Mesh", report_tables.named_rows(mesh)), "Mesh", narrow=True) if mesh else
         Block(None, "Mesh", "No mesh quality is recorded.", narrow=True),
         Block(Pairs("Solver time", times), "Solver time", narrow=True),
     ]  # fmt: skip
-    lead = f"Contact at every angle: {method}." if method else ""
+    lead = f"Contact model: {method}." if method else ""
     return Section("evidence", "Evidence", blocks, lead)
 
 
@@ -377,7 +370,7 @@ def _versions(material: Material) -> Section:
     summary = material.run.summary
     hashed = len(summary.get("files") or ())
     kept = (
-        f" run.json holds the hashes of {hashed} files of this run, signoff.json those of all; "
+        f" run.json lists the SHA-256 of {hashed} files of this run, signoff.json of all files; "
         "camwright check --verify-record compares them." if hashed else ""
     )  # fmt: skip
     versions = [(str(k), str(v)) for k, v in summary["versions"].items()]
@@ -392,22 +385,22 @@ def _versions(material: Material) -> Section:
 
 
 def _hashes(material: Material) -> list[tuple[str, str]]:
-    """SHA-256 of what went in and of what was solved on."""
+    """SHA-256 of input, source and meshes."""
     summary, mesh = material.run.summary, material.run.final.record.get("mesh") or {}
     meshes = mesh.get("sha256") if isinstance(mesh.get("sha256"), Mapping) else {}
-    found = {"input": summary["input_sha256"], "source": summary["versions"].get("source")}
-    found |= {f"mesh of the {body}": digest for body, digest in (meshes or {}).items()}
-    return [(name, str(digest)) for name, digest in found.items() if digest]
+    digests = {"input": summary["input_sha256"], "source": summary["versions"].get("source")}
+    digests |= {f"mesh of the {body}": digest for body, digest in (meshes or {}).items()}
+    return [(name, str(digest)) for name, digest in digests.items() if digest]
 
 
 def residuals(turn: Turn) -> list[tuple[str, str]]:
-    """Greatest relative residual of each balance over the turn drawn."""
+    """Maximum relative residual of each equation over the turn."""
     names = {
-        "residual_equilibrium": "contact pressures against the load",
-        "residual_complementarity": "pressure times gap",
-        "residual_guide_force": "forces on the follower",
+        "residual_equilibrium": "contact pressure and load",
+        "residual_complementarity": "contact pressure times gap",
+        "residual_guide_force": "transverse forces on the follower",
         "residual_guide_moment": "moments on the follower",
-        "residual_friction": "forces along the stem, friction of the guides among them",
+        "residual_friction": "forces along the stem with guide friction",
     }
     return [
         (words, report_tables.number(float(np.max(np.abs(turn.columns[name]))), 2))
@@ -417,5 +410,5 @@ def residuals(turn: Turn) -> list[tuple[str, str]]:
 
 
 def _tables(*parts: tuple[Table, str, str]) -> list[Block]:
-    """Blocks of those tables that have rows, with title and lead."""
+    """Blocks of the tables that have rows, with title and introduction."""
     return [Block(Tabular(table), title, lead) for table, title, lead in parts if table.rows]

@@ -6,7 +6,6 @@ import csv
 import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -17,26 +16,25 @@ from camwright.reports.figure_svg import png
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_content import Block, Pictures, Section, Tabular
-from camwright.reports.report_tables import Cell, Status, Table, listed, words
+from camwright.reports.report_tables import Cell, Record, Scalar, Status, Table, listed, words
 
+Cells = Scalar | Sequence[Scalar]
 COLUMNS = (
     ("smoother", "smoother"),
-    ("words", "what it does"),
+    ("words", "definition"),
     ("pressure_angle_max_deg", "pressure angle, deg"),
     ("lift_max_mm", "lift, mm"),
-    ("normal_force_max_N", "N max, N"),
+    ("normal_force_max_N", "maximum normal force, N"),
     ("p0_max_MPa", "p0, MPa"),
-    ("residual_std_Nm", "ripple left, std N m"),
-    ("residual_p2p_Nm", "ripple left, p-p N m"),
+    ("residual_std_Nm", "residual ripple, std, N m"),
+    ("residual_p2p_Nm", "residual ripple, peak to peak, N m"),
     ("verdict", "verdict"),
-    ("binding", "what fails"),
-    ("why", "why there is no cam"),
+    ("binding", "failed checks"),
+    ("why", "reason without a cam"),
 )
 
 
-def write(
-    folder: Path, title: str, rows: Sequence[Mapping[str, Any]], lifts: Mapping[str, Array]
-) -> Path:
+def write(folder: Path, title: str, rows: Sequence[Record], lifts: Mapping[str, Array]) -> Path:
     """Write ``smoothers.csv``, ``smoothers.png`` and ``smoothers.html``.
 
     Parameters
@@ -76,11 +74,11 @@ def drawn(lifts: Mapping[str, Array]) -> bytes:
     return png(canvas)
 
 
-def _as_text(value: Any) -> str:
+def _as_text(value: Cells) -> str:
     """A cell of the CSV file; names of a list with semicolons between."""
     return "; ".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
 
 
-def _cell(name: str, value: Any) -> Cell:
+def _cell(name: str, value: Cells) -> Cell:
     text = listed(value)
     return Status(text, text) if name == "verdict" else words(text)

@@ -67,8 +67,8 @@ def test_every_plot_is_drawn_and_answers(report: Path, tab: Tab, width: int) -> 
     page.locator("#pressure .live").focus()
     page.keyboard.press("ArrowRight")
     assert page.get_by_text("Point at a curve").is_visible()
-    said = page.locator("#pressure .told-values").text_content()
-    assert said.startswith("cam angle") and "MPa" in said
+    readout = page.locator("#pressure .readout").text_content()
+    assert readout.startswith("cam angle") and "MPa" in readout
     assert tab.errors == []
     assert tab.outside == []
     assert tab.evaluate("window.broken") is None

@@ -137,7 +137,7 @@ def test_the_page_carries_both_pictures_within_its_size(built):
     # The two fields, and whatever rasters the plotting library carries for itself.
     own = re.sub(r"(?s)<script.*?</script>", "", html)
     assert own.count("data:image/png;base64,") == 2
-    assert "Contact pressure and von Mises stress under the roller" in html
+    assert "Contact pressure and von Mises stress below the roller" in html
     assert built.stat().st_size < 8e6
     for name in ("field-contact", "field-body"):
         assert (built.parent / "figures" / f"{name}.png").is_file()

@@ -110,7 +110,7 @@ def test_slider_and_keys_turn_the_cam(page: Path, view: TurnView, tab: Tab) -> N
     np.testing.assert_allclose(tab.evaluate(place), expected(3), atol=2e-3)
     slider.press("ArrowRight")
     tab.page.wait_for_selector(SHOWN.format(4))
-    said = tab.page.locator("#told").text_content()
+    said = tab.page.locator("#readout").text_content()
     assert said.startswith("cam 240.0°, crank 480.0°") and "MPa" in said
     assert slider.get_attribute("aria-valuetext")
     assert tab.errors == []
@@ -125,9 +125,9 @@ def test_scene_says_what_the_run_found(page: Path) -> None:
     material = read_material(page.parent)
     view = read_turn_view(page.parent)
     rows = material.run.final.cycle
-    told = {one["words"]: one["values"] for one in data["told"]}
+    shown = {one["words"]: one["values"] for one in data["readout"]}
     np.testing.assert_allclose(
-        told["peak pressure p0"], rows["p0_fe_MPa"][view.position], rtol=1e-4
+        shown["peak pressure p0"], rows["p0_fe_MPa"][view.position], rtol=1e-4
     )
     touching, centre = np.array(data["contact"]), np.array(data["origin"])
     assert np.hypot(*(touching - centre)) == pytest.approx(
@@ -154,7 +154,7 @@ def test_solids_have_the_size_they_should() -> None:
     block = box((-1, 0, 2), (2, 4, 3))
     assert area(block) == pytest.approx(2 * (3 * 4 + 4 * 1 + 3 * 1))
     assert abs(volume(block)) == pytest.approx(12.0)
-    both = joined([block, block.moved(10.0)])
+    both = joined([block, block.shifted(10.0)])
     assert abs(volume(both)) == pytest.approx(24.0)
     standing = ring(hexagon, 4.0).upright(7.0)
     assert (standing.points[1].min(), standing.points[1].max()) == (5.0, 9.0)

@@ -105,7 +105,7 @@ def test_the_sentence_counts_what_holds_fails_and_is_missing():
     ]  # fmt: skip
     words = verdict("fail", checks, ("b", "c"), "no more room")
     assert words.sentence == (
-        "1 of 4 required checks holds, 1 fails, 1 could not be evaluated, which counts as failing,"
+        "1 of 4 required checks passes, 1 fails, 1 not evaluated (counted as failed),"
         " 1 is waived. Of 1 optional check: 1 not evaluated."
     )
     assert (words.binding, words.missing) == (("B",), ("C",))
@@ -191,7 +191,7 @@ def test_a_record_shows_units_and_what_is_inside():
 def test_headlines_that_do_not_apply_are_left_out():
     headline = {"torque_std_before_Nm": None, "lift_max_mm": 33.0, "new_number": 2.5}
     assert report_tables.headline_rows(headline) == [
-        ("Greatest lift", "33\xa0mm"), ("new number", "2.5")
+        ("Maximum lift", "33\xa0mm"), ("new number", "2.5")
     ]  # fmt: skip
     assert [tile.title for tile in report_tables.tiles(headline)] == ["Lift"]
 
