@@ -1,8 +1,8 @@
 """Cost of a report beside what it may cost: python benchmarks/report.py [RUN]
 
 Of a run folder; by default of runs/gx120, which ``make run`` makes, else of a run of 72 positions
-made here: seconds and memory of the whole
-report without the film, size of the page, and how soon a browser has it: the load event, the first
+made here: seconds and memory of the
+whole report, size of the page, and how soon a browser has it: the load event, the first
 plot and the last that answer. Work is done on a copy. Times by the clock are those of a machine
 with nothing else to do; its load is told beside them.
 """
@@ -18,10 +18,12 @@ import tempfile
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+from browser_fixture import chromium
+
 from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.case_file import load_case_file
 from camwright.pipeline.run import run_case
-from camwright.reports import browser
 from camwright.reports.page import PAGE
 from camwright.reports.sections import build
 
@@ -36,8 +38,8 @@ new MutationObserver(() => {
   if (live.length && done.length === live.length) window.plots.last ??= performance.now();
 }).observe(document, {childList: true, subtree: true, attributeFilter: ["data-drawn"]});
 """
-TIMES = """(() => { const page = performance.getEntriesByType("navigation")[0];
-  return [page.loadEventEnd, window.plots.first, window.plots.last]; })()"""
+TIMES = """() => { const page = performance.getEntriesByType("navigation")[0];
+  return [page.loadEventEnd, window.plots.first, window.plots.last]; }"""
 
 
 def main() -> None:
@@ -57,18 +59,17 @@ def main() -> None:
         told("greatest process", used.ru_maxrss / 1024, "MiB", MEBIBYTES)
         told("page", (copy / PAGE).stat().st_size / 1e6, "MB", MEGABYTES)
         print(f"{'others waiting':>20} {max(os.getloadavg()[0] - 1, 0):8.1f} processes")
-        if browser.executable() is not None:
+        if shutil.which("chromium") is not None:
             for name, seconds in opened(copy / PAGE).items():
                 told(name, seconds, "s", OPEN_SECONDS)
 
 
-def opened(page: Path) -> dict[str, float]:
+def opened(file: Path) -> dict[str, float]:
     """Seconds from the call of a page in a fresh browser, 1440 pixels wide."""
-    with browser.tab() as tab:
-        tab.size(1440, 900)
-        tab.call("Page.addScriptToEvaluateOnNewDocument", source=WATCH)
-        tab.open(page)
-        tab.wait("window.plots.last !== undefined")
+    with chromium() as tab:
+        tab.page.add_init_script(WATCH)
+        tab.open(file, 1440, 900)
+        tab.page.locator(".live:not([data-drawn='done'])").first.wait_for(state="detached")
         load, first, last = tab.evaluate(TIMES)
     return {"load event": load / 1e3, "first plot": first / 1e3, "last plot": last / 1e3}
 

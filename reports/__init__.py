@@ -1,1 +1,33 @@
-"""Page, figures and fields from a finished run; never solves."""
+"""Report of a finished run: page, PDF, scene, pictures; pages of studies. Nothing is solved.
+
+Modules in the order of use; each imports only those above it.
+
+====================== ===========================================================================
+report_tables          digits, units and text of a value; rows of checks, key figures and inputs
+verification_tables    certificate, benchmarks, tolerance corners, shadow prices, consistency
+verdict_text           verdict in sentences
+figures                contents of a figure: curves, limits, units, title, caption
+sheet_turn             one load case over a cam turn (`Turn`); curves from its columns
+part_figures           figures of forces, guides, roller, oil film, spring, pin, ring, key, shaft
+analysis_sheet         figures of torque, shape, limits and contact; all groups in order
+report_data            a run folder, read once (`Material`)
+figure_svg             figures as SVG and PNG by matplotlib
+interactive            figures as data for Plotly in the page
+field_raster           axes, colour bar and contact pressure around a picture of a field
+field_picture          von Mises stress below the contact and in both bodies, by VTK off screen
+stress_map             maximum stress of the turn below the contour, unrolled and in place
+guide_pressure_figure  pressure in both guides
+picture_list           pictures of a report with title and caption
+report_content         sections, blocks, text and tables of a report (`Report`)
+page                   ``8_report.html`` and the pages of studies, by Jinja
+pdf                    ``8_report.pdf``: PDF/A on A4, by typst
+scene_solids           rings, boxes and rods as triangles
+scene_page             ``scene.html``: interactive 3-D view over the turn
+sections               parts of a report by name; `build` writes them
+smoother_page          comparison of smoothers
+redesign_page          Pareto front of a redesign
+validation_page        published and computed values of the papers
+mechanism_figures      slider-crank and eccentric cams: friction energy, torque, workspaces
+inspection_pictures    deviation of a measured cam, normal force and contact pressure
+====================== ===========================================================================
+"""

@@ -1,4 +1,4 @@
-"""The cam analysis sheet: which figures a run shows, made from its columns."""
+"""Figures of the cam analysis sheet: torque, shape, limits, contact; all groups in order."""
 
 from __future__ import annotations
 
@@ -7,23 +7,46 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.reports.figures import SERIES, Curve, Figure, LimitLine, OutlineFigure, Panel
-from camwright.reports.report_tables import quantity, words
-from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
+from camwright.reports.figures import (
+    SERIES,
+    AngleFigure,
+    Curve,
+    Figure,
+    LimitLine,
+    OutlineFigure,
+    Panel,
+    circle,
+)
+from camwright.reports.part_figures import PART_FIGURES
+from camwright.reports.report_tables import number, quantity, words
+from camwright.reports.sheet_turn import Columns, Turn, angle_figure, curves_of
 
+GROUPS = (
+    ("Torque", ("torque", "torque-components", "crank-speed")),
+    ("Shape", ("outline", "pressure-angle", "face", "lift", "radii")),
+    ("Limits", ("limits",)),
+    ("Contact", ("pressure", "half-width", "stress")),
+    ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
+    ("Parts", ("bushes", "elastic", "roller", "film", "parts")),
+)
 LARGEST_RADIUS_MM = 150.0
 HARD_STOP_DEG = 45.0
-"""Beyond it no translating follower is designed; Rothbart (2004), ch. 6."""
+"""Upper bound of the pressure angle of translating followers; Rothbart (2004), ch. 6."""
+BINDS = 0.997
+"""Utilisation from which a limit is active; the synthesis keeps a small margin."""
+_SHOWN, _MOST = 0.5, 6  # utilisation from which a limit is shown, and the number of limits
 
 
-def figures(turn: Turn) -> tuple[Figure, ...]:
-    """Every figure the run has columns for, in reading order."""
+def groups(turn: Turn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
+    """Figures for which the run has columns, by group."""
     makers: tuple[Callable[[Turn], Figure | None], ...] = (
         _torque, _components, _crank_speed, _lift, _outline, _pressure_angle, _face, _radii,
-        _forces, _normal_force, _pressure, _half_width, _stress, _guides, _jamming, _speed,
+        _limits_strip, _pressure, _half_width, _stress, *PART_FIGURES,
     )  # fmt: skip
     made = (maker(turn) for maker in makers)
-    return tuple(figure for figure in made if figure is not None)
+    by_id = {figure.id: figure for figure in made if figure is not None}
+    grouped = ((title, tuple(by_id[n] for n in names if n in by_id)) for title, names in GROUPS)
+    return tuple((title, figures) for title, figures in grouped if figures)
 
 
 def _torque(turn: Turn) -> Figure | None:
@@ -34,11 +57,11 @@ def _torque(turn: Turn) -> Figure | None:
         return None
     cam = turn.columns.get("cam_torque_Nm")
     if cam is not None:
-        curves += (Curve("taken by the cam", cam / turn.gear_ratio, "muted", dashed=True),)
+        curves += (Curve("cam torque at the crank", cam / turn.gear_ratio, "muted", dashed=True),)
     return angle_figure(
-        turn, "torque", "Crank torque before and after",
-        "Crank torque about its mean, without and with the balancing cam as delivered (guide "
-        "friction and follower inertia included).",
+        turn, "torque", "Crank torque",
+        "Deviation of the crank torque from its mean, without and with the cam; guide friction and "
+        "follower inertia included.",
         Panel("torque", "N m", curves, height=1.25), mark=False,
     )  # fmt: skip
 
@@ -49,7 +72,7 @@ def _crank_speed(turn: Turn) -> Figure | None:
         return None
     wanted = (
         ("speed_before_rad_per_s", "engine alone", "blue", False),
-        ("speed_inertia_alone_rad_per_s", "with the added inertia alone", "muted", True),
+        ("speed_inertia_alone_rad_per_s", "added inertia, no cam force", "muted", True),
         ("speed_after_rad_per_s", "with the cam", "vermillion", False),
     )
     curves = tuple(
@@ -57,9 +80,9 @@ def _crank_speed(turn: Turn) -> Figure | None:
         for name, label, colour, dashed in wanted if name in speed
     )  # fmt: skip
     return angle_figure(
-        turn, "crank-speed", "Crank speed before and after",
-        "Speed of the crank over the cycle of the first load case: engine alone, with the "
-        "mechanism's turning parts but its follower held off, and with the cam at work.",
+        turn, "crank-speed", "Crank speed",
+        "Crank speed over the cycle of the first load case: engine alone, with the rotating parts "
+        "of the mechanism but without cam force, and with the cam.",
         Panel("crank speed", "rad/s", curves, height=1.25), mark=False,
         crank=speed["crank_angle_deg"],
     )  # fmt: skip
@@ -76,9 +99,9 @@ def _components(turn: Turn) -> Figure | None:
     if "total_Nm" in turn.torque:
         curves.append(Curve("total", turn.torque["total_Nm"], "ink", dashed=bool(parts)))
     return angle_figure(
-        turn, "torque-components", "What the engine torque is made of",
-        "Positive drives the crank. Crank angle 0 is the top dead centre where intake begins; "
-        "360 deg is the firing top dead centre.",
+        turn, "torque-components", "Components of the engine torque",
+        "Positive torque drives the crank. Crank angle 0 is the top dead centre of gas exchange, "
+        "360 deg the firing top dead centre.",
         Panel("torque", "N m", tuple(curves), height=1.25), mark=False,
         crank=turn.torque["crank_angle_deg"],
     )  # fmt: skip
@@ -99,7 +122,7 @@ def _lift(turn: Turn) -> Figure | None:
     ]
     return angle_figure(
         turn, "lift", "Lift and its derivatives",
-        "Lift s of the follower above its lowest place, with derivatives by cam angle.",
+        "Lift s of the follower above its lowest position and its derivatives by cam angle.",
         *panels, mark=False, crank=columns["crank_angle_deg"],
     )  # fmt: skip
 
@@ -116,8 +139,8 @@ def _outline(turn: Turn) -> Figure | None:
     pitch = np.array([c["pitch_x_mm"], c["pitch_y_mm"]]) if turn.rolls else None
     return OutlineFigure(
         "outline", "Contour and pitch curve" if turn.rolls else "Contour",
-        f"The cam seen along its shaft, with the {name} where the contact pressure is greatest."
-        f"{_balance_in_words(turn)}",
+        f"The cam in the direction of its shaft, with the {name} at the maximum contact pressure."
+        f"{_balance(turn)}",
         np.array([c["contour_x_mm"], c["contour_y_mm"]]), pitch,
         _roller_outline(turn, worst) if turn.rolls else _face_outline(turn, worst), name,
         turn.length("cam", "bore_radius"),
@@ -126,39 +149,38 @@ def _outline(turn: Turn) -> Figure | None:
     )  # fmt: skip
 
 
-def _balance_in_words(turn: Turn) -> str:
-    """What the cam is out of balance by, and what its counter-hole leaves; "" of older runs."""
-    found = turn.balance
-    if not isinstance(found.get("unbalance_g_mm"), (int, float)):
+def _balance(turn: Turn) -> str:
+    """Unbalance without and with the counter-hole; empty for runs of earlier versions."""
+    balance = turn.balance
+    if not isinstance(balance.get("unbalance_g_mm"), (int, float)):
         return ""
-    said = (
-        f" Its unbalance is {quantity(float(found['unbalance_g_mm']), 'g mm')}"
-        f" at {found['unbalance_angle_deg']:.4g} deg"
+    unbalance = (
+        f" Its unbalance is {quantity(float(balance['unbalance_g_mm']), 'g mm')}"
+        f" at {quantity(balance['unbalance_angle_deg'], 'deg')}"
     )
     hole = turn.counter_hole
     if hole is None:
-        return f"{said}; {found.get('hole_note') or 'it needs no hole'}."
+        return f"{unbalance}; {balance.get('hole_note') or 'no counter-hole is necessary'}."
     x, y, radius, drilled = hole
-    left = max(float(found["unbalance_left_g_mm"]), 0.0)
-    left = 0.0 if left < 1e-6 * float(found["unbalance_g_mm"]) else left
+    rest = max(float(balance["unbalance_left_g_mm"]), 0.0)
+    rest = 0.0 if rest < 1e-6 * float(balance["unbalance_g_mm"]) else rest
     return (
-        f"{said}; a hole of {2 * radius:.4g} mm at ({x:.4g}, {y:.4g}) mm,"
-        f" {'drilled' if drilled else 'proposed (dashed)'}, leaves {quantity(left, 'g mm', 3)}."
+        f"{unbalance}; with a hole of {quantity(2 * radius, 'mm')} diameter at ({number(x)},"
+        f" {number(y)}) mm, {'drilled' if drilled else 'proposed (dashed)'},"
+        f" {quantity(rest, 'g mm', 3)}."
     )
 
 
 def _roller_outline(turn: Turn, at: int) -> Array | None:
-    """The roller's circle (2, n), mm, at a row of the contour; None where its radius is unknown."""
+    """Roller (2, n), mm, at a row of the contour; None if its radius is unknown."""
     radius, c = turn.length("roller", "radius"), turn.contour
     if radius is None:
         return None
-    angle = np.linspace(0.0, 2 * np.pi, 121)
-    centre = np.array([c["pitch_x_mm"][at], c["pitch_y_mm"][at]])
-    return np.asarray(centre[:, None] + radius * np.array([np.cos(angle), np.sin(angle)]))
+    return circle((float(c["pitch_x_mm"][at]), float(c["pitch_y_mm"][at])), radius)
 
 
 def _face_outline(turn: Turn, at: int) -> Array | None:
-    """The block of the face (2, 5), mm, at a row of the contour; None where its size is unknown."""
+    """Block of the face (2, 5), mm, at a row of the contour; None if its size is unknown."""
     c, place = turn.contour, turn.columns["place_on_face_mm"][turn.worst]
     width, thick = (turn.length("follower", "face", key) for key in ("width", "thickness"))
     if width is None or thick is None:
@@ -172,15 +194,15 @@ def _face_outline(turn: Turn, at: int) -> Array | None:
 
 
 def _face(turn: Turn) -> Figure | None:
-    """Where a face is touched, how fast the cam slides along it, and what that costs."""
+    """Contact position, sliding speed and pressure times speed of a flat face."""
     half = turn.length("follower", "face", "width")
     edges = () if half is None else (LimitLine(0.5 * half, "edge"), LimitLine(-0.5 * half, "edge"))
-    pv = turn.limit("limit", "MPa m/s", "face_sliding")
+    pv = turn.limit("limit", "MPa m/s", "face_pv")
     return angle_figure(
         turn, "face", "Contact on the face",
-        "Place of the contact from the stem's axis; speed of the cam's surface along the face; "
-        "mean contact pressure times that speed.",
-        Panel("place", "mm", curves_of(turn, ("place_on_face_mm", "")), edges, height=0.9),
+        "Position of the contact from the stem axis, sliding speed of the cam along the face, mean "
+        "contact pressure times sliding speed.",
+        Panel("position", "mm", curves_of(turn, ("place_on_face_mm", "")), edges, height=0.9),
         Panel("sliding", "m/s", curves_of(turn, ("sliding_speed_m_per_s", "")), height=0.7),
         Panel("p v", "MPa m/s", curves_of(turn, ("face_pv_MPam_per_s", "")), pv, height=0.7),
     )  # fmt: skip
@@ -193,7 +215,8 @@ def _pressure_angle(turn: Turn) -> Figure | None:
     both = limits + tuple(LimitLine(-line.value, line.label) for line in limits)
     return angle_figure(
         turn, "pressure-angle", "Pressure angle",
-        "Between the contact normal and the follower's line of travel; positive on the rise.",
+        "Angle between the contact normal and the direction of follower motion, positive in the "
+        "rise.",
         Panel(
             "pressure angle", "deg", curves_of(turn, ("pressure_angle_deg", "")), both, height=1.3
         ),
@@ -207,7 +230,7 @@ def _radii(turn: Turn) -> Figure | None:
         limits = (LimitLine(roller, "roller radius"),)
     ratio = turn.bound("curvature_ratio")
     if roller and ratio:
-        limits += (LimitLine(ratio * roller, "least pitch radius"),)
+        limits += (LimitLine(ratio * roller, "minimum pitch radius"),)
     curves = []
     wanted = [("pitch_radius_mm", "pitch curve"), ("contour_radius_of_curvature_mm", "contour")]
     for (column, label), colour in zip(wanted, SERIES, strict=False):
@@ -215,56 +238,20 @@ def _radii(turn: Turn) -> Figure | None:
             curves.append(Curve(label, broken(turn.columns[column], LARGEST_RADIUS_MM), colour))
     return angle_figure(
         turn, "radii", "Radii of curvature",
-        f"Signed, positive where convex. The curve leaves the axes above {LARGEST_RADIUS_MM:g} mm, "
-        "where the flank is nearly straight.",
+        f"Signed radius of curvature, positive where convex. Radii above {LARGEST_RADIUS_MM:g} mm, "
+        "on a nearly straight flank, are not shown.",
         Panel("radius", "mm", tuple(curves), limits, height=1.25, span=_radius_span(curves)),
     )  # fmt: skip
 
 
 def broken(values: Array, largest: float) -> Array:
-    """`values` with NaN where their size exceeds `largest`, so that a pole draws no line."""
+    """Values with NaN above a magnitude, so that no line is drawn across a pole."""
     return np.where(np.abs(values) > largest, np.nan, values)
 
 
 def _radius_span(curves: Sequence[Curve]) -> tuple[float, float]:
     lows = [float(np.nanmin(c.values)) for c in curves if np.isfinite(c.values).any()]
     return min([0.0, *lows]) * 1.05, LARGEST_RADIUS_MM * 1.12
-
-
-def _forces(turn: Turn) -> Figure | None:
-    curves = curves_of(
-        turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
-        ("tangential_force_N", "side force"), ("friction_A_N", "friction A"),
-        ("friction_B_N", "friction B"), ("viscous_force_N", "viscous drag"),
-    )  # fmt: skip
-    return angle_figure(
-        turn, "forces", "Force components on the follower",
-        "Along the stem, but for the side force, which the guides carry.",
-        Panel("force", "N", curves, height=1.25),
-    )  # fmt: skip
-
-
-def _normal_force(turn: Turn) -> Figure | None:
-    limits: tuple[LimitLine, ...] = ()
-    rating, safety = turn.length("roller", "bearing", "C0", unit="N"), turn.bound("roller_static")
-    if rating and safety:
-        limits = (LimitLine(rating / safety, "roller static rating allows"),)
-    curves = curves_of(
-        turn, ("normal_force_N", "normal force"), ("axial_force_N", "axial force"),
-        ("normal_force_statics_N", "normal force, guides as points"), dashed=(2,),
-    )  # fmt: skip
-    shares = (
-        ("normal_force_by_length_N", "by length of the guides"),
-        ("normal_force_by_clearance_N", "by clearance"),
-    )
-    return angle_figure(
-        turn, "normal-force", "Normal force",
-        "Between roller and cam, with its component along the stem, friction of the guides "
-        "included; and what their length, then their clearance changes in it. Contact is lost "
-        "where the normal force reaches zero.",
-        Panel("force", "N", curves, (LimitLine(0.0, "contact lost at"), *limits)),
-        Panel("change", "N", curves_of(turn, *shares), height=0.6),
-    )  # fmt: skip
 
 
 def _pressure(turn: Turn) -> Figure | None:
@@ -274,8 +261,8 @@ def _pressure(turn: Turn) -> Figure | None:
         turn, ("p0_fe_MPa", "finite elements"), ("p0_hertz_MPa", "Hertz"), dashed=(1,)
     )  # fmt: skip
     return angle_figure(
-        turn, "pressure", "Greatest contact pressure",
-        "p0 by finite elements and by Hertz's closed form, and their difference.",
+        turn, "pressure", "Peak contact pressure",
+        "p0 by finite elements and of Hertz theory, and their difference.",
         Panel("p0", "MPa", curves, limits, height=1.2),
         Panel("difference", "%", curves_of(turn, ("p0_difference_percent", "")), height=0.55),
     )  # fmt: skip
@@ -286,77 +273,56 @@ def _half_width(turn: Turn) -> Figure | None:
         turn, ("half_width_fe_mm", "finite elements"), ("half_width_hertz_mm", "Hertz"), dashed=(1,)
     )  # fmt: skip
     return angle_figure(
-        turn, "half-width", "Half-width of the contact",
-        "Half the width of the strip over which roller and cam touch.",
+        turn, "half-width", "Contact half-width",
+        "Half-width a of the contact by finite elements and of Hertz theory.",
         Panel("half-width a", "mm", curves),
     )  # fmt: skip
 
 
 def _stress(turn: Turn) -> Figure | None:
-    stress = curves_of(turn, ("von_mises_MPa", "von Mises"), ("tau_max_MPa", "greatest shear"))
+    stress = curves_of(turn, ("von_mises_MPa", "von Mises"), ("tau_max_MPa", "maximum shear"))
     depth = curves_of(
-        turn, ("von_mises_depth_mm", "depth of von Mises"), ("tau_depth_mm", "depth of shear")
+        turn, ("von_mises_depth_mm", "von Mises"), ("tau_depth_mm", "maximum shear")
     )  # fmt: skip
     return angle_figure(
-        turn, "stress", "Stress below the surface, and its depth",
-        "Greatest von Mises stress and greatest in-plane shear stress under the contact.",
+        turn, "stress", "Subsurface stress",
+        "Maximum von Mises stress and maximum in-plane shear stress below the contact, and their "
+        "depths.",
         Panel("stress", "MPa", stress, turn.limit("yield, von Mises", "MPa", "first_yield")),
         Panel("depth", "mm", depth, height=0.62),
     )  # fmt: skip
 
 
-def _guides(turn: Turn) -> Figure | None:
-    pairs = (
-        ("reaction_A_N", "A, finite elements"), ("reaction_A_statics_N", "A, statics"),
-        ("reaction_B_N", "B, finite elements"), ("reaction_B_statics_N", "B, statics"),
-    )  # fmt: skip
-    shares = (
-        ("reaction_by_length_N", "by length, of A and B alike"),
-        ("reaction_by_clearance_N", "by clearance"),
-    )  # fmt: skip
-    rubbing = (("rubbing_load_A_N", "A, both sides"), ("rubbing_load_B_N", "B, both sides"))
-    return angle_figure(
-        turn, "guides", "Guide reactions",
-        "The follower as a beam on elastic one-sided guides of finite length, against two point "
-        "supports; what length alone and then clearance add to these; and the pushes of both "
-        "sides of a bore, which rub.",
-        Panel("reaction", "N", curves_of(turn, *pairs, dashed=(1, 3)), height=1.25),
-        Panel("difference", "N", curves_of(turn, *shares), height=0.7),
-        Panel("rubbing load", "N", curves_of(turn, *rubbing), height=0.7),
-    )  # fmt: skip
+def _limits_strip(turn: Turn) -> Figure | None:
+    return limits_strip(turn.limits, turn.gear_ratio, strokes=turn.strokes)
 
 
-def _jamming(turn: Turn) -> Figure | None:
-    limits = turn.limit("limit", "", "jam_index")
-    indices = (
-        ("jam_index", "finite guides"), ("jam_index_statics", "point supports"),
-        ("jam_index_friction_max", "greatest friction, way out"),
-    )  # fmt: skip
-    return angle_figure(
-        turn, "jamming", "Jam index",
-        "Share of the axial force that guide friction takes; at 1 the follower locks. On the way "
-        "back it locks nothing.",
-        Panel("jam index", "", curves_of(turn, *indices, dashed=(1,)), limits, height=0.8),
-    )  # fmt: skip
+def limits_strip(limits: Columns | None, gear_ratio: float, *, strokes: bool) -> Figure | None:
+    """Utilisation over the turn of each limit that reaches half; None without a record.
 
-
-def _speed(turn: Turn) -> Figure | None:
-    velocity = turn.columns.get("velocity_m_per_s")
-    if velocity is None:
+    Parameters
+    ----------
+    limits : mapping or None   columns of 2_limits.csv, by decreasing utilisation
+    strokes : bool             whether the turn is a four-stroke cycle
+    """
+    if limits is None or "cam_angle_deg" not in limits:
         return None
-    curves: list[Curve] = []
-    limits: list[LimitLine] = []
-    for name, colour in (("A", "blue"), ("B", "vermillion")):
-        length = turn.length("guides", name.lower(), "length")
-        diameter = turn.length("guides", name.lower(), "diameter")
-        load = turn.columns.get(f"rubbing_load_{name}_N", turn.columns.get(f"reaction_{name}_N"))
-        if length and diameter and load is not None:
-            pv = np.abs(load * velocity) / (length * diameter)
-            curves.append(Curve(f"guide {name}", pv, colour))
-            limits += turn.limit(f"mean PV limit {name}", "MPa m/s", f"bush_pv_{name}")
-    return angle_figure(
-        turn, "speed", "Follower velocity and guide PV",
-        "PV is the guide pressure on its projected area times the sliding speed.",
-        Panel("velocity", "m/s", curves_of(turn, ("velocity_m_per_s", "")), height=0.8),
-        Panel("PV", "MPa m/s", tuple(curves), tuple(dict.fromkeys(limits)), height=0.9),
+    uses = {name: use for name, use in limits.items() if name != "cam_angle_deg"}
+    shown = [name for name, use in uses.items() if use.size and float(np.max(use)) >= _SHOWN]
+    panels = tuple(_strip(name, uses[name]) for name in shown[:_MOST])
+    if not panels:
+        return None
+    return AngleFigure(
+        "limits", "Active limits",
+        "Utilisation of each limit in the synthesis, highest first; orange where the limit is "
+        "active and increases the ripple. A limit on a mean value is constant over the turn.",
+        gear_ratio * limits["cam_angle_deg"], panels, gear_ratio, strokes,
     )  # fmt: skip
+
+
+def _strip(name: str, use: Array) -> Panel:
+    """Utilisation, and again where the limit is active."""
+    active = np.where(use >= BINDS, use, np.nan)
+    curves = (Curve("utilisation", np.clip(use, 0.0, None), "blue"),
+              Curve("active", active, "vermillion"))  # fmt: skip
+    return Panel(words(name), "", curves, (LimitLine(1.0, ""),), height=0.62, span=(0.0, 1.3))

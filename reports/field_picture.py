@@ -1,8 +1,8 @@
-"""Pictures of the stress field, rendered off screen.
+"""Pictures of the stress field, rendered off screen by VTK.
 
-OpenGL drivers end the process when they find no device, so the rendering runs in a child process
-(this module as a script): when it dies, the page falls back to flat pictures and says so. The
-child renders bare rasters; axes, colour bar and scale bar are drawn round them afterwards.
+Without an OpenGL device some drivers abort the process. Rendering therefore runs in a child process
+(this module as a script); if it fails, matplotlib draws the field and the picture says so. The
+child renders the raster only; axes, colour bar and scale bar are added afterwards.
 """
 
 from __future__ import annotations
@@ -18,14 +18,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.reports import field_raster
+from camwright.reports.report_tables import Record
 
 WINDOWS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
 PATIENCE_S = 120
-COLOUR_MAP: Any = "viridis"
+COLOUR_MAP = "viridis"
 CONTACT_REACH = 4.0
 ISO_SHARE = (0.2, 0.4, 0.6, 0.8, 0.95)
 DECADES = 3.2
@@ -36,12 +38,12 @@ FIELD = "von_mises_MPa"
 class Field:
     """A stress field on six-node triangles: points (2, n) mm, triangles (6, m), values MPa.
 
-    `displacement` (2, n) mm and `body` (n,) are zero where the file has none; `notes` are the
-    numbers that belong to the file as a whole, such as ``half_width_mm``.
+    `displacement` (2, n) mm and `body` (n,) are zero if the file has none; `notes` are the scalars
+    of the file, such as ``half_width_mm``.
     """
 
     points: Array
-    triangles: Any
+    triangles: NDArray[np.int64]
     von_mises: Array
     displacement: Array
     body: Array
@@ -50,11 +52,11 @@ class Field:
 
 @dataclass(frozen=True)
 class View:
-    """What the camera sees, in the file's millimetres.
+    """View of a field; lengths in mm.
 
-    The plane is turned so that `normal` points up, moved so that `centre` is the origin, and cut
-    to `window` (xmin, xmax, ymin, ymax). Colours run over `clim` MPa; `iso` are levels drawn as
-    lines.
+    The axes of the view have their origin at `centre` and their y axis along `normal`; `window` is
+    (xmin, xmax, ymin, ymax) in these axes. Colours cover `clim`, MPa; `iso` are levels of lines.
+    The displacement is shown relative to that of `anchor`; None: undeformed.
     """
 
     centre: tuple[float, float]
@@ -83,7 +85,7 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class Raster:
-    """A view as pixels (rows, columns, 3); `note` says in words why it is not a rendering."""
+    """Pixels (rows, columns, 3) of a view; `note` states why it is not rendered by VTK."""
 
     view: View
     pixels: Array
@@ -104,10 +106,10 @@ def read_field(vtu: Path) -> Field:
         raise ResultError(f"{vtu.name}: no such file")
     grid = pyvista.read(vtu)
     if FIELD not in grid.point_data or not grid.n_cells:
-        raise ResultError(f"{vtu.name}: holds no {FIELD} on points")
+        raise ResultError(f"{vtu.name}: no point data {FIELD}")
     cells = next((c for c in grid.cells_dict.values() if c.shape[1] in (3, 6)), None)
     if cells is None:
-        raise ResultError(f"{vtu.name}: holds no triangles")
+        raise ResultError(f"{vtu.name}: no triangles")
     zeros = np.zeros((grid.n_points, 3))
     data = grid.point_data
     shift = np.asarray(data["displacement_mm"]) if "displacement_mm" in data else zeros
@@ -128,10 +130,10 @@ def read_field(vtu: Path) -> Field:
 
 
 def find_contact(field: Field) -> tuple[Array, Array]:
-    """Where the bodies touch and the unit normal towards the follower, each (2,).
+    """Contact point and unit normal towards the follower, each (2,).
 
-    The file says so itself; else its shapes do: the roller is the smaller body, a circle round
-    the middle of its own extent, and touches the other body's point nearest to that middle.
+    Both are notes of the file. In files without them the roller is the smaller body, a circle about
+    the centre of its extent, and the contact is the nearest point of the other body.
 
     Raises
     ------
@@ -140,8 +142,8 @@ def find_contact(field: Field) -> tuple[Array, Array]:
     """
     names = ("contact_x_mm", "contact_y_mm", "normal_x", "normal_y")
     if all(name in field.notes for name in names):
-        told = np.array([field.notes[name] for name in names])
-        return told[:2], told[2:] / np.hypot(*told[2:])
+        x, y, nx, ny = (field.notes[name] for name in names)
+        return np.array([x, y]), np.array([nx, ny]) / np.hypot(nx, ny)
     marks = np.unique(field.body)
     if marks.size != 2:
         raise ResultError(f"the field holds {marks.size} bodies, must be 2")
@@ -157,7 +159,7 @@ def find_contact(field: Field) -> tuple[Array, Array]:
 
 
 def contact_view(field: Field, half_width: float, point: Array, normal: Array) -> View:
-    """Four half-widths to either side of the contact, follower above, cam below."""
+    """View of four half-widths on either side of the contact, follower above."""
     away = np.hypot(*(field.points - point[:, None]))
     peak = float(field.von_mises[away < CONTACT_REACH * half_width].max(initial=1e-9))
     reach = CONTACT_REACH * half_width
@@ -169,7 +171,7 @@ def contact_view(field: Field, half_width: float, point: Array, normal: Array) -
 
 
 def body_view(field: Field) -> View:
-    """The whole cam with its follower, as it lies in the file, stress over a few decades."""
+    """View of cam and follower in the frame of the file, logarithmic colours."""
     low, high = field.points.min(axis=1), field.points.max(axis=1)
     centre, half = (low + high) / 2, 0.53 * (high - low)
     peak = float(field.von_mises.max(initial=1e-9))
@@ -181,7 +183,7 @@ def body_view(field: Field) -> View:
 
 
 def contact_picture(vtu: Path, half_width_mm: float, contact_point: Array, normal: Array) -> bytes:
-    """PNG of the von Mises field under the follower, lengths over the half-width."""
+    """PNG of the von Mises stress below the contact, lengths in half-widths."""
     view = contact_view(read_field(vtu), half_width_mm, contact_point, normal)
     return frame_contact(render(vtu, [view])[0], half_width_mm)
 
@@ -192,7 +194,7 @@ def frame_contact(
     name: str = "roller",
     above: field_raster.Above | None = None,
 ) -> bytes:
-    """The contact raster in axes that count half-widths; `name` is that of the upper body."""
+    """The contact raster in axes of half-widths; `name` is the upper body."""
     extent = tuple(edge / half_width_mm for edge in raster.view.window)
     return field_raster.framed(
         raster.pixels, (extent[0], extent[1], extent[2], extent[3]),
@@ -203,7 +205,7 @@ def frame_contact(
 
 
 def frame_body(raster: Raster) -> bytes:
-    """The body raster in axes of millimetres in the frame of the file."""
+    """The body raster in axes of mm in the frame of the file."""
     x, y = raster.view.centre
     xmin, xmax, ymin, ymax = raster.view.window
     return field_raster.framed(
@@ -213,27 +215,27 @@ def frame_body(raster: Raster) -> bytes:
 
 
 def render(vtu: Path, views: Sequence[View]) -> list[Raster]:
-    """Rasters of the views, by the first OpenGL window that works here, else drawn flat."""
+    """Rasters of the views by the first OpenGL window that works, else by matplotlib."""
     for window in WINDOWS:
         with tempfile.TemporaryDirectory() as name:
             out = Path(name)
             (out / "views.json").write_text(json.dumps([asdict(view) for view in views]))
             try:
-                done = subprocess.run(  # noqa: S603 - our own interpreter and module
+                child = subprocess.run(  # noqa: S603 - our own interpreter and module
                     [sys.executable, "-m", __name__, str(vtu.resolve()), str(out)],
                     env=os.environ | {"VTK_DEFAULT_OPENGL_WINDOW": window}, check=False,
                     capture_output=True, timeout=PATIENCE_S,
                 )  # fmt: skip
             except (OSError, subprocess.TimeoutExpired):
                 continue
-            if done.returncode == 0:
+            if child.returncode == 0:
                 pixels = [np.load(out / f"{number}.npy") for number in range(len(views))]
                 return [Raster(view, image) for view, image in zip(views, pixels, strict=True)]
     return [flat(read_field(vtu), view) for view in views]
 
 
 def flat(field: Field, view: View) -> Raster:
-    """The same field drawn flat, each curved triangle as four straight ones."""
+    """A view drawn by matplotlib, each six-node triangle as four straight ones."""
     corners = field.triangles[[[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]] if len(
         field.triangles
     ) == 6 else field.triangles[None]  # fmt: skip
@@ -245,14 +247,11 @@ def flat(field: Field, view: View) -> Raster:
     pixels = field_raster.triangles_picture(
         placed, straight[:, seen], field.von_mises, view.window, view.clim, view.log, COLOUR_MAP
     )
-    return Raster(view, pixels, "No OpenGL device was found; this picture was drawn flat.")
+    return Raster(view, pixels, "No OpenGL device is available; drawn by matplotlib.")
 
 
 def deformed(field: Field, view: View) -> Array:
-    """Points (2, n) moved by the displacement at true scale, held still at the view's anchor.
-
-    A view without anchor shows the undeformed bodies: their displacement is far below a pixel.
-    """
+    """Points (2, n) displaced at true scale relative to the anchor; undeformed without anchor."""
     if view.anchor is None:
         return field.points
     away = np.hypot(*(field.points - np.array(view.anchor)[:, None]))
@@ -261,7 +260,7 @@ def deformed(field: Field, view: View) -> Array:
 
 
 def _paint(field: Field, view: View) -> Array:
-    """Render one view; runs in the child process only."""
+    """Render one view, in the child process."""
     import pyvista
 
     nodes = len(field.triangles)
@@ -303,15 +302,12 @@ def _paint(field: Field, view: View) -> Array:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """The child process: render the views of OUT/views.json into OUT/0.npy, OUT/1.npy ..."""
+    """Child process: render the views of OUT/views.json into OUT/0.npy, OUT/1.npy ..."""
     vtu, out = Path(arguments[0]), Path(arguments[1])
     field = read_field(vtu)
     for number, record in enumerate(json.loads((out / "views.json").read_text())):
-        given: dict[str, Any] = {
-            key: tuple(value) if isinstance(value, list) else value for key, value in record.items()
-        }
-        view = View(**given)
-        np.save(out / f"{number}.npy", _paint(field, view))
+        values: Record = {k: tuple(v) if isinstance(v, list) else v for k, v in record.items()}
+        np.save(out / f"{number}.npy", _paint(field, View(**values)))
     return 0
 
 

@@ -1,10 +1,9 @@
-"""Pictures of fields: a raster set in axes, and the flat drawing used where nothing renders."""
+"""Pictures of fields: axes around a raster, the pressure above it, drawing without OpenGL."""
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,28 +13,59 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from matplotlib.tri import Triangulation
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
-from camwright.reports.figure_svg import COLOURS, style
+from camwright.pipeline.base.tables import Table
+from camwright.reports.figure_svg import COLOURS, png, style
 from camwright.reports.figures import SERIES
 
+PRESSURE = "5_pressure.npz"
 _ABOVE, _GAP = 1.25, 0.1  # inches
+_NEAR = 1e-6  # deg
+_ELLIPSE = np.linspace(-1.0, 1.0, 201)
 
 
 @dataclass(frozen=True, eq=False)
 class Above:
-    """Curves on the horizontal axis of a raster: label, places (n,), values (n,); first filled."""
+    """Curves above a raster: label, positions (n,), values (n,); the first one is filled."""
 
     title: str
     curves: tuple[tuple[str, Array, Array], ...]
 
 
+def over_the_contact(path: Path, cycle: Table, angle: float, half_width: float) -> Above | None:
+    """Contact pressure by finite elements and of Hertz theory at a cam angle, deg.
+
+    Positions are in units of the half-width, mm. Of several load cases the one with the highest
+    pressure is taken; None if the run has no record of the pressure at this angle.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as entry:
+            rows = np.flatnonzero(np.abs(entry["cam_angle_deg"] - angle) < _NEAR)
+            along, pressure = entry["xi_mm"][rows], entry["pressure_MPa"][rows]
+    except (OSError, ValueError, KeyError, EOFError, IndexError):
+        return None
+    if not rows.size or not np.isfinite(pressure).any():
+        return None
+    chosen = int(np.nanargmax(np.nanmax(pressure, axis=1)))
+    curves: tuple[tuple[str, Array, Array], ...] = (
+        ("finite elements", along[chosen] / half_width, pressure[chosen]),
+    )
+    row = int(rows[chosen])
+    if "p0_hertz_MPa" in cycle and "half_width_hertz_mm" in cycle:
+        places = _ELLIPSE * cycle["half_width_hertz_mm"][row] / half_width
+        hertz = cycle["p0_hertz_MPa"][row] * np.sqrt(1 - _ELLIPSE**2)
+        curves += (("Hertz", places, hertz),)
+    return Above("pressure, MPa", curves)
+
+
 def framed(
     image: Array, extent: tuple[float, float, float, float], labels: tuple[str, str], title: str,
-    colour_map: Any, clim: tuple[float, float], log: bool, bar: tuple[float, str] | None,
+    colour_map: str, clim: tuple[float, float], log: bool, bar: tuple[float, str] | None,
     notes: tuple[tuple[str, float], ...] = (), above: Above | None = None,
 ) -> bytes:  # fmt: skip
-    """A rendered raster (rows, columns, 3) inside axes, with colour bar and scale bar, as PNG."""
+    """PNG of a raster (rows, columns, 3) in axes with colour bar and scale bar."""
     with style("picture"):
         width = 6.4
         tall = (extent[3] - extent[2]) / (extent[1] - extent[0])
@@ -66,11 +96,7 @@ def framed(
             low = 0.46 + inner * tall + _GAP
             place = (0.62 / width, low / height, inner / width, _ABOVE / height)
             _draw_above(canvas.add_axes(place), (extent[0], extent[1]), above)
-        stream = io.BytesIO()
-        canvas.savefig(
-            stream, format="png", dpi=190, facecolor="white", metadata={"Software": None}
-        )
-    return stream.getvalue()
+        return png(canvas, 190)
 
 
 def _draw_above(ax: Axes, span: tuple[float, float], above: Above) -> None:
@@ -101,10 +127,11 @@ def _scale_bar(ax: Axes, extent: tuple[float, float, float, float], bar: tuple[f
 
 
 def triangles_picture(
-    points: Array, triangles: Array, values: Array, window: tuple[float, float, float, float],
-    clim: tuple[float, float], log: bool, colour_map: Any,
+    points: Array, triangles: NDArray[np.int64], values: Array,
+    window: tuple[float, float, float, float], clim: tuple[float, float], log: bool,
+    colour_map: str,
 ) -> Array:  # fmt: skip
-    """A raster of a field on triangles, for machines that cannot render in three dimensions.
+    """Raster of a field on triangles, drawn by matplotlib.
 
     `points` (2, n), `triangles` (3, m), `values` (n,); `window` is xmin, xmax, ymin, ymax.
     """
@@ -115,9 +142,8 @@ def triangles_picture(
     ax.axis("off")
     norm = LogNorm(*clim) if log else Normalize(*clim)
     shown = np.clip(values, *clim)
-    mesh: Any = Triangulation(points[0], points[1], triangles.T)
-    paint: Any = ax.tripcolor
-    paint(mesh, shown, norm=norm, cmap=colour_map, shading="gouraud")
+    mesh = Triangulation(points[0], points[1], triangles.T)
+    ax.tripcolor(mesh, shown, norm=norm, cmap=colour_map, shading="gouraud")
     ax.set_xlim(window[0], window[1])
     ax.set_ylim(window[2], window[3])
     agg.draw()

@@ -1,7 +1,7 @@
-"""What a figure says, apart from how it is drawn.
+"""Contents of a figure: curves, limits, units, title and caption.
 
-A sheet is a tuple of these values. `plots.py` draws them as SVG and PNG; an interactive renderer
-can draw the same values, since every curve still carries its numbers, label and unit.
+`figure_svg` draws a figure by matplotlib, `interactive` by Plotly. Both take numbers, text, colour
+names and dashes from here; sizes and fonts are their own.
 """
 
 from __future__ import annotations
@@ -15,18 +15,29 @@ from camwright.geometry.arrays import Array
 
 SERIES = ("blue", "vermillion", "green", "purple", "orange", "sky")
 FAR_LIMIT = 1.6
-"""A limit farther from the curves than this many times their swing does not stretch the axis."""
+"""A limit within this multiple of the curves' range from them extends the vertical axis."""
 WORDS_HEIGHT = 0.09
-"""Of a panel: what the words of a limit take up."""
+"""Height of the label of a limit, as a share of the panel."""
 STROKES = ("intake", "compression", "expansion", "exhaust")
+"""Strokes of a four-stroke engine, 180 deg of crank each; every second one is shaded."""
+CRANK_AXIS, CAM_AXIS = "crank angle, deg", "cam angle, deg"
+CRANK_STEP, CAM_STEP = 90, 45
+"""Spacing of the tick labels on the angle axes, deg."""
+X_AXIS, Y_AXIS = "x, mm (cam angle 0 points along x)", "y, mm"
+_ROUND = 121  # points of a circle
+
+
+def closed(values: Array) -> Array:
+    """Values (..., n) over a turn, closed by repeating the first: (..., n + 1)."""
+    return np.concatenate([values, values[..., :1]], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
     """One quantity over the turn.
 
-    `values` (n,) belong to the figure's crank angles; `band` is the least and greatest over all
-    load cases, drawn as a pale ribbon when there is more than one.
+    `values` (n,) are at the crank angles of the figure; `band` is the minimum and maximum over
+    several load cases, drawn as a pale ribbon.
     """
 
     label: str
@@ -38,21 +49,22 @@ class Curve:
 
 @dataclass(frozen=True)
 class LimitLine:
-    """A horizontal limit, in the panel's unit."""
+    """A horizontal limit, in the unit of the panel."""
 
     value: float
     label: str
 
     def words(self, unit: str) -> str:
-        """The limit as written beside its line."""
+        """Label of the line: name, value, unit."""
         return f"{self.label} {self.value:.4g} {unit}".strip().replace("-", "\N{MINUS SIGN}")
 
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """One pair of axes: a quantity with its unit, the curves, the limits.
+    """One pair of axes: quantity, unit, curves, limits.
 
-    `span` clips the vertical axis to given values; None takes it from the curves.
+    `span` are the limits of the vertical axis; None derives them from the curves. `height` is
+    relative to the other panels.
     """
 
     quantity: str
@@ -63,13 +75,18 @@ class Panel:
     span: tuple[float, float] | None = None
 
     @property
+    def title(self) -> str:
+        """Title of the vertical axis."""
+        return f"{self.quantity}, {self.unit}" if self.unit else self.quantity
+
+    @property
     def legend_entries(self) -> int:
-        """Curves with a name."""
+        """Number of curves with a label."""
         return sum(bool(curve.label) for curve in self.curves)
 
 
 def vertical_span(panel: Panel, strokes: bool) -> tuple[float, float]:
-    """Vertical limits that hold curves, ribbons, near limits, and air for names of strokes."""
+    """Vertical axis limits: curves, ribbons, near limits, and space for the stroke names."""
     if panel.span is not None:
         return panel.span
     held = [part for curve in panel.curves for part in (curve.values, *(curve.band or ()))]
@@ -88,9 +105,10 @@ def vertical_span(panel: Panel, strokes: bool) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class PlacedLimits:
-    """Limits within the axes, each with whether its words stand above it; those `beyond` them.
+    """Limits on a pair of axes.
 
-    `beyond` is in words, empty when there is none; `above` tells at which edge they stand.
+    `inside` are limits within the axes, each with whether its label is above the line; `beyond`
+    describes those outside, empty without any, and is written at the upper edge if `above`.
     """
 
     inside: tuple[tuple[LimitLine, bool], ...]
@@ -99,14 +117,14 @@ class PlacedLimits:
 
 
 def placed_limits(panel: Panel, low: float, high: float) -> PlacedLimits:
-    """Where the limits of a panel and their words go on axes from `low` to `high`."""
+    """Places of the limits and their labels on axes from `low` to `high`, without overlap."""
     beyond = [line for line in panel.limits if not low <= line.value <= high]
     inside = [line for line in panel.limits if line not in beyond]
     heights = [(line.value - low) / (high - low) for line in inside]
     slots = [{True: height, False: height - WORDS_HEIGHT} for height in heights]
     taken: list[float] = []
     above: dict[int, bool] = {}
-    # those first that have no choice
+    # labels with only one possible place first
     for k in sorted(range(len(inside)), key=lambda k: sum(_free(s, ()) for s in slots[k].values())):
         wanted = heights[k] < 0.12 or (inside[k].value >= 0 and heights[k] < 0.78)
         swap = not _free(slots[k][wanted], taken) and _free(slots[k][not wanted], taken)
@@ -121,14 +139,14 @@ def placed_limits(panel: Panel, low: float, high: float) -> PlacedLimits:
 
 
 def _free(bottom: float, taken: Sequence[float]) -> bool:
-    """Whether words at this height stay on the axes and clear of others."""
+    """Whether a label at this height is within the axes and clear of the others."""
     within = -1e-9 <= bottom <= 1.0 - 2 * WORDS_HEIGHT
     return within and all(abs(bottom - other) >= WORDS_HEIGHT - 1e-9 for other in taken)
 
 
 @dataclass(frozen=True, eq=False)
 class AngleFigure:
-    """Panels above one another over a full turn, crank angle below and cam angle above."""
+    """Panels over one cam turn, crank angle below and cam angle above; `worst` is marked."""
 
     id: str
     title: str
@@ -140,14 +158,36 @@ class AngleFigure:
     worst: float | None = None
 
     @property
-    def one_legend(self) -> bool:
-        """Whether the names of the first panel's curves serve all panels."""
+    def period(self) -> float:
+        """Crank angle of one turn of the cam, deg."""
+        return 360.0 * self.gear_ratio
+
+    @property
+    def closed_crank(self) -> Array:
+        """Crank angles (n + 1,) of the closed curves, deg."""
+        return np.append(self.crank, self.period + self.crank[0])
+
+    @property
+    def mark(self) -> float | None:
+        """Crank angle of the dotted line, deg, within one turn."""
+        return None if self.worst is None else self.worst % self.period
+
+    @property
+    def named_strokes(self) -> tuple[tuple[float, str, bool], ...]:
+        """(start, deg of crank; name; shaded) of each stroke."""
+        names = STROKES if self.strokes else ()
+        return tuple((180.0 * k, name, k % 2 == 1) for k, name in enumerate(names))
+
+    @property
+    def legends(self) -> tuple[bool, ...]:
+        """Whether each panel has a legend; one is enough for panels with equal labels."""
         first = [curve.label for curve in self.panels[0].curves]
-        return all([c.label for c in p.curves] == first or len(p.curves) < 2 for p in self.panels)
+        shared = all(len(p.curves) < 2 or [c.label for c in p.curves] == first for p in self.panels)
+        return tuple(p.legend_entries > 1 and not (k and shared) for k, p in enumerate(self.panels))
 
     @property
     def alt(self) -> str:
-        """The figure in words: each curve with its range and where its largest size occurs."""
+        """Text alternative: range of each curve and angle of its largest magnitude."""
         parts = []
         for panel in self.panels:
             for curve in panel.curves:
@@ -157,18 +197,46 @@ class AngleFigure:
                 where = self.crank[int(np.nanargmax(np.abs(curve.values)))]
                 parts.append(
                     f"{panel.quantity}, {curve.label}: {low:.4g} to {high:.4g} {panel.unit},"
-                    f" largest size at {where:.4g} degrees crank"
+                    f" largest magnitude at {where:.4g} degrees crank"
                 )
             parts += [f"limit {line.label}: {line.value:.4g} {panel.unit}" for line in panel.limits]
         return f"{self.title} over one turn of the cam. " + ". ".join(parts) + "."
 
 
 @dataclass(frozen=True, eq=False)
-class OutlineFigure:
-    """The cam seen along its shaft; lengths in millimetres, points (2, n).
+class OutlineCurve:
+    """A curve of the outline: points (2, n), mm, filled with the colour `fill` if it is named.
 
-    pitch is the path of the roller's centre, if there is one; follower, the outline of roller or
-    face where the worst angle has it.
+    angle (n,) is the cam angle of each point, deg, or None; `dash` is solid, dashed or dashdot,
+    `marker` dot, cross or empty.
+    """
+
+    points: Array
+    colour: str
+    label: str = ""
+    width: float = 1.0
+    dash: str = "solid"
+    fill: str = ""
+    marker: str = ""
+    angle: Array | None = None
+
+
+@dataclass(frozen=True)
+class OutlineText:
+    """Text along a line: centre, mm, and rotation, deg counter-clockwise."""
+
+    words: str
+    place: tuple[float, float]
+    turn: float
+
+
+@dataclass(frozen=True, eq=False)
+class OutlineFigure:
+    """The cam in the direction of its shaft, points (2, n) in mm.
+
+    `pitch` is the pitch curve of a roller follower, `follower` the outline of roller or face at
+    row `worst`; None if unknown. `keyway` is width and depth, mm, and angle, rad; `counter_hole`
+    centre x, y and radius, mm, and whether it is drilled.
     """
 
     id: str
@@ -185,20 +253,98 @@ class OutlineFigure:
     counter_hole: tuple[float, float, float, bool] | None = None
 
     @property
+    def curves(self) -> tuple[OutlineCurve, ...]:
+        """All curves, from the bottom layer to the top one."""
+        angle = np.linspace(0.0, 360.0, self.contour.shape[1] + 1)
+        made = [
+            OutlineCurve(closed(self.contour), "blue", "cam contour", 1.4, fill="steel",
+                         angle=angle),
+            *self._openings(),
+        ]  # fmt: skip
+        if self.pitch is not None:
+            made.append(OutlineCurve(
+                closed(self.pitch), "muted", "pitch curve (roller centre)", 0.9, "dashdot",
+                angle=angle,
+            ))  # fmt: skip
+        for k in self.radii:
+            made.append(
+                OutlineCurve(np.stack([np.zeros(2), self.contour[:, k]], 1), "ink", "", 0.7)
+            )
+            made.append(OutlineCurve(self.contour[:, k : k + 1], "ink", marker="dot"))
+        cross = np.array([[-2.0, 2.0], [0.0, 0.0]])
+        made += [OutlineCurve(cross, "ink", "", 0.7), OutlineCurve(cross[::-1], "ink", "", 0.7)]
+        if self.follower is not None:
+            label = f"{self.follower_name} {self.worst_label}"
+            made.append(OutlineCurve(self.follower, "vermillion", label, 1.2))
+        touch = slice(self.worst, self.worst + 1)
+        made.append(OutlineCurve(self.contour[:, touch], "vermillion", marker="dot"))
+        if self.pitch is not None:
+            made.append(OutlineCurve(self.pitch[:, touch], "vermillion", marker="cross"))
+        return tuple(made)
+
+    def _openings(self) -> list[OutlineCurve]:
+        """Bore, keyway and counter-hole; a proposed hole is dashed."""
+        made = []
+        if self.bore_radius is not None:
+            bore = circle((0.0, 0.0), self.bore_radius)
+            made.append(OutlineCurve(bore, "blue", fill="card"))
+            if self.keyway is not None:
+                slot = _slot(self.bore_radius, *self.keyway)
+                made.append(OutlineCurve(slot, "blue", fill="card"))
+        if self.counter_hole is not None:
+            x, y, radius, drilled = self.counter_hole
+            dash, fill = ("solid", "card") if drilled else ("dashed", "")
+            made.append(OutlineCurve(circle((x, y), radius), "blue", dash=dash, fill=fill))
+        return made
+
+    @property
     def radii(self) -> tuple[int, int]:
-        """Where the contour is nearest to the shaft, and where farthest."""
+        """Rows of the minimum and maximum radius of the contour."""
         radius = np.hypot(*self.contour)
         return int(np.argmin(radius)), int(np.argmax(radius))
 
     @property
+    def texts(self) -> tuple[OutlineText, ...]:
+        """Minimum and maximum radius, written along the radius outside the bore."""
+        made = []
+        for word, k in zip(("min", "max"), self.radii, strict=True):
+            x, y = self.contour[:, k]
+            radius = float(np.hypot(x, y))
+            share = 0.5 + 0.5 * (self.bore_radius or 0.0) / radius
+            turn = (np.degrees(np.arctan2(y, x)) + 90.0) % 180.0 - 90.0  # not upside down
+            place = (float(share * x), float(share * y))
+            made.append(OutlineText(f"{word} {radius:.4g} mm", place, float(turn)))
+        return tuple(made)
+
+    @property
+    def reach(self) -> float:
+        """Half the side of the square about the shaft that is shown, mm."""
+        shown = [c for c in (self.contour, self.pitch, self.follower) if c is not None]
+        return 1.06 * max(float(np.abs(points).max()) for points in shown)
+
+    @property
     def alt(self) -> str:
-        """The figure in words."""
+        """Text alternative."""
         radius = np.hypot(*self.contour)
         return (
             f"{self.title}: cam contour between {radius.min():.4g} and {radius.max():.4g} mm from"
             f" the shaft, with {'' if self.pitch is None else 'pitch curve, '}bore and the"
             f" {self.follower_name} {self.worst_label}."
         )
+
+
+def circle(centre: tuple[float, float], radius: float) -> Array:
+    """Closed circle (2, n)."""
+    angle = np.linspace(0.0, 2 * np.pi, _ROUND)
+    return np.array(centre)[:, None] + radius * np.stack([np.cos(angle), np.sin(angle)])
+
+
+def _slot(bore_radius: float, width: float, depth: float, angle: float) -> Array:
+    """Sides and bottom (2, 4) of a keyway, open to the bore; angle in rad."""
+    inner, outer = np.sqrt(max(bore_radius**2 - width**2 / 4, 0.0)), bore_radius + depth
+    corners = np.array([[inner, outer, outer, inner], np.array([-1, -1, 1, 1]) * width / 2])
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]]) @ corners
 
 
 Figure = AngleFigure | OutlineFigure

@@ -1,11 +1,9 @@
-"""The pressure in both guides as a picture: over the turn, round the bore, in the worst slice."""
+"""Pressure in both guides: over the turn, around the bore, in the slice of maximum pressure."""
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
@@ -18,7 +16,7 @@ from matplotlib.ticker import FuncFormatter, NullLocator
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
-from camwright.reports.figure_svg import COLOURS, style
+from camwright.reports.figure_svg import COLOURS, png, style
 
 FILE = "5_bushes.npz"
 COLOUR_MAP = "viridis"
@@ -30,12 +28,12 @@ _LOBE = 0.75  # of the bore's radius, in the cross-section
 
 @dataclass(frozen=True, eq=False)
 class Bush:
-    """One guide.
+    """Pressure in one guide.
 
-    along (k,) mm from its middle, away from the roller; angle (n,) deg and line (n, k) N/mm, its
-    push on the stem over the turn of a load case; round (m,) deg from the line of action and
-    pressure (s, m) MPa in the bore at slices (s,) mm, at the worst angle, deg, of load case
-    `worst_case`.
+    along (k,) position from the middle of the guide, mm, away from the roller; angle (n,) deg and
+    line (n, k) line load on the stem, N/mm, over the turn of a load case; round (m,) deg from the
+    line of action and pressure (s, m) in the bore, MPa, at slices (s,), mm, at `worst_angle`, deg,
+    of load case `worst_case`.
     """
 
     name: str
@@ -50,17 +48,17 @@ class Bush:
 
     @property
     def peak(self) -> float:
-        """MPa; not a number where no slice has a solution."""
+        """Maximum pressure, MPa; NaN if no slice has a solution."""
         return float(np.nanmax(self.pressure)) if np.isfinite(self.pressure).any() else np.nan
 
     @property
     def slice(self) -> int:
-        """Number of the slice with the greatest pressure."""
+        """Index of the slice of maximum pressure."""
         return int(np.argmax(np.nan_to_num(self.pressure).max(axis=1)))
 
 
 def read_bushes(path: Path, load_case: str) -> tuple[Bush, Bush]:
-    """Guides A and B; the turn is that of the load case, the worst that of all.
+    """Guides A and B: line load of one load case, pressure at the worst angle of all load cases.
 
     Raises
     ------
@@ -70,24 +68,24 @@ def read_bushes(path: Path, load_case: str) -> tuple[Bush, Bush]:
     try:
         with np.load(path, allow_pickle=False) as entry:
             cases, angle = entry["load_case"], entry["cam_angle_deg"]
-            found = {side: {n: entry[f"{side}_{n}"] for n in _FIELDS} for side in "AB"}
+            guides = {side: {n: entry[f"{side}_{n}"] for n in _FIELDS} for side in "AB"}
     except (OSError, ValueError, EOFError, KeyError) as error:
         raise ResultError(f"{path}: {error}") from None
     rows = cases == load_case
     if not rows.any():
-        raise ResultError(f"{path}: nothing of load case {load_case}")
+        raise ResultError(f"{path}: load case {load_case} is missing")
     a, b = (
         Bush(
             side, one["along_mm"], angle[rows], one["line_N_per_mm"][rows], one["slices_mm"],
             one["round_deg"], one["pressure_MPa"], float(angle[int(one["row"])]),
             str(cases[int(one["row"])]),
-        ) for side, one in found.items()
+        ) for side, one in guides.items()
     )  # fmt: skip
     return a, b
 
 
 def drawn(bushes: tuple[Bush, Bush]) -> bytes:
-    """PNG of both guides, one above the other."""
+    """PNG of both guides."""
     with style("bush-pressure"):
         canvas = Figure(figsize=(7.6, 5.4), layout="constrained")
         grid = canvas.add_gridspec(2, 3, width_ratios=(1.25, 1.25, 0.8))
@@ -95,12 +93,10 @@ def drawn(bushes: tuple[Bush, Bush]) -> bytes:
             _over_the_turn(canvas, canvas.add_subplot(grid[number, 0]), bush)
             norm = Normalize(0.0, bush.peak if bush.peak > 0 else 1.0)
             _unrolled(canvas, canvas.add_subplot(grid[number, 1]), bush, norm)
-            _across(canvas.add_subplot(grid[number, 2], projection="polar"), bush, norm)
-        stream = io.BytesIO()
-        canvas.savefig(
-            stream, format="png", dpi=150, facecolor="white", metadata={"Software": None}
-        )
-    return stream.getvalue()
+            polar = PolarAxes(canvas, grid[number, 2])
+            canvas.add_subplot(polar)
+            _across(polar, bush, norm)
+        return png(canvas)
 
 
 def _over_the_turn(canvas: Figure, ax: Axes, bush: Bush) -> None:
@@ -114,14 +110,14 @@ def _over_the_turn(canvas: Figure, ax: Axes, bush: Bush) -> None:
     ax.axvline(bush.worst_angle, color="white", linewidth=0.9, dashes=(3, 3))
     ax.set(xlabel="cam angle, deg", ylabel="along the guide, mm", xlim=(0, 360),
            xticks=np.arange(0, 361, 90))  # fmt: skip
-    ax.set_title(f"guide {bush.name}: push over the turn", fontsize=8.5, loc="left")
+    ax.set_title(f"guide {bush.name}: line load over the turn", fontsize=8.5, loc="left")
     bar = canvas.colorbar(shown, ax=ax, label="N/mm (logarithmic)", pad=0.01)
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bar.ax.yaxis.set_minor_locator(NullLocator())
 
 
 def _unrolled(canvas: Figure, ax: Axes, bush: Bush, norm: Normalize) -> None:
-    """The bore laid flat, as much of it as is pressed on, cut open on the side that is not."""
+    """Pressure on the unrolled bore, cut on the unloaded side, around the loaded area."""
     pressure = np.nan_to_num(bush.pressure)
     angle = bush.round
     if angle[int(np.argmax(pressure[bush.slice]))] ** 2 > 90.0**2:
@@ -131,14 +127,14 @@ def _unrolled(canvas: Figure, ax: Axes, bush: Bush, norm: Normalize) -> None:
     shown = ax.pcolormesh(
         angle, bush.slices, pressure, cmap=COLOUR_MAP, norm=norm, shading="nearest", rasterized=True
     )
-    ax.set(xlabel="round the bore, deg", xlim=_pressed(angle, pressure.max(axis=0)),
+    ax.set(xlabel="angle around the bore, deg", xlim=_pressed(angle, pressure.max(axis=0)),
            ylim=_pressed(bush.slices, pressure.max(axis=1)))  # fmt: skip
-    ax.set_title(f"in the bore at {bush.worst_angle:g}° of the cam", fontsize=8.5, loc="left")
+    ax.set_title(f"pressure at cam angle {bush.worst_angle:g}°", fontsize=8.5, loc="left")
     canvas.colorbar(shown, ax=ax, label="MPa", pad=0.01)
 
 
 def _pressed(places: Array, pressure: Array) -> tuple[float, float]:
-    """The stretch that carries pressure, and a tenth of it more to either side."""
+    """Loaded interval, extended by a tenth of its length on either side."""
     on = places[pressure > 0]
     if not on.size:
         return float(places[0]), float(places[-1])
@@ -146,9 +142,8 @@ def _pressed(places: Array, pressure: Array) -> tuple[float, float]:
     return max(float(on[0]) - more, float(places[0])), min(float(on[-1]) + more, float(places[-1]))
 
 
-def _across(ax: Any, bush: Bush, norm: Normalize) -> None:
-    """The slice with the greatest pressure, drawn outwards from the bore."""
-    polar: PolarAxes = ax
+def _across(polar: PolarAxes, bush: Bush, norm: Normalize) -> None:
+    """Pressure in the slice of maximum pressure, drawn outwards from the bore."""
     polar.set_theta_zero_location("N")
     angle, pressure = np.radians(bush.round), np.nan_to_num(bush.pressure[bush.slice])
     reach = 1.0 + _LOBE * pressure / norm.vmax

@@ -1,36 +1,34 @@
-"""Pictures of an inspected cam, from its files alone."""
+"""Picture of an inspected cam: deviation, normal force, contact pressure."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.base.tables import Table, read_table
 from camwright.pipeline.results.run_reader import CYCLE, load_run
+from camwright.reports.figure_svg import png
 
 _EXAGGERATED = 0.12
-"""Of the mean radius: how large the greatest deviation is drawn on the part."""
+"""Maximum deviation as drawn on the contour, as a share of the mean radius."""
 
 
 def draw(run: Path, tolerance_um: float) -> Path:
-    """Draw ``inspection/deviation.png``: deviation over the turn and on the part, force, pressure.
+    """Write ``inspection/deviation.png``.
 
     Returns
     -------
-    Path    the picture
+    Path   the picture
     """
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    from matplotlib.figure import Figure
-
     folder = run / "inspection"
     deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv", CYCLE)
     nominal = load_run(run).final
     figure = Figure(figsize=(10, 8), layout="constrained")
-    over_turn = figure.add_subplot(2, 2, 1)
-    _deviation(over_turn, deviation, tolerance_um)
+    _deviation(figure.add_subplot(2, 2, 1), deviation, tolerance_um)
     _part(figure.add_subplot(2, 2, 2), nominal.contour, deviation)
     state = str(nominal.cycle["load_case"][0])
     for place, header, label in ((3, "normal_force_N", "normal force, N"),
@@ -41,15 +39,10 @@ def draw(run: Path, tolerance_um: float) -> Path:
             axes.plot(rows["cam_angle_deg"], rows[header], style, lw=1, label=name)
         axes.set(xlabel="cam angle, deg", ylabel=label, xlim=(0, 360))
         axes.legend()
-    path = folder / "deviation.png"
-    figure.savefig(path, dpi=120, metadata={"Software": "camwright"})
-    return path
+    return write_atomic(folder / "deviation.png", png(figure, 120))
 
 
-def _deviation(axes: object, deviation: Table, tolerance_um: float) -> None:
-    from matplotlib.axes import Axes
-
-    assert isinstance(axes, Axes)  # noqa: S101 - tells the type checker
+def _deviation(axes: Axes, deviation: Table, tolerance_um: float) -> None:
     axes.plot(deviation["cam_angle_deg"], deviation["deviation_um"], ".", ms=2, label="measured")
     axes.plot(deviation["cam_angle_deg"], deviation["form_um"], lw=1, label="form")
     for side in (-0.5, 0.5):
@@ -58,10 +51,7 @@ def _deviation(axes: object, deviation: Table, tolerance_um: float) -> None:
     axes.legend()
 
 
-def _part(axes: object, contour: Table, deviation: Table) -> None:
-    from matplotlib.axes import Axes
-
-    assert isinstance(axes, Axes)  # noqa: S101 - tells the type checker
+def _part(axes: Axes, contour: Table, deviation: Table) -> None:
     x, y = contour["contour_x_mm"], contour["contour_y_mm"]
     form = np.interp(contour["cam_angle_deg"], deviation["cam_angle_deg"], deviation["form_um"],
                      period=360.0)  # fmt: skip

@@ -1,7 +1,7 @@
-"""The sheet's figures for an interactive library: plain values that Plotly draws in the page.
+"""Figures as data for Plotly, which draws them in the page.
 
-The library is bundled into the page, so that it opens without a network. Colours stay names here;
-the page fills in those of its light or dark theme.
+The library is part of the page, which therefore needs no network. Colours are names; the script of
+the page replaces them by those of its theme.
 """
 
 from __future__ import annotations
@@ -13,33 +13,44 @@ import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from markupsafe import Markup
 
 from camwright.geometry.arrays import Array
 from camwright.reports.figures import (
-    STROKES,
+    CAM_AXIS,
+    CAM_STEP,
+    CRANK_AXIS,
+    CRANK_STEP,
+    X_AXIS,
+    Y_AXIS,
     AngleFigure,
     Curve,
     Figure,
+    OutlineCurve,
     OutlineFigure,
     Panel,
+    closed,
     placed_limits,
     vertical_span,
 )
+from camwright.reports.report_tables import Json
+
+Spec = dict[str, Json]
 
 _HERE = Path(__file__).parent
 _SCRIPTS = (_HERE / "vendor" / "plotly-basic.min.js", _HERE / "templates" / "report.js")
 _PANEL_PIXELS, _TOP_PIXELS, _LEGEND_PIXELS, _BOTTOM_PIXELS, _GAP_PIXELS = 165, 54, 24, 46, 14
 _DIGITS, _STROKE_PIXELS = 6, 14
+_DASHES = {"solid": "solid", "dashed": "dash", "dashdot": "dashdot"}
+_MARKERS = {"dot": "circle", "cross": "cross-thin-open"}
 _HOVER_TITLE, _HOVER_CAM = "crank %{x:.1f}°", " · cam %{customdata:.1f}°"
 
 
 @dataclass(frozen=True)
 class Bundle:
-    """What an interactive page carries: scripts, their hashes for its policy, the figures' data."""
+    """Scripts of a page, their hashes for its content security policy, data of its figures."""
 
     scripts: tuple[Markup, ...]
     hashes: tuple[str, ...]
@@ -47,7 +58,7 @@ class Bundle:
 
 
 def bundle(figures: Iterable[Figure]) -> Bundle:
-    """Scripts and data of some figures."""
+    """Scripts and data of figures."""
     specs = {figure.id: specification(figure) for figure in figures}
     return Bundle(
         *scripts(_SCRIPTS),
@@ -56,7 +67,7 @@ def bundle(figures: Iterable[Figure]) -> Bundle:
 
 
 def scripts(sources: Iterable[Path]) -> tuple[tuple[Markup, ...], tuple[str, ...]]:
-    """Scripts that may stand in a page, the library's and our own, and their hashes."""
+    """Scripts escaped for inclusion in a page, and their hashes."""
     safe = [
         source.read_text(encoding="utf-8")
         .replace("</script", "<\\/script")
@@ -66,13 +77,13 @@ def scripts(sources: Iterable[Path]) -> tuple[tuple[Markup, ...], tuple[str, ...
     return tuple(Markup(source) for source in safe), tuple(map(_hash, safe))  # noqa: S704
 
 
-def specification(figure: Figure) -> dict[str, Any]:
-    """Traces and layout of a figure in Plotly's terms, colours by name."""
+def specification(figure: Figure) -> Spec:
+    """Traces and layout of a figure for Plotly, colours by name."""
     return _angles(figure) if isinstance(figure, AngleFigure) else _outline(figure)
 
 
-def script_safe_json(value: object) -> str:
-    """JSON that may stand in a script element: nothing in it can end the element."""
+def script_safe_json(value: Json) -> str:
+    """JSON for a script element, with <, > and & escaped."""
     text = json.dumps(value, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
@@ -82,52 +93,52 @@ def _hash(source: str) -> str:
     return f"'sha256-{base64.b64encode(digest).decode()}'"
 
 
-def _angles(figure: AngleFigure) -> dict[str, Any]:
-    turn = 360.0 * figure.gear_ratio
-    crank = np.append(figure.crank, turn + figure.crank[0])
-    cam = _numbers(crank / figure.gear_ratio)
+def _angles(figure: AngleFigure) -> Spec:
     lines = _Lines.of(figure)
-    traces: list[dict[str, Any]] = []
-    layout: dict[str, Any] = {
-        "height": lines.height,
-        "margin": {"l": 68, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS},
-        "xaxis": {"range": [0, turn], "dtick": 90, "title": {"text": "crank angle, deg"},
-                  "unifiedhovertitle": {"text": _HOVER_TITLE}, "fixedrange": True,
-                  "anchor": _axis("y", len(figure.panels) - 1)},
-        "xaxis2": {"range": [0, 360], "dtick": 45, "title": {"text": "cam angle, deg"},
-                   "fixedrange": True, "overlaying": "x", "side": "top", "anchor": "y"},
-        "shapes": _shades(figure, turn), "annotations": _stroke_names(figure),
-    }  # fmt: skip
+    crank, cam = _numbers(figure.closed_crank), _numbers(figure.closed_crank / figure.gear_ratio)
+    shapes, notes = _shades(figure), _stroke_names(figure)
+    traces: list[Spec] = []
+    axes: dict[str, Spec] = {}
     for number, panel in enumerate(figure.panels):
-        bottom, top = lines.domains[number]
+        end = "" if number == 0 else str(number + 1)
+        axis, (bottom, top) = f"y{end}", lines.domains[number]
         low, high = vertical_span(panel, figure.strokes)
-        axis, legend = _axis("y", number), "legend" if number == 0 else f"legend{number + 1}"
-        layout["yaxis" if number == 0 else f"yaxis{number + 1}"] = {
+        axes[f"yaxis{end}"] = {
             "domain": [bottom, top], "fixedrange": True, "range": [low, high],
-            "title": {"text": _title(panel), "standoff": 8},
+            "title": {"text": html.escape(panel.title), "standoff": 8},
         }  # fmt: skip
-        named = panel.legend_entries > 1 and (number == 0 or not figure.one_legend)
-        if named and number:
-            layout[legend] = {"orientation": "h", "x": 0, "y": top, "yanchor": "bottom",
-                              "traceorder": "normal"}  # fmt: skip
+        if figure.legends[number] and number:
+            axes[f"legend{end}"] = {"orientation": "h", "x": 0, "y": top, "yanchor": "bottom",
+                                    "traceorder": "normal"}  # fmt: skip
+        legend = {"legend": f"legend{end}"} if figure.legends[number] else {}
         for curve in panel.curves:
-            traces += _band(curve, crank, axis)
-            trace = _curve(curve, panel, crank, cam, axis)
-            traces.append(trace | {"showlegend": named, **({"legend": legend} if named else {})})
-        shapes, notes = _limits(panel, axis, low, high)
-        layout["shapes"] += shapes
-        layout["annotations"] += notes
-    told = next((trace for trace in traces if "hovertemplate" in trace), None)
-    if told is not None:  # once is enough for all curves
-        told["hovertemplate"] = told["hovertemplate"].replace("<extra>", f"{_HOVER_CAM}<extra>")
+            common = {"type": "scatter", "mode": "lines", "x": crank, "xaxis": "x", "yaxis": axis}
+            traces += [common | band for band in _band(curve)]
+            # one curve of the figure shows the cam angle
+            hover = _HOVER_CAM if not any("hovertemplate" in trace for trace in traces) else ""
+            traces.append(
+                common | _curve(curve, panel, hover) | legend
+                | {"customdata": cam, "showlegend": figure.legends[number]}
+            )  # fmt: skip
+        lines_of, notes_of = _limits(panel, axis, low, high)
+        shapes, notes = shapes + lines_of, notes + notes_of
     traces.append({"x": [0], "y": [None], "xaxis": "x2", "yaxis": "y", "type": "scatter",
                    "showlegend": False, "hoverinfo": "skip"})  # fmt: skip
-    return {"data": traces, "layout": layout, "words": figure.title}
+    last = len(figure.panels)
+    return {"data": traces, "layout": {
+        "height": lines.height, "shapes": shapes, "annotations": notes, **axes,
+        "margin": {"l": 68, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS},
+        "xaxis": {"range": [0, figure.period], "dtick": CRANK_STEP, "fixedrange": True,
+                  "title": {"text": CRANK_AXIS}, "unifiedhovertitle": {"text": _HOVER_TITLE},
+                  "anchor": "y" if last == 1 else f"y{last}"},
+        "xaxis2": {"range": [0, 360], "dtick": CAM_STEP, "title": {"text": CAM_AXIS},
+                   "fixedrange": True, "overlaying": "x", "side": "top", "anchor": "y"},
+    }}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class _Lines:
-    """Pixels of a figure: its height, the margin at its top, and each panel's share of the rest."""
+    """Height and top margin of a figure, pixels, and the vertical domain of each panel, 0 to 1."""
 
     height: int
     top: int
@@ -135,146 +146,115 @@ class _Lines:
 
     @classmethod
     def of(cls, figure: AngleFigure) -> _Lines:
-        panels = figure.panels
-        own = [p.legend_entries > 1 and not figure.one_legend for p in panels]
-        gaps = [_GAP_PIXELS + _LEGEND_PIXELS * with_legend for with_legend in own[1:]]
-        heights = [_PANEL_PIXELS * panel.height for panel in panels]
+        gaps = [_GAP_PIXELS + _LEGEND_PIXELS * legend for legend in figure.legends[1:]]
+        heights = [_PANEL_PIXELS * panel.height for panel in figure.panels]
         whole = sum(heights) + sum(gaps)
         edge, domains = whole, []
         for height, gap in zip(heights, [*gaps, 0], strict=True):
             domains.append((max(edge - height, 0.0) / whole, edge / whole))
             edge -= height + gap
-        top = _TOP_PIXELS + (_LEGEND_PIXELS if panels[0].legend_entries > 1 else 0)
+        top = _TOP_PIXELS + (_LEGEND_PIXELS if figure.legends[0] else 0)
         return cls(round(whole) + top + _BOTTOM_PIXELS, top, tuple(domains))
 
 
-def _limits(
-    panel: Panel, axis: str, low: float, high: float
-) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """Lines of a panel's limits, and the words beside them, as in the static drawing."""
+def _limits(panel: Panel, axis: str, low: float, high: float) -> tuple[list[Spec], list[Spec]]:
+    """Lines and labels of the limits of a panel."""
     placed = placed_limits(panel, low, high)
-    shapes = [
+    shapes: list[Spec] = [
         {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "yref": axis, "y0": line.value,
          "y1": line.value, "line": {"color": "fail", "width": 1.2, "dash": "dash"}}
         for line, _ in placed.inside
     ]  # fmt: skip
-    told = [(line.words(panel.unit), line.value, above) for line, above in placed.inside]
+    # a limit outside the axes is written at the edge; the upper edge has the stroke names
+    words = [(line.words(panel.unit), line.value, above, 0) for line, above in placed.inside]
     if placed.beyond:
-        told.append((placed.beyond, high if placed.above else low, not placed.above))
-    common = {"xref": "paper", "x": 1, "xanchor": "right", "yref": axis, "showarrow": False,
-              "font": {"color": "fail", "size": 10}, "bgcolor": "card", "borderpad": 1}  # fmt: skip
-    notes = [
-        common | {"y": value, "yanchor": "bottom" if above else "top", "text": html.escape(words)}
-        for words, value, above in told
-    ]
-    if placed.beyond and placed.above:
-        notes[-1]["yshift"] = -_STROKE_PIXELS  # below the names of the strokes
+        shift = -_STROKE_PIXELS if placed.above else 0
+        words.append((placed.beyond, high if placed.above else low, not placed.above, shift))
+    notes: list[Spec] = [
+        {"xref": "paper", "x": 1, "xanchor": "right", "yref": axis, "showarrow": False,
+         "font": {"color": "fail", "size": 10}, "bgcolor": "card", "borderpad": 1, "y": value,
+         "yanchor": "bottom" if above else "top", "text": html.escape(text), "yshift": shift}
+        for text, value, above, shift in words
+    ]  # fmt: skip
     return shapes, notes
 
 
-def _stroke_names(figure: AngleFigure) -> list[dict[str, Any]]:
-    """Names of the engine's strokes along the top of the first panel."""
-    if not figure.strokes:
-        return []
+def _stroke_names(figure: AngleFigure) -> list[Spec]:
+    """Names of the strokes at the top of the first panel."""
     return [
-        {"xref": "x", "x": 90 + 180 * number, "yref": "paper", "y": 1, "yanchor": "top",
+        {"xref": "x", "x": start + 90, "yref": "paper", "y": 1, "yanchor": "top",
          "showarrow": False, "text": name, "font": {"color": "muted", "size": 10}}
-        for number, name in enumerate(STROKES)
+        for start, name, _ in figure.named_strokes
     ]  # fmt: skip
 
 
-def _curve(
-    curve: Curve, panel: Panel, crank: Array, cam: list[float | None], axis: str
-) -> dict[str, Any]:
-    name = html.escape(curve.label or panel.quantity)
-    unit = html.escape(panel.unit)
+def _curve(curve: Curve, panel: Panel, hover: str) -> Spec:
+    name, unit = html.escape(curve.label or panel.quantity), html.escape(panel.unit)
     return {
-        "type": "scatter", "mode": "lines", "name": name, "xaxis": "x", "yaxis": axis,
-        "x": _numbers(crank), "y": _numbers(np.append(curve.values, curve.values[0])),
-        "customdata": cam,
+        "name": name, "y": _numbers(closed(curve.values)), "meta": unit,
         "line": {"color": curve.colour, "width": 1.8, "dash": "dash" if curve.dashed else "solid"},
-        "hovertemplate": f"%{{y:.5g}} {unit}<extra>{name}</extra>",
-        "meta": unit,
+        "hovertemplate": f"%{{y:.5g}} {unit}{hover}<extra>{name}</extra>",
     }  # fmt: skip
 
 
-def _band(curve: Curve, crank: Array, axis: str) -> list[dict[str, Any]]:
+def _band(curve: Curve) -> list[Spec]:
+    """Lower and upper edge of the ribbon of a curve."""
     if curve.band is None:
         return []
-    edges = [_numbers(np.append(edge, edge[0])) for edge in curve.band]
-    common = {
-        "type": "scatter",
-        "mode": "lines",
-        "x": _numbers(crank),
-        "xaxis": "x",
-        "yaxis": axis,
-        "showlegend": False,
-        "hoverinfo": "skip",
-        "line": {"width": 0, "color": curve.colour},
-    }
-    filled = {"fill": "tonexty", "fillcolor": curve.colour}
-    return [common | {"y": edges[0]}, common | {"y": edges[1], **filled}]
+    edge: Spec = {"showlegend": False, "hoverinfo": "skip",
+                  "line": {"width": 0, "color": curve.colour}}  # fmt: skip
+    below, above = (edge | {"y": _numbers(closed(values))} for values in curve.band)
+    return [below, above | {"fill": "tonexty", "fillcolor": curve.colour}]
 
 
-def _shades(figure: AngleFigure, turn: float) -> list[dict[str, Any]]:
-    shapes: list[dict[str, Any]] = []
-    if figure.strokes:
-        shapes += [
-            {"type": "rect", "xref": "x", "x0": start, "x1": start + 180, "yref": "paper", "y0": 0,
-             "y1": 1, "fillcolor": "shade", "line": {"width": 0}, "layer": "below"}
-            for start in (180, 540)
-        ]  # fmt: skip
-    if figure.worst is not None:
-        at = figure.worst % turn
-        shapes.append({"type": "line", "xref": "x", "x0": at, "x1": at, "yref": "paper", "y0": 0,
-                       "y1": 1, "line": {"color": "ink", "width": 1, "dash": "dot"}})  # fmt: skip
+def _shades(figure: AngleFigure) -> list[Spec]:
+    """Shaded strokes and the dotted line of the worst angle."""
+    common: Spec = {"xref": "x", "yref": "paper", "y0": 0, "y1": 1}
+    shapes = [
+        common | {"type": "rect", "x0": start, "x1": start + 180, "fillcolor": "shade",
+                  "line": {"width": 0}, "layer": "below"}
+        for start, _, shaded in figure.named_strokes if shaded
+    ]  # fmt: skip
+    if figure.mark is not None:
+        dotted: Spec = {"color": "ink", "width": 1, "dash": "dot"}
+        shapes.append(common | {"type": "line", "x0": figure.mark, "x1": figure.mark,
+                                "line": dotted})  # fmt: skip
     return shapes
 
 
-def _outline(figure: OutlineFigure) -> dict[str, Any]:
-    angle = np.linspace(0.0, 360.0, figure.contour.shape[1] + 1)
-    traces = []
-    for name, points, colour in (("cam contour", figure.contour, "blue"),
-                                 ("pitch curve", figure.pitch, "muted")):  # fmt: skip
-        if points is None:
-            continue
-        closed = np.append(points, points[:, :1], axis=1)
-        traces.append({
-            "type": "scatter", "mode": "lines", "name": name, "x": _numbers(closed[0]),
-            "y": _numbers(closed[1]), "customdata": _numbers(angle), "meta": "mm",
-            "line": {"color": colour, "width": 1.8, "dash": "solid"},
-            "hovertemplate": "%{x:.4f}, %{y:.4f} mm (cam %{customdata:.1f}°)",
-        })  # fmt: skip
-    if figure.counter_hole is not None:
-        x, y, radius, drilled = figure.counter_hole
-        turned = np.radians(angle)
-        traces.append({
-            "type": "scatter", "mode": "lines", "hoverinfo": "skip", "meta": "mm",
-            "name": "counter-hole" if drilled else "counter-hole, proposed",
-            "x": _numbers(x + radius * np.cos(turned)), "y": _numbers(y + radius * np.sin(turned)),
-            "line": {"color": "blue", "width": 1.2, "dash": "solid" if drilled else "dash"},
-        })  # fmt: skip
-    if figure.follower is not None:
-        name = html.escape(f"{figure.follower_name} {figure.worst_label}")
-        traces.append({
-            "type": "scatter", "mode": "lines", "name": name, "hoverinfo": "skip", "meta": "mm",
-            "x": _numbers(figure.follower[0]), "y": _numbers(figure.follower[1]),
-            "line": {"color": "vermillion", "width": 1.4, "dash": "solid"},
-        })  # fmt: skip
-    layout = {
-        "height": 560, "shapes": [], "annotations": [], "hovermode": "closest",
-        "xaxis": {"title": {"text": "x, mm"}, "fixedrange": True},
-        "yaxis": {"title": {"text": "y, mm"}, "scaleanchor": "x", "fixedrange": True},
+def _outline(figure: OutlineFigure) -> Spec:
+    reach = [-figure.reach, figure.reach]
+    notes: list[Spec] = [
+        {"text": text.words, "x": text.place[0], "y": text.place[1], "textangle": -text.turn,
+         "showarrow": False, "yanchor": "bottom", "font": {"color": "ink", "size": 10}}
+        for text in figure.texts
+    ]  # fmt: skip
+    return {"data": [_outline_curve(curve) for curve in figure.curves], "layout": {
+        "height": 560, "shapes": [], "annotations": notes, "hovermode": "closest",
+        "xaxis": {"title": {"text": X_AXIS}, "fixedrange": True, "range": reach,
+                  "zeroline": False},
+        "yaxis": {"title": {"text": Y_AXIS}, "fixedrange": True, "range": reach,
+                  "scaleanchor": "x", "zeroline": False},
+    }}  # fmt: skip
+
+
+def _outline_curve(curve: OutlineCurve) -> Spec:
+    x, y = curve.points
+    hover: Spec = {"hoverinfo": "skip"}
+    if curve.angle is not None:
+        hover = {"customdata": _numbers(curve.angle),
+                 "hovertemplate": "%{x:.4f}, %{y:.4f} mm (cam %{customdata:.1f}°)"}  # fmt: skip
+    fill: Spec = {"fill": "toself", "fillcolor": curve.fill} if curve.fill else {}
+    marker: Spec = {"mode": "lines"}
+    if curve.marker:
+        marker = {"mode": "markers", "marker": {"symbol": _MARKERS[curve.marker], "size": 6,
+                                                "color": curve.colour}}  # fmt: skip
+    return {
+        "type": "scatter", "x": _numbers(x), "y": _numbers(y), "meta": "mm",
+        "name": html.escape(curve.label), "showlegend": bool(curve.label),
+        "line": {"color": curve.colour, "width": 1.3 * curve.width, "dash": _DASHES[curve.dash]},
+        **hover, **fill, **marker,
     }  # fmt: skip
-    return {"data": traces, "layout": layout, "words": figure.title}
-
-
-def _title(panel: Panel) -> str:
-    return html.escape(f"{panel.quantity}, {panel.unit}" if panel.unit else panel.quantity)
-
-
-def _axis(letter: str, number: int) -> str:
-    return letter if number == 0 else f"{letter}{number + 1}"
 
 
 def _numbers(values: Array) -> list[float | None]:

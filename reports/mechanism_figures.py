@@ -1,15 +1,16 @@
-"""Figures of a comparison of mechanisms, from its document alone."""
+"""Figures of the mechanism comparison: friction energy, torque and inertia, workspaces."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from camwright.reports.figure_svg import COLOURS, style
+from camwright.pipeline.base.files import write_atomic
+from camwright.reports.figure_svg import COLOURS, png, style
+from camwright.reports.figures import SERIES
+from camwright.reports.report_tables import Record
 
 _PAIRS = {
     "shaft": ("shaft", "blue"),
@@ -18,25 +19,23 @@ _PAIRS = {
     "pin_b": ("pin B", "vermillion"),
     "sliding": ("sliding", "purple"),
 }
-_DPI = 150
 
 
-def draw(document: Mapping[str, Any], out: Path) -> tuple[Path, ...]:
-    """Energies by pair, torque and reduced inertia over a turn, both workspaces; PNG files."""
-    out.mkdir(parents=True, exist_ok=True)
+def draw(document: Record, out: Path) -> tuple[Path, ...]:
+    """Write the figures of a comparison as PNG files."""
     space = document["workspace"]
     drawn = {
         "energies": _energies(document),
         "turn": _turn(document),
         "workspace_slider_crank": _maps(
             space,
-            "above the best cam, %",
+            "friction energy above the best cam, %",
             ("slider_crank", "no offset"),
             ("slider_crank_offset", "offset"),
         ),
         "workspace_eccentric_cam": _maps(
             space,
-            "above the best cam, %",
+            "friction energy above the best cam, %",
             ("small_roller", "small roller, no offset"),
             ("big_roller_offset", "big roller, offset"),
             ("small_roller_offset", "small roller, offset"),
@@ -44,18 +43,16 @@ def draw(document: Mapping[str, Any], out: Path) -> tuple[Path, ...]:
     }
     paths = []
     for name, canvas in drawn.items():
-        path = out / f"{name}.png"
         with style(name):
-            canvas.savefig(path, dpi=_DPI, facecolor=COLOURS["card"])
-        paths.append(path)
+            paths.append(write_atomic(out / f"{name}.png", png(canvas)))
     return tuple(paths)
 
 
-def _energies(document: Mapping[str, Any]) -> Canvas:
+def _energies(document: Record) -> Canvas:
     rows = []
-    for found in document["mechanisms"]:
-        rows.append((found["name"], found["losses_J"]))
-        rows += [(f"slipping, mu {mu}", losses) for mu, losses in found.get("slipping", {}).items()]
+    for one in document["mechanisms"]:
+        rows.append((one["name"], one["losses_J"]))
+        rows += [(f"slipping, mu {mu}", losses) for mu, losses in one.get("slipping", {}).items()]
     with style("energies"):
         canvas = Canvas(figsize=(6.4, 0.9 + 0.36 * len(rows)), layout="constrained")
         axes = canvas.add_subplot()
@@ -75,15 +72,15 @@ def _energies(document: Mapping[str, Any]) -> Canvas:
     return canvas
 
 
-def _turn(document: Mapping[str, Any]) -> Canvas:
+def _turn(document: Record) -> Canvas:
     with style("turn"):
         canvas = Canvas(figsize=(6.4, 4.6), layout="constrained")
         upper, lower = canvas.subplots(2, 1, sharex=True)
         strokes = ("-", "--", ":", "-.")
-        for k, found in enumerate(document["mechanisms"]):
-            look = {"linestyle": strokes[k % 4], "color": list(COLOURS.values())[k % 6]}
-            upper.plot(document["phi_deg"], found["motor_torque_Nm"], label=found["name"], **look)
-            lower.plot(document["phi_deg"], found["reduced_inertia_kg_m2"], **look)
+        for k, one in enumerate(document["mechanisms"]):
+            look = {"linestyle": strokes[k % 4], "color": COLOURS[SERIES[k % len(SERIES)]]}
+            upper.plot(document["phi_deg"], one["motor_torque_Nm"], label=one["name"], **look)
+            lower.plot(document["phi_deg"], one["reduced_inertia_kg_m2"], **look)
         upper.set_ylabel("motor torque, N m")
         lower.set_ylabel("reduced inertia, kg m²")
         lower.set_xlabel("crank angle, deg")
@@ -95,15 +92,15 @@ def _turn(document: Mapping[str, Any]) -> Canvas:
     return canvas
 
 
-def _maps(space: Mapping[str, Any], label: str, *wanted: tuple[str, str]) -> Canvas:
-    """One workspace: a panel each for what is above the best, white where sizes forbid it."""
+def _maps(space: Record, label: str, *wanted: tuple[str, str]) -> Canvas:
+    """Friction energy above the best cam over the workspace; white where the sizes do not fit."""
     crank, ratio = np.array(space["crank_mm"]), np.array(space["rod_over_crank"])
     tables = [np.array(space[f"{name}_above_best_percent"], dtype=float) for name, _ in wanted]
     with style(label):
         canvas = Canvas(figsize=(6.4, 0.8 + 2.2 * len(wanted)), layout="constrained")
         panels = canvas.subplots(len(wanted), 1, sharex=True, squeeze=False)[:, 0]
         for axes, table, (name, title) in zip(panels, tables, wanted, strict=True):
-            # A scale of its own for each: an offset costs the big roller a tenth of the others.
+            # own colour scale each: values differ by a factor of ten between the panels
             mesh = axes.pcolormesh(crank, ratio, table.T, shading="nearest", cmap="cividis")
             canvas.colorbar(mesh, ax=axes, label=label)
             known = table[np.isfinite(table)]
@@ -115,7 +112,7 @@ def _maps(space: Mapping[str, Any], label: str, *wanted: tuple[str, str]) -> Can
             )
             forbidden = ~np.isfinite(table).any(axis=0)
             if forbidden.any():
-                axes.text(crank.mean(), ratio[forbidden].mean(), "the sizes leave no room for it",
+                axes.text(crank.mean(), ratio[forbidden].mean(), "sizes do not fit",
                           ha="center", va="center", color=COLOURS["muted"])  # fmt: skip
             axes.set_ylabel("rod over crank")
         panels[-1].set_xlabel("crank or eccentricity, mm; rod: pitch radius of the cam")

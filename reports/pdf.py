@@ -1,70 +1,133 @@
-"""The page on paper: A4 with page numbers and embedded fonts, by Chromium or by WeasyPrint."""
+"""The report as PDF/A on A4, set by typst."""
 
 from __future__ import annotations
 
-import html
+import dataclasses
 import importlib.util
+import json
 import re
+import shutil
 import tempfile
+import unicodedata
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+import matplotlib as mpl
+from matplotlib.ft2font import FT2Font
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports import browser, page
-from camwright.reports.figure_svg import COLOURS
+from camwright.reports.figure_svg import COLOURS, Drawn
+from camwright.reports.picture_list import Picture
+from camwright.reports.report_content import Report, report_content
 from camwright.reports.report_data import Material
+from camwright.reports.report_tables import Json, isolated, plain
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+Value: TypeAlias = "str | float | Sequence[Value] | DataclassInstance | None"
 
 PDF = "8_report.pdf"
-_NUMBERED = """@page {
-  @bottom-left { content: %s; font: 6pt sans-serif; }
-  @bottom-right { content: "page " counter(page) " of " counter(pages); font: 6pt sans-serif; }
-}"""
+MISSING = "a PDF needs the package typst: pip install 'camwright[pdf]'"
+_TEMPLATE = Path(__file__).parent / "templates" / "report.typ"
+_FONTS = Path(mpl.get_data_path()) / "fonts" / "ttf"
+_LONG_WORD = re.compile(r"(?![0-9a-f]{64}\b)\S{20,}")  # except SHA-256
+_BREAK = "\u200b"
 
 
 def write(material: Material) -> list[Path]:
-    """Print the page, without its scripts, beside it.
+    """Write ``8_report.pdf``.
 
     Raises
     ------
     ResultError
-        If there is nothing to print with, or the file cannot be written.
+        If typst is not installed, or the file cannot be written.
     """
-    pdf = material.folder / PDF
-    footer = f"Camwright · {page.shortened(str(material.run.summary['case']), 60)}"
-    text = page.text(material, live=False)
-    if browser.executable() is not None:
-        _by_chromium(text, pdf, footer)
-    elif importlib.util.find_spec("weasyprint") is not None:
-        write_atomic(pdf, by_weasyprint(text.decode(), footer))
-    else:
-        raise ResultError(
-            "nothing to print with: install Chromium (Debian: chromium), name one in "
-            "CAMWRIGHT_CHROMIUM, or install WeasyPrint (pip install 'camwright[pdf]')"
-        )
-    return [pdf]
+    return [write_atomic(material.folder / PDF, typeset(report_content(material)))]
 
 
-def _by_chromium(text: bytes, pdf: Path, footer: str) -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        still = Path(folder) / page.PAGE
-        still.write_bytes(text)
-        browser.print_pdf(still, pdf, html.escape(footer))
+def typeset(report: Report) -> bytes:
+    """PDF of a report; equal reports give equal bytes.
 
-
-def by_weasyprint(text: str, footer: str) -> bytes:
-    """A page as PDF; colours become those of the light theme, which its drawings know no other.
+    All text is passed as data, never as source, and typst can read no file but the pictures of
+    the report. Fonts are those of the matplotlib package; system fonts are used only for
+    characters that DejaVu Sans lacks.
 
     Raises
     ------
     ResultError
-        If a library that WeasyPrint stands on is missing.
+        If typst is not installed or cannot set the document.
     """
-    try:
-        import weasyprint
-    except OSError as error:  # Pango, of which pip knows nothing
-        raise ResultError(f"WeasyPrint does not start: {' '.join(str(error).split())}") from None
-    coloured = re.sub(r"var\(--([a-z]+)\)", lambda name: COLOURS.get(name[1], name[0]), text)
-    quoted = '"' + footer.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    numbered = weasyprint.CSS(string=_NUMBERED % quoted)
-    printed: bytes = weasyprint.HTML(string=coloured).write_pdf(stylesheets=[numbered])
-    return printed
+    if importlib.util.find_spec("typst") is None:
+        raise ResultError(MISSING)
+    import typst
+
+    def compiled(words: str, folder: Path) -> bytes:
+        return typst.compile(
+            folder / _TEMPLATE.name, root=folder, font_paths=[_FONTS],
+            ignore_system_fonts=_drawable(words) == words, sys_inputs={"report": words},
+            format="pdf", pdf_standards=["a-2a", "ua-1"], timestamp=0,
+        )  # fmt: skip
+
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(shutil.copy(_TEMPLATE, name)).parent
+        record = {**_fields(report, folder), "colours": COLOURS}
+        words = json.dumps(record, ensure_ascii=False, allow_nan=False)
+        try:
+            return compiled(words, folder)
+        except typst.TypstError:  # PDF/A excludes private-use characters
+            pass
+        try:
+            return compiled(_drawable(words), folder)
+        except typst.TypstError as error:
+            raise ResultError(f"typst: {error}") from None
+
+
+def _fields(value: DataclassInstance, folder: Path) -> Mapping[str, Json]:
+    """Fields and properties as JSON; pictures are written to `folder`."""
+    if isinstance(value, Drawn):
+        figure = value.figure
+        words = {"title": figure.title, "caption": figure.caption, "alt": figure.alt}
+        return {name: _broken(text) for name, text in words.items()} | {"svg": plain(value.svg)}
+    if isinstance(value, Picture):
+        file = f"{value.name}.png" if value.png else ""
+        if file:
+            (folder / file).write_bytes(value.png)
+        words = {"title": value.title, "caption": value.caption, "alt": value.alt}
+        words["note"] = value.note
+        return {name: _broken(text) for name, text in words.items()} | {"file": file}
+    kind = type(value)
+    names = [field.name for field in dataclasses.fields(value)]
+    names += [name for name, member in vars(kind).items() if isinstance(member, property)]
+    record = {name: _json(getattr(value, name), folder) for name in names}
+    return {**record, "kind": getattr(kind, "kind", "")}
+
+
+def _json(value: Value, folder: Path) -> Json:
+    if isinstance(value, str):
+        return _broken(value)
+    if value is None or isinstance(value, (int, float)):
+        return value
+    if isinstance(value, Sequence):
+        return [_json(item, folder) for item in value]
+    return _fields(value, folder)
+
+
+def _broken(text: str) -> str:
+    """Text on one line, with break opportunities in long words, bidirectionally isolated."""
+    line = re.sub(r"[ \t\r\n]+", " ", plain(text))
+    return isolated(_LONG_WORD.sub(lambda word: _BREAK.join(word.group()), line))
+
+
+def _drawable(text: str) -> str:
+    """Text with U+FFFD for the characters that DejaVu Sans lacks."""
+    known = FT2Font(_FONTS / "DejaVuSans.ttf").get_charmap()
+    invisible = ("Cc", "Cf")
+    return "".join(
+        c
+        if ord(c) in known or unicodedata.category(c) in invisible
+        else "\N{REPLACEMENT CHARACTER}"
+        for c in text
+    )

@@ -1,4 +1,4 @@
-"""The pictures of a report: what they show, in words, and where they lie."""
+"""Pictures of a report: stress field, stress maps, guide pressure, with titles and captions."""
 
 from __future__ import annotations
 
@@ -13,13 +13,12 @@ import numpy as np
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
 from camwright.reports import (
-    contact_pressure,
     field_picture,
+    field_raster,
     guide_pressure_figure,
     report_tables,
     stress_map,
 )
-from camwright.reports.contact_pressure import over_the_contact
 from camwright.reports.report_data import FIGURES, Material
 
 FIELD = Path("fields") / "contact_worst.vtu"
@@ -27,10 +26,10 @@ FIELD = Path("fields") / "contact_worst.vtu"
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """A raster on the page, or the words that stand in its place.
+    """A raster, or the reason for which it is missing.
 
-    `name` is that of its file in ``figures/``; a picture that could not be drawn has no `png`
-    and says why in its `note`.
+    `name` is its file in ``figures/``. A picture that cannot be drawn has no `png` and states the
+    reason in `note`.
     """
 
     title: str
@@ -42,13 +41,13 @@ class Picture:
 
     @property
     def data(self) -> str:
-        """The picture in base64, for a page."""
+        """The picture in base64."""
         return base64.b64encode(self.png).decode()
 
 
 @lru_cache(maxsize=1)
 def stress_pictures(material: Material) -> Sequence[Picture]:
-    """The stress field under the follower and in the whole cam."""
+    """Stress field below the contact and in both bodies."""
     turn, vtu = material.turn, material.folder / FIELD
     try:
         field = field_picture.read_field(vtu)
@@ -60,30 +59,29 @@ def stress_pictures(material: Material) -> Sequence[Picture]:
         ]
         rasters = field_picture.render(vtu, views)
     except ResultError as error:
-        return (Picture("Stress field", note=f"There is no picture of the field: {error}."),)
-    given = field.notes.get("cam_angle_deg", turn.columns["cam_angle_deg"][turn.worst])
-    angle = report_tables.number(float(given))
+        return (Picture("Stress field", note=f"The stress field is not available: {error}."),)
+    cam_angle = float(field.notes.get("cam_angle_deg", turn.columns["cam_angle_deg"][turn.worst]))
+    angle = report_tables.number(cam_angle)
     peak = report_tables.quantity(views[0].clim[1], "MPa")
     final = material.run.final
-    above = over_the_contact(
-        final.path / contact_pressure.FILE, final.cycle, float(given), half_width
+    above = field_raster.over_the_contact(
+        final.path / field_raster.PRESSURE, final.cycle, cam_angle, half_width
     )
     return (
         Picture(
-            f"Contact pressure and von Mises stress under the {turn.follower_name}",
-            f"At {angle} deg of the cam, where the contact pressure is greatest. Lengths count "
-            f"half-widths; lines at 20, 40, 60, 80 and 95 % of the greatest, {peak}. "
-            "Shapes are deformed at true scale.",
-            f"Von Mises stress within four half-widths of the contact; greatest value {peak}.",
+            f"Contact pressure and von Mises stress below the {turn.follower_name}",
+            f"At cam angle {angle} deg, the maximum contact pressure. Lengths in half-widths; "
+            f"lines at 20, 40, 60, 80 and 95 % of the maximum, {peak}. Deformation at true scale.",
+            f"Von Mises stress within four half-widths of the contact; maximum {peak}.",
             "field-contact",
             field_picture.frame_contact(rasters[0], half_width, turn.follower_name, above),
             rasters[0].note,
         ),
         Picture(
-            "Von Mises stress in the whole cam",
-            f"The same angle; colours are logarithmic over {field_picture.DECADES:g} decades, and "
-            "what lies below is shown in the darkest one.",
-            f"Von Mises stress in the whole cam and {turn.follower_name} on a logarithmic scale.",
+            f"Von Mises stress in cam and {turn.follower_name}",
+            f"At the same cam angle. Logarithmic colours over {field_picture.DECADES:g} decades; "
+            "lower stress in the darkest colour.",
+            f"Von Mises stress in cam and {turn.follower_name} on a logarithmic scale.",
             "field-body", field_picture.frame_body(rasters[1]), rasters[1].note,
         ),
     )  # fmt: skip
@@ -91,71 +89,72 @@ def stress_pictures(material: Material) -> Sequence[Picture]:
 
 @lru_cache(maxsize=1)
 def envelope_pictures(material: Material) -> Sequence[Picture]:
-    """The map of greatest stresses under the contour; older runs have none."""
+    """Maps of the maximum stress below the contour; none for runs of earlier versions."""
     file = material.run.final.path / stress_map.FILE
     if not file.exists():
         return ()
-    title = "Greatest stress under the contour in one turn"
+    title = "Maximum stress below the contour over one turn"
     try:
-        found = stress_map.read_envelope(file, material.turn.load_case)
+        envelope = stress_map.read_envelope(file, material.turn.load_case)
     except ResultError as error:
-        return (Picture(title, note=f"There is no map of the turn: {error}."),)
+        return (Picture(title, note=f"The stress map is not available: {error}."),)
     contour = material.run.final.contour.columns
     shape = (
         contour["cam_angle_deg"],
         np.stack([contour["contour_x_mm"], contour["contour_y_mm"]]),
         np.stack([contour["normal_x"], contour["normal_y"]]),
     )
-    mises, angle, depth = stress_map.worst(found, "von_mises_MPa")
-    where = (
-        f"{report_tables.quantity(mises, 'MPa')} of von Mises stress at "
-        f"{report_tables.number(angle)} deg of the cam, {report_tables.quantity(depth, 'mm')} deep"
+    mises, angle, depth = stress_map.worst(envelope, "von_mises_MPa")
+    peak = (
+        f"Maximum von Mises stress {report_tables.quantity(mises, 'MPa')} at cam angle "
+        f"{report_tables.quantity(angle, 'deg')}, depth {report_tables.quantity(depth, 'mm')}."
     )
     return (
         Picture(
             title,
-            f"The contour unrolled, with what each place of the material bears as the load rolls "
-            f"over it; greatest {where}. Where the map is brightest the cam will pit first.",
-            f"Maps of von Mises stress and shear range by cam angle and depth; greatest {where}.",
+            f"Maximum over the turn at each point of the cam, contour unrolled. {peak} Pitting is "
+            "most likely at the maximum.",
+            f"Maps of von Mises stress and shear range over cam angle and depth. {peak}",
             "envelope",
-            stress_map.drawn(found),
+            stress_map.drawn(envelope),
         ),
         Picture(
-            "The same map in its place along the contour",
-            "Von Mises stress; angles are those of the cam, depths are drawn larger than they are.",
-            f"Map of von Mises stress as a band along the contour; greatest {where}.",
+            "Maximum von Mises stress along the contour",
+            "Maximum over the turn; cam angles at the contour, depths enlarged.",
+            f"Map of von Mises stress as a band along the contour. {peak}",
             "envelope-contour",
-            stress_map.around(found, *shape),
+            stress_map.around(envelope, *shape),
         ),
     )
 
 
 @lru_cache(maxsize=1)
 def bush_pictures(material: Material) -> Sequence[Picture]:
-    """The pressure in both guides; older runs kept none."""
+    """Pressure in both guides; none for runs of earlier versions."""
     file = material.run.final.path / guide_pressure_figure.FILE
     if not file.exists():
         return ()
     title = "Pressure in the guides"
     try:
-        found = guide_pressure_figure.read_bushes(file, material.turn.load_case)
+        guides = guide_pressure_figure.read_bushes(file, material.turn.load_case)
     except ResultError as error:
-        return (Picture(title, note=f"There is no picture of the guides: {error}."),)
+        return (Picture(title, note=f"The guide pressure is not available: {error}."),)
     peaks = ", ".join(
-        f"guide {bush.name} {report_tables.quantity(bush.peak, 'MPa')} at "
-        f"{report_tables.number(bush.worst_angle)} deg of the cam" for bush in found
+        f"guide {guide.name} {report_tables.quantity(guide.peak, 'MPa')} at cam angle "
+        f"{report_tables.quantity(guide.worst_angle, 'deg')}" for guide in guides
     )  # fmt: skip
     return (
         Picture(
             title,
-            "Left the guide's push on the stem per length over the turn; in the middle the "
-            "pressure all round the bore at the angle where it is greatest (dashed on the left), "
-            "0 deg facing the side force; right the slice with the greatest pressure, drawn "
-            f"outwards from the bore. Greatest: {peaks}. At a mouth with a sharp edge the "
-            "pressure is that of a bush whose slices do not help one another.",
-            f"Maps of the pressure in both guides; greatest {peaks}.",
+            "Left: line load on the stem over the turn. Middle: pressure around the bore at the "
+            "cam angle of its maximum (dashed on the left), 0 deg in the direction of the side "
+            "force. "
+            f"Right: slice of maximum pressure, drawn outwards from the bore. Maximum: {peaks}. "
+            "The slices are independent: load transfer between them at the sharp end of a bore is "
+            "neglected.",
+            f"Maps of the pressure in both guides; maximum {peaks}.",
             "bush-pressure",
-            guide_pressure_figure.drawn(found),
+            guide_pressure_figure.drawn(guides),
         ),
     )
 
@@ -165,11 +164,11 @@ PICTURES: tuple[Callable[[Material], Sequence[Picture]], ...] = (
     envelope_pictures,
     bush_pictures,
 )
-"""What the page shows beside the plots, in this order."""
+"""Pictures of the report, in this order."""
 
 
 def write_pictures(draw: Callable[[Material], Sequence[Picture]], material: Material) -> list[Path]:
-    """Write ``figures/NAME.png`` for each picture that could be drawn."""
+    """Write ``figures/NAME.png`` of each picture that is available."""
     return [
         write_atomic(material.folder / FIGURES / f"{picture.name}.png", picture.png)
         for picture in draw(material)

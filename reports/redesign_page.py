@@ -1,121 +1,110 @@
-"""The front of a redesign on one page: table and figure, from its record alone."""
+"""Pareto front of a redesign: table, figure, page."""
 
 from __future__ import annotations
 
-import base64
-import html
-import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from matplotlib.figure import Figure
 
 from camwright.pipeline.base.files import write_atomic
-from camwright.reports.figure_svg import COLOURS
-from camwright.reports.report_tables import number
+from camwright.reports.figure_svg import COLOURS, png
+from camwright.reports.page import study_page
+from camwright.reports.picture_list import Picture
+from camwright.reports.report_content import Block, Note, Pictures, Section, Tabular
+from camwright.reports.report_tables import Record, Table, listed
 
 COLUMNS = (
     ("file", "case"),
     ("roller", "roller"),
     ("spring", "spring"),
     ("bush", "bushes"),
-    ("ripple_left_Nm", "ripple left, N m"),
+    ("ripple_left_Nm", "residual ripple, N m"),
     ("cam_radius_mm", "cam radius, mm"),
     ("mass_g", "mass, g"),
-    ("pitch_base_radius_mm", "base radius, mm"),
+    ("prime_radius_mm", "prime radius, mm"),
     ("lift_max_mm", "lift, mm"),
-    ("normal_force_max_N", "N max, N"),
+    ("normal_force_max_N", "maximum normal force, N"),
     ("p0_max_MPa", "p0, MPa"),
-    ("binding", "limits that cost ripple"),
+    ("binding", "active limits"),
 )
-AXES = {"size": ("cam_radius_mm", "greatest radius of the cam, mm"), "mass": ("mass_g", "mass, g")}
+AXES = {"size": ("cam_radius_mm", "maximum cam radius, mm"), "mass": ("mass_g", "mass, g")}
 _ROUGH = {"size": ("cam_radius", 1e3), "mass": ("mass", 1e3)}
 
 
-def write(folder: Path, document: Mapping[str, Any]) -> Path:
-    """``redesign.png`` and ``redesign.html``; the page is given back.
+def write(folder: Path, document: Record) -> Path:
+    """Write ``redesign.png`` and ``redesign.html``.
 
     Parameters
     ----------
-    document : mapping   the contents of ``redesign.json``
+    document : mapping   contents of ``redesign.json``
+
+    Returns
+    -------
+    Path   the page
     """
     picture = drawn(document)
     write_atomic(folder / "redesign.png", picture)
-    return write_atomic(folder / "redesign.html", _page(document, picture).encode())
+    return write_atomic(folder / "redesign.html", _page(document, picture))
 
 
-def drawn(document: Mapping[str, Any]) -> bytes:
-    """Ripple left over size or mass: what was tried, the front, the case as given; PNG."""
+def drawn(document: Record) -> bytes:
+    """Ripple left over size or mass: evaluated designs, front, initial design; PNG."""
     name, label = AXES[document["against"]]
     canvas = Figure(figsize=(7.2, 4.4), layout="constrained")
     axes = canvas.add_subplot()
     rough, scale = _ROUGH[document["against"]]
-    before = document["given"].get("ripple_before_Nm")
+    initial = document["given"]
+    before = initial.get("ripple_before_Nm")
     tried = [row for row in document["tried"] if row["feasible"]]
     if tried and before is not None:
         axes.plot([scale * row[rough] for row in tried], [before * row["ripple"] for row in tried],
-                  ".", color=COLOURS["muted"], ms=4, label="tried, on a coarse turn")  # fmt: skip
+                  ".", color=COLOURS["muted"], ms=4, label="coarse evaluations")  # fmt: skip
     points = document["points"]
     if points:
         x, y = [row[name] for row in points], [row["ripple_left_Nm"] for row in points]
         axes.plot(x, y, "o-", color=COLOURS["blue"], lw=1.4, ms=5, label="front")
         for k, place in enumerate(zip(x, y, strict=True), start=1):
             axes.annotate(str(k), place, xytext=(5, 5), textcoords="offset points", fontsize=8)
-    given = document["given"]
-    if given.get(name) is not None:
-        words = "as given, fails" if given.get("failing") else "as given"
-        axes.plot([given[name]], [given["ripple_left_Nm"]], "x", color=COLOURS["vermillion"],
+    if initial.get(name) is not None:
+        words = "initial design, fails" if initial.get("failing") else "initial design"
+        axes.plot([initial[name]], [initial["ripple_left_Nm"]], "x", color=COLOURS["vermillion"],
                   ms=8, mew=2, label=words)  # fmt: skip
     axes.set_xlabel(label)
-    axes.set_ylabel("torque ripple left, std, N m")
+    axes.set_ylabel("residual torque ripple, std, N m")
     axes.set_ylim(bottom=0.0)
     axes.grid(color=COLOURS["grid"], lw=0.6)
     axes.legend(fontsize=8, frameon=False)
-    held = io.BytesIO()
-    canvas.savefig(held, format="png", dpi=150, metadata={"Software": None})
-    return held.getvalue()
+    return png(canvas)
 
 
-def shown(value: Any) -> str:
-    """A value of a point as the table has it."""
-    if isinstance(value, (list, tuple)):
-        return ", ".join(str(one).replace("_", " ") for one in value) or "none"
-    return number(value)
-
-
-def _page(document: Mapping[str, Any], picture: bytes) -> str:
+def _page(document: Record, picture: bytes) -> str:
     title = f"{document['case']}: redesign, ripple against {document['against']}"
-    image = base64.b64encode(picture).decode()
+    words = (
+        "Each point is a case file with the lift of the constrained synthesis, checked by closed "
+        "forms as in camwright check. camwright run verifies it by finite elements."
+    )
+    points = [[listed(row.get(name)) for name, _ in COLUMNS] for row in document["points"]]
     refused = [
-        [f"{row['roller']}, {row['spring']}, {row['bush']}", row["why"]]
+        [f"{row['roller']}, {row['spring']}, {row['bush']}", str(row["why"])]
         for row in document["refused"]
     ]
-    pruned = [[row["part"], row["why"]] for row in document["pruned"]]
-    words = (
-        "Each point is a case file, drawn by constrained synthesis and judged by closed forms, as "
-        "<code>camwright check</code> does; <code>camwright run</code> signs it off by finite "
-        "elements."
-    )
-    points = [[shown(row.get(name)) for name, _ in COLUMNS] for row in document["points"]]
-    return (
-        f'<!doctype html><html lang="en"><meta charset="utf-8"><title>{html.escape(title)}</title>'
-        "<style>body{font:15px sans-serif;margin:2em;max-width:80em}td,th{padding:.3em .7em;"
-        "text-align:left;border-bottom:1px solid #ccc}img{max-width:100%}</style>"
-        f"<h1>{html.escape(title)}</h1><p>{words}</p>"
-        f"{_table([words for _, words in COLUMNS], points)}"
-        f'<img alt="Torque ripple left over {html.escape(AXES[document["against"]][1])}"'
-        f' src="data:image/png;base64,{image}">'
-        f"<h2>Solved whole and not on the front</h2>{_table(['parts', 'why'], refused)}"
-        f"<h2>Left out before anything was solved</h2>{_table(['part', 'why'], pruned)}</html>"
-    )
+    pruned = [[str(row["part"]), str(row["why"])] for row in document["pruned"]]
+    alt = f"Residual torque ripple over {AXES[document['against']][1]}"
+    front = [
+        _table("Points of the front", [words for _, words in COLUMNS], points, 4, 7),
+        Block(Pictures([Picture("Front", alt=alt, png=picture)])),
+    ]
+    return study_page(title, [
+        Section("points", "", front),
+        Section("refused", "Designs not on the front",
+                [_table("Not on the front", ("parts", "reason"), refused, 2)]),
+        Section("pruned", "Parts excluded by bounds",
+                [_table("Excluded", ("part", "reason"), pruned, 2)]),
+    ], words)  # fmt: skip
 
 
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    if not rows:
-        return "<p>None.</p>"
-    first = "".join(f"<th>{html.escape(words)}</th>" for words in head)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return f"<table><tr>{first}</tr>{body}</table>"
+def _table(
+    label: str, head: Sequence[str], rows: Sequence[Sequence[str]], text: int, numbers: int = 0
+) -> Block:
+    return Block(Tabular(Table(label, head, rows, text, numbers)) if rows else Note("None."))

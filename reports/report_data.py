@@ -1,44 +1,36 @@
-"""What a report is made from: a finished run, read once and shared by all its parts."""
+"""Data of a report: a finished run, read once for all sections."""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.results.run_reader import Run, load_run
-from camwright.reports.sheet_turn import Turn
+from camwright.reports.report_tables import Record
+from camwright.reports.sheet_turn import Columns, Turn
 from camwright.reports.verdict_text import governing_load_case
 
 FIGURES = "figures"
-"""Folder of the pictures, in a run folder."""
-Tell = Callable[[int, int], None]
-
-
-def silent(_done: int, _whole: int) -> None:
-    """Tells nobody."""
+"""Folder of the pictures in a run folder."""
 
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """A run folder, what was read from it, and the turn that its sheet draws.
+    """A run folder, its contents, and the load case that the sheet draws.
 
-    Each is itself alone, so that what parts have in common can be kept by it. What takes long
-    calls `tell` with how much is done and how much there is.
+    Compared by identity, so that drawings can be cached by it.
     """
 
     folder: Path
     run: Run
-    case: Mapping[str, Any]
+    case: Record
     turn: Turn
-    tell: Tell = silent
 
 
-def read_material(folder: Path, tell: Tell = silent) -> Material:
-    """The material of a run folder.
+def read_material(folder: Path) -> Material:
+    """Data of a run folder.
 
     Raises
     ------
@@ -47,11 +39,11 @@ def read_material(folder: Path, tell: Tell = silent) -> Material:
     """
     run = load_run(folder)
     case = _case(run)
-    return Material(Path(folder), run, case, the_turn(run, case), tell)
+    return Material(Path(folder), run, case, governing_turn(run, case))
 
 
-def the_turn(run: Run, case: Mapping[str, Any]) -> Turn:
-    """What the sheet draws: the load case that governs, in the final trial."""
+def governing_turn(run: Run, case: Record) -> Turn:
+    """The governing load case of the final trial."""
     final = run.final
     names = [str(name) for name in dict.fromkeys(final.cycle["load_case"].tolist())]
     if not names:
@@ -62,14 +54,15 @@ def the_turn(run: Run, case: Mapping[str, Any]) -> Turn:
         by_name[drawn], tuple(by_name.values()), final.lift.columns, final.contour.columns,
         None if run.torque is None else run.torque.columns, final.checks, case, drawn,
         None if run.speed is None else run.speed.columns, final.record.get("balance") or {},
+        None if final.limits is None else final.limits.columns,
     )  # fmt: skip
 
 
-def _numbers(columns: Mapping[str, Any]) -> dict[str, Any]:
+def _numbers(columns: Columns) -> Columns:
     return {name: values for name, values in columns.items() if values.dtype.kind == "f"}
 
 
-def _case(run: Run) -> dict[str, Any]:
+def _case(run: Run) -> Record:
     try:
         return tomllib.loads(run.case_text)
     except tomllib.TOMLDecodeError as error:

@@ -1,15 +1,23 @@
-"""Numbers to rows: what the page prints, with units and a sensible count of digits."""
+"""Values of a run as text: digits, units, and rows of tables."""
 
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isclose, isfinite, isnan, log10, pi
-from typing import Any
+from typing import Any, TypeAlias
+
+Scalar: TypeAlias = str | float | None
+Json: TypeAlias = "str | float | Sequence[Json] | Mapping[str, Json] | None"
+Record: TypeAlias = Mapping[str, Any]
+"""A JSON object or TOML table of a run's files."""
 
 MINUS = "\N{MINUS SIGN}"
 DASH = "\N{EN DASH}"
+UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+TURNING = {"R", "AL", "RLE", "RLO", "LRE", "LRO", "RLI", "LRI", "FSI", "PDF", "PDI"}
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 SHOWN_AS = {
     "Pa": ("MPa", 1e-6),
@@ -31,23 +39,23 @@ HEADLINES = {
     "torque_p2p_before_Nm": ("Torque before, peak to peak", "N m"),
     "torque_p2p_after_Nm": ("Torque after, peak to peak", "N m"),
     "torque_mean_removed_Nm": ("Mean torque, removed", "N m"),
-    "lift_max_mm": ("Greatest lift", "mm"),
-    "pressure_angle_max_deg": ("Greatest pressure angle", "deg"),
-    "pitch_radius_min_mm": ("Least convex radius of the pitch curve", "mm"),
-    "normal_force_min_N": ("Least normal force", "N"),
-    "normal_force_max_N": ("Greatest normal force", "N"),
-    "p0_max_MPa": ("Contact pressure p0, finite elements", "MPa"),
-    "p0_hertz_max_MPa": ("Contact pressure p0, Hertz", "MPa"),
-    "half_width_max_mm": ("Greatest half-width of the contact", "mm"),
-    "von_mises_max_MPa": ("Greatest von Mises stress", "MPa"),
-    "reaction_A_max_N": ("Greatest reaction, guide A", "N"),
-    "reaction_B_max_N": ("Greatest reaction, guide B", "N"),
+    "lift_max_mm": ("Maximum lift", "mm"),
+    "pressure_angle_max_deg": ("Maximum pressure angle", "deg"),
+    "pitch_radius_min_mm": ("Minimum convex radius of the pitch curve", "mm"),
+    "normal_force_min_N": ("Minimum normal force", "N"),
+    "normal_force_max_N": ("Maximum normal force", "N"),
+    "p0_max_MPa": ("Peak contact pressure p0, finite elements", "MPa"),
+    "p0_hertz_max_MPa": ("Peak contact pressure p0, Hertz", "MPa"),
+    "half_width_max_mm": ("Maximum contact half-width", "mm"),
+    "von_mises_max_MPa": ("Maximum von Mises stress", "MPa"),
+    "reaction_A_max_N": ("Maximum reaction, guide A", "N"),
+    "reaction_B_max_N": ("Maximum reaction, guide B", "N"),
     "friction_loss_J_per_cam_turn": ("Friction loss per cam turn", "J"),
-    "fe_vs_hertz_p0_max_percent": ("p0, finite elements against Hertz, at most", "%"),
-    "residual_equilibrium_max": ("Equilibrium residual, relative, at most", ""),
+    "fe_vs_hertz_p0_max_percent": ("Maximum difference of p0, finite elements to Hertz", "%"),
+    "residual_equilibrium_max": ("Maximum relative equilibrium residual", ""),
 }
 LEAST_ERROR = 1e-4
-"""Of a demand: an error bar below it does not show in the digits of the demand."""
+"""Share of the demand below which an error bar is smaller than the last digit shown."""
 STATUS = {
     "pass": "pass",
     "fail": "fail",
@@ -56,11 +64,11 @@ STATUS = {
 }
 
 
-def number(value: Any, digits: int = 4) -> str:
-    """A number to `digits` significant digits; a dash for what is missing.
+def number(value: Scalar, digits: int = 4) -> str:
+    """A number with `digits` significant digits; a dash for a missing value.
 
-    Integers keep all their digits, zeros that say nothing are left off (30, not 30.00, where the
-    value is 30 exactly), sizes outside 1e-4 to 1e6 get a power of ten, the minus is a true one.
+    Integers keep all digits. Trailing zeros are omitted where the value is exact (30, not 30.00).
+    Magnitudes outside 1e-4 to 1e6 are written with a power of ten. The minus is U+2212.
     """
     if isinstance(value, bool) or value is None:
         return DASH if value is None else ("yes" if value else "no")
@@ -86,37 +94,94 @@ def number(value: Any, digits: int = 4) -> str:
     return shown.replace("-", MINUS)
 
 
-def quantity(value: Any, unit: str = "", digits: int = 4) -> str:
-    """A number with its unit, SI scaled to what a drawing uses (Pa to MPa, rad to deg)."""
+def listed(value: Scalar | Sequence[Scalar]) -> str:
+    """A number, or the items of a list; "none" for an empty list."""
+    if value is None or isinstance(value, (str, int, float)):
+        return number(value)
+    return ", ".join(words(str(one)) for one in value) or "none"
+
+
+def quantity(value: Scalar, unit: str = "", digits: int = 4) -> str:
+    """A number with its unit; SI units are converted to those of a drawing (MPa, mm, deg)."""
     if isinstance(value, (int, float)) and not isinstance(value, bool) and unit in SHOWN_AS:
         unit, scale = SHOWN_AS[unit]
         value = value * scale if scale != 1.0 else value
     text = number(value, digits)
+    unit = re.sub(r"\^([23])", lambda power: power[1].translate(SUPERSCRIPT), unit)
     unit = unit.replace(" ", "\N{NO-BREAK SPACE}")
     return f"{text}\N{NO-BREAK SPACE}{unit}" if unit and text != DASH else text
 
 
 def in_unit(value: float, unit: str, wanted: str) -> float | None:
-    """`value` in the `wanted` unit of a figure; None when the units do not fit."""
+    """A value converted to the unit of a figure; None for a unit of another dimension."""
     shown, scale = SHOWN_AS.get(unit, (unit, 1.0))
     if shown == wanted:
         return value * scale
     return value if unit == wanted else None
 
 
+def plain(text: str) -> str:
+    """Text with control characters and surrogates replaced by U+FFFD."""
+    return UNPRINTABLE.sub("\ufffd", text)
+
+
+def shortened(text: str, length: int) -> str:
+    """Text on one line, cut to `length` characters."""
+    line = " ".join(plain(text).split())
+    return line if len(line) <= length else line[: length - 1] + "…"
+
+
+def isolated(text: str) -> str:
+    """Text with a right-to-left part confined to itself by Unicode isolates."""
+    turns = any(unicodedata.bidirectional(character) in TURNING for character in text)
+    return f"\u2068{text}\u2069" if turns else text
+
+
 def words(name: str) -> str:
-    """A snake_case name as words."""
+    """A snake_case name with spaces."""
     return name.replace("_", " ").strip()
 
 
 @dataclass(frozen=True)
+class Status:
+    """Status of a check, or verdict: id (selects the colour) and words."""
+
+    id: str
+    words: str
+
+
+Cell = str | Status
+
+
+@dataclass(frozen=True)
+class Table:
+    """Table of a report.
+
+    The first `text` columns hold words, the next `numbers` columns numbers (None: all others). On
+    a narrow screen a `wide` table scrolls sideways; the cells of any other one are stacked.
+    """
+
+    label: str
+    head: Sequence[str]
+    rows: Sequence[Sequence[Cell]]
+    text: int = 1
+    numbers: int | None = None
+    wide: bool = False
+
+    @property
+    def numeric(self) -> range:
+        """Indices of the columns that hold numbers."""
+        end = len(self.head) if self.numbers is None else self.text + self.numbers
+        return range(self.text, end)
+
+
+@dataclass(frozen=True)
 class CheckRow:
-    """A check as printed. `bar` is the utilisation for the bar, 0 to 1.5, or None."""
+    """One check as text. `bar` is the utilisation clipped to 0 to 1.5; None if it is unknown."""
 
     id: str
     title: str
-    status: str
-    status_text: str
+    status: Status
     demand: str
     limit: str
     utilisation: str
@@ -131,19 +196,35 @@ class CheckRow:
     error: str = ""
     corner: str = ""
 
+    @property
+    def place(self) -> str:
+        """Load case and cam angle of the demand; a dash without either."""
+        return ", ".join(filter(None, (isolated(self.load_case), self.where))) or DASH
 
-def utilisation(check: Mapping[str, Any]) -> float | None:
-    """Utilisation of a record; JSON has no infinity, so null beside a `fail` stands for it."""
+    @property
+    def remarks(self) -> list[tuple[str, bool]]:
+        """(text, emphasised) of the lines below the title: method, note, corner, waiver."""
+        limit = f"Limit: {self.source}" if self.source else ""
+        corner = f"Worst tolerance corner: {self.corner}" if self.corner else ""
+        lines = [
+            (" · ".join(filter(None, (self.method, limit))), False), (self.note, True),
+            (corner, False), (f"Waiver: {self.waiver}" if self.waiver else "", True),
+        ]  # fmt: skip
+        return [line for line in lines if line[0]]
+
+
+def utilisation(check: Record) -> float | None:
+    """Utilisation of a check record; null with status `fail` means infinite (JSON has none)."""
     value = check.get("utilisation")
     if isinstance(value, (int, float)) and not isinstance(value, bool) and not isnan(value):
         return float(value)
     return inf if check.get("status") == "fail" else None
 
 
-def sorted_checks(checks: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Not evaluated first, then the highest utilisation first."""
+def sorted_checks(checks: Sequence[Record]) -> list[Record]:
+    """Checks not evaluated first, then by decreasing utilisation."""
 
-    def order(check: Mapping[str, Any]) -> tuple[bool, float, str]:
+    def order(check: Record) -> tuple[bool, float, str]:
         value = utilisation(check)
         size = -inf if value is None else value
         return check.get("status") != "not_evaluated", -size, str(check.get("id"))
@@ -151,19 +232,20 @@ def sorted_checks(checks: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]
     return sorted(checks, key=order)
 
 
-def check_rows(checks: Sequence[Mapping[str, Any]]) -> list[CheckRow]:
-    """The checks table, most pressing first."""
+def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
+    """Checks as text, in the order of `sorted_checks`."""
     rows = []
     for check in sorted_checks(checks):
         value = utilisation(check)
         status = str(check.get("status", "not_evaluated"))
+        status_words = STATUS.get(status, words(status))
         unit = str(check.get("unit") or "")
         sense = "≥" if check.get("sense") == "at_least" else "≤"
         limit = quantity(check.get("limit"), unit)
         angle = check.get("cam_angle_deg")
         rows.append(CheckRow(
-            id=str(check.get("id", "")), title=str(check.get("title", "")), status=status,
-            status_text=STATUS.get(status, words(status)),
+            id=str(check.get("id", "")), title=str(check.get("title", "")),
+            status=Status(status, status_words),
             demand=quantity(check.get("demand"), unit),
             limit=limit if limit == DASH else f"{sense}\N{NO-BREAK SPACE}{limit}",
             utilisation=_ratio(value), bar=_bar(value),
@@ -177,8 +259,8 @@ def check_rows(checks: Sequence[Mapping[str, Any]]) -> list[CheckRow]:
     return rows
 
 
-def _error(check: Mapping[str, Any], unit: str) -> str:
-    """The error bar of a demand, in its unit; none where it is below the digits shown."""
+def _error(check: Record, unit: str) -> str:
+    """Error bar of a demand, in its unit; empty below the last digit shown."""
     error, demand = (_finite(check.get(name)) for name in ("error", "demand"))
     if error is None or demand is None or not error or error < LEAST_ERROR * abs(demand):
         return ""
@@ -186,14 +268,14 @@ def _error(check: Mapping[str, Any], unit: str) -> str:
     return f"±\N{NO-BREAK SPACE}{number(scale * error, 2)}"
 
 
-def _finite(value: Any) -> float | None:
+def _finite(value: Json) -> float | None:
     return float(value) if isinstance(value, (int, float)) and isfinite(value) else None
 
 
-def worst_corner(check: Mapping[str, Any]) -> tuple[str, str] | None:
-    """The corner of the tolerances that governs a check and the demand there; None at none.
+def worst_corner(check: Record) -> tuple[str, str] | None:
+    """Governing tolerance corner of a check and the demand there.
 
-    A corner that changes no digit shown is none.
+    None if the check has none, or if its demand equals the nominal one in all digits shown.
     """
     unit, demand = str(check.get("unit") or ""), check.get("corner_demand")
     if not check.get("corner") or demand is None:
@@ -207,7 +289,7 @@ def _bar(value: float | None) -> float | None:
 
 
 def _ratio(value: float | None) -> str:
-    """Utilisation to hundredths, never rounded across 1: 1.0004 prints as 1.0004."""
+    """Utilisation to 0.01; more digits near 1, so that 1.0004 is not printed as 1.00."""
     if value is None or isnan(value):
         return DASH
     if not isfinite(value):
@@ -220,7 +302,7 @@ def _ratio(value: float | None) -> str:
     return f"{value:.2f}" if value >= 0.005 or value == 0 else "< 0.01"
 
 
-def _waiver(waiver: Any) -> str:
+def _waiver(waiver: Json) -> str:
     if isinstance(waiver, Mapping):
         return ", ".join(str(value) for key, value in waiver.items() if key != "check")
     return str(waiver or "")
@@ -228,28 +310,28 @@ def _waiver(waiver: Any) -> str:
 
 @dataclass(frozen=True)
 class Tile:
-    """One headline number in large type, with a line below it."""
+    """A key figure in large type, with a second line below."""
 
     title: str
     value: str
     below: str
 
 
-def tiles(headline: Mapping[str, Any]) -> list[Tile]:
-    """The few numbers read first; those the run does not have are left out."""
+def tiles(headline: Record) -> list[Tile]:
+    """Key figures of a run; missing ones are omitted."""
     made = []
     before, after = (headline.get(f"torque_std_{when}_Nm") for when in ("before", "after"))
     if before and after is not None:
         made.append(Tile(
-            "Torque ripple removed", quantity(100.0 * (1.0 - after / before), "%", 3),
+            "Torque ripple reduction", quantity(100.0 * (1.0 - after / before), "%", 3),
             f"standard deviation {number(before, 3)} to {quantity(after, 'N m', 3)}",
         ))  # fmt: skip
     rows = (
-        ("Contact pressure", "p0_max_MPa", "MPa", "Hertz {}", "p0_hertz_max_MPa"),
-        ("Normal force", "normal_force_max_N", "N", "least {}", "normal_force_min_N"),
-        ("Lift", "lift_max_mm", "mm", "least convex pitch radius {} mm", "pitch_radius_min_mm"),
-        ("Pressure angle", "pressure_angle_max_deg", "deg", "", ""),
-        ("Guide A reaction", "reaction_A_max_N", "N", "guide B {} N", "reaction_B_max_N"),
+        ("Peak contact pressure", "p0_max_MPa", "MPa", "Hertz {} MPa", "p0_hertz_max_MPa"),
+        ("Maximum normal force", "normal_force_max_N", "N", "minimum {} N", "normal_force_min_N"),
+        ("Lift", "lift_max_mm", "mm", "minimum convex pitch radius {} mm", "pitch_radius_min_mm"),
+        ("Maximum pressure angle", "pressure_angle_max_deg", "deg", "", ""),
+        ("Maximum reaction, guide A", "reaction_A_max_N", "N", "guide B {} N", "reaction_B_max_N"),
     )
     for title, key, unit, below, other in rows:
         if headline.get(key) is not None:
@@ -261,8 +343,8 @@ def tiles(headline: Mapping[str, Any]) -> list[Tile]:
     return made
 
 
-def named_rows(record: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """(words, value) of a record; a unit at the end of a name goes with the value."""
+def named_rows(record: Record) -> list[tuple[str, str]]:
+    """(name, value) of a record; a unit suffix of the name is written with the value."""
     rows = []
     for key, value in record.items():
         if isinstance(value, Mapping):
@@ -274,8 +356,8 @@ def named_rows(record: Mapping[str, Any]) -> list[tuple[str, str]]:
     return rows
 
 
-def headline_rows(headline: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """(words, value with unit) of the run's headline numbers; keys that do not apply left out."""
+def headline_rows(headline: Record) -> list[tuple[str, str]]:
+    """(name, value with unit) of a run's key figures; missing ones are omitted."""
     rows = []
     for key, value in headline.items():
         if value is None:
@@ -285,71 +367,17 @@ def headline_rows(headline: Mapping[str, Any]) -> list[tuple[str, str]]:
     return rows
 
 
-CERTIFICATE_HEAD = (
-    "cam angle, deg", "edges over a", "unknowns", "p0 per mesh, MPa", "p0 extrapolated, MPa",
-    "order", "GCI, %", "p0 Hertz, MPa", "p0 in the cycle, MPa", "spread, %", "equilibrium",
-)  # fmt: skip
-FIGURES_HEAD = (
-    "cam angle, deg", "quantity", "per mesh", "extrapolated", "order", "GCI, %", "in the cycle",
-)  # fmt: skip
-CERTIFIED = {
-    "half_width_mm": "half-width a, mm",
-    "tau_max_MPa": "greatest shear stress, MPa",
-    "von_mises_MPa": "greatest von Mises stress, MPa",
-}
-
-
-def certificate_rows(points: Sequence[Mapping[str, Any]]) -> list[list[str]]:
-    """One row per certificate point: the pressure on each mesh and what follows from it."""
-    rows = []
-    for point in points:
-        pressure = _figure(point, "p0_MPa")
-        rows.append([
-            number(point.get("cam_angle_deg")), _several(point.get("edges_across_half_width"), 3),
-            _several(point.get("dofs")), _several(pressure.get("meshes"), 5),
-            number(pressure.get("extrapolated"), 5), number(pressure.get("order"), 3),
-            number(pressure.get("gci_percent"), 2), number(point.get("p0_hertz_MPa"), 5),
-            number(pressure.get("cycle"), 5), number(point.get("spread_percent"), 2),
-            number(point.get("residual_equilibrium"), 2),
-        ])  # fmt: skip
-    return rows
-
-
-def certified_rows(points: Sequence[Mapping[str, Any]]) -> list[list[str]]:
-    """A row per certificate point and quantity other than the pressure."""
-    rows = []
-    for point in points:
-        for name, title in CERTIFIED.items():
-            figure = _figure(point, name)
-            if figure:
-                rows.append([
-                    number(point.get("cam_angle_deg")), title, _several(figure.get("meshes"), 5),
-                    number(figure.get("extrapolated"), 5), number(figure.get("order"), 3),
-                    number(figure.get("gci_percent"), 2), number(figure.get("cycle"), 5),
-                ])  # fmt: skip
-    return rows
-
-
-def _figure(point: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    figure = point.get(name)
-    return figure if isinstance(figure, Mapping) else {}
-
-
-def _several(values: Any, digits: int = 4) -> str:
-    return ", ".join(number(v, digits) for v in values) if isinstance(values, list) else DASH
-
-
 @dataclass(frozen=True)
 class InputTable:
-    """One section of the case file. Rows are (name, value, source)."""
+    """A section of the case file; rows are (name, value, source)."""
 
     title: str
     rows: tuple[tuple[str, str, str], ...]
     source: str = ""
 
 
-def input_tables(case: Mapping[str, Any]) -> list[InputTable]:
-    """The resolved case as tables, each value with its source where the file gives one."""
+def input_tables(case: Record) -> list[InputTable]:
+    """The resolved case as tables; each value with its source, if the file states one."""
     general = {key: v for key, v in case.items() if not isinstance(v, (Mapping, list))}
     tables = [_input_table("general", general)] if general else []
     for title, section in _sections(case):
@@ -359,7 +387,7 @@ def input_tables(case: Mapping[str, Any]) -> list[InputTable]:
     return tables
 
 
-def _sections(case: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:
+def _sections(case: Record, path: str = "") -> Iterator[tuple[str, Record]]:
     for key, value in case.items():
         title = f"{path} › {words(key)}" if path else words(key)
         if isinstance(value, Mapping) and key not in ("source", "sources"):
@@ -371,7 +399,7 @@ def _sections(case: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Ma
                 yield from _sections(item, f"{title} {number_}")
 
 
-def _input_table(title: str, section: Mapping[str, Any]) -> InputTable:
+def _input_table(title: str, section: Record) -> InputTable:
     source = section.get("source", section.get("sources", ""))
     by_key = source if isinstance(source, Mapping) else {}
     rows = tuple(
@@ -382,15 +410,15 @@ def _input_table(title: str, section: Mapping[str, Any]) -> InputTable:
     return InputTable(title, rows, "" if isinstance(source, Mapping) else str(source))
 
 
-def _is_section(value: Any) -> bool:
+def _is_section(value: Json) -> bool:
     return isinstance(value, Mapping) or (
         isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)
     )
 
 
-def _value(value: Any) -> str:
-    if isinstance(value, list):
-        return ", ".join(_value(item) for item in value) or DASH
+def _value(value: Json) -> str:
     if isinstance(value, str):
         return re.sub(r"^-?\d+\.\d{12,}(?=\s)", lambda n: f"{float(n.group()):.12g}", value)
-    return number(value, 12) if isinstance(value, float) else number(value)
+    if value is None or isinstance(value, (int, float)):
+        return number(value, 12)
+    return ", ".join(_value(item) for item in value) or DASH

@@ -1,44 +1,43 @@
-"""Simple solids as triangles, for a scene."""
+"""Solids as triangles for the scene: rings, boxes, rods."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
+from camwright.reports.report_tables import Json
+
+_ROUND = 48
 
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """Points (3, n) and triangles (3, m) of their numbers."""
+    """Points (3, n) and triangles (3, m) of their indices."""
 
     points: Array
     triangles: NDArray[np.int64]
 
     def upright(self, height: float) -> Solid:
-        """What lay along z, along y with its middle at `height`."""
+        """The solid turned from the z axis to the y axis, its middle at `height`."""
         x, y, z = self.points
         return Solid(np.stack([x, z + height, -y]), self.triangles)
 
-    def moved(self, across: float) -> Solid:
-        """Moved along x."""
+    def shifted(self, across: float) -> Solid:
+        """The solid shifted along x."""
         return Solid(self.points + np.array([[across], [0.0], [0.0]]), self.triangles)
 
-    def as_record(self, digits: int) -> dict[str, Any]:
-        """Plain lists by the names that Plotly gives them."""
-        record: dict[str, Any] = {
-            name: [float(f"{value:.{digits}g}") for value in part]
-            for name, part in zip("xyz", self.points.tolist(), strict=True)
-        }
-        return record | dict(zip("ijk", self.triangles.tolist(), strict=True))
+    def as_record(self, digits: int) -> dict[str, Json]:
+        """Coordinates x, y, z and corners i, j, k, as Plotly names them."""
+        points = [[float(f"{v:.{digits}g}") for v in part] for part in self.points.tolist()]
+        return dict(zip("xyzijk", [*points, *self.triangles.tolist()], strict=True))
 
 
 def ring(outline: Array, width: float) -> Solid:
-    """A closed outline (2, n) drawn out along z, half to either side; without ends."""
+    """A closed outline (2, n) extruded along z, centred at z = 0, without end faces."""
     count = outline.shape[1]
     low, high = (np.vstack([outline, np.full(count, side * width / 2)]) for side in (-1, 1))
     here = np.arange(count)
@@ -49,7 +48,7 @@ def ring(outline: Array, width: float) -> Solid:
 
 
 def tube(outer: Array, inner: Array, height: float) -> Solid:
-    """The flat ring between two closed outlines (2, n) at a height along z."""
+    """Flat ring between two closed outlines (2, n) at a height z."""
     count = outer.shape[1]
     points = np.vstack([np.hstack([outer, inner]), np.full(2 * count, height)])
     here = np.arange(count)
@@ -60,7 +59,7 @@ def tube(outer: Array, inner: Array, height: float) -> Solid:
 
 
 def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> Solid:
-    """A box between two corners."""
+    """Box between two corners."""
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1])
                         for z in (low[2], high[2])])  # fmt: skip
     sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -69,7 +68,25 @@ def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> So
 
 
 def joined(solids: Sequence[Solid]) -> Solid:
-    """Several as one."""
+    """Several solids as one."""
     starts = np.cumsum([0, *(solid.points.shape[1] for solid in solids)])
     triangles = [solid.triangles + start for solid, start in zip(solids, starts, strict=False)]
     return Solid(np.hstack([solid.points for solid in solids]), np.hstack(triangles))
+
+
+def rod(diameter: float, start: float, end: float) -> Solid:
+    """Circular rod along y, without end faces."""
+    return ring(0.5 * diameter * unit_circle(), end - start).upright((start + end) / 2)
+
+
+def pin(radius: float, half: float) -> Solid:
+    """Circular pin along z through the origin, with end faces."""
+    outline = radius * unit_circle()
+    ends = [tube(outline, 0.0 * outline, side * half) for side in (-1, 1)]
+    return joined([ring(outline, 2 * half), *ends])
+
+
+def unit_circle() -> Array:
+    """Circle (2, n) of radius 1 about the origin."""
+    angle = np.linspace(0.0, 2 * np.pi, _ROUND, endpoint=False)
+    return np.stack([np.cos(angle), np.sin(angle)])

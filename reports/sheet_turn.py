@@ -1,10 +1,9 @@
-"""One turn of the cam as a sheet draws it, and what its figures are made from."""
+"""One load case over a cam turn, as the figures of the sheet use it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -12,25 +11,26 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
 from camwright.reports.figures import SERIES, AngleFigure, Curve, Figure, LimitLine, Panel
-from camwright.reports.report_tables import in_unit
+from camwright.reports.report_tables import Json, Record, in_unit
 
 Columns = Mapping[str, Array]
 
 
 @dataclass(frozen=True, eq=False)
 class Turn:
-    """One load case of the final trial, with what is needed to draw it.
+    """One load case of the final trial.
 
     Parameters
     ----------
-    columns : mapping     columns of 5_cycle.csv, rows of the load case drawn
-    others : tuple        the same for every load case, this one included
+    columns : mapping     columns of 5_cycle.csv, rows of this load case
+    others : tuple        the same of every load case, this one included
     lift, contour : mapping    columns of 2_lift.csv and 3_contour.csv
     torque : mapping or None   columns of 1_torque.csv
     checks : sequence     records of 6_checks.json
     case : mapping        case.toml as read
     speed : mapping or None    columns of 1_speed.csv
-    balance : mapping     of trial.json; empty in runs that had none
+    balance : mapping     balance of trial.json; empty in runs of earlier versions
+    limits : mapping or None   columns of 2_limits.csv
     """
 
     columns: Columns
@@ -38,15 +38,16 @@ class Turn:
     lift: Columns
     contour: Columns
     torque: Columns | None
-    checks: Sequence[Mapping[str, Any]]
-    case: Mapping[str, Any]
+    checks: Sequence[Record]
+    case: Record
     load_case: str = ""
     speed: Columns | None = None
-    balance: Mapping[str, Any] = field(default_factory=dict)
+    balance: Record = field(default_factory=dict)
+    limits: Columns | None = None
 
     @property
     def counter_hole(self) -> tuple[float, float, float, bool] | None:
-        """Middle, radius, mm, and whether it is drilled; None where there is none."""
+        """Centre x, y and radius, mm, and whether it is drilled; None without a hole."""
         names = ("hole_x_mm", "hole_y_mm", "hole_diameter_mm")
         values = [self.balance.get(name) for name in names]
         if not all(isinstance(value, (int, float)) for value in values):
@@ -64,8 +65,13 @@ class Turn:
         return float(ratio) if isinstance(ratio, (int, float)) and ratio > 0 else 2.0
 
     @property
+    def strokes(self) -> bool:
+        """Whether the turn is one cycle of a four-stroke engine."""
+        return self.gear_ratio == 2.0 and self.torque is not None
+
+    @property
     def worst(self) -> int:
-        """Row of the greatest contact pressure."""
+        """Row of the maximum contact pressure."""
         pressure = self.columns.get("p0_fe_MPa", self.columns.get("normal_force_N"))
         if pressure is None or not np.isfinite(pressure).any():
             return 0
@@ -73,26 +79,26 @@ class Turn:
 
     @property
     def rolls(self) -> bool:
-        """Whether the follower has a roller; else a face slides on the cam."""
+        """Whether the follower is a roller; otherwise a flat face."""
         return "place_on_face_mm" not in self.columns
 
     @property
     def follower_name(self) -> str:
-        """What of the follower touches the cam."""
+        """Name of the contact body of the follower."""
         return "roller" if self.rolls else "face"
 
     @property
     def half_width(self) -> float:
-        """Half-width of the contact at the worst angle, mm; Hertz's where there is no other."""
+        """Half-width at the maximum contact pressure, mm; of Hertz without finite elements."""
         for name in ("half_width_fe_mm", "half_width_hertz_mm"):
             values = self.columns.get(name)
             if values is not None and values[self.worst] > 0:
                 return float(values[self.worst])
-        raise ResultError("the cycle has no half-width at its worst angle")
+        raise ResultError("5_cycle.csv: no half-width at the maximum contact pressure")
 
     def length(self, *path: str, unit: str = "mm") -> float | None:
-        """A value of the case file in the given unit; None when absent."""
-        value: Any = self.case
+        """A value of the case in a unit; None if it is absent or of another dimension."""
+        value: Json = self.case
         for key in path:
             value = value.get(key) if isinstance(value, Mapping) else None
         try:
@@ -101,24 +107,24 @@ class Turn:
             return None
 
     def bound(self, check_id: str) -> float | None:
-        """The limit of a check as recorded; None when it has none."""
+        """Recorded limit of a check; None without one."""
         for check in self.checks:
             if check.get("id") == check_id and isinstance(check.get("limit"), (int, float)):
                 return float(check["limit"])
         return None
 
     def limit(self, label: str, unit: str, check_id: str) -> tuple[LimitLine, ...]:
-        """The limit of a check as a line in the panel's unit; none when it does not fit."""
-        given = self.bound(check_id)
+        """Limit of a check as a line in the unit of a panel; empty if the dimension differs."""
+        bound = self.bound(check_id)
         of = next((c for c in self.checks if c.get("id") == check_id), {})
-        value = None if given is None else in_unit(given, str(of.get("unit", "")), unit)
+        value = None if bound is None else in_unit(bound, str(of.get("unit", "")), unit)
         return () if value is None or not np.isfinite(value) else (LimitLine(value, label),)
 
 
 def curves_of(
     turn: Turn, *wanted: tuple[str, str], dashed: Sequence[int] = ()
 ) -> tuple[Curve, ...]:
-    """Curves for (column, label) pairs; columns the run lacks are left out."""
+    """Curves of (column, label) pairs; missing columns are omitted."""
     made = []
     for number, (column, label) in enumerate(wanted):
         values = turn.columns.get(column)
@@ -136,12 +142,12 @@ def angle_figure(
     turn: Turn, figure_id: str, title: str, caption: str, *panels: Panel, mark: bool = True,
     crank: Array | None = None,
 ) -> Figure | None:  # fmt: skip
-    """An angle figure of the panels that have curves; None when none has."""
+    """Figure of the panels that have curves; None without any."""
     full = tuple(panel for panel in panels if panel.curves)
     if not full:
         return None
     return AngleFigure(
         figure_id, title, caption, turn.crank if crank is None else crank, full, turn.gear_ratio,
-        strokes=turn.gear_ratio == 2.0 and turn.torque is not None,
+        strokes=turn.strokes,
         worst=float(turn.crank[turn.worst]) if mark else None,
     )  # fmt: skip

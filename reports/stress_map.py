@@ -1,8 +1,7 @@
-"""The map of a turn as pictures: greatest stress under the contour, in its place and unrolled."""
+"""Maps of the maximum stress below the contour over the turn: unrolled, and along the contour."""
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 
 import numpy as np
@@ -10,15 +9,15 @@ from matplotlib.figure import Figure
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
-from camwright.reports.figure_svg import COLOURS, FIGURE_WIDTH, style
+from camwright.reports.figure_svg import COLOURS, FIGURE_WIDTH, png, style
 
 FILE = "5_envelope.npz"
-MAPS = (("von_mises_MPa", "von Mises"), ("shear_range_MPa", "range of shear along the surface"))
+MAPS = (("von_mises_MPa", "von Mises"), ("shear_range_MPa", "orthogonal shear range"))
 _ROWS = 200
 
 
 def read_envelope(path: Path, load_case: str) -> dict[str, Array]:
-    """Arrays of one load case from ``5_envelope.npz``, by their names without the load case.
+    """Arrays of one load case of ``5_envelope.npz`` by name.
 
     Raises
     ------
@@ -27,30 +26,30 @@ def read_envelope(path: Path, load_case: str) -> dict[str, Array]:
     """
     try:
         with np.load(path, allow_pickle=False) as entry:
-            found = {
+            arrays = {
                 name.removeprefix(f"{load_case}."): entry[name]
                 for name in entry.files
                 if name.startswith(f"{load_case}.")
             }
     except (OSError, ValueError, EOFError) as error:
         raise ResultError(f"{path}: {error}") from None
-    missing = {"cam_angle_deg", "depth_mm", *(name for name, _ in MAPS)} - set(found)
+    missing = {"cam_angle_deg", "depth_mm", *(name for name, _ in MAPS)} - set(arrays)
     if missing:
         raise ResultError(f"{path}: no {', '.join(sorted(missing))} for load case {load_case}")
-    return found
+    return arrays
 
 
 def unrolled(values: Array, depth: Array, levels: Array) -> Array:
-    """Values (n, k) at depths (n, k) of each station, at common levels (m,): (m, n).
+    """Values (n, k) at depths (n, k), interpolated to common depths (m,): (m, n).
 
-    Not a number below what a station knows.
+    NaN below the deepest value of a station.
     """
     rows = [np.interp(levels, at, of, right=np.nan) for of, at in zip(values, depth, strict=True)]
     return np.stack(rows, axis=1)
 
 
 def drawn(envelope: dict[str, Array]) -> bytes:
-    """PNG of the maps above one another: cam angle across, depth downwards."""
+    """PNG of the maps over cam angle and depth."""
     angle, depth = envelope["cam_angle_deg"], envelope["depth_mm"]
     levels = np.linspace(0.0, float(np.nanmax(depth)), _ROWS)
     with style("envelope"):
@@ -66,11 +65,11 @@ def drawn(envelope: dict[str, Array]) -> bytes:
             canvas.colorbar(shown, ax=ax, label="MPa", pad=0.01)
         ax.set_xlabel("cam angle, deg")
         ax.set_xticks(np.arange(0, 361, 45))
-        return _png(canvas)
+        return png(canvas)
 
 
 def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Array) -> bytes:
-    """PNG of the map of von Mises stress in its place along the contour, depths enlarged.
+    """PNG of the von Mises stress as a band along the contour, depths enlarged.
 
     The contour (2, n), mm, and its outward normals (2, n) belong to cam angles (n,), deg.
     """
@@ -81,8 +80,8 @@ def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Arr
     scale = _enlarged(0.25 * float(radius.min()) / float(np.nanmax(depth)))
     band = place[:, :, None] - up[:, :, None] * scale * depth
     closed, shown = (np.concatenate([v, v[..., :1, :]], axis=-2) for v in (band, values))
-    found = worst(envelope, "von_mises_MPa")
-    station = int(np.argmin(np.abs(at - found[1])))
+    peak, peak_angle, peak_depth = worst(envelope, "von_mises_MPa")
+    station = int(np.argmin(np.abs(at - peak_angle)))
     with style("envelope-around"):
         canvas = Figure(figsize=(FIGURE_WIDTH, 4.7), layout="constrained")
         ax = canvas.add_subplot()
@@ -94,39 +93,33 @@ def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Arr
             here = int(np.argmin(np.abs(at - mark)))
             x, y = place[:, here] + 0.09 * radius.max() * up[:, here]
             ax.text(x, y, f"{mark}°", ha="center", va="center", fontsize=8, color=COLOURS["muted"])
-        x, y = place[:, station] - scale * found[2] * up[:, station]
+        x, y = place[:, station] - scale * peak_depth * up[:, station]
         ax.annotate(
-            f"{found[0]:.4g} MPa\nat {found[1]:g}°, {found[2]:.2g} mm deep",
+            f"{peak:.4g} MPa\nat {peak_angle:g}°, depth {peak_depth:.2g} mm",
             (x, y), (0.0, 0.0), ha="center", va="center",
             arrowprops={"arrowstyle": "-", "color": COLOURS["ink"], "linewidth": 0.8},
         )  # fmt: skip
         far = 0.15 * radius.max()
         span = [(part.min() - far, part.max() + far) for part in place]
         ax.set(aspect="equal", xlabel="x, mm", ylabel="y, mm", xlim=span[0], ylim=span[1])
-        ax.set_title(f"depths drawn {scale:g} times as large", fontsize=8.5, loc="left")
-        canvas.colorbar(mesh, ax=ax, label="greatest von Mises stress of the turn, MPa", pad=0.01)
-        return _png(canvas)
+        ax.set_title(f"depths enlarged {scale:g} times", fontsize=8.5, loc="left")
+        canvas.colorbar(mesh, ax=ax, label="maximum von Mises stress of the turn, MPa", pad=0.01)
+        return png(canvas)
 
 
 def _between(at: Array, angle: Array, values: Array) -> Array:
-    """Values (2, n) at angles (n,), deg, of one turn, at other angles: (2, m)."""
+    """Values (2, n) at angles (n,), deg, interpolated to other angles of the turn: (2, m)."""
     return np.stack([np.interp(at, angle, part, period=360.0) for part in values])
 
 
 def _enlarged(wanted: float) -> float:
-    """The round number next below: 1, 2 or 5 times a power of ten."""
+    """Largest of 1, 2 or 5 times a power of ten that is not above a value."""
     power = 10.0 ** np.floor(np.log10(wanted))
     return float(max(step for step in (1.0, 2.0, 5.0) if step * power <= wanted) * power)
 
 
-def _png(canvas: Figure) -> bytes:
-    stream = io.BytesIO()
-    canvas.savefig(stream, format="png", dpi=150, facecolor="white", metadata={"Software": None})
-    return stream.getvalue()
-
-
 def worst(envelope: dict[str, Array], name: str) -> tuple[float, float, float]:
-    """Greatest value of a map, MPa, with its cam angle in deg and depth in mm."""
+    """Maximum of a map, MPa, its cam angle, deg, and depth, mm."""
     values = envelope[name]
     station, level = np.unravel_index(int(np.nanargmax(values)), values.shape)
     return (

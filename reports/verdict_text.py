@@ -1,23 +1,29 @@
-"""The verdict in plain sentences, drawn from the checks of the final trial."""
+"""The verdict in sentences, from the checks of the final trial."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from camwright.reports.report_tables import check_rows, sorted_checks, utilisation, words
+from camwright.reports.report_tables import (
+    Record,
+    check_rows,
+    isolated,
+    sorted_checks,
+    utilisation,
+    words,
+)
 
-Check = Mapping[str, Any]
+Check = Record
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the run decided.
+    """Verdict of a run.
 
-    `sentence` counts the checks, `governing` describes the one nearest to or farthest beyond
-    its limit, `binding` are titles of required checks that do not hold, `missing` of those that
-    could not be evaluated, `stopped` says why the trials ended, clause by clause.
+    `sentence` counts the checks by status, `governing` describes the required check of highest
+    utilisation, `binding` and `missing` are titles of required checks that fail and that are not
+    evaluated, `stopped` are the clauses of the reason for which the trials ended.
     """
 
     passed: bool
@@ -31,26 +37,45 @@ class Verdict:
     def word(self) -> str:
         return "PASS" if self.passed else "FAIL"
 
+    @property
+    def lines(self) -> list[tuple[str, str]]:
+        """(label, text) of the lines below the sentence."""
+        missing = f"{'; '.join(self.missing)}. The note of each check names the missing input."
+        lines = (
+            ("Governing", self.governing),
+            ("Binding", f"{'; '.join(self.binding)}." if self.binding else ""),
+            ("Not evaluated", missing if self.missing else ""),
+            ("Stopping criterion", self.stopped[0] if self.stopped else ""),
+        )
+        return [line for line in lines if line[1]]
 
-def verdict(said: str, checks: Sequence[Check], binding: Sequence[str], stopped: str) -> Verdict:
-    """The verdict in words.
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Further clauses of the stopping criterion."""
+        return self.stopped[1:]
+
+
+def verdict(
+    recorded: str, checks: Sequence[Check], binding: Sequence[str], stopped: str
+) -> Verdict:
+    """Verdict in sentences.
 
     Parameters
     ----------
-    said : str             what the run recorded, "pass" or "fail"
+    recorded : str         verdict of the run, "pass" or "fail"
     checks : sequence      records of the final trial
-    binding : sequence     ids of the checks that bind
-    stopped : str          why there are no more trials
+    binding : sequence     ids of the binding checks
+    stopped : str          reason for which the trials ended
 
-    A pass needs the recorded word, at least one check, and no required check that fails or is
-    not evaluated.
+    The verdict is pass only if it is recorded so, there is a check, and no required check fails or
+    is not evaluated.
     """
     required = [c for c in checks if c.get("must_have", True)]
     failed = [c for c in required if c["status"] == "fail"]
     missing = [c for c in required if c["status"] == "not_evaluated"]
-    passed = said == "pass" and bool(checks) and not failed and not missing
-    titles = {str(c["id"]): str(c["title"]) for c in checks}
-    unknown = {str(c["id"]): str(c["title"]) for c in missing}
+    passed = recorded == "pass" and bool(checks) and not failed and not missing
+    titles = {str(c["id"]): isolated(str(c["title"])) for c in checks}
+    unknown = {str(c["id"]): titles[str(c["id"])] for c in missing}
     clauses = (clause for clause in stopped.split("; ") if clause)
     return Verdict(
         passed,
@@ -63,7 +88,7 @@ def verdict(said: str, checks: Sequence[Check], binding: Sequence[str], stopped:
 
 
 def _names_all(clause: str, titles: Collection[str]) -> bool:
-    """Whether a clause only lists what is listed already."""
+    """Whether a clause repeats all of several titles."""
     return len(titles) > 1 and all(title in clause for title in titles)
 
 
@@ -72,13 +97,13 @@ def _sentence(
     missing: Sequence[Check],
 ) -> str:  # fmt: skip
     if not checks:
-        return "No check was evaluated, and what is not evaluated does not pass."
+        return "There are no checks. The verdict is fail without evidence."
     held = sum(c["status"] == "pass" for c in required)
-    parts = [f"{held} of {_count(required, 'required check')} {_verb(held, 'holds', 'hold')}"]
+    parts = [f"{held} of {_count(required, 'required check')} {_verb(held, 'passes', 'pass')}"]
     if failed:
         parts.append(f"{len(failed)} {_verb(len(failed), 'fails', 'fail')}")
     if missing:
-        parts.append(f"{len(missing)} could not be evaluated, which counts as failing")
+        parts.append(f"{len(missing)} not evaluated (counted as failed)")
     waived = [c for c in required if c["status"] == "waived"]
     if waived:
         parts.append(f"{len(waived)} {_verb(len(waived), 'is', 'are')} waived")
@@ -87,37 +112,37 @@ def _sentence(
     unknown = sum(c["status"] == "not_evaluated" for c in optional)
     sentence = ", ".join(parts) + "."
     if exceeded or unknown:
-        told = [f"{exceeded} beyond {_verb(exceeded, 'its', 'their')} limit"] if exceeded else []
-        told += [f"{unknown} not evaluated"] if unknown else []
-        sentence += f" Of {_count(optional, 'optional check')}: {', '.join(told)}."
+        counts = [f"{exceeded} {_verb(exceeded, 'fails', 'fail')}"] if exceeded else []
+        counts += [f"{unknown} not evaluated"] if unknown else []
+        sentence += f" Of {_count(optional, 'optional check')}: {', '.join(counts)}."
     return sentence
 
 
 def governing(checks: Sequence[Check]) -> str:
-    """The required check of greatest utilisation, in words; empty when none is evaluated."""
+    """The required check of highest utilisation in a sentence; empty if none is evaluated."""
     required = [c for c in sorted_checks(checks) if c.get("must_have", True)]
     open_ones = [c for c in required if c["status"] in ("fail", "pass")]
     known = [c for c in open_ones if utilisation(c) is not None]
     if not known:
         return ""
     row = check_rows([max(known, key=lambda c: utilisation(c) or 0.0)])[0]
-    place = f", load case {row.load_case}" if row.load_case else ""
+    place = f", load case {isolated(row.load_case)}" if row.load_case else ""
     angle = f", cam angle {row.where}" if row.where else ""
     return (
-        f"{row.title}{place}{angle}: {row.demand} where the limit is {row.limit}"
-        f" (utilisation {row.utilisation})."
+        f"{isolated(row.title)}{place}{angle}: demand {row.demand}, limit {row.limit},"
+        f" utilisation {row.utilisation}."
     )
 
 
 def governing_load_case(checks: Sequence[Check], names: Sequence[str]) -> str:
-    """The load case to draw: that of the governing check, else the first."""
+    """Load case of the governing check; the first one if it has none."""
     for check in sorted_checks(checks):
         if check["status"] in ("fail", "pass") and check.get("load_case") in names:
             return str(check["load_case"])
     return names[0]
 
 
-def _count(items: Sequence[Any], one: str) -> str:
+def _count(items: Sequence[Check], one: str) -> str:
     return f"{len(items)} {one}{'' if len(items) == 1 else 's'}"
 
 

@@ -1,48 +1,55 @@
-"""Evidence, prices and findings of a run as rows of tables."""
+"""Tables of the evidence: certificate, benchmarks, tolerance corners, prices, consistency."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
 
-from camwright.reports.report_tables import DASH, number, quantity, words, worst_corner
-
-Rows = list[list[str]]
+from camwright.reports.report_tables import (
+    DASH,
+    Json,
+    Record,
+    Table,
+    number,
+    quantity,
+    words,
+    worst_corner,
+)
 
 PRICES_HEAD = (
-    "limit", "stands at", "ripple for one unit more", "ripple where it gives way by 1 %",
-    "binds at cam angle",
+    "Limit", "Value", "Ripple per unit of relaxation", "Ripple per 1 % of relaxation",
+    "Active at cam angle",
 )  # fmt: skip
-CONSISTENCY_HEAD = ("quantity", "load case", "how", "given", "implied", "difference")
-SPEED_HEAD = ("load case", "crank", "standard deviation", "peak to peak", "fluctuation")
-VALVE_HEAD = ("figure", "load case", "what it is", "value")
-CORNERS_HEAD = ("check", "corner", "nominal", "there")
+CONSISTENCY_HEAD = ("Quantity", "Load case", "Derivation", "Input", "Implied", "Difference")
+SPEED_HEAD = ("Load case", "State", "Standard deviation", "Peak to peak", "Fluctuation")
+VALVE_HEAD = ("Quantity", "Load case", "Definition", "Value")
+CORNERS_HEAD = ("Check", "Corner", "Nominal demand", "Demand at the corner")
+CERTIFICATE_HEAD = (
+    "Cam angle, deg", "Edges across a", "Unknowns", "p0 per mesh, MPa", "p0 extrapolated, MPa",
+    "Order", "GCI, %", "p0 Hertz, MPa", "p0 of the cycle, MPa", "Deviation, %", "Equilibrium",
+)  # fmt: skip
+CERTIFIED_HEAD = (
+    "Cam angle, deg", "Quantity", "Per mesh", "Extrapolated", "Order", "GCI, %", "Of the cycle",
+)  # fmt: skip
+CERTIFIED = {
+    "half_width_mm": "half-width a, mm",
+    "tau_max_MPa": "maximum shear stress, MPa",
+    "von_mises_MPa": "maximum von Mises stress, MPa",
+}
 BENCHMARKS = {
     "nafems_p0": "NAFEMS R0094 case 1, peak pressure",
     "nafems_half_width": "NAFEMS R0094 case 1, half-width",
-    "hertz_p0": "roller on a block, peak pressure against Hertz",
-    "hertz_half_width": "roller on a block, half-width against Hertz",
+    "hertz_p0": "roller on a block, peak pressure to Hertz",
+    "hertz_half_width": "roller on a block, half-width to Hertz",
 }
 STATES = {
     "before": "engine alone",
-    "inertia_alone": "with the added inertia alone",
+    "inertia_alone": "added inertia, no cam force",
     "after": "with the cam",
 }
 
 
-@dataclass(frozen=True)
-class Table:
-    """A table of the page; the first `text` columns hold words, the others numbers."""
-
-    label: str
-    head: Sequence[str]
-    rows: Rows
-    text: int = 1
-
-
-def prices(records: Any) -> Table:
-    """What each limit in use costs, the dearest first; no rows where nothing was priced."""
+def prices(records: Json) -> Table:
+    """Shadow prices of the active limits as recorded, highest first."""
     rows = [
         [
             words(str(record["limit"])), quantity(record["value"], _unit(record)),
@@ -51,41 +58,41 @@ def prices(records: Any) -> Table:
         ]
         for record in _records(records)
     ]  # fmt: skip
-    return Table("Prices of the limits", PRICES_HEAD, rows)
+    return Table("Shadow prices of the limits", PRICES_HEAD, rows)
 
 
-def consistency(records: Any) -> tuple[Table, bool]:
-    """What the inputs say of one another, and whether any of it does not agree."""
-    found = _records(records)
+def consistency(records: Json) -> tuple[Table, bool]:
+    """Inputs beside the values that other inputs imply, and whether any of them is flagged."""
+    compared = _records(records)
     rows = [
         [
             str(one["title"]), str(one["load_case"]), str(one.get("how", "")),
             quantity(one["given"], str(one["unit"])), quantity(one["implied"], str(one["unit"])),
             quantity(one["difference_percent"], "%", 2) + (" (differs)" if one["flagged"] else ""),
         ]
-        for one in found
+        for one in compared
     ]  # fmt: skip
-    flagged = any(one["flagged"] for one in found)
-    return Table("Whether the inputs agree", CONSISTENCY_HEAD, rows, 3), flagged
+    flagged = any(one["flagged"] for one in compared)
+    return Table("Consistency of the inputs", CONSISTENCY_HEAD, rows, 3), flagged
 
 
-def crank_speed(record: Any) -> Table:
-    """Ripple of the crank's speed, without and with the cam, by load case."""
+def crank_speed(record: Json) -> Table:
+    """Ripple of the crank speed with and without the cam, by load case."""
     rows = [
         [
             name, shown, quantity(states[state]["std_rad_per_s"], "rad/s"),
             quantity(states[state]["p2p_rad_per_s"], "rad/s"),
             quantity(100.0 * states[state]["fluctuation"], "%", 3),
         ]
-        for name, states in (record.items() if isinstance(record, Mapping) else ())
+        for name, states in _records_by_name(record)
         for state, shown in STATES.items()
         if isinstance(states.get(state), Mapping)
     ]  # fmt: skip
     return Table("Crank speed", SPEED_HEAD, rows, 2)
 
 
-def valve_train(record: Any) -> Table:
-    """The machine motion of a valve cam, with what of it is reconstructed."""
+def valve_train(record: Json) -> Table:
+    """Machine motion of a valve cam; reconstructed values are marked as such."""
     rows = [
         [
             str(one["name"]), str(one["load_case"]) or DASH, str(one["note"]),
@@ -96,44 +103,89 @@ def valve_train(record: Any) -> Table:
     return Table("Machine motion of the valve cam", VALVE_HEAD, rows, 3)
 
 
-def benchmarks(record: Any) -> list[tuple[str, str]]:
-    """(words, relative difference) of the benchmarks solved in the environment of the run."""
+def benchmarks(record: Json) -> list[tuple[str, str]]:
+    """(benchmark, relative difference to the reference solution)."""
     known = record if isinstance(record, Mapping) else {}
     return [
-        (title, quantity(100.0 * known[name], "%", 2))
+        (title, quantity(100.0 * value, "%", 2))
         for name, title in BENCHMARKS.items()
-        if isinstance(known.get(name), float)
+        if isinstance(value := known.get(name), float)
     ]
 
 
-def corners(checks: Sequence[Mapping[str, Any]]) -> Table:
-    """Checks that a corner of the tolerances asks more of than the nominal case."""
-    found = ((check, worst_corner(check)) for check in checks)
+def certificate(points: Sequence[Record]) -> Table:
+    """Peak pressure on each mesh, extrapolation and grid convergence, by certificate point."""
+    rows = []
+    for point in points:
+        pressure = _figure(point, "p0_MPa")
+        rows.append([
+            number(point.get("cam_angle_deg")), _several(point.get("edges_across_half_width"), 3),
+            _several(point.get("dofs")), _several(pressure.get("meshes"), 5),
+            number(pressure.get("extrapolated"), 5), number(pressure.get("order"), 3),
+            number(pressure.get("gci_percent"), 2), number(point.get("p0_hertz_MPa"), 5),
+            number(pressure.get("cycle"), 5), number(point.get("spread_percent"), 2),
+            number(point.get("residual_equilibrium"), 2),
+        ])  # fmt: skip
+    return Table("Certificate points", CERTIFICATE_HEAD, rows, wide=True)
+
+
+def certified(points: Sequence[Record]) -> Table:
+    """Half-width and stresses, by certificate point."""
+    rows = [
+        [
+            number(point.get("cam_angle_deg")), title, _several(figure.get("meshes"), 5),
+            number(figure.get("extrapolated"), 5), number(figure.get("order"), 3),
+            number(figure.get("gci_percent"), 2), number(figure.get("cycle"), 5),
+        ]
+        for point in points
+        for name, title in CERTIFIED.items()
+        if (figure := _figure(point, name))
+    ]  # fmt: skip
+    return Table("Half-width and stresses at the certificate points", CERTIFIED_HEAD, rows, 2,
+                 wide=True)  # fmt: skip
+
+
+def corners(checks: Sequence[Record]) -> Table:
+    """Checks whose demand at a tolerance corner exceeds the nominal one."""
     rows = [
         [str(check["title"]), at[0], quantity(check["demand"], str(check["unit"])), at[1]]
-        for check, at in found
-        if at is not None
+        for check in checks
+        if (at := worst_corner(check)) is not None
     ]
     return Table("Tolerance corners", CORNERS_HEAD, rows, 2)
 
 
-def _records(value: Any) -> list[Mapping[str, Any]]:
+def _figure(point: Record, name: str) -> Record:
+    figure = point.get(name)
+    return figure if isinstance(figure, Mapping) else {}
+
+
+def _several(values: Json, digits: int = 4) -> str:
+    return ", ".join(number(v, digits) for v in values) if isinstance(values, list) else DASH
+
+
+def _records(value: Json) -> list[Record]:
     return [one for one in value if isinstance(one, Mapping)] if isinstance(value, list) else []
 
 
-def _unit(record: Mapping[str, Any]) -> str:
+def _records_by_name(value: Json) -> list[tuple[str, Record]]:
+    named = value.items() if isinstance(value, Mapping) else ()
+    return [(name, one) for name, one in named if isinstance(one, Mapping)]
+
+
+def _unit(record: Record) -> str:
     unit = str(record["unit"])
     return "" if unit == "-" else unit
 
 
-def _change(price: Any, per: str = "") -> str:
-    """A price as the change of the ripple: a limit that gives way takes ripple off."""
+def _change(price: Json, per: str = "") -> str:
+    """A price as the change of the ripple: relaxing a limit reduces it."""
     if not isinstance(price, (int, float)):
         return DASH
     return f"{quantity(-float(price), 'N m', 3)} {per}".rstrip()
 
 
-def _ranges(ranges: Any) -> str:
+def _ranges(ranges: Json) -> str:
     shown = [
         number(start) if start == stop else f"{number(start)}\N{EN DASH}{number(stop)}"
         for start, stop in (ranges if isinstance(ranges, list) else ())

@@ -55,13 +55,14 @@ def redesign(
 def _show(document: dict[str, Any]) -> None:
     from rich.table import Table
 
-    from camwright.reports.redesign_page import COLUMNS, shown
+    from camwright.reports.redesign_page import COLUMNS
+    from camwright.reports.report_tables import listed
 
     table = Table(box=None, pad_edge=False)
     for _, words in COLUMNS:
         table.add_column(words)
     for row in document["points"]:
-        table.add_row(*(shown(row.get(name)) for name, _ in COLUMNS))
+        table.add_row(*(listed(row.get(name)) for name, _ in COLUMNS))
     if document["points"]:
         stdout.print(table)
     else:

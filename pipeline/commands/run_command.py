@@ -83,10 +83,7 @@ def _finished(out: Path, sha256: str) -> bool:
 
 def report(
     folder: DirArgument,
-    pdf: Annotated[bool, typer.Option("--pdf", help="Print it as 8_report.pdf as well.")] = False,
-    film: Annotated[
-        bool, typer.Option("--film", help="Draw the turn as figures/turn.mp4 and turn.gif as well.")
-    ] = False,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Write 8_report.pdf as well.")] = False,
     only: Annotated[
         list[str] | None,
         typer.Option("--only", metavar="PART", help="This part alone; may be given several times."),
@@ -98,10 +95,10 @@ def report(
     from camwright.reports.page import PAGE
 
     names = [part.name for part in sections.chosen(only or ())]
-    names += [name for name, asked in (("pdf", pdf), ("film", film)) if asked]
+    names += ["pdf"] if pdf else []
     with progress_shown() as shown:
         shown.stage("report")
-        made = sections.build(folder, sections.chosen(names), shown.advance)
+        made = sections.build(folder, sections.chosen(names))
     for name, files in made.items():
         stdout.print(f"{name}: {_told(files)}", markup=False)
     if show:

@@ -49,7 +49,7 @@ def write_fields(
     write_bodies(folder, pair, bodies, cycle, indices, chosen + 1, tell)
     write_patches(folder, pair, bodies, cycle, chosen + 1, tell)
     write_envelope(folder / ENVELOPE, pair, cycle.rolling.envelope, chosen + 1)
-    np.savez_compressed(folder / TURN, allow_pickle=False, **turn_view(pair, bodies, cycle, tell))
+    np.savez_compressed(folder / TURN, allow_pickle=False, **turn_view(pair, bodies, cycle))
 
 
 def hardest(cycles: Sequence[Cycle]) -> int:

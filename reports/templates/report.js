@@ -1,5 +1,5 @@
 "use strict";
-/* Draws the figures of the page with Plotly, over static drawings that stay for print. */
+/* Draws the figures by Plotly in place of the static drawings, which remain for print. */
 (function () {
   if (!window.Plotly) return;
   const specs = JSON.parse(document.getElementById("figure-data").textContent);
@@ -14,8 +14,10 @@
   function themed(spec) {
     const data = spec.data.map((trace) => {
       const line = trace.line && { ...trace.line, color: colour(trace.line.color) };
-      const fill = trace.fillcolor && faded(trace.fillcolor, "2e");
-      return { ...trace, ...(line && { line }), ...(fill && { fillcolor: fill }) };
+      const marker = trace.marker && { ...trace.marker, color: colour(trace.marker.color) };
+      const fill = trace.fillcolor && /* areas opaque, ribbons pale */
+        (trace.fill === "toself" ? colour(trace.fillcolor) : faded(trace.fillcolor, "2e"));
+      return { ...trace, ...(line && { line }), ...(marker && { marker }), ...(fill && { fillcolor: fill }) };
     });
     const ink = colour("ink"), muted = colour("muted"), grid = colour("grid");
     const layout = {
@@ -36,19 +38,19 @@
     return { data, layout };
   }
 
-  function told(spec, index) {
+  function readout(spec, index) {
     const plain = (text) => new DOMParser().parseFromString(text, "text/html").body.textContent;
-    const seen = spec.data.filter((trace) => trace.hovertemplate && trace.x.length > index);
-    if (!seen.length) return "";
-    const where = "cam angle " + seen[0].customdata[index].toFixed(1) + " degrees: ";
-    return where + seen.map((trace) => plain(trace.name) + " " +
+    const curves = spec.data.filter((trace) => trace.hovertemplate && trace.x.length > index);
+    if (!curves.length) return "";
+    const where = "cam angle " + curves[0].customdata[index].toFixed(1) + " degrees: ";
+    return where + curves.map((trace) => plain(trace.name) + " " +
       (trace.y[index] === null ? "unknown" : trace.y[index] + " " + plain(trace.meta))).join("; ");
   }
 
-  function reachable(place, spec) {
+  function keyboard(place, spec) {
     let index = 0;
     const first = spec.data.findIndex((trace) => trace.hovertemplate);
-    const said = place.parentNode.querySelector(".told-values");
+    const output = place.parentNode.querySelector(".readout");
     place.addEventListener("keydown", (event) => {
       const count = spec.data[first].x.length;
       const steps = { ArrowRight: 1, ArrowLeft: -1, PageUp: 10, PageDown: -10 };
@@ -58,23 +60,24 @@
       else return;
       event.preventDefault();
       Plotly.Fx.hover(place, [{ curveNumber: first, pointNumber: index }]);
-      said.textContent = told(spec, index);
+      output.textContent = readout(spec, index);
     });
     place.addEventListener("blur", () => Plotly.Fx.unhover(place));
   }
 
-  /* The drawing itself says nothing aloud: its place has a name, and its values are told. */
+  /* Screen readers skip the drawing; its container has a name and a live region for values. */
   const mute = (...elements) =>
     elements.forEach((one) => one && one.setAttribute("aria-hidden", "true"));
 
-  /* A legend that breaks into lines on a narrow screen gets the room it takes. */
-  function roomy(place, layout) {
+  /* Space for a legend that wraps on a narrow screen. */
+  function fitLegend(place, layout) {
     const legend = place.querySelector(".infolayer > .legend");
     const more = legend ? Math.ceil(legend.getBoundingClientRect().height) - 30 : 0;
     if (more > 0) Plotly.relayout(place, { "margin.t": layout.margin.t + more,
       height: layout.height + more });
   }
 
+  for (const hint of document.querySelectorAll(".pointing")) hint.hidden = false;
   const places = [...document.querySelectorAll(".live")].filter((p) => specs[p.dataset.figure]);
   function drawn(place) {
     if (place.dataset.drawn) return;
@@ -83,10 +86,10 @@
     place.hidden = false;
     Plotly.newPlot(place, made.data, made.layout, config).then(() => {
       place.parentNode.classList.add("interactive");
-      roomy(place, made.layout);
+      fitLegend(place, made.layout);
       mute(...place.children, document.getElementById("js-plotly-tester"));
       place.dataset.drawn = "done";
-      reachable(place, spec);
+      keyboard(place, spec);
     }).catch((error) => { place.hidden = true; console.error(error); });
   }
 

@@ -1,15 +1,15 @@
 "use strict";
-/* Draws the scene with Plotly and turns it with the slider; angles are the radians of the data. */
+/* Draws the scene by Plotly and sets it to the cam angle of the slider; angles in rad. */
 (function () {
   const data = JSON.parse(document.getElementById("scene-data").textContent);
   const place = document.getElementById("scene"), slider = document.getElementById("turn");
-  const told = document.getElementById("told"), play = document.getElementById("play");
+  const readout = document.getElementById("readout"), play = document.getElementById("play");
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   const STEEL = "#c3cbd4", DARK = "#8b95a1", MARK = "#d55e00";
   const LIGHT = { ambient: 0.75, diffuse: 0.4, specular: 0.05, roughness: 0.8, fresnel: 0.02 };
   const EVEN = { ambient: 0.92, diffuse: 0.1, specular: 0, roughness: 1, fresnel: 0 };
   const PLAIN = { ambient: 1, diffuse: 0, specular: 0, roughness: 1, fresnel: 0 };
-  const EYES = { aslant: [1.15, 0.5, 0.95], front: [0, 0, 1.6], side: [1.55, 0.12, 0.35] };
+  const EYES = { oblique: [1.15, 0.5, 0.95], front: [0, 0, 1.6], side: [1.55, 0.12, 0.35] };
   const camera = (name) => {
     const [x, y, z] = EYES[name];
     return { up: { x: 0, y: 1, z: 0 }, center: { x: 0, y: 0, z: 0 }, eye: { x, y, z } };
@@ -25,7 +25,7 @@
     return [xs.map((x, n) => c * x - s * ys[n]), xs.map((x, n) => s * x + c * ys[n])];
   };
 
-  /* A line with breaks (null) in it. */
+  /* A line with gaps (null). */
   const turned = (line, angle) => around(line.x, line.y, angle)
     .map((part) => part.map((v, n) => (line.x[n] === null ? null : v)));
 
@@ -35,7 +35,7 @@
       lightposition: { x: 400, y: 900, z: 1500 }, hoverinfo: "skip", ...more };
   }
 
-  /* The contour's two edges and those of the bore, a closed line each. */
+  /* Edges of contour or bore on both end faces, as closed lines. */
   function edges(body, half) {
     const count = body.x.length / half, lines = { x: [], y: [], z: [], of: [] };
     for (let side = 0; side < half; side++) {
@@ -54,7 +54,7 @@
     const { flank, cam, follower, guide } = data.bodies;
     const valued = flank.values && { intensity: flank.values, colorscale: "Viridis", lighting: EVEN,
       hovertext: flank.words, hoverinfo: "text", flatshading: false,
-      colorbar: { title: { text: "greatest von Mises<br>of the turn, MPa", font: { size: 12 } },
+      colorbar: { title: { text: "maximum von Mises<br>of the turn, MPa", font: { size: 12 } },
         thickness: 14, len: 0.7, x: 0.99, xanchor: "right" } };
     const made = [solid(flank, valued || {}), solid(cam, { color: STEEL, lighting: PLAIN })];
     made.push(solid(data.roller || follower, { color: "#e3e8ed" }));
@@ -76,8 +76,8 @@
 
   const rim = edges(data.bodies.flank, 2), hole = edges(data.bodies.bore, 2);
 
-  /* Coordinates of all that moves at step n, in the order of the traces. */
-  function moved(n) {
+  /* Coordinates at step n, in the order of the traces. */
+  function coordinates(n) {
     const { flank, cam, follower } = data.bodies, turn = data.turn[n];
     const [ox, oy] = [data.origin[0][n], data.origin[1][n]];
     const at = (body, angle) => {
@@ -102,7 +102,7 @@
 
   const all = traces();
   function placed(n) {
-    const { pairs, zs } = moved(n);
+    const { pairs, zs } = coordinates(n);
     pairs.forEach(([x, y], t) => { all[t].x = x; all[t].y = y; if (zs[t]) all[t].z = zs[t]; });
     return pairs.map((_, t) => t);
   }
@@ -110,19 +110,19 @@
   const { side, top } = data.reach, deep = 0.3 * (side + top), unit = (side + top) / 1.22;
   const axis = (range) => ({ range, visible: false, autorange: false });
   const layout = () => ({
-    margin: { l: 0, r: 0, t: 0, b: 0 }, showlegend: false, uirevision: "kept",
+    margin: { l: 0, r: 0, t: 0, b: 0 }, showlegend: false, uirevision: "fixed",
     paper_bgcolor: "rgba(0,0,0,0)", font: { color: colour("ink"), family: "system-ui, sans-serif" },
     scene: { xaxis: axis([-side, side]), yaxis: axis([-side, top]), zaxis: axis([-deep, deep]),
       aspectmode: "manual",
-      aspectratio: { x: (2 * side) / unit, y: (side + top) / unit, z: (2 * deep) / unit }, dragmode: "orbit", uirevision: "kept",
-      camera: camera("aslant") },
+      aspectratio: { x: (2 * side) / unit, y: (side + top) / unit, z: (2 * deep) / unit }, dragmode: "orbit", uirevision: "fixed",
+      camera: camera("oblique") },
   });
 
   function say(n) {
     const angle = data.angle[n], deg = (v) => v.toFixed(1) + "°";
-    const values = data.told.map((t) => `${t.words} ${Number(t.values[n].toPrecision(4))} ${t.unit}`);
+    const values = data.readout.map((t) => `${t.words} ${Number(t.values[n].toPrecision(4))} ${t.unit}`);
     const place = `cam ${deg(angle)}, crank ${deg(angle * data.ratio)}`;
-    told.textContent = [place, ...values].join(" · ");
+    readout.textContent = [place, ...values].join(" · ");
     slider.setAttribute("aria-valuetext", place);
   }
 

@@ -29,7 +29,7 @@ def test_compare_tabulates_and_draws(tmp_path):
     assert all(row["verdict"] in ("pass", "fail") for row in rows)
     assert all((row["binding"] != "") == (row["verdict"] == "fail") for row in rows)
     page = (tmp_path / "smoothers.html").read_text(encoding="utf-8")
-    assert "what fails" in page and "smoothing spline of curvature weight" in page
+    assert "failed checks" in page and "smoothing spline of curvature weight" in page
     assert (tmp_path / "smoothers.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -76,7 +76,7 @@ def test_files_and_page_show_a_face(folder):
     assert "pressure-angle" not in figures
     page = (folder / "8_report.html").read_text()
     assert "Contact on the face" in page
-    assert "von Mises stress under the face" in page
+    assert "von Mises stress below the face" in page
     assert (folder / "workshop" / "cutter.csv").exists()
 
 

@@ -6,19 +6,18 @@ import itertools
 import re
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
+from browser_fixture import Tab, chromium
 
-from camwright.reports import browser, interactive, page
-from camwright.reports.report_data import read_material
+from camwright.reports import interactive
 
-ALL_DRAWN = "[...document.querySelectorAll('.live')].every(e => e.dataset.drawn === 'done')"
-PLACE = """(() => { const r = document.querySelector('#pressure .live .nsewdrag')
-    .getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()"""
+UNDRAWN = ".live:not([data-drawn='done'])"
 BYTES_MAX = 8 << 20
 HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </script><!--"
 
@@ -31,11 +30,15 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def tab():
-    if browser.executable() is None:
-        pytest.skip("no Chromium here: Debian has it in the package chromium")
-    with browser.tab() as opened:
+def tab() -> Iterator[Tab]:
+    with chromium() as opened:
         yield opened
+
+
+def open_and_draw(tab: Tab, file: Path, width: int, height: int) -> None:
+    """Open the page and wait for its plots."""
+    tab.open(file, width, height)
+    tab.page.locator(UNDRAWN).first.wait_for(state="detached")
 
 
 def test_page_is_small_and_asks_nothing_of_the_network(report: Path) -> None:
@@ -47,38 +50,36 @@ def test_page_is_small_and_asks_nothing_of_the_network(report: Path) -> None:
 
 
 @pytest.mark.parametrize("width", [390, 1440])
-def test_every_plot_is_drawn_and_answers(report: Path, tab: browser.Tab, width: int) -> None:
-    tab.events.clear()
-    tab.size(width, 900)
-    tab.open(report)
-    tab.wait(ALL_DRAWN)
-    assert tab.evaluate("document.querySelectorAll('.live').length") >= 10
+def test_every_plot_is_drawn_and_answers(report: Path, tab: Tab, width: int) -> None:
+    open_and_draw(tab, report, width, 900)
+    page = tab.page
+    assert page.locator(".live").count() >= 10
     assert tab.evaluate("document.documentElement.scrollWidth") <= width
-    names = "[...document.querySelectorAll('#pressure .live .annotation')].map(e => e.textContent)"
-    assert {"intake", "compression", "expansion", "exhaust"} <= set(tab.evaluate(names))
-    tab.evaluate("document.getElementById('pressure').scrollIntoView({behavior: 'instant'})")
-    x, y, wide, high = tab.evaluate(PLACE)
+    names = page.locator("#pressure .live .annotation").all_text_contents()
+    assert {"intake", "compression", "expansion", "exhaust"} <= set(names)
+    plot = page.locator("#pressure .live .nsewdrag").first
+    plot.scroll_into_view_if_needed()
+    place = plot.bounding_box()
     for share in (0.3, 0.4):
-        tab.call("Input.dispatchMouseEvent", type="mouseMoved", x=x + share * wide, y=y + high / 2)
+        page.mouse.move(place["x"] + share * place["width"], place["y"] + 0.5 * place["height"])
         time.sleep(0.2)
-    tab.wait("document.querySelector('#pressure .hoverlayer').textContent.includes('MPa')", 10)
-    tab.evaluate("document.querySelector('#pressure .live').focus()")
-    tab.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowRight", code="ArrowRight",
-             windowsVirtualKeyCode=39)  # fmt: skip
-    said = tab.evaluate("document.querySelector('#pressure .told-values').textContent")
-    assert said.startswith("cam angle") and "MPa" in said
-    assert tab.complaints() == []
+    page.locator("#pressure .hoverlayer", has_text="MPa").first.wait_for(state="attached")
+    page.locator("#pressure .live").focus()
+    page.keyboard.press("ArrowRight")
+    assert page.get_by_text("Point at a curve").is_visible()
+    readout = page.locator("#pressure .readout").text_content()
+    assert readout.startswith("cam angle") and "MPa" in readout
+    assert tab.errors == []
+    assert tab.outside == []
     assert tab.evaluate("window.broken") is None
-    assert "עברית" in tab.evaluate("document.querySelector('h1').textContent")
+    assert "עברית" in page.locator("h1").text_content()
 
 
-def test_a_screen_reader_finds_its_way(report: Path, tab: browser.Tab) -> None:
+def test_a_screen_reader_finds_its_way(report: Path, tab: Tab) -> None:
     """Headings in order, a name for every picture, and tables that stay tables on a telephone."""
-    tab.size(390, 900)
-    tab.open(report)
-    tab.wait(ALL_DRAWN)
-    nodes = [node for node in tab.call("Accessibility.getFullAXTree")["nodes"]
-             if not node.get("ignored")]  # fmt: skip
+    open_and_draw(tab, report, 390, 900)
+    tree = tab.page.context.new_cdp_session(tab.page).send("Accessibility.getFullAXTree")
+    nodes = [node for node in tree["nodes"] if not node.get("ignored")]
     by_role: dict[str, list[dict]] = {}
     for node in nodes:
         by_role.setdefault(node["role"]["value"], []).append(node)
@@ -100,16 +101,14 @@ def test_a_screen_reader_finds_its_way(report: Path, tab: browser.Tab) -> None:
     assert tab.evaluate(lacking) == 0
 
 
-def test_print_shows_the_still_drawings(report: Path, tab: browser.Tab) -> None:
-    tab.size(800, 1100)
-    tab.open(report)
-    tab.wait(ALL_DRAWN)
-    tab.call("Emulation.setEmulatedMedia", media="print")
+def test_print_shows_the_still_drawings(report: Path, tab: Tab) -> None:
+    open_and_draw(tab, report, 800, 1100)
+    tab.page.emulate_media(media="print")
     shown = "[...document.querySelectorAll('{}')].filter(e => e.offsetParent !== null).length"
     stills = tab.evaluate(shown.format(".still"))
     assert tab.evaluate(shown.format(".live")) == 0
-    assert stills == tab.evaluate("document.querySelectorAll('.live').length")
-    tab.call("Emulation.setEmulatedMedia", media="")
+    assert stills == tab.page.locator(".live").count()
+    tab.page.emulate_media(media="screen")
 
 
 def test_json_in_the_page_cannot_end_its_script() -> None:
@@ -117,7 +116,12 @@ def test_json_in_the_page_cannot_end_its_script() -> None:
     assert not set("<>&") & set(text)
 
 
-def test_page_for_print_is_whole_without_scripts(report: Path) -> None:
-    text = page.text(read_material(report.parent), live=False).decode()
-    assert "<script" not in text and "Point at a curve" not in text
-    assert text.count("<svg") >= 10
+def test_page_is_whole_without_scripts(report: Path, tab: Tab) -> None:
+    silent = tab.page.context.browser.new_context(java_script_enabled=False)
+    page = silent.new_page()
+    page.goto(report.as_uri())
+    stills = page.locator(".still svg")
+    assert stills.count() >= 10
+    assert all(still.is_visible() for still in stills.all())
+    assert not page.get_by_text("Point at a curve").is_visible()
+    silent.close()

@@ -1,8 +1,7 @@
-"""The page on paper by either engine: numbered pages, no plot cut, fonts inside, room to sign."""
+"""The report as PDF: numbered A4 pages, no plot cut, fonts inside, input text as text alone."""
 
 from __future__ import annotations
 
-import importlib
 import importlib.util
 import io
 import re
@@ -17,11 +16,16 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
 from camwright.geometry.errors import ResultError
-from camwright.reports import browser, page, pdf, sections
-from camwright.reports.drawings import drawn_groups
+from camwright.reports import figure_svg, pdf, report_content, sections
+from camwright.reports.figure_svg import drawn_groups
 from camwright.reports.report_data import Material, read_material
 
+pytest.importorskip("typst", reason="typst is not installed (extra pdf)")
 HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </script><!--"
+TYPST = (
+    '#read("/etc/passwd")', "#panic()", '#import "@preview/a:0.1.0": *', "$ x^2 $", "]#[", "`raw`",
+    "\\u{41}", "<label> @label", "*bold* _thin_", "// gone", "/* gone */", "#{1/0}", "\\", "~--",
+)  # fmt: skip
 A4 = (595.0, 842.0)  # points
 
 
@@ -32,34 +36,27 @@ def material(tmp_path_factory: pytest.TempPathFactory) -> Material:
     return read_material(folder)
 
 
-def by_chromium(material: Material) -> bytes:
-    if browser.executable() is None:
-        pytest.skip("no Chromium here: Debian has it in the package chromium")
-    return pdf.write(material)[0].read_bytes()
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Plots left blank, for tests of words."""
+    blank = '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>'
+    monkeypatch.setattr(figure_svg, "svg_and_png", lambda figure: (blank, b""))
 
 
-def by_weasyprint(material: Material) -> bytes:
-    try:
-        importlib.import_module("weasyprint")
-    except (ImportError, OSError) as error:
-        pytest.skip(f"no WeasyPrint here, or no Pango for it: {error}")
-    text = page.text(material, live=False).decode()
-    return pdf.by_weasyprint(text, "Camwright · gx120")
-
-
-@pytest.fixture(scope="module", params=[by_chromium, by_weasyprint])
-def printed(request: pytest.FixtureRequest, material: Material) -> pypdf.PdfReader:
-    return pypdf.PdfReader(io.BytesIO(request.param(material)))
+@pytest.fixture(scope="module")
+def printed(material: Material) -> pypdf.PdfReader:
+    return pypdf.PdfReader(io.BytesIO(pdf.write(material)[0].read_bytes()))
 
 
 @pytest.fixture(scope="module")
 def words(printed: pypdf.PdfReader) -> list[str]:
-    """What each page says, spaces left out: engines set them apart differently."""
+    """What each page says, spaces left out."""
     return [squeezed(one.extract_text()) for one in printed.pages]
 
 
 def squeezed(text: str) -> str:
-    return re.sub(r"\s+", "", unicodedata.normalize("NFKC", text))  # no ligatures either
+    """Without spaces, places to break a word, marks of direction and ligatures."""
+    return re.sub(r"[\s\u200b\u2066-\u2069]+", "", unicodedata.normalize("NFKC", text))
 
 
 def pages_with(words: list[str], text: str) -> set[int]:
@@ -83,6 +80,29 @@ def test_no_plot_is_cut(material: Material, words: list[str]) -> None:
         assert pages_with(words, figure.title) & pages_with(words, figure.caption), figure.id
 
 
+def test_plots_are_drawn_as_lines_with_text(words: list[str]) -> None:
+    """The names along their axes can be searched for, so they are no rasters."""
+    assert sum(said.count("crankangle,deg") for said in words) >= 12
+
+
+def test_pdf_says_what_the_page_says(material: Material, words: list[str]) -> None:
+    said = "".join(words)
+    content = report_content.report_content(material)
+    assert squeezed(content.verdict.sentence) in words[0]
+    assert squeezed(content.tiles[0].value) in words[0]
+    starts = []
+    for section in content.sections:
+        assert squeezed(section.lead) in said
+        starts.append(min(pages_with(words[1:], section.title)))
+        for block in section.blocks:
+            assert squeezed(block.title) in said
+    assert starts == sorted(starts)
+    for row in report_fixture.checks():
+        assert squeezed(row["title"]) in said
+    for statement in report_content.ASSUMPTIONS:
+        assert squeezed(statement) in said
+
+
 def test_every_font_is_in_the_file(printed: pypdf.PdfReader) -> None:
     fonts = {}
     for sheet in printed.pages:
@@ -98,6 +118,30 @@ def test_every_font_is_in_the_file(printed: pypdf.PdfReader) -> None:
         assert {"/FontFile", "/FontFile2", "/FontFile3"} & set(described), name
 
 
+def test_it_is_an_archive_file_with_tags_and_nothing_that_runs(
+    material: Material, printed: pypdf.PdfReader
+) -> None:
+    raw = (material.folder / pdf.PDF).read_bytes()
+    assert b"<pdfaid:part>2</pdfaid:part>" in raw and b"<pdfuaid:part>1</pdfuaid:part>" in raw
+    assert printed.trailer["/Root"]["/MarkInfo"]["/Marked"]
+    assert not any(name in raw for name in (b"/JavaScript", b"/Launch", b"/EmbeddedFile", b"/URI"))
+    pictured = [node for node in tags(printed) if node.get("/S") == "/Figure"]
+    assert len(pictured) >= 12 and all(str(node["/Alt"]).strip() for node in pictured)
+
+
+def tags(printed: pypdf.PdfReader) -> list[pypdf.generic.DictionaryObject]:
+    """Nodes of the structure tree."""
+    nodes, waiting = [], [printed.trailer["/Root"]["/StructTreeRoot"]]
+    while waiting:
+        node = waiting.pop().get_object()
+        if isinstance(node, list):
+            waiting += node
+        elif isinstance(node, dict):
+            nodes.append(node)
+            waiting += [node["/K"]] if "/K" in node else []
+    return nodes
+
+
 def test_a_place_to_sign_comes_last(words: list[str]) -> None:
     end = words[-1]
     assert all(f"{role}NameDateSignature" in end or role in end
@@ -108,24 +152,69 @@ def test_a_place_to_sign_comes_last(words: list[str]) -> None:
 def test_hostile_titles_are_printed_as_words(words: list[str]) -> None:
     # what follows the right-to-left mark runs the other way, as on any page
     assert "<script>window.broken=1</script>\"'&../" in words[0]
-    assert "עברית" in words[0] and "\U0001f600" in words[0]
+    assert "עברית"[::-1] in words[0] and "\U0001f600" in words[0]  # as it lies on the paper
 
 
-def test_without_an_engine_it_says_what_to_install(
+@pytest.mark.usefixtures("undrawn")
+def test_typst_source_in_an_input_is_printed_and_never_run(tmp_path: Path) -> None:
+    records = report_fixture.checks()
+    for record, text in zip(records, TYPST, strict=False):
+        record.update(title=text, note=text, source=text, method=text)
+    text = " ".join(TYPST)
+    folder = report_fixture.write_run(
+        tmp_path / "run", 36, title=text, notes=text, load_case=text, records=records, field=False
+    )
+    said = squeezed("".join(page.extract_text() for page in read(folder).pages))
+    assert said.count(squeezed(text)) >= 3  # title, load case, notes
+    for line in TYPST[: len(records)]:
+        assert said.count(squeezed(line)) >= 4, line
+    passwords = Path("/etc/passwd")
+    if passwords.is_file():
+        assert squeezed(passwords.read_text().splitlines()[0]) not in said
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_huge_and_unprintable_text_stays_on_the_pages(tmp_path: Path) -> None:
+    text = "a\x00b\x1bc\ufffe " + 5000 * "x" + " 中 \U0010ffff"
+    records = report_fixture.checks()[:2]
+    for record in records:
+        record.update(title=text, note=text)
+    folder = report_fixture.write_run(
+        tmp_path / "run", 36, title=text, notes=text, records=records, field=False
+    )
+    pages = [page.extract_text() for page in read(folder).pages]
+    assert squeezed("".join(pages)).count(20 * "x") >= 4 * 5000 // 20 - 20
+    longest = max(line.count("x") for page in pages for line in page.splitlines())
+    assert longest < 150  # of the least type a line holds less
+
+
+@pytest.mark.usefixtures("undrawn")
+@pytest.mark.parametrize("character", ["\ue000", "\U0010ffff", "中", "\u0378"])
+def test_characters_the_font_lacks_stop_nothing(tmp_path: Path, character: str) -> None:
+    """Private use, no character at all, another script, unassigned: text about them stays."""
+    title = f"one {character} two"
+    folder = report_fixture.write_run(tmp_path / "run", 36, title=title, field=False)
+    said = squeezed(read(folder).pages[0].extract_text())
+    assert f"one{character}two" in said or "one\ufffdtwo" in said
+
+
+def read(folder: Path) -> pypdf.PdfReader:
+    return pypdf.PdfReader(io.BytesIO(pdf.write(read_material(folder))[0].read_bytes()))
+
+
+def test_the_same_run_gives_the_same_bytes(material: Material, printed: pypdf.PdfReader) -> None:
+    first = (material.folder / pdf.PDF).read_bytes()
+    drawn_groups.cache_clear()
+    assert pdf.write(read_material(material.folder))[0].read_bytes() == first
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_without_typst_it_says_what_to_install(
     material: Material, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(browser, "executable", lambda: None)
     real = importlib.util.find_spec
     monkeypatch.setattr(
-        importlib.util, "find_spec", lambda name: None if name == "weasyprint" else real(name)
+        importlib.util, "find_spec", lambda name: None if name == "typst" else real(name)
     )
-    with pytest.raises(ResultError, match=r"install Chromium.*camwright\[pdf\]"):
+    with pytest.raises(ResultError, match=r"typst: pip install 'camwright\[pdf\]'"):
         sections.build(material.folder, sections.chosen(["pdf"]))
-
-
-def test_without_chromium_weasyprint_prints(
-    material: Material, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(browser, "executable", lambda: None)
-    monkeypatch.setattr(pdf, "by_weasyprint", lambda text, footer: f"%PDF {footer}".encode())
-    assert pdf.write(material)[0].read_bytes() == "%PDF Camwright · gx120".encode()

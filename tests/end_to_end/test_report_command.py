@@ -13,7 +13,7 @@ import pytest
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.cli import PASSED, app
-from camwright.reports import drawings, page, sections
+from camwright.reports import figure_svg, page, sections
 from camwright.reports import pdf as printing
 
 ROOT = Path(__file__).parents[2]
@@ -47,7 +47,7 @@ def run(tmp_path: Path) -> Path:
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures left blank, where what counts is which files come."""
-    monkeypatch.setattr(drawings, "svg_and_png", lambda figure: ("<svg></svg>", b"\x89PNG"))
+    monkeypatch.setattr(figure_svg, "svg_and_png", lambda figure: ("<svg></svg>", b"\x89PNG"))
 
 
 def digests(folder: Path) -> dict[str, str]:
@@ -92,16 +92,13 @@ def test_one_part_alone_writes_its_files_alone(run: Path) -> None:
 @pytest.mark.usefixtures("quick")
 def test_a_report_has_all_parts_but_those_to_ask_for(run: Path) -> None:
     made = sections.build(run)
-    assert list(made) == [part.name for part in sections.PARTS if not part.asked]
+    assert list(made) == [part.name for part in sections.PARTS if not part.on_request]
     assert not (run / printing.PDF).exists()
 
 
 @pytest.mark.usefixtures("quick")
 def test_pdf_comes_beside_the_rest_when_asked(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(printing.browser, "executable", lambda: "chromium")
-    monkeypatch.setattr(
-        printing.browser, "print_pdf", lambda still, pdf, footer: pdf.write_bytes(b"%PDF")
-    )
+    monkeypatch.setattr(printing, "typeset", lambda report: b"%PDF")
     assert report(run, "--pdf") == PASSED
     assert (run / page.PAGE).is_file()
     assert (run / printing.PDF).is_file()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -13,16 +14,18 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 import turn_fixture
+from browser_fixture import Tab, chromium
 
-from camwright.reports import browser, scene_page, sections
+from camwright.geometry.errors import ResultError
+from camwright.reports import scene_page, sections
 from camwright.reports.report_data import read_material
+from camwright.reports.scene_page import TurnView, read_turn_view
 from camwright.reports.scene_solids import Solid, box, joined, ring, tube
-from camwright.reports.scene_turn import read_turn_view
 
 POSITIONS = 36
 BYTES_MAX = 10 << 20
 HOSTILE = "<script>window.broken=1</script>\"'&../\u202eעברית\U0001f600 </script><!--"
-SHOWN = "document.getElementById('scene').dataset.shown === '{}'"
+SHOWN = "#scene[data-shown='{}']"
 
 
 @pytest.fixture(scope="module")
@@ -35,10 +38,13 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def tab():
-    if browser.executable() is None:
-        pytest.skip("no Chromium here: Debian has it in the package chromium")
-    with browser.tab() as opened:
+def view(page: Path) -> TurnView:
+    return read_turn_view(page.parent)
+
+
+@pytest.fixture(scope="module")
+def tab() -> Iterator[Tab]:
+    with chromium() as opened:
         yield opened
 
 
@@ -58,17 +64,39 @@ def test_a_run_without_its_turn_has_no_scene(tmp_path: Path) -> None:
     folder = report_fixture.write_run(tmp_path / "old", POSITIONS, field=False)
     assert sections.build(folder, sections.chosen(["scene"]))["scene"] == []
     assert not (folder / scene_page.FILE).exists()
+    with pytest.raises(ResultError, match="run the case again"):
+        read_turn_view(folder)
 
 
-def test_slider_and_keys_turn_the_cam(page: Path, tab: browser.Tab) -> None:
-    tab.events.clear()
-    tab.size(390, 700)
-    tab.open(page)
-    tab.wait(SHOWN.format(0))
+def test_follower_stands_on_its_axis_and_touches_the_cam(view: TurnView) -> None:
+    lab = view.lab_origin()
+    np.testing.assert_allclose(lab[0], 0.0, atol=1e-9)  # no offset in this case
+    turn = view.to_lab
+    for k in range(turn_fixture.FRAMES):
+        surface = view.contour
+        cosine, sine = np.cos(turn[k]), np.sin(turn[k])
+        there = np.array([[cosine, -sine], [sine, cosine]]) @ surface
+        gap = np.hypot(*(there - lab[:, k : k + 1])).min()
+        assert gap == pytest.approx(1e3 * report_fixture.ROLLER, abs=1e-3)
+
+
+def test_a_roller_rolls_the_length_of_the_contour(view: TurnView) -> None:
+    arc = view.arc()
+    surface = view.contour
+    whole = np.hypot(*(np.roll(surface, -1, axis=1) - surface)).sum()
+    assert arc[0] == 0.0 and (np.diff(arc) > 0).all()
+    assert arc[3] == pytest.approx(
+        np.hypot(*np.diff(surface[:, : POSITIONS // 2 + 1], axis=1)).sum(), rel=1e-9
+    )
+    assert arc[-1] < whole
+
+
+def test_slider_and_keys_turn_the_cam(page: Path, view: TurnView, tab: Tab) -> None:
+    tab.open(page, 390, 700)
+    tab.page.wait_for_selector(SHOWN.format(0))
     assert tab.evaluate("document.documentElement.scrollWidth") <= 390
-    view = read_turn_view(page.parent)
     place = "(([flank]) => [flank.x[7], flank.y[7]])(document.getElementById('scene').data)"
-    corner = view.cam[:, 7, 0]
+    corner = view.contour[:, 7]
 
     def expected(n: int) -> np.ndarray:
         cosine, sine = np.cos(view.to_lab[n]), np.sin(view.to_lab[n])
@@ -76,22 +104,19 @@ def test_slider_and_keys_turn_the_cam(page: Path, tab: browser.Tab) -> None:
 
     # five digits of each coordinate are kept
     np.testing.assert_allclose(tab.evaluate(place), expected(0), atol=2e-3)
-    tab.evaluate(
-        "(() => { const e = document.getElementById('turn'); e.value = '3';"
-        " e.dispatchEvent(new Event('input')); })()"
-    )
-    tab.wait(SHOWN.format(3))
+    slider = tab.page.locator("#turn")
+    slider.fill("3")
+    tab.page.wait_for_selector(SHOWN.format(3))
     np.testing.assert_allclose(tab.evaluate(place), expected(3), atol=2e-3)
-    tab.evaluate("document.getElementById('turn').focus()")
-    tab.call("Input.dispatchKeyEvent", type="rawKeyDown", key="ArrowRight", code="ArrowRight",
-             windowsVirtualKeyCode=39)  # fmt: skip
-    tab.wait(SHOWN.format(4))
-    said = tab.evaluate("document.getElementById('told').textContent")
+    slider.press("ArrowRight")
+    tab.page.wait_for_selector(SHOWN.format(4))
+    said = tab.page.locator("#readout").text_content()
     assert said.startswith("cam 240.0°, crank 480.0°") and "MPa" in said
-    assert tab.evaluate("document.getElementById('turn').getAttribute('aria-valuetext')")
-    assert tab.complaints() == []
+    assert slider.get_attribute("aria-valuetext")
+    assert tab.errors == []
+    assert tab.outside == []
     assert tab.evaluate("window.broken") is None
-    assert "עברית" in tab.evaluate("document.querySelector('h1').textContent")
+    assert "עברית" in tab.page.locator("h1").text_content()
 
 
 def test_scene_says_what_the_run_found(page: Path) -> None:
@@ -100,9 +125,9 @@ def test_scene_says_what_the_run_found(page: Path) -> None:
     material = read_material(page.parent)
     view = read_turn_view(page.parent)
     rows = material.run.final.cycle
-    told = {one["words"]: one["values"] for one in data["told"]}
+    shown = {one["words"]: one["values"] for one in data["readout"]}
     np.testing.assert_allclose(
-        told["peak pressure p0"], rows["p0_fe_MPa"][view.position], rtol=1e-4
+        shown["peak pressure p0"], rows["p0_fe_MPa"][view.position], rtol=1e-4
     )
     touching, centre = np.array(data["contact"]), np.array(data["origin"])
     assert np.hypot(*(touching - centre)) == pytest.approx(
@@ -129,7 +154,7 @@ def test_solids_have_the_size_they_should() -> None:
     block = box((-1, 0, 2), (2, 4, 3))
     assert area(block) == pytest.approx(2 * (3 * 4 + 4 * 1 + 3 * 1))
     assert abs(volume(block)) == pytest.approx(12.0)
-    both = joined([block, block.moved(10.0)])
+    both = joined([block, block.shifted(10.0)])
     assert abs(volume(both)) == pytest.approx(24.0)
     standing = ring(hexagon, 4.0).upright(7.0)
     assert (standing.points[1].min(), standing.points[1].max()) == (5.0, 9.0)

@@ -19,5 +19,5 @@ def test_validate_writes_page_and_numbers(tmp_path):
     assert len(document["rows"]) == 62
     assert "published figures" in done.stdout
     text = (folder / "validation.html").read_text(encoding="utf-8")
-    assert text.count("<tr>") >= 62
+    assert text.count("<tr ") >= 62
     assert sorted(path.name for path in folder.iterdir()) == ["validation.html", "validation.json"]

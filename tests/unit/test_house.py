@@ -44,7 +44,7 @@ RANK = {name: place for place, name in enumerate(ORDER)} | {
     "pipeline.studies.redesign": ORDER.index("pipeline.studies"),
     "pipeline.studies.papers": ORDER.index("pipeline.studies"),
 }
-FLAT_MAX, PACKAGE_MAX = 6, 34
+FLAT_MAX, PACKAGE_MAX = 6, 26
 NAMED_AS_TEXT = re.compile(r"(?:camwright\.)?(?:geometry|meshes|pipeline|reports)(?:\.[a-z_0-9]+)+")
 
 

@@ -15,7 +15,14 @@ import report_fixture
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base import files
-from camwright.reports import drawings, interactive, page
+from camwright.reports import (
+    analysis_sheet,
+    figure_svg,
+    interactive,
+    page,
+    report_content,
+    report_tables,
+)
 
 HOSTILE = "<script>alert(1)</script>\"'&lt;../../x " + "אבג \u202e \U0001f527 "
 
@@ -24,7 +31,7 @@ HOSTILE = "<script>alert(1)</script>\"'&lt;../../x " + "אבג \u202e \U0001f527
 def still():
     """The page without its library, whose text holds all these words; a browser tries the rest."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(interactive, "bundle", lambda _figures: None)
+        patch.setattr(interactive, "bundle", lambda _figures: interactive.Bundle((), (), "{}"))
         yield
 
 
@@ -71,7 +78,7 @@ def built(tmp_path_factory):
 def undrawn(monkeypatch):
     """Figures left blank, for tests of words."""
     monkeypatch.setattr(
-        drawings, "svg_and_png", lambda figure: (f"<svg>{figure.id}</svg>", b"\x89PNG")
+        figure_svg, "svg_and_png", lambda figure: (f"<svg>{figure.id}</svg>", b"\x89PNG")
     )
 
 
@@ -108,21 +115,21 @@ def test_the_verdict_comes_first_and_names_what_binds(html):
     assert order == sorted(order)
     top = html[order[0] : order[1]]
     assert "FAIL" in top
-    assert "4 of 8 required checks hold, 3 fail, 1 is waived." in top
+    assert "4 of 8 required checks pass, 3 fail, 1 is waived." in top
     assert "Static safety of the roller bearing, load case idle, cam angle 192" in top
     assert "no smoothing that keeps the torque reduction" in top
 
 
 def test_the_outline_tells_of_the_counter_hole(html):
     said = html.replace("\u00a0", " ")
-    assert "Its unbalance is 900 g mm at 40 deg; a hole of 14 mm at (26, 21.8) mm, drilled," in said
-    assert "leaves 0 g mm" in said
+    assert "Its unbalance is 900 g mm at 40 deg; with a hole of 14 mm diameter" in said
+    assert "diameter at (26, 21.8) mm, drilled, 0 g mm" in said
 
 
 def test_every_figure_of_the_sheet_is_there_with_words_for_it(built, html):
     # the run has a roller, and no synthesis within limits
     without = {"face", "limits"}
-    wanted = [name for _, names in drawings.GROUPS for name in names if name not in without]
+    wanted = [name for _, names in analysis_sheet.GROUPS for name in names if name not in without]
     assert not any(f'<figure id="{name}">' in html for name in without)
     for name in wanted:
         assert f'<figure id="{name}">' in html
@@ -141,7 +148,7 @@ def test_trials_and_certificate_are_printed(html):
 
 
 def test_a_missing_field_is_told_in_words(html):
-    assert "There is no picture of the field: contact_worst.vtu: no such file." in html
+    assert "The stress field is not available: contact_worst.vtu: no such file." in html
 
 
 def test_rebuilding_needs_only_the_folder_and_gives_the_same_page(tmp_path, undrawn):
@@ -160,7 +167,9 @@ def test_hostile_text_comes_out_harmless_and_whole(tmp_path, undrawn):
         tmp_path / "run", positions=36, title=text, notes=text, records=records, field=False
     )
     html = report_fixture.page_of(folder).read_text(encoding="utf-8")
-    assert "<script" not in html
+    own = '<script type="application/json" id="figure-data">'
+    assert html.count(own) == 1
+    assert "<script" not in html.replace(own, "")
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in html
     assert "x" * 10_000 in html
     assert "אבג" in html
@@ -173,9 +182,9 @@ def test_hostile_text_comes_out_harmless_and_whole(tmp_path, undrawn):
 
 
 def test_control_characters_are_replaced():
-    assert page.plain("a\x00b\x1bc\ud800d\n\te") == "a\ufffdb\ufffdc\ufffdd\n\te"
-    assert page.shortened("one\n two", 20) == "one two"
-    assert page.shortened("a" * 50, 10) == "a" * 9 + "…"
+    assert report_tables.plain("a\x00b\x1bc\ud800d\n\te") == "a\ufffdb\ufffdc\ufffdd\n\te"
+    assert report_tables.shortened("one\n two", 20) == "one two"
+    assert report_tables.shortened("a" * 50, 10) == "a" * 9 + "…"
 
 
 def test_a_run_without_engine_or_optional_columns_is_reported(tmp_path, undrawn):
@@ -205,14 +214,14 @@ def test_several_load_cases_show_the_governing_one_and_a_ribbon(tmp_path, monkey
     (trial / "6_checks.json").write_text(json.dumps(records))
     seen = []
     monkeypatch.setattr(
-        drawings, "svg_and_png", lambda figure: (seen.append(figure) or "", b"\x89PNG")
+        figure_svg, "svg_and_png", lambda figure: (seen.append(figure) or "<svg/>", b"\x89PNG")
     )
     html = report_fixture.page_of(folder).read_text(encoding="utf-8")
     pressure = next(figure for figure in seen if figure.id == "pressure")
     assert pressure.panels[0].curves[0].band is not None
     assert pressure.panels[0].curves[1].band is None
-    assert "Load case <bdi>rated</bdi>, which governs" in html
-    assert "span all 2 load cases" in html
+    assert "Load case rated, the governing one" in html
+    assert "range of all 2 load cases" in html
 
 
 def test_a_passing_run_says_pass(tmp_path, undrawn):
@@ -246,7 +255,7 @@ def test_a_failed_write_leaves_the_old_page(built, html, undrawn, monkeypatch):
 
 def test_a_statement_names_checks_by_their_titles():
     checks = [{"id": "roller_static", "title": "Static safety"}, {"id": "jump", "title": "Jump"}]
-    text = page.titled(
+    text = report_content.titled(
         "roller_static at 2.6 of its limit; roller_statics and jump_speed stay", checks
     )
     assert (

@@ -21,6 +21,7 @@ from camwright.reports.figures import (
     placed_limits,
     vertical_span,
 )
+from camwright.reports.interactive import specification
 
 CRANK = np.arange(0.0, 720.0, 10.0)
 WAVE = np.sin(np.radians(CRANK))
@@ -99,8 +100,10 @@ def test_the_alternative_text_tells_range_place_and_limit():
 
 
 def test_the_svg_is_well_formed_themed_and_free_of_clashing_ids():
-    svg = figure_svg.svg_and_png(figure())[0]
-    other = figure_svg.svg_and_png(AngleFigure("second", "", "", CRANK, figure().panels))[0]
+    svg, other = (
+        figure_svg.themed(figure_svg.svg_and_png(made)[0], made.id)
+        for made in (figure(), AngleFigure("second", "", "", CRANK, figure().panels))
+    )
     ET.fromstring(svg)
     assert 'role="img"' in svg
     assert "var(--blue)" in svg
@@ -134,7 +137,7 @@ def test_words_of_near_limits_stand_clear_of_each_other():
 
 def test_trimming_coordinates_leaves_numbers_to_read_alone():
     small = Panel("depth", "mm", (Curve("", 0.004 + 0.004 * WAVE),), (LimitLine(0.0075, "limit"),))
-    svg = figure_svg.svg_and_png(figure(small))[0]
+    svg = figure_svg.themed(figure_svg.svg_and_png(figure(small))[0], "small")
     assert re.search(r">0\.00\d+<", svg)
     assert "limit 0.0075 mm" in svg
     assert not re.search(r'"[^"<>]*\d\.\d{3}', svg)
@@ -181,3 +184,54 @@ def test_the_outline_has_equal_axes_and_holds_the_follower():
     assert figure_svg.svg_and_png(
         OutlineFigure("o", "", "", 42 * ring, 50 * ring, None, "roller", None, None, 0, "")
     )[0]
+
+
+def live_curves(made):
+    """Points and label of what Plotly draws of a figure, but for the trace of the upper axis."""
+    traces = specification(made)["data"]
+    return [(t["x"], t["y"], t["name"]) for t in traces if "name" in t]
+
+
+def test_both_renderers_draw_the_same_curves():
+    panels = (
+        Panel("force", "N", (Curve("a", WAVE), Curve("b", 2 * WAVE, "green", dashed=True))),
+        Panel("share", "", (Curve("", WAVE**2),), (LimitLine(0.5, "limit"),)),
+    )
+    made = figure(*panels, worst=1000.0)
+    axes = drawn(made).axes
+    still = [line for ax in axes for line in ax.lines if len(line.get_xdata()) > 2]
+    live = live_curves(made)
+    assert len(still) == len(live) == 3
+    for line, (x, y, name) in zip(still, live, strict=True):
+        np.testing.assert_allclose(line.get_xdata(), x, rtol=1e-5)
+        np.testing.assert_allclose(line.get_ydata(), y, rtol=1e-5, atol=1e-9)
+        assert line.get_label() == name or line.get_label().startswith("_")
+    layout = specification(made)["layout"]
+    assert [layout["yaxis"]["title"]["text"], layout["yaxis2"]["title"]["text"]] == [
+        ax.get_ylabel() for ax in axes
+    ]
+    assert layout["yaxis2"]["range"] == pytest.approx(axes[1].get_ylim())
+    assert {note["text"] for note in layout["annotations"]} == {*words(drawn(made))}
+    dotted = [shape["x0"] for shape in layout["shapes"] if shape["line"].get("dash") == "dot"]
+    assert dotted == [280.0]  # 1000 deg of crank, within the turn of 720
+
+
+def test_both_renderers_draw_the_same_outline():
+    angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    ring = np.array([np.cos(angle), np.sin(angle)])
+    made = OutlineFigure(
+        "outline", "Cam", "", 42 * ring, 50 * ring, np.array([[0.0], [50.0]]) + 8 * ring, "roller",
+        10.0, (4.0, 2.0, 0.3), 15, "at 90 deg", (20.0, 5.0, 3.0, False),
+    )  # fmt: skip
+    ax = drawn(made).axes[0]
+    live = live_curves(made)
+    assert len(ax.lines) == len(live)
+    for line, (x, y, name) in zip(ax.lines, live, strict=True):
+        np.testing.assert_allclose(line.get_xdata(), x, rtol=1e-5, atol=1e-9)
+        np.testing.assert_allclose(line.get_ydata(), y, rtol=1e-5, atol=1e-9)
+        assert line.get_label() == name or name == ""
+    layout = specification(made)["layout"]
+    assert layout["xaxis"]["title"]["text"] == ax.get_xlabel()
+    assert layout["xaxis"]["range"] == pytest.approx(ax.get_xlim())
+    notes = [(note["text"], note["x"], note["y"]) for note in layout["annotations"]]
+    assert notes == [(text.get_text(), *text.xy) for text in ax.texts]

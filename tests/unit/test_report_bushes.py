@@ -6,7 +6,7 @@ import pytest
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.tables import Table
 from camwright.reports import guide_pressure_figure
-from camwright.reports.contact_pressure import over_the_contact
+from camwright.reports.field_raster import over_the_contact
 
 ROWS, KNOTS = 8, 5
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from camwright.reports.analysis_sheet import BINDS, limits_strip
 from camwright.reports.figure_svg import svg_and_png
 from camwright.reports.interactive import specification
-from camwright.reports.limits_strip import BINDS, strip_figures
 
 
 def columns():
@@ -18,7 +18,7 @@ def columns():
 
 
 def test_strips_show_what_is_used_and_mark_where_it_binds():
-    (figure,) = strip_figures(columns(), 2.0, strokes=True)
+    figure = limits_strip(columns(), 2.0, strokes=True)
     assert [panel.quantity for panel in figure.panels] == ["pressure angle", "roller life"]
     use, tight = (curve.values for curve in figure.panels[0].curves)
     marked = np.flatnonzero(np.isfinite(tight))
@@ -30,7 +30,7 @@ def test_strips_show_what_is_used_and_mark_where_it_binds():
 
 
 def test_strips_are_drawn_still_and_live():
-    (figure,) = strip_figures(columns(), 2.0, strokes=True)
+    figure = limits_strip(columns(), 2.0, strokes=True)
     svg, png = svg_and_png(figure)
     assert "roller life" in svg and png.startswith(b"\x89PNG")
     live = specification(figure)
@@ -38,6 +38,6 @@ def test_strips_are_drawn_still_and_live():
 
 
 def test_runs_without_a_record_have_no_strips():
-    assert strip_figures(None, 2.0, strokes=True) == ()
+    assert limits_strip(None, 2.0, strokes=True) is None
     unused = {"cam_angle_deg": np.arange(4.0), "undercut": np.full(4, 0.1)}
-    assert strip_figures(unused, 2.0, strokes=True) == ()
+    assert limits_strip(unused, 2.0, strokes=True) is None

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from camwright.reports import report_tables
+from camwright.reports import report_tables, verification_tables
 from camwright.reports.verdict_text import governing, governing_load_case, verdict
 
 
@@ -105,7 +105,7 @@ def test_the_sentence_counts_what_holds_fails_and_is_missing():
     ]  # fmt: skip
     words = verdict("fail", checks, ("b", "c"), "no more room")
     assert words.sentence == (
-        "1 of 4 required checks holds, 1 fails, 1 could not be evaluated, which counts as failing,"
+        "1 of 4 required checks passes, 1 fails, 1 not evaluated (counted as failed),"
         " 1 is waived. Of 1 optional check: 1 not evaluated."
     )
     assert (words.binding, words.missing) == (("B",), ("C",))
@@ -162,20 +162,23 @@ def test_certificate_rows_follow_their_heads():
     point = {"p0_MPa": figure, "half_width_mm": figure, "cam_angle_deg": 30.0, "dofs": [10, 20, 40],
              "edges_across_half_width": [6.0, 9.0, 13.5], "p0_hertz_MPa": 999.0,
              "spread_percent": 0.05, "residual_equilibrium": 1e-13}  # fmt: skip
-    (row,) = report_tables.certificate_rows([point])
+    table = verification_tables.certificate([point])
+    (row,) = table.rows
     assert row == [
         "30", "6, 9, 13.5", "10, 20, 40", "1000, 1001, 1001.2", "1001.5", "–", "0.031", "999",
         "1002", "0.05", "1×10⁻¹³",
     ]  # fmt: skip
-    assert len(row) == len(report_tables.CERTIFICATE_HEAD)
-    (other,) = report_tables.certified_rows([point])
+    assert len(row) == len(table.head)
+    table = verification_tables.certified([point])
+    (other,) = table.rows
     assert other[:2] == ["30", "half-width a, mm"]
-    assert len(other) == len(report_tables.FIGURES_HEAD)
+    assert len(other) == len(table.head)
 
 
 def test_a_point_without_figures_gives_dashes():
-    assert report_tables.certificate_rows([{}]) == [["–"] * len(report_tables.CERTIFICATE_HEAD)]
-    assert report_tables.certified_rows([{}]) == []
+    table = verification_tables.certificate([{}])
+    assert table.rows == [["–"] * len(table.head)]
+    assert verification_tables.certified([{}]).rows == []
 
 
 def test_a_record_shows_units_and_what_is_inside():
@@ -188,7 +191,7 @@ def test_a_record_shows_units_and_what_is_inside():
 def test_headlines_that_do_not_apply_are_left_out():
     headline = {"torque_std_before_Nm": None, "lift_max_mm": 33.0, "new_number": 2.5}
     assert report_tables.headline_rows(headline) == [
-        ("Greatest lift", "33\xa0mm"), ("new number", "2.5")
+        ("Maximum lift", "33\xa0mm"), ("new number", "2.5")
     ]  # fmt: skip
     assert [tile.title for tile in report_tables.tiles(headline)] == ["Lift"]
 

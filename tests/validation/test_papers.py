@@ -170,7 +170,7 @@ def test_rows_tell_differences_of_numbers_alone():
 def test_the_page_shows_every_row_and_escapes_text(document):
     text = page(document)
     for found in document["rows"]:
-        assert f"<td>{found['id']}</td>" in text
+        assert f"<bdi>{found['id']}</bdi>" in text
     assert text.count("Study: ") == sum(len(s) for s in document["studies"].values())
     small = {
         "papers": {"X": {"citation": "A & B", "doi": None}}, "counts": {"reproduced": 1},

@@ -31,7 +31,7 @@ from camwright.pipeline.results.contact_patch_series import (
     write_patches,
 )
 from camwright.pipeline.results.field_output import shown_positions
-from camwright.pipeline.results.recorded_turn import bore_reach, linear, turn_view
+from camwright.pipeline.results.recorded_turn import bore_reach, turn_view
 from camwright.pipeline.results.stress_fields import facing, write_bodies
 
 POSITIONS = 12
@@ -197,17 +197,14 @@ def view(series):
     return turn_view(pair, bodies, cycle)
 
 
-def test_view_of_the_turn_shows_the_contact_where_it_is(series, view) -> None:
+def test_view_of_the_turn_has_the_contour_and_the_bore(series, view) -> None:
     _, _, pair, _, cycle = series
     assert view["position"].tolist() == list(range(POSITIONS))
-    under = view["cam_MPa"][np.arange(POSITIONS), 2 * np.arange(POSITIONS), 0]
-    # Johnson (1985) eq. 4.46: at the middle of the contact both stresses are -p0, so that von
-    # Mises is (1 - 2 nu) p0; the body's own bending adds a little.
-    poisson = pair.cam.poisson
-    expected = 1e-6 * (1 - 2 * poisson) * cycle.contact.p0_hertz
-    np.testing.assert_allclose(under, expected, rtol=0.03)
-    surface = view["cam_mm"][:, ::2, 0]
-    np.testing.assert_allclose(surface, 1e3 * pair.contour.points(cycle.theta), rtol=1e-12)
+    surface, bore = np.moveaxis(view["cam_mm"], -1, 0)
+    np.testing.assert_allclose(surface[:, ::2], 1e3 * pair.contour.points(cycle.theta), rtol=1e-12)
+    reach = bore_reach(pair.bore_radius, pair.keyway, np.arctan2(bore[1], bore[0]))
+    np.testing.assert_allclose(np.hypot(*bore), 1e3 * reach, rtol=1e-12)
+    np.testing.assert_allclose(surface[0] * bore[1], surface[1] * bore[0], atol=1e-9)  # one ray
 
 
 def test_view_lays_the_follower_against_the_cam(series, view) -> None:
@@ -217,8 +214,6 @@ def test_view_lays_the_follower_against_the_cam(series, view) -> None:
     expected = pair.contour.points(cycle.theta) + radius * pair.contour.normal(cycle.theta)
     np.testing.assert_allclose(centre, expected, atol=1e-12)
     assert np.abs(np.hypot(*view["follower_mm"])).max() == pytest.approx(1e3 * radius, rel=1e-6)
-    peak = view["follower_MPa"].max(axis=1)
-    assert (peak > 1e-6 * 0.39 * cycle.contact.p0_hertz).all()
 
 
 def test_edge_of_bore_and_keyway() -> None:
@@ -275,19 +270,3 @@ def test_slices_cover_what_is_loaded_and_its_neighbours() -> None:
     assert loaded_length(knots, np.eye(9)[0])[[0, -1]].tolist() == [-1.0, -0.75]
     assert loaded_length(knots, np.eye(9)[4])[[0, -1]].tolist() == [-0.25, 0.25]
     assert loaded_length(knots, np.zeros(9))[[0, -1]].tolist() == [-1.0, 1.0]
-
-
-def test_values_between_nodes_are_those_of_straight_lines(series, view) -> None:
-    mesh = series[3].cam.body.mesh
-    points = 1e-3 * view["cam_mm"]
-    between = linear(mesh, points)
-    np.testing.assert_allclose(between.sum(axis=1), 1.0, rtol=1e-12)
-    found = between @ (0.2 + mesh.points[0] - 2 * mesh.points[1])
-    expected = (0.2 + points[0] - 2 * points[1]).ravel()
-    # exact but on the surfaces: the arcs bulge over the chords by up to 20 um, the slope is 2.2
-    np.testing.assert_allclose(found, expected, rtol=0, atol=5e-5)
-    deep = np.s_[:, 3:-3]
-    shape = points.shape[1:]
-    np.testing.assert_allclose(
-        found.reshape(shape)[deep], expected.reshape(shape)[deep], rtol=0, atol=1e-12
-    )

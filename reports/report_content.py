@@ -1,0 +1,414 @@
+"""Contents of a report by section: text, tables, figures. Page and PDF render it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from camwright.pipeline.results.run_reader import TrialRecord
+from camwright.reports import report_tables, verification_tables
+from camwright.reports.figure_svg import Drawn, drawn_groups
+from camwright.reports.picture_list import PICTURES, Picture
+from camwright.reports.report_data import Material
+from camwright.reports.report_tables import (
+    DASH,
+    CheckRow,
+    InputTable,
+    Record,
+    Status,
+    Table,
+    Tile,
+    isolated,
+    shortened,
+)
+from camwright.reports.sheet_turn import Turn
+from camwright.reports.verdict_text import Verdict, verdict
+
+SHORT = 140
+"""Maximum number of characters of a title or name on one line."""
+TRIALS_HEAD = (
+    "Trial", "Smoothing", "Strength", "Width, crank angle", "Reason", "Verdict",
+    "Required checks not passed",
+)  # fmt: skip
+CHECKS_HEAD = ("Check", "Status", "Demand", "Limit", "Utilisation", "Where")
+ASSUMPTIONS = (
+    "The contact is two-dimensional in plane strain, with a uniform load over the width. Edge "
+    "stress at its ends, tilt and crowning are not included.",
+    "Both bodies are linear elastic. Where the shakedown or yield check fails, the real stresses "
+    "differ from those reported.",
+    "Surfaces are smooth and dry, and the contact is solved without traction. Film thickness, "
+    "mixed friction and traction stress are closed-form results without effect on the contact "
+    "pressure, computed where the case states lubricant, roughness and friction. The friction of "
+    "a flat face loads the follower.",
+    "The roller is solid on its hub unless the case states outer ring and balls. Ratings of its "
+    "bearing are those of the manufacturer.",
+    "The cam speed is constant in each load case. The speed ripple of the engine acts on the "
+    "elastic stem only, where the case states the inertia of the crankshaft.",
+    "Camshaft, camshaft bearings and the drive from crank to cam are rigid, without backlash.",
+    "The follower is rigid. One mass on an elastic stem, with impacts after loss of contact, and "
+    "the surge of the spring are solved in addition, without effect on the loads.",
+    "Guide friction is Coulomb friction with constant coefficients, opposed to the motion, in "
+    "equilibrium with guides of finite length and clearance.",
+    "Stress at the keyway corners and at the edge of the bore depends on fillets that the case "
+    "does not state; it is excluded from all checks.",
+    "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference "
+    "between Hertz theory and finite elements.",
+)
+
+
+@dataclass(frozen=True)
+class Checks:
+    """Table of checks with utilisation bars."""
+
+    kind: ClassVar[str] = "checks"
+    head: Sequence[str]
+    rows: Sequence[CheckRow]
+    label: str
+
+
+@dataclass(frozen=True)
+class Tabular:
+    """A table."""
+
+    kind: ClassVar[str] = "table"
+    table: Table
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Names and values in one or two columns; `code` sets values in a monospaced font."""
+
+    kind: ClassVar[str] = "pairs"
+    label: str
+    rows: Sequence[tuple[str, str]]
+    columns: int = 1
+    code: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Figures:
+    """Figures of the sheet."""
+
+    kind: ClassVar[str] = "figures"
+    figures: Sequence[Drawn]
+
+
+@dataclass(frozen=True, eq=False)
+class Pictures:
+    """Pictures of fields."""
+
+    kind: ClassVar[str] = "pictures"
+    pictures: Sequence[Picture]
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Sections of the case file."""
+
+    kind: ClassVar[str] = "inputs"
+    tables: Sequence[InputTable]
+
+
+@dataclass(frozen=True)
+class Points:
+    """List of statements."""
+
+    kind: ClassVar[str] = "points"
+    points: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Note:
+    """Paragraph in small type."""
+
+    kind: ClassVar[str] = "note"
+    text: str
+
+
+@dataclass(frozen=True)
+class Signatures:
+    """Fields for signatures."""
+
+    kind: ClassVar[str] = "signatures"
+    roles: Sequence[str] = ("Prepared", "Checked", "Approved")
+    lines: Sequence[str] = ("Name", "Date", "Signature")
+
+
+Content = Checks | Tabular | Pairs | Figures | Pictures | Inputs | Points | Note | Signatures
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Part of a section: title, introduction, content; `narrow` ones are set side by side."""
+
+    content: Content | None
+    title: str = ""
+    lead: str = ""
+    narrow: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """Section of a report; `brief` is its title in the contents."""
+
+    id: str
+    title: str
+    blocks: Sequence[Block]
+    lead: str = ""
+    brief: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Report:
+    """Contents of a report."""
+
+    title: str
+    facts: Sequence[tuple[str, str]]
+    verdict: Verdict
+    tiles: Sequence[Tile]
+    sections: Sequence[Section]
+    footer: str
+    kicker: str = "Cam sign-off"
+
+    @property
+    def short_title(self) -> str:
+        """The title, cut to one line."""
+        return shortened(self.title, SHORT)
+
+
+def report_content(material: Material) -> Report:
+    """Contents of the report of a run."""
+    run = material.run
+    final = run.final
+    statement = titled(str(run.summary.get("statement") or ""), final.checks)
+    return Report(
+        str(material.case.get("title") or run.summary["case"]), _facts(material),
+        verdict(run.verdict, final.checks, final.binding, statement),
+        report_tables.tiles(run.summary["headline"]),
+        (
+            _checks(material), _numbers(material), _sheet(material),
+            Section(
+                "fields", "Stress fields",
+                (Block(Pictures([picture for draw in PICTURES for picture in draw(material)])),),
+                brief="Stress fields",
+            ),
+            _trials(material), _evidence(material),
+            Section(
+                "inputs", "Inputs and sources",
+                (Block(Inputs(report_tables.input_tables(material.case))),),
+                "Resolved case, defaults included.", "Inputs",
+            ),
+            Section(
+                "assumptions", "Assumptions and limitations", (Block(Points(ASSUMPTIONS)),),
+                brief="Assumptions",
+            ),
+            _versions(material),
+        ),
+        f"Camwright · {shortened(str(run.summary['case']), 60)}",
+    )  # fmt: skip
+
+
+def titled(text: str, checks: Sequence[Record]) -> str:
+    """A statement with ids of checks replaced by their titles."""
+    titles = {str(check["id"]): f"\u201c{isolated(check['title'])}\u201d" for check in checks}
+    return re.sub(r"\b\w+\b", lambda word: titles.get(word.group(), word.group()), text)
+
+
+def _facts(material: Material) -> list[tuple[str, str]]:
+    """Identification of the run."""
+    summary, count = material.run.summary, len(material.run.trials)
+    versions = summary["versions"]
+    code = [str(versions.get("camwright", "")), str(versions.get("source", ""))[:8]]
+    return [
+        ("Case", shortened(str(material.case.get("name") or summary["case"]), SHORT)),
+        ("Governing load case", shortened(material.turn.load_case, SHORT)),
+        ("Trials", str(count)),
+        ("Input", str(summary["input_sha256"])[:12]),
+        ("Camwright", " · ".join(filter(None, code))),
+    ]
+
+
+def _checks(material: Material) -> Section:
+    """Required checks: not evaluated, failed, passed. Optional checks: not evaluated last."""
+    rows = report_tables.check_rows(material.run.final.checks)
+    required = [row for row in rows if row.must_have]
+    order = {"not_evaluated": 0, "fail": 1}
+    required.sort(key=lambda row: order.get(row.status.id, 2))
+    optional = [row for row in rows if not row.must_have]
+    optional.sort(key=lambda row: row.status.id == "not_evaluated")
+    return Section(
+        "checks", "Checks",
+        [
+            Block(Checks(CHECKS_HEAD, part, f"{title} checks"), title)
+            for title, part in (("Required", required), ("Optional", optional)) if part
+        ],
+        "Required checks: not evaluated first, then failed, then passed, by decreasing "
+        "utilisation. The tick on each bar marks the limit; ± is the numerical uncertainty, "
+        "omitted below the last digit shown.",
+    )  # fmt: skip
+
+
+def _numbers(material: Material) -> Section:
+    summary = material.run.summary
+    headline = report_tables.headline_rows(summary["headline"])
+    blocks = [Block(Pairs("Key figures", headline, 2))]
+    speed = verification_tables.crank_speed(summary.get("speed"))
+    blocks += _tables((speed, "Crank speed", ""))
+    return Section("numbers", "Key figures", blocks, "Over one turn of the final trial.")
+
+
+def _sheet(material: Material) -> Section:
+    turn = material.turn
+    count = len(turn.others)
+    others = f", the governing one; ribbons: range of all {count} load cases" if count > 1 else ""
+    return Section(
+        "sheet", "Cam analysis sheet",
+        [Block(Figures(drawn), title) for title, drawn in drawn_groups(material)],
+        f"Load case {isolated(turn.load_case)}{others}. Dotted line: cam angle of the maximum "
+        "contact pressure. Red dashed lines: limits.",
+    )  # fmt: skip
+
+
+def _trials(material: Material) -> Section:
+    run = material.run
+    table = Table("Trials", TRIALS_HEAD, [_trial(trial) for trial in run.trials], 2, 2)
+    prices = verification_tables.prices(
+        run.summary.get("prices") or run.final.record.get("prices")
+    )  # fmt: skip
+    lead = (
+        "First-order change of the torque ripple at the crank when a limit is relaxed. Limits not "
+        "listed are inactive."
+    )
+    return Section(
+        "trials", "Trials and shadow prices",
+        [Block(Tabular(table)), *_tables((prices, "Shadow prices of the limits", lead))],
+        "Each trial recomputes all stages from its own lift; the last trial is the result.",
+        "Trials",
+    )  # fmt: skip
+
+
+def _trial(trial: TrialRecord) -> list[str | Status]:
+    """A trial as a row."""
+    record = trial.record
+    rows = [row for row in report_tables.check_rows(trial.checks) if row.id in trial.binding]
+    width = record.get("angular_width_deg")
+    failing = [f"{row.title} ({row.utilisation})" for row in rows if row.status.id == "fail"]
+    unknown = sum(row.status.id == "not_evaluated" for row in rows)
+    held = [*failing, *([f"{unknown} not evaluated"] if unknown else [])]
+    word = "pass" if trial.verdict == "pass" else "fail"
+    return [
+        str(trial.number), str(record.get("smoothing") or record.get("smoother") or DASH),
+        report_tables.number(record.get("strength"), 3),
+        report_tables.quantity(width, "deg") if width is not None else DASH,
+        titled(str(record.get("why") or ""), trial.checks), Status(word, word),
+        "; ".join(held) or "none",
+    ]  # fmt: skip
+
+
+def _evidence(material: Material) -> Section:
+    summary, final = material.run.summary, material.run.final
+    points = final.record.get("certificate") or ()
+    method = str(final.record.get("contact_method") or "")
+    certificate = verification_tables.certificate(points)
+    consistency, contradicted = verification_tables.consistency(summary.get("consistency"))
+    benchmarks = verification_tables.benchmarks(summary.get("benchmarks"))
+    mesh = {k: v for k, v in (final.record.get("mesh") or {}).items() if k != "sha256"}
+    times = [(k, report_tables.quantity(v, "s", 3)) for k, v in summary["timings_s"].items()]
+    blocks = [
+        Block(
+            Tabular(certificate), "Certificate points",
+            "The contact is solved again at these cam angles, with both bodies meshed, on three "
+            "successively finer meshes. Edges are counted across the half-width a. Order: observed "
+            "order of convergence, omitted if the values do not converge. GCI: grid convergence "
+            "index of the finest mesh. Deviation: pressure of the cycle relative to the "
+            "extrapolated one.",
+        ) if certificate.rows else Block(
+            None, "Certificate points", "The final trial has no certificate points."
+        ),
+        *_tables(
+            (verification_tables.certified(points), "Half-width and stresses", ""),
+            (
+                verification_tables.corners(final.checks), "Tolerance corners",
+                "Checks whose demand within the tolerances exceeds the nominal one.",
+            ),
+            (
+                consistency, "Consistency of the inputs",
+                "Some inputs contradict each other." if contradicted else
+                "Each input beside the value that the other inputs imply.",
+            ),
+            (
+                verification_tables.valve_train(summary.get("valve_train")),
+                "Machine motion of the valve cam",
+                "Equations of Petrescu and Petrescu (2015). Of their systems 1 to 15 only 11 and "
+                "15 are published; replacements of the others are marked reconstructed. Their "
+                "yield is a shape index, not an efficiency; the efficiency is listed as well.",
+            ),
+        ),
+    ]  # fmt: skip
+    if benchmarks:
+        blocks.append(Block(
+            Pairs("Benchmarks", benchmarks), "Benchmarks",
+            "Relative difference to the reference solution, in the environment of this run.",
+            narrow=True,
+        ))  # fmt: skip
+    blocks += [
+        Block(Pairs("Residuals", residuals(material.turn)), "Residuals",
+              "Maximum over the turn, relative.", narrow=True),
+        Block(Pairs("Mesh", report_tables.named_rows(mesh)), "Mesh", narrow=True) if mesh else
+        Block(None, "Mesh", "No mesh quality is recorded.", narrow=True),
+        Block(Pairs("Solver time", times), "Solver time", narrow=True),
+    ]  # fmt: skip
+    lead = f"Contact model: {method}." if method else ""
+    return Section("evidence", "Evidence", blocks, lead)
+
+
+def _versions(material: Material) -> Section:
+    summary = material.run.summary
+    hashed = len(summary.get("files") or ())
+    kept = (
+        f" run.json lists the SHA-256 of {hashed} files of this run, signoff.json of all files; "
+        "camwright check --verify-record compares them." if hashed else ""
+    )  # fmt: skip
+    versions = [(str(k), str(v)) for k, v in summary["versions"].items()]
+    return Section(
+        "versions", "Versions and hashes",
+        (
+            Block(Pairs("Versions", versions, 2)),
+            Block(Pairs("SHA-256", _hashes(material), code=True), "SHA-256"),
+            Block(Note(f"Record schema {summary['schema']}.{kept}")), Block(Signatures()),
+        ), brief="Versions",
+    )  # fmt: skip
+
+
+def _hashes(material: Material) -> list[tuple[str, str]]:
+    """SHA-256 of input, source and meshes."""
+    summary, mesh = material.run.summary, material.run.final.record.get("mesh") or {}
+    meshes = mesh.get("sha256") if isinstance(mesh.get("sha256"), Mapping) else {}
+    digests = {"input": summary["input_sha256"], "source": summary["versions"].get("source")}
+    digests |= {f"mesh of the {body}": digest for body, digest in (meshes or {}).items()}
+    return [(name, str(digest)) for name, digest in digests.items() if digest]
+
+
+def residuals(turn: Turn) -> list[tuple[str, str]]:
+    """Maximum relative residual of each equation over the turn."""
+    names = {
+        "residual_equilibrium": "contact pressure and load",
+        "residual_complementarity": "contact pressure times gap",
+        "residual_guide_force": "transverse forces on the follower",
+        "residual_guide_moment": "moments on the follower",
+        "residual_friction": "forces along the stem with guide friction",
+    }
+    return [
+        (words, report_tables.number(float(np.max(np.abs(turn.columns[name]))), 2))
+        for name, words in names.items()
+        if name in turn.columns
+    ]
+
+
+def _tables(*parts: tuple[Table, str, str]) -> list[Block]:
+    """Blocks of the tables that have rows, with title and introduction."""
+    return [Block(Tabular(table), title, lead) for table, title, lead in parts if table.rows]
