@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_reader import TrialRecord
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.figure_svg import Drawn, drawn_groups
@@ -35,29 +36,6 @@ TRIALS_HEAD = (
     "Required checks not passed",
 )  # fmt: skip
 CHECKS_HEAD = ("Check", "Status", "Demand", "Limit", "Utilisation", "Where")
-ASSUMPTIONS = (
-    "The contact is two-dimensional in plane strain, with a uniform load over the width. Edge "
-    "stress at its ends, tilt and crowning are not included.",
-    "Both bodies are linear elastic. Where the shakedown or yield check fails, the real stresses "
-    "differ from those reported.",
-    "Surfaces are smooth and dry, and the contact is solved without traction. Film thickness, "
-    "mixed friction and traction stress are closed-form results without effect on the contact "
-    "pressure, computed where the case states lubricant, roughness and friction. The friction of "
-    "a flat face loads the follower.",
-    "The roller is solid on its hub unless the case states outer ring and balls. Ratings of its "
-    "bearing are those of the manufacturer.",
-    "The cam speed is constant in each load case. The speed ripple of the engine acts on the "
-    "elastic stem only, where the case states the inertia of the crankshaft.",
-    "Camshaft, camshaft bearings and the drive from crank to cam are rigid, without backlash.",
-    "The follower is rigid. One mass on an elastic stem, with impacts after loss of contact, and "
-    "the surge of the spring are solved in addition, without effect on the loads.",
-    "Guide friction is Coulomb friction with constant coefficients, opposed to the motion, in "
-    "equilibrium with guides of finite length and clearance.",
-    "Stress at the keyway corners and at the edge of the bore depends on fillets that the case "
-    "does not state; it is excluded from all checks.",
-    "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference "
-    "between Hertz theory and finite elements.",
-)
 
 
 @dataclass(frozen=True)
@@ -203,7 +181,8 @@ def report_content(material: Material) -> Report:
                 "Resolved case, defaults included.", "Inputs",
             ),
             Section(
-                "assumptions", "Assumptions and limitations", (Block(Points(ASSUMPTIONS)),),
+                "assumptions", "Assumptions and limitations",
+                (Block(Points([each.statement for each in MODEL_LIMITS])),),
                 brief="Assumptions",
             ),
             _versions(material),

@@ -77,12 +77,11 @@ def _as_signed(folder: Path) -> bool:
 
 
 def _checked_run(folder: Path) -> dict[str, Any]:
+    from camwright.pipeline.results.model_limits import limitations
     from camwright.pipeline.results.run_reader import read_verdict, verify_run
-    from camwright.pipeline.results.signoff import LIMITATIONS, SINGULARITIES
 
     verify_run(folder)
-    spoken = {"limitations": list(LIMITATIONS), "singularities": list(SINGULARITIES)}
-    return read_verdict(folder) | spoken
+    return read_verdict(folder) | limitations()
 
 
 def _checked_case(path: Path) -> dict[str, Any]:

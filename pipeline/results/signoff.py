@@ -13,36 +13,13 @@ from typing import Any
 
 from camwright.pipeline.base.files import json_text, read_json
 from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.model_limits import MODEL_LIMITS, limitations
 
 NAME = "signoff.json"
 SCHEMA = 1
 PRESENTATION = ("figures", "exports", "inspection")
 """Folders of what is drawn from the results, or measured later, and may come and go."""
 PRESENTATION_SUFFIXES = (".html", ".png", ".svg", ".pdf")
-LIMITATIONS = (
-    "Plane strain: the ends of the roller, its chamfers and a tilt of the axis raise the pressure"
-    " in ways two dimensions cannot see; the edge factor stands for them.",
-    "Linear elastic bodies: above first yield the stresses are those before shakedown, and no"
-    " plastic strain is known.",
-    "Frictionless contact under the certificate; traction enters by the closed form of sliding.",
-    "The roller is solid on a stiff hub unless balls and outer ring of its bearing are given; such"
-    " a ring is of one thickness, its balls have no clearance, and the contact is over a ball.",
-)
-SINGULARITIES = (
-    "Corners of the keyway and the edges of the bore: stress there grows without bound as the"
-    " mesh is refined; excluded by distance, figures away from edges are given apart.",
-    "Places where bodies are held: excluded, none lies within ten half-widths of the contact.",
-    "Ends of the roller: not in the plane model; covered by the edge factor.",
-)
-STANDING_FOR = (
-    *zip(
-        LIMITATIONS,
-        ("edge_factor", "shakedown", "shakedown_traction", "roller_radial"),
-        strict=True,
-    ),
-    *zip(SINGULARITIES, ("excluded_zone", "held_distance", "edge_pressure"), strict=True),
-)
-"""Each statement with the check that fails where it would mislead."""
 
 
 def record(path: Path) -> dict[str, Any]:
@@ -93,19 +70,19 @@ def record(path: Path) -> dict[str, Any]:
             "corners": read_json(corners).get("tried") if corners.is_file() else None,
             "statements": _statements(checks),
         },
-        "limitations": list(LIMITATIONS),
-        "singularities": list(SINGULARITIES),
+        **limitations(),
         "files": hashes(path),
         "presentation": [name for name, _ in _files(path) if is_presentation(name)],
     }
 
 
 def _statements(checks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """What the figures leave out, each with its check and how that stands; null: none is made."""
+    """Limits of the model with their checks; a status of null: the check was not made."""
     status = {check["id"]: check["status"] for check in checks}
     return [
-        {"statement": text, "check": name, "status": status.get(name)}
-        for text, name in STANDING_FOR
+        {"statement": each.statement, "check": each.check, "status": status.get(each.check)}
+        for each in MODEL_LIMITS
+        if each.check
     ]
 
 

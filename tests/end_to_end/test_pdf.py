@@ -16,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import report_fixture
 
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.reports import figure_svg, pdf, report_content, sections
 from camwright.reports.figure_svg import drawn_groups
 from camwright.reports.report_data import Material, read_material
@@ -99,8 +100,8 @@ def test_pdf_says_what_the_page_says(material: Material, words: list[str]) -> No
     assert starts == sorted(starts)
     for row in report_fixture.checks():
         assert squeezed(row["title"]) in said
-    for statement in report_content.ASSUMPTIONS:
-        assert squeezed(statement) in said
+    for limit in MODEL_LIMITS:
+        assert squeezed(limit.statement) in said
 
 
 def test_every_font_is_in_the_file(printed: pypdf.PdfReader) -> None:

@@ -9,7 +9,9 @@ import pytest
 from small_run import check, small_case, summary, write_run, write_trial
 
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.results import signoff
+from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_folder import RunFolder
 
 
@@ -39,7 +41,12 @@ def test_the_record_is_whole(tmp_path: Path) -> None:
     assert record["environment"]["versions"]["numpy"]
     assert record["limitations"] and record["singularities"]
     said = record["limitations"] + record["singularities"]
-    assert [one["statement"] for one in record["evidence"]["statements"]] == said
+    assert said == [limit.statement for limit in sorted(MODEL_LIMITS, key=lambda one: one.singular)]
+    checked = [limit for limit in MODEL_LIMITS if limit.check]
+    assert {limit.check for limit in checked} <= {each.id for each in CHECKS}
+    assert [one["statement"] for one in record["evidence"]["statements"]] == [
+        limit.statement for limit in checked
+    ]
     assert all(one["check"] for one in record["evidence"]["statements"])
     assert {"case.toml", "run.json", "fields/a.vtu", "trial_1/5_cycle.csv"} <= set(record["files"])
     assert record["presentation"] == ["8_report.html"]

@@ -1,0 +1,94 @@
+"""Limits of the model, stated once: for the report, the sign-off record and the documentation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ModelLimit:
+    """A simplification of the model.
+
+    Parameters
+    ----------
+    statement : str
+    check : str        id of the check that fails where the statement would mislead; "" without one
+    singular : bool    whether the stress there has no bound and is excluded
+    """
+
+    statement: str
+    check: str = ""
+    singular: bool = False
+
+
+MODEL_LIMITS = (
+    ModelLimit(
+        "The contact is two-dimensional in plane strain, with a uniform load over the common width."
+        " Edge stress at its ends, tilt and crowning are not solved; the edge factor covers them.",
+        "edge_factor",
+    ),
+    ModelLimit(
+        "Both bodies are linear elastic. Above first yield the stresses are those before shakedown,"
+        " and no plastic strain is solved.",
+        "shakedown",
+    ),
+    ModelLimit(
+        "The contact is solved without traction. Creep, film thickness, mixed friction and traction"
+        " stress are closed-form results for the lubricant, roughness and friction of the case,"
+        " without effect on the contact pressure. The friction of a flat face loads the follower.",
+        "shakedown_traction",
+    ),
+    ModelLimit(
+        "The roller is solid on its hub unless the case states outer ring and balls; the ring then"
+        " has one thickness, its balls no clearance, and the contact is over a ball. Bearing"
+        " ratings are those of the manufacturer.",
+        "roller_radial",
+    ),
+    ModelLimit(
+        "The cam speed is constant in each load case. The speed ripple of the engine acts on the"
+        " elastic stem only, where the case states the inertia of the crankshaft."
+    ),
+    ModelLimit(
+        "Camshaft, camshaft bearings and the drive from crank to cam are rigid, without backlash."
+    ),
+    ModelLimit(
+        "The follower is rigid. One mass on an elastic stem, with impacts after loss of contact,"
+        " and the surge of the spring are solved in addition, without effect on the loads."
+    ),
+    ModelLimit(
+        "Guide friction is Coulomb friction with constant coefficients, and viscous drag where the"
+        " case states it, in equilibrium with guides of finite length and clearance. The couple of"
+        " the friction forces about the stem axis is left out."
+    ),
+    ModelLimit("A flat face does not turn about its stem, and its block is held by the stem."),
+    ModelLimit(
+        "Hertz theory assumes half-planes. The finite size of the bodies is part of the difference"
+        " between Hertz theory and finite elements."
+    ),
+    ModelLimit(
+        "Stress at the keyway corners and at the edge of the bore depends on fillets that the case"
+        " does not state. It has no bound as the mesh is refined and is excluded from all checks.",
+        "excluded_zone",
+        singular=True,
+    ),
+    ModelLimit(
+        "Stress where the bodies are held is excluded; no held place lies within ten half-widths of"
+        " the contact.",
+        "held_distance",
+        singular=True,
+    ),
+    ModelLimit(
+        "Stress at the ends of the roller is not part of the plane model; the edge factor covers"
+        " it.",
+        "edge_pressure",
+        singular=True,
+    ),
+)
+
+
+def limitations() -> dict[str, list[str]]:
+    """Statements by kind: ``limitations`` of the model, ``singularities`` that are excluded."""
+    return {
+        "limitations": [each.statement for each in MODEL_LIMITS if not each.singular],
+        "singularities": [each.statement for each in MODEL_LIMITS if each.singular],
+    }
