@@ -1,6 +1,6 @@
 # make run     set up .venv, run the GX120 case into runs/gx120, print verdict and report
-# make test    set up .venv, run the tests
-# make verify  the slow certificates      make bench  benchmarks      make lint  ruff and mypy
+# make test    set up .venv, run ruff, mypy and the tests
+# make verify  the slow certificates      make bench  benchmarks      make lint  ruff and mypy only
 
 PYTHON ?= python3
 CASE ?= cases/gx120.toml
@@ -36,7 +36,7 @@ setup: .venv/installed
 run: .venv/installed
 	@$(BIN)/camwright run $(CASE) --out $(OUT) --replace
 
-test: .venv/developing
+test: lint
 	$(BIN)/python -m pytest -q -m "not slow" -n 2 --dist loadfile
 
 verify: .venv/developing

@@ -182,7 +182,8 @@ class Contour(ABC):
     def radius(self, theta: ArrayLike) -> Array:
         """Distance of the contour point from the cam axis, m."""
         x, y = self.points(theta)
-        return np.hypot(x, y)
+        radius: Array = np.hypot(x, y)
+        return radius
 
     def surface_offset(self, theta: ArrayLike, xi: ArrayLike) -> Array:
         """Height of the contour over its tangent line at the contact, m, outward positive.
@@ -217,7 +218,8 @@ class Contour(ABC):
             away = point - contact.point
             miss = np.sum(away * contact.tangent, axis=0) - xi
             if np.all(np.abs(miss) <= tolerance):
-                return np.sum(away * contact.normal, axis=0)
+                offset: Array = np.sum(away * contact.normal, axis=0)
+                return offset
             rate = rate * np.sum(tangent * contact.tangent, axis=0)
         lost = ~np.all(np.abs(miss) <= tolerance, axis=-1)
         where = float(np.broadcast_to(theta[..., 0], lost.shape)[lost][0])
@@ -289,7 +291,8 @@ class Contour(ABC):
     def _ring_step(self) -> Array:
         # the trapezoidal rule, which on a smooth periodic function is of spectral accuracy
         angle = uniform_turn(self.lift.search_count)
-        return self.velocity(angle) * (angle[1] - angle[0])
+        step: Array = self.velocity(angle) * (angle[1] - angle[0])
+        return step
 
 
 @dataclass(frozen=True, eq=False)
@@ -400,4 +403,5 @@ class RollerContour(Contour):
 
     def _gap(self, contact: Array, other: Array) -> Array:
         away = self.points(other) - self.pitch.points(contact)
-        return np.hypot(away[0], away[1]) - self.roller_radius
+        gap: Array = np.hypot(away[0], away[1]) - self.roller_radius
+        return gap

@@ -88,7 +88,8 @@ class FacePath(FollowerPath):
         It is the derivative of the contact point along v as well, m/rad.
         """
         s, _, s2 = self.lift.derivatives(theta, 2)
-        return self.base_radius + s + s2
+        radius: Array = self.base_radius + s + s2
+        return radius
 
     def speed_and_curvature(self, theta: ArrayLike) -> tuple[Array, Array]:
         radius = self.radius_of_curvature(theta)
@@ -142,7 +143,8 @@ class FlatFaceContour(Contour):
 
     def curvature_slope(self, theta: ArrayLike) -> Array:
         _, s1, _, s3 = self.lift.derivatives(theta, 3)
-        return -(s1 + s3) * self.curvature(theta) ** 2
+        slope: Array = -(s1 + s3) * self.curvature(theta) ** 2
+        return slope
 
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """Radius of curvature r + s + s'', m; negative where undercut."""
@@ -165,7 +167,10 @@ class FlatFaceContour(Contour):
         return pitch.points(theta), pitch.tangent(theta), pitch.radius_of_curvature(theta)
 
     def _gap(self, contact: Array, other: Array) -> Array:
-        return self.pitch.height(contact) - np.sum(self.normal(contact) * self.points(other), 0)
+        gap: Array = self.pitch.height(contact) - np.sum(
+            self.normal(contact) * self.points(other), 0
+        )
+        return gap
 
     def face_width_min(self) -> float:
         """Minimum width 2 max|s' - e| of a face centred on the stem, m."""

@@ -88,4 +88,5 @@ def _highest(polygon: ArrayLike, support: Support, theta: ArrayLike) -> Array:
         return -support(x, y, angle[:, None])
 
     lowest, _ = refined(depth, parameter[best], np.diff(parameter).max(), _ZOOMS)
-    return np.maximum(top, -lowest)
+    height: Array = np.maximum(top, -lowest)
+    return height

@@ -178,4 +178,5 @@ def _distinct(first: Array, second: Array) -> tuple[tuple[float, float], ...]:
 
 
 def _cross(a: Array, b: Array) -> Array:
-    return a[0] * b[1] - a[1] * b[0]
+    product: Array = a[0] * b[1] - a[1] * b[0]
+    return product

@@ -56,7 +56,8 @@ class Inspection:
     def form(self, theta: ArrayLike) -> Array:
         """Deviation at any cam angle, rad, from its harmonics, m."""
         waves = np.multiply.outer(np.asarray(theta, dtype=float), np.arange(len(self.cosine)))
-        return np.cos(waves) @ self.cosine + np.sin(waves) @ self.sine
+        deviation: Array = np.cos(waves) @ self.cosine + np.sin(waves) @ self.sine
+        return deviation
 
     def wave(self, count: int) -> float:
         """Amplitude of the harmonic of `count` periods per turn, m."""

@@ -37,7 +37,8 @@ class PeriodicPolynomial:
 
     def __call__(self, theta: ArrayLike, derivative: int = 0) -> Array:
         """Value, or derivative of order `derivative`, at any angle, rad."""
-        return self._evaluate(theta, derivative, derivative)[0]
+        value: Array = self._evaluate(theta, derivative, derivative)[0]
+        return value
 
     def derivatives(self, theta: ArrayLike, order: int) -> Array:
         """Value and derivatives up to `order`, (order + 1, ...), by one look-up."""
