@@ -17,6 +17,7 @@ from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.iteration import Trials, trials_of
 from camwright.pipeline.results.field_output import write_fields
 from camwright.pipeline.results.run_folder import RunFolder
+from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.pipeline.results.run_records import crank_speed_record, headline
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.results.trial_writer import TrialWriter
@@ -28,7 +29,7 @@ from camwright.pipeline.solver import certify_trial
 
 def run_case(
     case: Case,
-    out: Path,
+    out: str | Path,
     *,
     positions: int | None = None,
     jobs: int | None = None,
@@ -36,7 +37,7 @@ def run_case(
     progress: Progress = SILENT,
     present: Callable[[Path], object] = lambda _: None,
     also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
-) -> dict[str, Any]:
+) -> Run:
     """Solve a case until a cam passes or the limit that binds is named, and write its run folder.
 
     Parameters
@@ -49,13 +50,14 @@ def run_case(
 
     Returns
     -------
-    dict    the contents of ``run.json``
+    Run    read back from the folder
 
     Raises
     ------
     CamError
         In one line, for whatever the user can act upon.
     """
+    out = Path(out)
     case = case if positions is None else case.with_positions(positions)
     with RunFolder(out, case, resume=resume) as folder:
         watch, writer = Stopwatch(progress), TrialWriter(folder)
@@ -78,7 +80,8 @@ def run_case(
         watch.stage("report")
         folder.write_summary(summary | {"timings_s": watch.read()})
         present(folder.path)
-        return folder.finish(summary | {"timings_s": watch.read()})
+        folder.finish(summary | {"timings_s": watch.read()})
+    return read_run(out)
 
 
 def _with_corners(

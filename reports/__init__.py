@@ -23,7 +23,7 @@ page                   ``8_report.html`` and the pages of studies, by Jinja
 pdf                    ``8_report.pdf``: PDF/A on A4, by typst
 scene_solids           rings, boxes and rods as triangles
 scene_page             ``scene.html``: interactive 3-D view over the turn
-sections               parts of a report by name; `build` writes them
+sections               parts of a report by name; `report` writes them
 smoother_page          comparison of smoothers
 redesign_page          Pareto front of a redesign
 validation_page        published and computed values of the papers

@@ -58,7 +58,7 @@ def chosen(names: Iterable[str] = ()) -> tuple[Part, ...]:
     )
 
 
-def build(folder: Path, parts: Iterable[Part] | None = None) -> dict[str, Sequence[Path]]:
+def report(folder: Path, parts: Iterable[Part] | None = None) -> dict[str, Sequence[Path]]:
     """Write parts of the report of a finished run; nothing is solved.
 
     Returns

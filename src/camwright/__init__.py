@@ -1,1 +1,83 @@
-"""Camwright: from a machine's torque to a balancing cam with a sign-off verdict."""
+"""Camwright: from the torque of a machine to a balancing cam with a sign-off verdict.
+
+The public names, in the order of the calculation:
+
+| name           | responsibility                                          | result           |
+| -------------- | ------------------------------------------------------- | ---------------- |
+| `read_case`    | read and check a case file                              | `Case`           |
+| `Case`         | a design and its load cases, resolved, SI               |                  |
+| `synthesize`   | torque, lift, cam contour                               | case and contour |
+| `Tier`         | `PREVIEW`: closed forms; `FINITE_ELEMENTS`: the solution to sign |         |
+| `solve`        | contact, guides, parts and checks of a cam              | `Trial`          |
+| `preview_case` | `synthesize` and `solve` by closed forms                | `Trial`          |
+| `Trial`        | a cam with its solution, checks and verdict             |                  |
+| `Check`        | a demand beside its limit, with status and source       |                  |
+| `run_case`     | trials until the checks pass or a limit binds; run folder | `Run`          |
+| `read_run`     | read a run folder                                       | `Run`            |
+| `report`       | page and figures of a run folder                        | files by part    |
+| `CamError`     | every error that the user can correct, in one line      |                  |
+
+All values are in SI units: m, N, Pa, rad, s, kg. A name is imported when it is first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from camwright.geometry.errors import CamError
+    from camwright.pipeline.case.case import Case
+    from camwright.pipeline.case.case_file import read_case
+    from camwright.pipeline.checks.check import Check
+    from camwright.pipeline.contact.tiers import Tier
+    from camwright.pipeline.iteration import synthesize
+    from camwright.pipeline.preview import preview_case
+    from camwright.pipeline.results.run_reader import read_run
+    from camwright.pipeline.results.trial import Trial
+    from camwright.pipeline.run import run_case
+    from camwright.pipeline.solver import solve
+    from camwright.reports.sections import report
+
+_HOMES = {
+    "CamError": "geometry.errors",
+    "Case": "pipeline.case.case",
+    "Check": "pipeline.checks.check",
+    "Tier": "pipeline.contact.tiers",
+    "Trial": "pipeline.results.trial",
+    "preview_case": "pipeline.preview",
+    "read_case": "pipeline.case.case_file",
+    "read_run": "pipeline.results.run_reader",
+    "report": "reports.sections",
+    "run_case": "pipeline.run",
+    "solve": "pipeline.solver",
+    "synthesize": "pipeline.iteration",
+}
+
+__all__ = [
+    "CamError",
+    "Case",
+    "Check",
+    "Tier",
+    "Trial",
+    "preview_case",
+    "read_case",
+    "read_run",
+    "report",
+    "run_case",
+    "solve",
+    "synthesize",
+]
+
+
+def __getattr__(name: str) -> object:
+    """A public name, imported on first use, so that the package itself imports at once."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value: object = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,244 @@
+"""Write the tables of docs/ from the program, between `<!-- table: NAME -->` and `<!-- end -->`."""
+
+from __future__ import annotations
+
+import ast
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from types import UnionType
+from typing import Annotated, Literal, Union, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+from pydantic_core import PydanticUndefined
+
+from camwright.pipeline.base.quantities import Count, In, Part
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.limits import LIMITS
+from camwright.pipeline.case.section import Section, section_of
+from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.results.model_limits import MODEL_LIMITS
+from camwright.pipeline.results.run_records import column_table
+
+ROOT = Path(__file__).resolve().parents[1]
+BLOCK = re.compile(r"<!-- table: (\w+) -->\n.*?<!-- end -->", re.DOTALL)
+SHOWN_CASES = ("gx120-signed.toml", "papers/petrescu_c.toml")
+"""A roller and a flat face; together they have every column."""
+
+
+def markdown(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    head = list(head)
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(
+        "| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in lines
+    )
+
+
+def limits() -> str:
+    rows = (
+        (
+            f"`{row.id}`", row.title, row.quantity.limit.replace(" and ", ", "),
+            shown(row.default, row.quantity.unit),
+            "maximum" if row.sense == "at_most" else "minimum", row.source,
+        )
+        for row in LIMITS.values()
+    )  # fmt: skip
+    return markdown(("key", "limit", "accepted", "default", "bound", "source"), rows)
+
+
+def checks() -> str:
+    rows = (
+        (
+            f"`{one.id}`", one.title.format(follower="follower"), one.unit,
+            "" if one.limit is None else f"`{one.limit.id}`",
+            "required" if one.must_have else "optional", one.needs, one.method,
+        )
+        for one in CHECKS
+    )  # fmt: skip
+    return markdown(("id", "check", "unit", "limit", "", "needs", "method"), rows)
+
+
+def columns() -> str:
+    known: dict[str, tuple[str, str]] = {}
+    for name in SHOWN_CASES:
+        trial = preview_case(read_case(ROOT / "cases" / name).with_positions(36))
+        known |= {column.header: (column.unit, column.meaning) for column in column_table(trial)}
+    rows = ((f"`{header}`", meaning) for header, (_, meaning) in known.items())
+    return markdown(("column", "content"), rows)
+
+
+def model_limits() -> str:
+    return "\n".join(f"- {each.statement}" for each in MODEL_LIMITS)
+
+
+def packages() -> str:
+    """Packages in the order of the imports, with the first line of each docstring."""
+    house = (ROOT / "tests" / "unit" / "test_house.py").read_text(encoding="utf-8")
+    listed = re.search(r"^ORDER = (\(.*?^\))", house, re.DOTALL | re.MULTILINE)
+    order: tuple[str, ...] = ast.literal_eval(listed[1]) if listed else ()
+    rows = []
+    for name in order:
+        folder = ROOT.joinpath(*name.split("."))
+        file = folder / "__init__.py" if folder.is_dir() else folder.with_suffix(".py")
+        words = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+        rows.append((f"`{name}`", words.splitlines()[0].rstrip(".")))
+    return markdown(("package", "responsibility"), rows)
+
+
+def renamed(*tables: str) -> str:
+    """Earlier and present names of some tables of ``renamed.toml``."""
+    text = (ROOT / "pipeline" / "case" / "renamed.toml").read_text(encoding="utf-8")
+    known = tomllib.loads(text)
+    rows = (
+        (f"`{old}`", f"`{new}`")
+        for table in tables
+        for old, new in known.get(table, {}).items()
+        if isinstance(new, str)
+    )
+    return markdown(("earlier", "now"), rows)
+
+
+def keys() -> str:
+    """A table of keys for each section of a case file."""
+    parts = []
+    for title, section in sections(Case, ""):
+        rows = [
+            (f"`{field.alias or name}`", accepted(field), default(field))
+            for name, field in section.model_fields.items()
+            if not any(nested(field))
+        ]
+        if rows:
+            parts.append(f"### `{title}`\n\n{markdown(('key', 'accepted', 'default'), rows)}")
+    return "\n\n".join(parts)
+
+
+def sections(section: type[Section], path: str) -> Iterator[tuple[str, type[Section]]]:
+    """A section and those within it, by their headers in a case file."""
+    if not path:
+        yield "top of the file", section
+    for name, field in section.model_fields.items():
+        for kind, inner in nested(field):
+            key = f"{path}.{field.alias or name}".lstrip(".")
+            header = {"table": f"[{key}]", "rows": f"[[{key}]]", "names": f"[{key}.NAME]"}[kind]
+            word = inner.model_fields.get("kind")
+            marks = (
+                get_args(word.annotation) if word and get_origin(word.annotation) is Literal else ()
+            )
+            yield header + (f' kind = "{marks[0]}"' if len(marks) == 1 else ""), inner
+            yield from sections(inner, header.strip("[]"))
+
+
+def nested(field: FieldInfo) -> Iterator[tuple[str, type[Section]]]:
+    yield from _nested(field.annotation, "table")
+
+
+def _nested(hint: object, kind: str) -> Iterator[tuple[str, type[Section]]]:
+    origin = get_origin(hint)
+    if origin is Annotated:
+        yield from _nested(get_args(hint)[0], kind)
+    elif origin in (Union, UnionType):
+        for each in get_args(hint):
+            yield from _nested(each, kind)
+    elif origin is tuple:
+        yield from _nested(get_args(hint)[0], "rows")
+    elif origin is dict:
+        yield from _nested(get_args(hint)[1], "names")
+    elif isinstance(hint, type) and issubclass(hint, Section):
+        yield kind, hint
+    elif isinstance(hint, type) and issubclass(hint, Part) and hint.__name__ != "Material":
+        yield kind, section_of(hint)
+
+
+def accepted(field: FieldInfo) -> str:
+    """What a key may hold: unit and bounds, words, or kind of value."""
+    for mark in [*field.metadata, *_marks(field.annotation)]:
+        if isinstance(mark, In):
+            return mark.limit.replace("finite ", "any, ").replace(" and ", ", ")
+        if isinstance(mark, Count):
+            return f"whole number, {mark.at_least} to {mark.at_most}"
+    words = [
+        word
+        for hint in _leaves(field.annotation)
+        if get_origin(hint) is Literal
+        for word in get_args(hint)
+    ]
+    if words:
+        return " or ".join(f"`{word}`" for word in words)
+    names = {str: "text", bool: "`true` or `false`", float: "number", int: "whole number"}
+    leaves = [
+        names.get(hint, getattr(hint, "__name__", ""))
+        for hint in _leaves(field.annotation)
+        if isinstance(hint, type)
+    ]
+    listed = "list of " if get_origin(field.annotation) in (tuple, list) else ""
+    return listed + " or ".join(
+        dict.fromkeys(word for word in leaves if word and word != "NoneType")
+    )
+
+
+def _marks(hint: object) -> Iterator[object]:
+    yield from getattr(hint, "__metadata__", ())
+    for each in get_args(hint):
+        yield from _marks(each)
+
+
+def _leaves(hint: object) -> Iterator[object]:
+    inner = get_args(hint)
+    if get_origin(hint) is Literal or not inner:
+        yield hint
+    elif get_origin(hint) is Annotated:
+        yield from _leaves(inner[0])
+    else:
+        for each in inner:
+            yield from _leaves(each)
+
+
+def default(field: FieldInfo) -> str:
+    if field.is_required():
+        return "required"
+    value = field.default
+    if value is None or value is PydanticUndefined or value == "":
+        return ""
+    marks = [mark for mark in [*field.metadata, *_marks(field.annotation)] if isinstance(mark, In)]
+    if isinstance(value, float):
+        unit = marks[0].unit if marks else ""
+        return shown(value, unit)
+    if isinstance(value, tuple) and marks:
+        return "[" + ", ".join(f'"{shown(each, marks[0].unit)}"' for each in value) + "]"
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    return f"`{value}`"
+
+
+def shown(value: float | None, unit: str) -> str:
+    """A value, SI, in a unit; "" for None."""
+    if value is None:
+        return ""
+    return f"{in_unit(value, unit) if unit else value:.6g} {unit}".rstrip()
+
+
+TABLES: Mapping[str, Callable[[], str]] = {
+    "limits": limits,
+    "checks": checks,
+    "columns": columns,
+    "model_limits": model_limits,
+    "packages": packages,
+    "keys": keys,
+    "renamed_case": lambda: renamed("case"),
+    "renamed_results": lambda: renamed("columns", "headline", "files"),
+    "renamed_checks": lambda: renamed("checks"),
+}
+
+
+def filled(text: str) -> str:
+    """A page with its tables as they are now."""
+    return BLOCK.sub(lambda m: f"<!-- table: {m[1]} -->\n{TABLES[m[1]]()}\n<!-- end -->", text)
+
+
+if __name__ == "__main__":
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        page.write_text(filled(page.read_text(encoding="utf-8")), encoding="utf-8")

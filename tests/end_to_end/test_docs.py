@@ -1,0 +1,186 @@
+"""README and docs/: every command and snippet is executed, every table is that of the program."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from camwright.pipeline.case.case_file import case_of
+from camwright.pipeline.case.renamed_keys import with_new_keys
+from camwright.pipeline.case.template import template
+from camwright.pipeline.cli import app
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = {
+    path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
+    for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
+}
+SECONDS = 540.0
+
+
+def blocks(page: str, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", PAGES[page], re.MULTILINE | re.DOTALL)
+
+
+def commands(page: str, word: str) -> list[str]:
+    lines = [line for block in blocks(page, "bash") for line in block.splitlines()]
+    assert all(line.split()[0] in ("make", "camwright", "export") for line in lines)
+    return [line for line in lines if line.startswith(word)]
+
+
+def shell(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    return subprocess.run(
+        ["bash", "-c", command],
+        cwd=folder,
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=SECONDS,
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which the commands of README and tutorial have run in their order, once each."""
+    folder = tmp_path_factory.mktemp("docs")
+    shutil.copytree(ROOT / "cases", folder / "cases")
+    lines = [
+        line for page in ("README.md", "docs/tutorial.md") for line in commands(page, "camwright")
+    ]
+    for line in dict.fromkeys(lines):
+        result = shell(line, folder)
+        allowed = (0, 1) if line.startswith("camwright check") else (0,)
+        assert result.returncode in allowed, f"{line}: {result.stderr}"
+    return folder
+
+
+def test_commands_of_other_pages_are_in_readme_or_tutorial() -> None:
+    for page in PAGES:
+        if page not in ("README.md", "docs/tutorial.md"):
+            assert commands(page, "camwright") == [], page
+
+
+def test_the_run_folder_holds_what_is_listed(folder: Path) -> None:
+    listed = re.findall(
+        r"^\| `([^`]+)` \|", PAGES["docs/run-folder.md"].split("## Columns")[0], re.M
+    )
+    assert len(listed) >= 24
+    some_cases_only = {"trial_2/", "1_speed.csv", "corners.json", "trial_1/2_limits.csv"}
+    for name in listed:
+        assert (folder / "runs" / "demo" / name).exists() or name in some_cases_only, name
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python")])
+def test_python_snippets_run_in_their_order(page: str, folder: Path) -> None:
+    snippet = "\n".join(blocks(page, "python"))
+    result = subprocess.run(
+        [sys.executable, "-c", snippet], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.strip()
+
+
+def test_make_targets_exist() -> None:
+    targets = {line.split()[1] for page in PAGES for line in commands(page, "make")}
+    assert {"run", "test"} <= targets
+    for target in sorted(targets | {"lint", "verify", "bench"}):
+        result = shell(f"make --dry-run {target}", ROOT)
+        assert result.returncode == 0, f"{target}: {result.stderr}"
+
+
+def test_readme_lists_every_command() -> None:
+    listed = re.findall(r"^\| `camwright ([a-z-]+)", PAGES["README.md"], re.M)
+    known = [
+        command.name or command.callback.__name__.replace("_", "-")
+        for command in app.registered_commands
+    ]
+    assert sorted(listed) == sorted(known)
+
+
+@pytest.mark.parametrize(
+    ("page", "block"), [(page, block) for page in PAGES for block in blocks(page, "toml")]
+)
+def test_toml_snippets_fit_into_a_case(page: str, block: str) -> None:
+    given = tomllib.loads(block)
+    case = tomllib.loads(template("demo")) | given
+    if "lift" in given:
+        del case["engine"]
+    if given.get("follower", {}).get("kind") == "flat":
+        del case["roller"]
+    assert with_new_keys(case) == case  # present names: case_of reads those of version 0.1 too
+    assert case_of(case)
+
+
+def test_error_lines_are_the_real_ones(tmp_path: Path) -> None:
+    (example,) = blocks("docs/case-file.md", "text")
+    changes = (('rate = "24.2 kN/m"', 'rate = "-24.2 kN/m"'), ('radius = "16 mm"', 'radus = "1"'))
+    for (old, new), line in zip(changes, example.splitlines(), strict=True):
+        text = template("demo").replace(old, new)
+        (tmp_path / "bad.toml").write_text(text, encoding="utf-8")
+        result = shell("camwright run bad.toml --out run", tmp_path)
+        assert (result.returncode, result.stderr.rstrip()) == (2, line)
+        assert not (tmp_path / "run").exists()
+
+
+@cache
+def tables() -> ModuleType:
+    spec = importlib.util.spec_from_file_location(
+        "tables", ROOT / "scripts" / "reference_tables.py"
+    )
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if "<!-- table: " in PAGES[page]])
+def test_tables_are_those_of_the_program(page: str) -> None:
+    assert tables().filled(PAGES[page]) == PAGES[page], (
+        "run: .venv/bin/python scripts/reference_tables.py"
+    )
+
+
+def anchors(text: str) -> set[str]:
+    titles = re.findall(r"^#+ (.+)$", text, re.M)
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_somewhere(page: str) -> None:
+    for target in re.findall(r"\]\(([^)\s]+)\)", PAGES[page]):
+        if target.startswith("http"):
+            continue
+        name, _, anchor = target.partition("#")
+        file = (ROOT / page).parent / name if name else ROOT / page
+        assert file.exists(), target
+        assert not anchor or anchor in anchors(file.read_text(encoding="utf-8")), target
+
+
+def test_readme_and_changelog_are_short() -> None:
+    assert PAGES["README.md"].count("\n") <= 120
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    newest = re.split(r"^## ", changes, flags=re.M)[1]
+    assert newest.count("\n") <= 40
+
+
+def test_public_names_are_twelve_and_documented() -> None:
+    import camwright
+
+    assert len(camwright.__all__) == 12
+    for name in camwright.__all__:
+        assert f"`{name}`" in (camwright.__doc__ or "")
+        assert len((getattr(camwright, name).__doc__ or "").split()) >= 8, name
+    with pytest.raises(AttributeError):
+        camwright.run  # noqa: B018
