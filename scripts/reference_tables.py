@@ -63,12 +63,20 @@ def checks() -> str:
 
 
 def columns() -> str:
-    known: dict[str, tuple[str, str]] = {}
+    known: dict[tuple[str, str], str] = {}
     for name in SHOWN_CASES:
         trial = preview_case(read_case(ROOT / "cases" / name).with_positions(36))
-        known |= {column.header: (column.unit, column.meaning) for column in column_table(trial)}
-    rows = ((f"`{header}`", meaning) for header, (_, meaning) in known.items())
-    return markdown(("column", "content"), rows)
+        for file, listed in column_table(trial).items():
+            if file != "2_limits.csv":  # a column for each limit of the case
+                known |= {(file, column.header): column.meaning for column in listed}
+    files = sorted({file for file, _ in known})
+    rows = (
+        (f"`{header}`", f"`{file}`", meaning)
+        for file in files
+        for (other, header), meaning in known.items()
+        if other == file
+    )
+    return markdown(("column", "file", "content"), rows)
 
 
 def model_limits() -> str:
