@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.cylinder_section import Cylinder
-from camwright.pipeline.case.engine_section import PressureTable, SpeedTable, VoltageTable
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.limits import TOOL_RADIUS
 from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.pickup_voltage import VoltageTable
+from camwright.pipeline.engine.speed_trace import SpeedTable
 from camwright.pipeline.follower.roller import Roller
 
 if TYPE_CHECKING:
@@ -53,14 +54,6 @@ def _check_road(case: Case) -> None:
     engine = case.engine
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is None:
         raise InputError("crankshaft.inertia", "missing", "given, to draw torque from a speed")
-    if isinstance(engine, (Cylinder, PressureTable)):
-        throw = engine.crank_radius + abs(engine.pin_offset)
-        _require(
-            "engine.rod_length",
-            engine.rod_length,
-            engine.rod_length > throw,
-            "longer than the crank radius and the pin offset",
-        )
     if case.engine is not None and not case.load_cases[0].speed > 0:
         raise InputError("load_case[0].speed", "0 rpm", "> 0 rpm: its torque designs the cam")
     share, constrained = case.mechanism.compensation, case.smoothing.kind == "constrained"
@@ -73,7 +66,7 @@ def _check_road(case: Case) -> None:
             raise InputError(f"load_case[{k}].preload", load_case.preload, limit)
         if case.engine is None and load_case.torque is not None:
             raise InputError(f"load_case[{k}].torque", load_case.torque, "left out with a lift")
-        modelled = isinstance(case.engine, Cylinder) and load_case.torque is None
+        modelled = isinstance(case.engine, CylinderEngine) and load_case.torque is None
         if not modelled and (load_case.intake_pressure is not None or not load_case.fired):
             name = "fired" if load_case.intake_pressure is None else "intake_pressure"
             limit = 'left out without engine.kind = "cylinder", or with a torque of its own'

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
 from camwright.geometry.motion_laws import Motion, Segment
-from camwright.pipeline.base.quantities import In, Length
-from camwright.pipeline.case.cylinder_section import LiftPoint
-from camwright.pipeline.case.section import FileName, Section
-
-if TYPE_CHECKING:
-    pass
+from camwright.pipeline.base.quantities import FileName, In, Length
+from camwright.pipeline.case.section import Section, Table
+from camwright.pipeline.engine.cylinder import LiftPoint
 
 Stroke = Annotated[float, In("mm", above=-10_000, below=10_000)]
 LawName = Literal[
@@ -62,7 +59,8 @@ class LiftPoints(Section):
 
     kind: Literal["points"]
     points: Annotated[
-        tuple[LiftPoint, ...], Field(alias="point", strict=False, min_length=6, max_length=720)
+        tuple[Table[LiftPoint], ...],
+        Field(alias="point", strict=False, min_length=6, max_length=720),
     ]
 
 

@@ -3,32 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.cylinder_section import Cylinder, TorqueTable
-from camwright.pipeline.case.engine_section import PressureTable, SpeedTable, VoltageTable
 from camwright.pipeline.case.requirements_section import LoadCase
-from camwright.pipeline.engine.pickup_voltage import speed_from_voltage
+from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.pickup_voltage import VoltageTable, speed_from_voltage
 from camwright.pipeline.engine.pressure_trace import (
+    PressureTable,
     PressureTrace,
     cycle_statistics,
     dead_centre_offset,
     pressure_from_csv,
     torque_from_pressure,
 )
-from camwright.pipeline.engine.speed_trace import SpeedTrace, speed_from_csv
-from camwright.pipeline.engine.torque import Torque, torque_from_csv, torque_from_cylinder
-
-if TYPE_CHECKING:
-    from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.speed_trace import SpeedTable, SpeedTrace, speed_from_csv
+from camwright.pipeline.engine.torque import (
+    Torque,
+    TorqueTable,
+    torque_from_csv,
+    torque_from_cylinder,
+)
 
 CRANKING = 10.0
 """Speed at which an engine that stands is turned over, rad/s: the slowest the model knows."""
-NO_HEAT = 1e-9
 
 
 def engine_torques(case: Case) -> dict[str, Torque]:
@@ -58,10 +60,10 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
         return torque_from_csv(case.path(state.torque))
     if isinstance(engine, TorqueTable):
         return torque_from_csv(case.path(engine.file))
-    if isinstance(engine, Cylinder):
+    if isinstance(engine, CylinderEngine):
         return torque_from_cylinder(_loaded(engine, state), state.speed or CRANKING)
     if isinstance(engine, PressureTable):
-        return torque_from_pressure(pressure(case, engine), engine.build(), state.speed)
+        return torque_from_pressure(pressure(case, engine), engine, state.speed)
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
         return crank_speed(case, engine).torque(case.crankshaft.inertia)
     raise InputError("engine", "missing", "given")
@@ -69,20 +71,19 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
 
 def _has_torque(case: Case, state: LoadCase) -> bool:
     """Whether an engine gives torque in a load case: not one that stands, unless it is started."""
-    started = isinstance(case.engine, Cylinder) and not state.fired
+    started = isinstance(case.engine, CylinderEngine) and not state.fired
     return state.speed > 0 or state.torque is not None or started
 
 
-def _loaded(engine: Cylinder, state: LoadCase) -> CylinderEngine:
-    """The cylinder at the throttle of a load case; unfired, its fuel gives no heat."""
-    changes: dict[str, float] = {}
+def _loaded(engine: CylinderEngine, state: LoadCase) -> CylinderEngine:
+    """The engine at the intake pressure of a load case; unfired, its fuel releases no heat."""
     if state.intake_pressure is not None:
-        changes["intake_pressure"] = state.intake_pressure
-    if not state.fired:
-        changes["combustion_efficiency"] = NO_HEAT
-        # Nothing drives but the hand that turns it: no friction could close the balance.
-        changes["friction_pressure"] = engine.friction_pressure or 0.0
-    return engine.model_copy(update=changes).build()
+        engine = replace(engine, intake_pressure=state.intake_pressure)
+    if state.fired:
+        return engine
+    # The starter drives an unfired engine: no friction could close the torque balance.
+    friction = engine.friction_pressure or 0.0
+    return replace(engine, combustion_efficiency=0.0, friction_pressure=friction)
 
 
 def pressure(case: Case, engine: PressureTable) -> PressureTrace:
@@ -104,7 +105,7 @@ def pressure(case: Case, engine: PressureTable) -> PressureTrace:
     if engine.intake_pressure is None:
         return trace.guarded()
     trace = trace.pegged(engine.intake_pressure).guarded()
-    trace.guard_scale(engine.build())
+    trace.guard_scale(engine, engine.intake_pressure)
     return trace
 
 
@@ -112,12 +113,12 @@ def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
     """The measured crank speed of a case."""
     if isinstance(engine, VoltageTable):
         path = case.path(engine.file)
-        return speed_from_voltage(path, engine.wheel(), engine.band(), engine.threshold)
+        return speed_from_voltage(path, engine.wheel, engine.band, engine.threshold)
     reference = engine.reference_file
     return speed_from_csv(
         case.path(engine.file),
-        engine.wheel(),
-        engine.band(),
+        engine.wheel,
+        engine.band,
         both_edges=engine.edges == 2,
         column=engine.column,
         unit=engine.speed_unit,
@@ -130,8 +131,8 @@ def measurement_record(case: Case) -> Mapping[str, Any] | None:
     """What a measurement tells beside the torque, for ``run.json``; None for a model."""
     engine = case.engine
     if isinstance(engine, PressureTable):
-        trace, gear = pressure(case, engine), engine.build()
-        found = cycle_statistics(trace, gear)
+        trace = pressure(case, engine)
+        found = cycle_statistics(trace, engine)
         return {
             "kind": engine.kind,
             "cycles": int(trace.cycles.shape[0]),

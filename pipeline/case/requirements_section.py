@@ -6,24 +6,20 @@ import datetime as dt
 from math import radians
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import (
+    Characters,
     Duration,
+    FileName,
     GasPressure,
     In,
     Length,
     Preload,
     Rate,
 )
-from camwright.pipeline.case.section import (
-    FileName,
-    Name,
-    Section,
-    Text,
-    printable,
-)
+from camwright.pipeline.case.section import Name, Section, Text
 
 
 class Mechanism(Section):
@@ -108,8 +104,8 @@ class Waiver(Section):
     """A failed check that a named person has accepted, and why."""
 
     check: Name
-    name: Annotated[str, Field(min_length=1, max_length=200), AfterValidator(printable)]
-    reason: Annotated[str, Field(min_length=1, max_length=2000), AfterValidator(printable)]
+    name: Annotated[str, Characters(1, 200)]
+    reason: Annotated[str, Characters(1, 2000)]
     date: dt.date
 
 

@@ -23,10 +23,9 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import Part
+from camwright.pipeline.base.quantities import Characters, Part
 
 SAFE_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9_-])?")
-_ALLOWED = "\n\t\u200c\u200d\u200e\u200f"
 
 PartType = TypeVar("PartType", bound=Part)
 
@@ -36,17 +35,6 @@ def refusal(limit: str, **context: str) -> PydanticCustomError:
     return PydanticCustomError("limit", "must be {limit}", {"limit": limit, **context})
 
 
-def printable(text: str) -> str:
-    """The text, refused if it holds control characters.
-
-    Joiners and direction marks, which scripts and emoji are made with, are none; overrides of the
-    direction, which make a text read as another, are.
-    """
-    if not all(character.isprintable() or character in _ALLOWED for character in text):
-        raise refusal("printable text")
-    return text
-
-
 def _safe_name(name: str) -> str:
     if not SAFE_NAME.fullmatch(name):
         raise refusal("1 to 40 letters, digits, '_', '-' or '.', starting with a letter or digit")
@@ -54,8 +42,7 @@ def _safe_name(name: str) -> str:
 
 
 Name = Annotated[str, AfterValidator(_safe_name)]
-Text = Annotated[str, Field(max_length=10_000), AfterValidator(printable)]
-FileName = Annotated[str, Field(min_length=1, max_length=200), AfterValidator(printable)]
+Text = Annotated[str, Characters(0, 10_000)]
 
 
 class Section(BaseModel):

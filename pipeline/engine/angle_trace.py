@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi
+from math import pi, radians
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +25,7 @@ from camwright.pipeline.engine.trace_file import (
 
 CYCLE_ANGLE = 4.0 * pi
 ROWS_MIN = 12
-GAP_MAX = np.radians(20.0)
+GAP_MAX = radians(20.0)
 GAP_OVER_MEDIAN_MAX = 5.0
 VALUE_MAX = 1e12  # beyond what any engine shows, and what sums and squares can bear
 END_TOLERANCE = 0.25  # of the usual spacing, by which the last sample may miss the period's end

@@ -8,7 +8,6 @@ from math import pi
 import numpy as np
 
 from camwright.geometry.arrays import Array, finite, freeze
-from camwright.geometry.errors import InputError
 from camwright.pipeline.engine.combustion import burn_rate, burnt_fraction
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
 from camwright.pipeline.engine.valves import valve_train_torque
@@ -100,7 +99,7 @@ class CylinderCycle:
     def dipper_torque(self) -> Array:
         """Drag of the oil dipper, where it dips: about both bottom dead centres, N m."""
         engine = self.engine
-        if engine.dipper_area == 0.0 or engine.dipper_immersion == 0.0:
+        if engine.dipper_area == 0.0:
             return np.zeros_like(self.theta)
         from_bottom = np.mod(self.theta, 2.0 * pi) - pi
         reached = np.minimum(np.abs(from_bottom) / engine.dipper_immersion, 1.0)
@@ -111,22 +110,17 @@ class CylinderCycle:
 
     @property
     def friction_torque(self) -> Array:
-        """Constant torque of friction: of the given pressure, or what closes the balance, N m.
+        """Constant torque of friction, N m: of the friction pressure, or what closes the balance.
 
         Raises
         ------
         InputError
-            If it should close the balance of a cycle that drives nothing.
+            As `CrankDrive.friction_torque`.
         """
-        if self.engine.friction == "closing":
-            others = self.gas_torque + self.inertia_torque
-            mean = float((others + self.valve_train_torque + self.dipper_torque).mean())
-            if mean < 0.0:
-                limit = f"a pressure, for the cycle itself needs {-mean:.3g} N m to turn"
-                raise InputError("engine.friction", "closing", limit)
-            return np.full_like(self.theta, -mean)
-        mean = self.engine.friction * self.engine.displacement / CYCLE_ANGLE
-        return np.full_like(self.theta, -mean)
+        others = self.gas_torque + self.inertia_torque
+        mean = float((others + self.valve_train_torque + self.dipper_torque).mean())
+        friction = self.engine.friction_torque(self.engine.friction_pressure, mean)
+        return np.full_like(self.theta, friction)
 
     @property
     def friction_pressure(self) -> float:

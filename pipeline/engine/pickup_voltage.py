@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite
 from camwright.geometry.errors import InputError
-from camwright.pipeline.engine.speed_trace import Filter, SpeedTrace, speed_from_edges
+from camwright.pipeline.base.quantities import In
+from camwright.pipeline.engine.speed_trace import Filter, SpeedTrace, WheelTable, speed_from_edges
 from camwright.pipeline.engine.trace_file import (
     columns_of,
     number_table,
@@ -22,6 +24,14 @@ from camwright.pipeline.engine.trigger_wheel import Edges, TriggerWheel, tooth_p
 
 THRESHOLD = 0.25  # of the usual peak, which the voltage must pass on both sides of a crossing
 SAMPLES_PER_TOOTH_MIN = 6.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class VoltageTable(WheelTable):
+    """Voltage of a variable-reluctance pick-up at the trigger wheel, from a file."""
+
+    kind: Literal["voltage"] = "voltage"
+    threshold: Annotated[float, In(above=0, below=1)] = THRESHOLD
 
 
 @dataclass(frozen=True, eq=False)

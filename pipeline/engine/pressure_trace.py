@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import pi
+from math import pi, radians
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Annotated, ClassVar, Literal, get_args
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Angle, FileName, GasPressure, In, Part
 from camwright.pipeline.engine.angle_trace import (
     GAP_MAX,
     Trace,
@@ -20,11 +21,12 @@ from camwright.pipeline.engine.angle_trace import (
     guard_span,
     one_period,
 )
-from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CrankDrive, FrictionPressure
 from camwright.pipeline.engine.torque import SAMPLES, Torque, all_cylinders, uniform_cycle
 from camwright.pipeline.engine.trace_file import (
     ANGLE_UNITS,
     QUANTITY_UNITS,
+    HeaderText,
     angle_column,
     columns_of,
     number_table,
@@ -41,7 +43,58 @@ BOTTOM_WINDOW = np.radians((170.0, 190.0))  # where the cylinder is taken to be 
 COMPRESSION_WINDOW = np.radians((270.0, 320.0))
 POLYTROPIC_EXPONENT = 1.32
 SCALE_MAX = 2.2  # measured over expected rise in compression; a wrong unit is 10 or more
-LOSS_ANGLE = float(np.radians(0.6))  # by which a motored peak leads the dead centre, typical
+LOSS_ANGLE = radians(0.6)  # by which a motored peak leads the dead centre, typical
+
+
+@dataclass(frozen=True, kw_only=True)
+class _PressureFile(Part):
+    """The file of a measured cylinder pressure, and how it is read."""
+
+    table: ClassVar[str] = "engine"
+
+    kind: str
+    file: FileName
+    column: HeaderText = ""
+    angle_unit: HeaderText = ""
+    pressure_unit: HeaderText = ""
+    firing_angle: Angle = 2.0 * pi
+    gap_max: Annotated[float, In("deg", above=0, at_most=90)] = GAP_MAX
+    dead_centre: DeadCentre = "given"
+    motored_file: FileName | None = None
+    loss_angle: Annotated[float, In("deg", at_least=0, at_most=5)] = LOSS_ANGLE
+
+
+@dataclass(frozen=True, kw_only=True)
+class PressureTable(CrankDrive, _PressureFile):
+    """Cylinder pressure against crank angle from a file, and the crank drive it acts on.
+
+    The file has one column a cycle, or cycles one below the other. `angle_unit` and
+    `pressure_unit` together mean that it has no header. With an `intake_pressure` each cycle is
+    pegged to it; without, the pressure is absolute. Without a friction pressure friction closes
+    the torque balance.
+
+    Raises
+    ------
+    InputError
+        As `CrankDrive`; if one unit lacks the other, or a dead centre its motored file.
+    """
+
+    kind: Literal["pressure"] = "pressure"
+    intake_pressure: GasPressure | None = None
+    crankcase_pressure: GasPressure = 101.3e3
+    friction_pressure: FrictionPressure | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if bool(self.angle_unit) != bool(self.pressure_unit):
+            raise InputError("engine.pressure_unit", self.pressure_unit, "given with angle_unit")
+        if self.dead_centre != "given" and self.motored_file is None:
+            raise InputError("engine.motored_file", "missing", f"given for {self.dead_centre}")
+
+    @property
+    def units(self) -> tuple[str, str] | None:
+        """Units of angle and pressure of a file without a header; None: the header has them."""
+        return (self.angle_unit, self.pressure_unit) if self.angle_unit else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,16 +185,16 @@ class PressureTrace:
             raise InputError(f"{name} peak angle", f"{np.degrees(at):.4g} deg", limit)
         return self
 
-    def scale(self, engine: CylinderEngine) -> float:
-        """Rise in compression over that of a polytropic from intake pressure; near 1 when right."""
+    def scale(self, engine: CrankDrive, intake_pressure: float) -> float:
+        """Pressure rise in compression over that of a polytropic from intake pressure (Pa)."""
         low, high = COMPRESSION_WINDOW
         ends = np.interp([low, high], self.theta, self.mean)
         volumes = engine.volume(np.array([pi, low, high]))
         share = (volumes[0] / volumes[1:]) ** POLYTROPIC_EXPONENT
-        expected = engine.intake_pressure * (share[1] - share[0])
+        expected = intake_pressure * (share[1] - share[0])
         return float((ends[1] - ends[0]) / expected)
 
-    def guard_scale(self, engine: CylinderEngine) -> None:
+    def guard_scale(self, engine: CrankDrive, intake_pressure: float) -> None:
         """Refuse pressures whose rise in compression does not fit the engine.
 
         Raises
@@ -149,7 +202,7 @@ class PressureTrace:
         InputError
             With the unit that would fit, where one does.
         """
-        scale = self.scale(engine)
+        scale = self.scale(engine, intake_pressure)
         if 1.0 / SCALE_MAX <= scale <= SCALE_MAX:
             return
         limit = f"from {1 / SCALE_MAX:.2g} to {SCALE_MAX:g} times that of a polytropic"
@@ -196,7 +249,7 @@ class CycleStatistics:
         return self.imep_std / abs(float(self.imep.mean()))
 
 
-def cycle_statistics(trace: PressureTrace, engine: CylinderEngine) -> CycleStatistics:
+def cycle_statistics(trace: PressureTrace, engine: CrankDrive) -> CycleStatistics:
     """Net IMEP, peak pressure and its angle of each cycle."""
     step = CYCLE_ANGLE / trace.cycles.shape[1]
     work = trace.cycles @ engine.volume_rate(trace.theta) * step
@@ -379,9 +432,7 @@ def _unwrapped(angle: Array) -> Array:
     return np.asarray(angle + np.concatenate([[0.0], np.cumsum(back)]) * CYCLE_ANGLE)
 
 
-def torque_from_pressure(
-    trace: PressureTrace, engine: CylinderEngine, crank_speed: float
-) -> Torque:
+def torque_from_pressure(trace: PressureTrace, engine: PressureTable, crank_speed: float) -> Torque:
     """Torque of an engine whose cylinders all run the mean of the measured cycles.
 
     Parts are the gas, the inertia of the reciprocating masses at constant speed, and friction,
@@ -390,19 +441,13 @@ def torque_from_pressure(
     Raises
     ------
     InputError
-        If friction should close the balance of a trace that drives nothing.
+        As `CrankDrive.friction_torque`.
     """
     theta = trace.theta
     gas = (trace.mean - engine.crankcase_pressure) * engine.volume_rate(theta)
     inertia = engine.inertia_torque(theta, crank_speed)
-    if engine.friction == "closing":
-        mean = float(gas.mean())
-        if mean < 0.0:
-            limit = f"a pressure, for the trace itself needs {-mean:.3g} N m to turn"
-            raise InputError("engine.friction", "closing", limit)
-    else:
-        mean = float(engine.friction) * engine.displacement / CYCLE_ANGLE
-    parts = {"gas": gas, "inertia": inertia, "friction": np.full_like(theta, -mean)}
+    friction = engine.friction_torque(engine.friction_pressure, float(gas.mean()))
+    parts = {"gas": gas, "inertia": inertia, "friction": np.full_like(theta, friction)}
     coarse = uniform_cycle(SAMPLES)
     parts = {name: _thinned(part) for name, part in parts.items()}
     return Torque(

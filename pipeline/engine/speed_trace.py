@@ -6,18 +6,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Angle, Count, FileName, In, Part, Share
 from camwright.pipeline.engine.angle_trace import guard_order, guard_span
 from camwright.pipeline.engine.crankshaft import SpeedStatistics, speed_statistics, torque_of_motion
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.torque import SAMPLES, Torque, uniform_cycle
 from camwright.pipeline.engine.trace_file import (
     QUANTITY_UNITS,
+    HeaderText,
     angle_column,
     columns_of,
     has_angle,
@@ -26,31 +29,43 @@ from camwright.pipeline.engine.trace_file import (
     table_delimiter,
     text_lines,
 )
-from camwright.pipeline.engine.trigger_wheel import Edges, TriggerWheel, counted, learned_wheel
+from camwright.pipeline.engine.trigger_wheel import (
+    Edges,
+    MissingTeeth,
+    Teeth,
+    ToothShare,
+    TriggerWheel,
+    counted,
+    learned_wheel,
+)
 
 HARMONICS = 20  # of the cycle, 10 per crank turn: where noise of 0.2 rad/s costs least
 TAPER = 0.25
 SPEED_RANGE = (5.0, 3000.0)  # rad/s, of a crank
 
 
+Harmonics = Annotated[int, Count(1, SAMPLES // 4)]
+
+
 @dataclass(frozen=True)
-class Filter:
+class Filter(Part):
     """Harmonics of the cycle kept of a speed, with a cosine edge from 1 - taper to 1 + taper.
 
     Parameters
     ----------
-    harmonics : int    where the edge is half way, the bandwidth; 2 are one per crank turn
-    taper : float      half-width of the edge as a share, 0 cuts hard
+    harmonics : int    at the middle of the edge, the bandwidth; 2 are one per crank turn
+    taper : float      half-width of the edge as a share; 0: a sharp edge
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds.
     """
 
-    harmonics: int = HARMONICS
-    taper: float = TAPER
+    table: ClassVar[str] = "engine"
 
-    def __post_init__(self) -> None:
-        if not 1 <= self.harmonics <= SAMPLES // 4:
-            raise InputError("engine.harmonics", self.harmonics, f"from 1 to {SAMPLES // 4}")
-        if not 0.0 <= self.taper <= 1.0:
-            raise InputError("engine.taper", self.taper, "from 0 to 1")
+    harmonics: Harmonics = HARMONICS
+    taper: Share = TAPER
 
     @property
     def last(self) -> int:
@@ -69,6 +84,56 @@ class Filter:
     def bandwidth(self, mean_speed: float) -> float:
         """Frequency (Hz) at which the filter lets one half pass, at a crank speed (rad/s)."""
         return self.harmonics * mean_speed / CYCLE_ANGLE
+
+
+@dataclass(frozen=True, kw_only=True)
+class WheelTable(Part):
+    """A measurement at a trigger wheel from a file: the wheel and the filter of the speed.
+
+    Raises
+    ------
+    InputError
+        As `TriggerWheel`.
+    """
+
+    table: ClassVar[str] = "engine"
+
+    file: FileName
+    teeth: Teeth = 36
+    missing_teeth: MissingTeeth = 0
+    reference_angle: Angle = 0.0
+    harmonics: Harmonics = HARMONICS
+    taper: Share = TAPER
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _ = self.wheel  # refuses too many missing teeth
+
+    @property
+    def wheel(self) -> TriggerWheel:
+        return TriggerWheel(self.teeth, self.missing_teeth, self.reference_angle)
+
+    @property
+    def band(self) -> Filter:
+        """Filter of the speed."""
+        return Filter(self.harmonics, self.taper)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedTable(WheelTable):
+    """Crank speed from a file: tooth times, or speed per tooth against crank angle."""
+
+    kind: Literal["speed"] = "speed"
+    column: HeaderText = ""
+    speed_unit: HeaderText = ""
+    edges: Annotated[int, Count(1, 2)] = 2
+    tooth_share: ToothShare = 0.5
+    averaged_over: Annotated[float, In("deg", at_least=0, at_most=60)] = 0.0
+    reference_file: FileName | None = None
+
+    @property
+    def wheel(self) -> TriggerWheel:
+        return replace(super().wheel, tooth_share=self.tooth_share)
 
 
 @dataclass(frozen=True, eq=False)

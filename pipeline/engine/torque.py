@@ -6,18 +6,30 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
+from typing import ClassVar, Literal
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import FileName, Part
 from camwright.pipeline.engine.angle_trace import read_trace
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
 from camwright.pipeline.engine.indicated_cycle import CylinderCycle
 from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
 
 SAMPLES = 720
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueTable(Part):
+    """Engine torque over one cycle from a file: a column of crank angle, one of torque."""
+
+    table: ClassVar[str] = "engine"
+
+    kind: Literal["table"] = "table"
+    file: FileName
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,8 +158,8 @@ def all_cylinders(
 def torque_from_cylinder(engine: CylinderEngine, crank_speed: float) -> Torque:
     """Torque of an engine model at a steady crank speed (rad/s).
 
-    With `engine.friction` "closing" the mean is zero; with a friction pressure it is the brake
-    torque, which `without_mean` loads away.
+    Without a friction pressure the mean is zero; with one it is the brake torque, which
+    `without_mean` balances by a steady load.
 
     Raises
     ------

@@ -8,14 +8,19 @@ from collections.abc import Mapping, Sequence
 from math import pi
 from pathlib import Path
 from types import MappingProxyType
+from typing import Annotated
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Characters
 
 SIZE_MAX = 64 * 2**20  # bytes; looked up before the file is opened
 ROWS_MAX = 1_000_000
+
+HeaderText = Annotated[str, Characters(0, 80)]
+"""A column's header, what it begins with, or a unit in it."""
 
 ANGLE_UNITS: Mapping[str, float] = MappingProxyType(
     {

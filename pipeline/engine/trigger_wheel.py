@@ -5,51 +5,63 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Angle, Count, In, Part
 
 FULL_TURN = 2.0 * pi
 NEIGHBOURS = 9  # intervals, of whose median a regular one is a share
 REGULAR = (0.6, 1.4)  # of that median: a crank within its cycle stays well inside
 
 
+Teeth = Annotated[int, Count(4, 720)]
+MissingTeeth = Annotated[int, Count(0, 180)]
+ToothShare = Annotated[float, In(above=0, below=1)]
+
+
 @dataclass(frozen=True, eq=False)
-class TriggerWheel:
-    """A wheel of `teeth` equal places of which the last `missing` are left empty.
+class TriggerWheel(Part):
+    """A wheel with `teeth` equal pitches whose last `missing_teeth` teeth are left out.
 
     Parameters
     ----------
-    teeth : int                n, places for teeth
-    missing : int              m, empty ones; 0: no gap, no reference
-    reference_angle : float    rad, crank angle of the first rising edge after a gap, of the first
-                               gap recorded; without a gap that of the first edge recorded
+    teeth : int                n, pitches of the wheel
+    missing_teeth : int        m, <= n/4; 0: no gap, no reference
+    reference_angle : float    rad, crank angle of the first rising edge after the first gap
+                               recorded; without a gap that of the first edge recorded
     tooth_share : float        of the pitch, from the rising to the falling edge
-    rising, falling : array (n - m,), optional   rad from the reference, in place of equal pitches
+    rising, falling : array (n - m,), optional   rad from the reference, instead of equal pitches
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds.
     """
 
-    teeth: int = 36
-    missing: int = 0
-    reference_angle: float = 0.0
-    tooth_share: float = 0.5
+    table: ClassVar[str] = "engine"
+    labels: ClassVar[tuple[str, ...]] = ("rising", "falling")
+
+    teeth: Teeth = 36
+    missing_teeth: MissingTeeth = 0
+    reference_angle: Angle = 0.0
+    tooth_share: ToothShare = 0.5
     rising: Array | None = None
     falling: Array | None = None
 
     def __post_init__(self) -> None:
-        if not 4 <= self.teeth <= 720:
-            raise InputError("engine.teeth", self.teeth, "from 4 to 720")
-        if not 0 <= self.missing <= self.teeth // 4:
-            raise InputError("engine.missing_teeth", self.missing, "from 0 to a quarter of them")
-        if not 0.0 < self.tooth_share < 1.0:
-            raise InputError("engine.tooth_share", self.tooth_share, "from 0 to 1")
-        finite("engine.reference_angle", self.reference_angle)
+        super().__post_init__()
+        if self.missing_teeth > self.teeth // 4:
+            limit = f"<= {self.teeth // 4}, a quarter of engine.teeth"
+            raise InputError("engine.missing_teeth", self.missing_teeth, limit)
         for name in ("rising", "falling"):
-            given = getattr(self, name)
-            if given is not None:
-                freeze(self, **{name: finite(f"wheel.{name}", given)})
+            angles = getattr(self, name)
+            if angles is not None:
+                freeze(self, **{name: finite(f"wheel.{name}", angles)})
 
     @property
     def pitch(self) -> float:
@@ -57,7 +69,7 @@ class TriggerWheel:
 
     @property
     def present(self) -> int:
-        return self.teeth - self.missing
+        return self.teeth - self.missing_teeth
 
     def angle(self, place: Array, falling: bool) -> Array:
         """Crank angle (rad) of an edge of the teeth counted from the reference, missing or not."""
@@ -123,20 +135,20 @@ def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
     intervals = np.diff(times)
     share = intervals / _local_median(intervals)
     expected = np.ones_like(share)
-    if wheel.missing:
-        expected[share > 1.0 + 0.5 * wheel.missing] = 1.0 + wheel.missing
+    if wheel.missing_teeth:
+        expected[share > 1.0 + 0.5 * wheel.missing_teeth] = 1.0 + wheel.missing_teeth
     off = (share / expected < REGULAR[0]) | (share / expected > REGULAR[1])
     if off.any():
         k = int(np.flatnonzero(off)[0])
         what = "a missing tooth" if share[k] > 1.0 else "an edge too many"
         value = f"{share[k]:.3g} times its neighbours ({what})"
-        limit = f"1, or {1 + wheel.missing} in the gap" if wheel.missing else "near 1"
+        limit = f"1, or {1 + wheel.missing_teeth} in the gap" if wheel.missing_teeth else "near 1"
         raise InputError(f"{field} interval after {times[k]:.6g} s", value, limit)
     gaps = [int(k) for k in np.flatnonzero(expected > 1.0)]
-    if wheel.missing:
+    if wheel.missing_teeth:
         _guard_gaps(field, times, gaps, wheel)
     steps = np.concatenate([[0.0], np.cumsum(expected)])
-    origin = steps[gaps[0] + 1] if wheel.missing else 0.0
+    origin = steps[gaps[0] + 1] if wheel.missing_teeth else 0.0
     return np.asarray(steps - origin)
 
 
@@ -149,7 +161,7 @@ def _local_median(intervals: Array) -> Array:
 def _guard_gaps(field: str, times: Array, gaps: list[int], wheel: TriggerWheel) -> None:
     """Refuse a gap that does not come back after every n - m teeth."""
     if not gaps:
-        limit = f"a gap of {wheel.missing} missing teeth in every turn"
+        limit = f"a gap of {wheel.missing_teeth} missing teeth in every turn"
         raise InputError(field, "no gap", limit)
     ends = np.diff(gaps)
     wrong = np.flatnonzero(ends != wheel.present)

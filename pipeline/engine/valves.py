@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, LiftTable
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, LiftPoint
 
 # Near equal pressures the nozzle flow rises with an infinite slope; below this relative
 # difference it is bent into a straight line, worth some 10 Pa in a cylinder that breathes.
@@ -29,16 +29,16 @@ class Valve:
     lift_max: float
     diameter: float
     discharge_coefficient: float
-    table: LiftTable | None = None
+    table: tuple[LiftPoint, ...] = ()
 
     def lift(self, theta: ArrayLike, derivative: int = 0) -> Array:
         """Lift (m), or its derivative by the crank angle (m/rad), at crank angles, any shape."""
         past = np.mod(np.asarray(theta, dtype=float) - self.opens, CYCLE_ANGLE)
         duration = self.closes - self.opens
         is_open = past < duration
-        if self.table is not None:
-            angle, lift = np.array(self.table).T
-            curve = PchipInterpolator(angle - self.opens, lift)
+        if self.table:
+            angle = np.array([point.angle for point in self.table])
+            curve = PchipInterpolator(angle - self.opens, [point.lift for point in self.table])
             return np.where(is_open, curve(np.minimum(past, duration), nu=derivative), 0.0)
         phase = 2.0 * pi * past / duration
         if derivative == 0:

@@ -101,7 +101,7 @@ def test_closing_friction_brings_the_mean_to_zero(torque):
 
 
 def test_given_friction_pressure_leaves_the_brake_torque(cycle):
-    loaded = replace(cycle, engine=replace(ENGINE, friction=1.0e5))
+    loaded = replace(cycle, engine=replace(ENGINE, friction_pressure=1.0e5))
     torque = torque_from_cycle(loaded)
     expected = (loaded.indicated_pressure_net - 1.0e5) * ENGINE.displacement / CYCLE_ANGLE
     assert loaded.friction_pressure == pytest.approx(1.0e5, rel=1e-12)

@@ -136,7 +136,7 @@ def test_expansion_carries_fifteen_times_the_other_strokes_at_full_load():
         spark=radians(340.0),
         burn_duration=radians(50.0),
         combustion_efficiency=0.95,
-        friction=0.0,
+        friction_pressure=0.0,
     )
     means = stroke_means(torque_from_cycle(working_cycle(full, 83.8)).total)
     assert means[1] == pytest.approx(-9.5, rel=0.02)

@@ -5,11 +5,12 @@ from math import pi, radians
 
 import numpy as np
 import pytest
+from small_diesel import SMALL_DIESEL
 
 from camwright.geometry.linkage import SliderCrank
 from camwright.pipeline.engine import indicated_cycle_solver, valves
 from camwright.pipeline.engine.combustion import burnt_fraction
-from camwright.pipeline.engine.cylinder import COMPRESSION_IGNITION, CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
 from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
 from camwright.pipeline.engine.torque import torque_from_cycle
 from camwright.pipeline.engine.working_gas import AIR_AND_FUEL, Gas
@@ -34,7 +35,7 @@ def cycle():
 
 @pytest.fixture(scope="module")
 def adiabatic():
-    cold = replace(ENGINE, heat_loss_factor=0.0, combustion_efficiency=0.0, friction=0.0)
+    cold = replace(ENGINE, heat_loss_factor=0.0, combustion_efficiency=0.0, friction_pressure=0.0)
     return working_cycle(cold, SPEED, RIGID)
 
 
@@ -141,7 +142,7 @@ def test_ideal_gas_law_holds_on_the_output(cycle):
     np.testing.assert_allclose(cycle.pressure, state, rtol=1e-13)
 
 
-@pytest.mark.parametrize("changes", [{}, {"heat_loss": "woschni"}, COMPRESSION_IGNITION])
+@pytest.mark.parametrize("changes", [{}, {"heat_loss": "woschni"}, SMALL_DIESEL])
 def test_mass_and_energy_are_conserved_and_the_cycle_repeats(changes):
     cycle = working_cycle(replace(ENGINE, **changes), SPEED)
     balance = cycle.balance
@@ -162,7 +163,7 @@ def test_fuel_heat_is_that_of_the_fresh_charge(cycle):
 
 
 def test_works_of_the_parts_add_up_to_the_brake_work(cycle):
-    loaded = replace(cycle, engine=replace(ENGINE, friction=0.9e5, dipper_area=5e-5))
+    loaded = replace(cycle, engine=replace(ENGINE, friction_pressure=0.9e5, dipper_area=5e-5))
     torque = torque_from_cycle(loaded)
     works = {name: part.mean() * CYCLE_ANGLE for name, part in torque.components.items()}
     scale = works["gas"]
@@ -238,13 +239,15 @@ def test_both_wall_laws_take_a_share_seen_on_small_engines(cycle):
 
 
 def test_motored_engine_peaks_at_dead_centre_and_takes_work():
-    motored = working_cycle(replace(ENGINE, combustion_efficiency=0.0, friction=0.0), SPEED)
+    motored = working_cycle(
+        replace(ENGINE, combustion_efficiency=0.0, friction_pressure=0.0), SPEED
+    )
     assert abs(int(motored.pressure.argmax()) - 360) <= 2  # heat loss leads by a degree
     assert motored.indicated_pressure_net < 0.0
 
 
 def test_compression_ignition_set_is_a_small_diesel():
-    diesel = working_cycle(replace(ENGINE, **COMPRESSION_IGNITION), 200.0)
+    diesel = working_cycle(replace(ENGINE, **SMALL_DIESEL), 200.0)
     assert 55e5 < diesel.pressure_max < 100e5
     assert 2e5 < diesel.indicated_pressure_gross < 8e5
     # hot enough to light the spray by itself: 650 K is the least diesel fuel asks for

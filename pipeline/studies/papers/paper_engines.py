@@ -49,7 +49,7 @@ FULL_LOAD_800 = replace(
     spark=radians(340.0),
     burn_duration=radians(50.0),
     combustion_efficiency=0.95,
-    friction=0.0,
+    friction_pressure=0.0,
 )
 
 
