@@ -8,23 +8,23 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import inside
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.case.cards.card_filling import filled
+from camwright.pipeline.case.cards.card_filling import fill_cards
+from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case import Case, includes, kept_as
 from camwright.pipeline.case.consistency import check_sections
 from camwright.pipeline.case.error_text import first_error
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.renamed_keys import with_new_keys
-from camwright.pipeline.case.section import Table, named
+from camwright.pipeline.case.section import named
 
 CASE_BYTES = 256 * 1024
 INCLUDE_BYTES = 16 * 1024 * 1024
 SCHEMA_VERSION = 1
-_CARD = TypeAdapter(Table[Material])
 _REFUSED = Material(E=1.0, nu=0.0, yield_strength=1.0, density=1.0, source="refused")
 
 
@@ -56,7 +56,8 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
 
 def case_of(data: Mapping[str, Any], folder: Path | None = None) -> Case:
     """A case from its tables, cards of `folder` filled in; files it includes are not read."""
-    tables = filled(with_new_keys(data), folder)
+    tables = with_new_keys(data)
+    fill_cards(tables, folder)
     try:
         case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})
     except ValidationError as error:
@@ -70,8 +71,8 @@ def _cards(tables: object) -> dict[str, Material]:
     found = {}
     for name, table in tables.items() if isinstance(tables, dict) else ():
         try:
-            found[name] = _CARD.validate_python(table)
-        except ValidationError:
+            found[name] = read_part(Material, table, f"materials.{name}")
+        except InputError:
             found[name] = _REFUSED
     return named(found)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi, radians
+from math import radians
 from pathlib import Path
 
 import numpy as np
@@ -13,17 +13,14 @@ from scipy.interpolate import Akima1DInterpolator
 
 from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import InputError
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.trace_file import (
     QUANTITY_UNITS,
     angle_column,
-    number_table,
-    split_cells,
-    table_delimiter,
-    text_lines,
+    trace_text,
     value_column,
 )
 
-CYCLE_ANGLE = 4.0 * pi
 ROWS_MIN = 12
 GAP_MAX = radians(20.0)
 GAP_OVER_MEDIAN_MAX = 5.0
@@ -43,8 +40,6 @@ class Trace:
     angle : array (n,)         rad, strictly increasing over less than one period, n >= 12
     values : array (n,)        N m, Pa or rad/s
     period : float             rad
-    end_difference : float     value at the end minus that at the start where the file gave both
-                               (their mean was kept), else 0
     """
 
     source: str
@@ -53,7 +48,6 @@ class Trace:
     angle: Array
     values: Array
     period: float = CYCLE_ANGLE
-    end_difference: float = 0.0
 
     def __post_init__(self) -> None:
         freeze(self, angle=self.angle, values=finite(f"{self.source}, {self.column}", self.values))
@@ -136,22 +130,18 @@ def read_trace(
         number; angles repeated, out of order or with gaps over 20 deg or 5 times the usual
         spacing; another span than the period; fewer than 12 rows.
     """
-    path = Path(path)
     if quantity not in QUANTITY_UNITS:
         raise InputError("quantity", quantity, "one of " + ", ".join(QUANTITY_UNITS))
-    lines = text_lines(path)
-    head_line, head = lines[0]
-    delimiter = table_delimiter(path.name, head_line, head)
-    header = [cell.strip() for cell in split_cells(head, delimiter)]
-    angle_at, angle_factor = angle_column(path.name, header)
-    value_at, value_factor = value_column(path.name, header, quantity, column)
-    table = number_table(path.name, lines[1:], header, delimiter, (angle_at, value_at))
-    numbers = [number for number, _ in lines[1:]]
+    text = trace_text(Path(path))
+    name, header, lines = text.name, text.header, text.line_numbers
+    angle_at, angle_factor = angle_column(name, header)
+    value_at, value_factor = value_column(name, header, quantity, column)
+    table = text.numbers((angle_at, value_at))
     angle = table[:, 0] * angle_factor
-    guard_order(path.name, numbers, table[:, 0], header[angle_at])
-    guard_span(path.name, angle, angle_factor, period)
+    guard_order(name, lines, table[:, 0], header[angle_at])
+    guard_span(name, angle, angle_factor, period)
     values = table[:, 1] * value_factor
-    return one_period(path.name, quantity, header[value_at], numbers, angle, values, period)
+    return one_period(name, quantity, header[value_at], lines, angle, values, period)
 
 
 def one_period(
@@ -178,14 +168,18 @@ def one_period(
     InputError
         If a gap is wider, or above 5 times the usual spacing.
     """
-    difference = 0.0
-    if period - (angle[-1] - angle[0]) <= END_TOLERANCE * np.median(np.diff(angle)):
-        difference = float(values[-1] - values[0])
-        values = np.append(0.5 * (values[0] + values[-1]), values[1:-1])
-        angle = angle[:-1]
-    trace = Trace(name, quantity, column, angle, values, period, difference)
+    angle, values = without_end(angle, values, period)
+    trace = Trace(name, quantity, column, angle, values, period)
     _guard_gaps(trace, lines, gap_max)
     return trace
+
+
+def without_end(angle: Array, values: Array, period: float) -> tuple[Array, Array]:
+    """Angles (n,) and values (n, ...) of one period; of a row at both ends the mean is kept."""
+    if period - (angle[-1] - angle[0]) > END_TOLERANCE * np.median(np.diff(angle)):
+        return angle, values
+    mean = 0.5 * (values[:1] + values[-1:])
+    return angle[:-1], np.concatenate([mean, values[1:-1]])
 
 
 def guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> None:

@@ -23,14 +23,6 @@ def wiebe(progress: ArrayLike, a: float, m: float) -> Array:
     return np.asarray(np.expm1(-a * reached ** (m + 1.0)) / np.expm1(-a))
 
 
-def wiebe_rate(progress: ArrayLike, a: float, m: float) -> Array:
-    """Derivative of the burnt fraction by the progress; zero outside the burn."""
-    progress = np.asarray(progress, dtype=float)
-    reached = np.clip(progress, 0.0, 1.0)
-    rate = a * (m + 1.0) * reached**m * np.exp(-a * reached ** (m + 1.0)) / -np.expm1(-a)
-    return np.where((progress >= 0.0) & (progress <= 1.0), rate, 0.0)
-
-
 def _burns(engine: CylinderEngine) -> tuple[tuple[float, float, float, float], ...]:
     """Share, duration (rad), a and m of each Wiebe burn of the engine."""
     main = (1.0 - engine.premixed_share, engine.burn_duration, engine.wiebe_a, engine.wiebe_m)
@@ -53,11 +45,4 @@ def burnt_fraction(engine: CylinderEngine, theta: ArrayLike) -> Array:
     """
     past = _since_start(engine, theta)
     parts = [s * wiebe(past / length, a, m) for s, length, a, m in _burns(engine)]
-    return np.asarray(sum(parts))
-
-
-def burn_rate(engine: CylinderEngine, theta: ArrayLike) -> Array:
-    """Derivative of the burnt fraction by the crank angle, 1/rad."""
-    past = _since_start(engine, theta)
-    parts = [s / length * wiebe_rate(past / length, a, m) for s, length, a, m in _burns(engine)]
     return np.asarray(sum(parts))

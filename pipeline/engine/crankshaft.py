@@ -14,8 +14,8 @@ from scipy.optimize import brentq
 from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
 from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.quantities import In, Part
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 
-CYCLE_ANGLE = 4.0 * pi
 SETTLED = 1e-13  # of the mean speed, between two passes
 PASSES_MAX = 200
 
@@ -118,7 +118,6 @@ class CrankMotion:
     net_torque : array (n,)     N m, what changes the kinetic energy
     closure : float             work of the net torque over the cycle, by the loads at the speed
                                 found, over the mean kinetic energy
-    passes : int                until loads and speed agreed
     """
 
     theta: Array
@@ -128,7 +127,6 @@ class CrankMotion:
     mechanism_torque: Array
     net_torque: Array
     closure: float
-    passes: int
 
     def __post_init__(self) -> None:
         names = ("theta", "speed", "acceleration", "load_torque", "mechanism_torque", "net_torque")
@@ -214,7 +212,7 @@ def crank_motion(
         raise InputError("mean_speed", mean_speed, "> 0 rad/s")
     slope = _derivative(total)
     speed, acceleration = np.full_like(torque, mean_speed), np.zeros_like(torque)
-    for passes in range(1, PASSES_MAX + 1):  # noqa: B007 - told in the result
+    for _ in range(PASSES_MAX):
         mechanical = np.zeros_like(torque) if mechanism is None else mechanism(speed, acceleration)
         driven = torque + mechanical
         loaded = _closing_load(driven, speed, load)
@@ -239,7 +237,6 @@ def crank_motion(
         mechanism_torque=mechanical,
         net_torque=net,
         closure=abs(work) / float((0.5 * total * speed**2).mean()),
-        passes=passes,
     )
 
 

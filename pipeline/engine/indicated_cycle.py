@@ -8,8 +8,7 @@ from math import pi
 import numpy as np
 
 from camwright.geometry.arrays import Array, finite, freeze
-from camwright.pipeline.engine.combustion import burn_rate, burnt_fraction
-from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.valves import valve_train_torque
 
 
@@ -56,7 +55,6 @@ class CylinderCycle:
     fuel_mass: float  # kg per cycle
     residual_fraction: float  # burnt mass over all mass as the intake valve closes
     balance: CycleBalance
-    cycles: int  # it took to repeat
     closure: float  # relative pressure difference of the last two cycles at intake valve close
 
     def __post_init__(self) -> None:
@@ -66,19 +64,6 @@ class CylinderCycle:
     @property
     def volume(self) -> Array:
         return self.engine.volume(self.theta)
-
-    @property
-    def burnt_fraction(self) -> Array:
-        return burnt_fraction(self.engine, self.theta)
-
-    @property
-    def heat_release_rate(self) -> Array:
-        """J/rad."""
-        return self.balance.heat_released * burn_rate(self.engine, self.theta)
-
-    @property
-    def pressure_max(self) -> float:
-        return float(self.pressure.max())
 
     @property
     def gas_torque(self) -> Array:
@@ -121,22 +106,3 @@ class CylinderCycle:
         mean = float((others + self.valve_train_torque + self.dipper_torque).mean())
         friction = self.engine.friction_torque(self.engine.friction_pressure, mean)
         return np.full_like(self.theta, friction)
-
-    @property
-    def friction_pressure(self) -> float:
-        """Friction mean effective pressure (FMEP), Pa."""
-        return self._mean_effective_pressure(-self.friction_torque)
-
-    @property
-    def indicated_pressure_net(self) -> float:
-        """Net indicated mean effective pressure (IMEP), all four strokes, Pa."""
-        return self._mean_effective_pressure(self.gas_torque)
-
-    @property
-    def indicated_pressure_gross(self) -> float:
-        """Gross indicated mean effective pressure (IMEP), compression and expansion alone, Pa."""
-        fired = (self.theta >= pi - 1e-9) & (self.theta < 3.0 * pi - 1e-9)
-        return self._mean_effective_pressure(np.where(fired, self.gas_torque, 0.0))
-
-    def _mean_effective_pressure(self, torque: Array) -> float:
-        return float(torque.mean()) * CYCLE_ANGLE / self.engine.displacement

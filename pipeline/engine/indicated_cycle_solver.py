@@ -323,9 +323,7 @@ def working_cycle(
     mass = engine.intake_pressure * volume / (gas.constant * temperature)
     content = _Content(mass, mass * gas.energy(temperature), 0.2 * mass)
     port = _Port(gas.enthalpy(engine.intake_temperature))
-    cycles = 0
-    while cycles < CYCLES_MAX:
-        cycles += 1
+    for _ in range(CYCLES_MAX):
         before = _fingerprint(content, gas, volume)
         states, balance = _one_cycle(engine, crank_speed, gas, steps, content, port)
         change = np.abs(_fingerprint(content, gas, volume) / before - 1.0)
@@ -347,7 +345,6 @@ def working_cycle(
         fuel_mass=fuel_mass(engine, before[1] * (1.0 - before[3])),
         residual_fraction=float(before[3]),
         balance=balance,
-        cycles=cycles,
         closure=float(change[0]),
     )
 

@@ -13,13 +13,7 @@ from camwright.geometry.arrays import Array, finite
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.engine.speed_trace import Filter, SpeedTrace, WheelTable, speed_from_edges
-from camwright.pipeline.engine.trace_file import (
-    columns_of,
-    number_table,
-    split_cells,
-    table_delimiter,
-    text_lines,
-)
+from camwright.pipeline.engine.trace_file import columns_of, trace_text
 from camwright.pipeline.engine.trigger_wheel import Edges, TriggerWheel, tooth_places
 
 THRESHOLD = 0.25  # of the usual peak, which the voltage must pass on both sides of a crossing
@@ -145,20 +139,15 @@ def speed_from_voltage(
     InputError
         As `read_trace`, `edges_from_voltage` and `speed_from_edges`.
     """
-    path = Path(path)
-    lines = text_lines(path)
-    number, head = lines[0]
-    delimiter = table_delimiter(path.name, number, head)
-    header = [cell.strip() for cell in split_cells(head, delimiter)]
-    times, volts = columns_of(header, "time"), columns_of(header, "voltage")
+    text = trace_text(Path(path))
+    times, volts = columns_of(text.header, "time"), columns_of(text.header, "voltage")
     if len(times) != 1 or not volts:
         limit = "one column of time (s, ms, us) and one or more of voltage (V, mV)"
-        raise InputError(f"{path.name} header", ", ".join(header), limit)
-    table = number_table(path.name, lines[1:], header, delimiter, (*times, *volts))
+        raise InputError(f"{text.name} header", ", ".join(text.header), limit)
+    table = text.numbers((*times, *volts))
     at = table[:, 0] * next(iter(times.values()))
-    runs = [
-        edges_from_voltage(f"{path.name} {header[column]}", at, factor * table[:, k + 1], wheel,
-                           threshold)
-        for k, (column, factor) in enumerate(volts.items())
-    ]  # fmt: skip
-    return speed_from_edges(path.name, runs, wheel, band).with_firing()
+    runs = []
+    for k, (column, factor) in enumerate(volts.items(), start=1):
+        field = f"{text.name} {text.header[column]}"
+        runs.append(edges_from_voltage(field, at, factor * table[:, k], wheel, threshold))
+    return speed_from_edges(text.name, runs, wheel, band).with_firing()

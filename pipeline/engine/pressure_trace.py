@@ -29,10 +29,7 @@ from camwright.pipeline.engine.trace_file import (
     HeaderText,
     angle_column,
     columns_of,
-    number_table,
-    split_cells,
-    table_delimiter,
-    text_lines,
+    trace_text,
 )
 
 DeadCentre = Literal["given", "symmetry", "loss_angle"]
@@ -336,21 +333,21 @@ def pressure_from_csv(
         As `read_trace`; for a last cycle that is short; for what `PressureTrace.guarded` refuses
         only the caller can tell, once the trace is pegged.
     """
-    name, header, lines, delimiter = _opened(Path(path), units)
+    text = trace_text(Path(path), headed=units is None)
+    name, header = text.name, text.header
     angle_at, angle_factor = angle_column(name, header) if units is None else _bare_angle(units)
+    known = ", ".join(QUANTITY_UNITS["pressure"])
     if units is None:
         wanted = columns_of(header, "pressure", column)
     else:
         unit = QUANTITY_UNITS["pressure"].get(units[1])
         if unit is None:
-            limit = f"one of {', '.join(QUANTITY_UNITS['pressure'])}"
-            raise InputError("engine.pressure_unit", units[1], limit)
+            raise InputError("engine.pressure_unit", units[1], f"one of {known}")
         wanted = dict.fromkeys(range(1, len(header)), unit)
     if not wanted:
-        limit = f"a column of pressure with its unit ({', '.join(QUANTITY_UNITS['pressure'])})"
+        limit = f"a column of pressure with its unit ({known})"
         raise InputError(f"{name} header", ", ".join(header), limit)
-    table = number_table(name, lines, header, delimiter, (angle_at, *wanted))
-    numbers = [number for number, _ in lines]
+    table, numbers = text.numbers((angle_at, *wanted)), text.line_numbers
     values = table[:, 1:] * np.array(list(wanted.values()))
     labels = [header[at] for at in wanted]
     traces = _cycles(name, numbers, table[:, 0], angle_factor, values, labels, gap_max)
@@ -358,22 +355,6 @@ def pressure_from_csv(
     count = max(SAMPLES, round(CYCLE_ANGLE / spacing))
     cycles = np.array([trace.uniform(count) for trace in traces])
     return PressureTrace(name, cycles, np.zeros(len(cycles))).turned(2.0 * pi - firing_angle)
-
-
-def _opened(
-    path: Path, units: tuple[str, str] | None
-) -> tuple[str, list[str], list[tuple[int, str]], str]:
-    """Name, header, rows and delimiter of a file; without units given it has a header."""
-    lines = text_lines(path)
-    number, head = lines[0]
-    delimiter = table_delimiter(path.name, number, head, blanks=units is not None)
-    if units is not None:
-        lines = [(at, line.rstrip(f"{delimiter} ")) for at, line in lines]
-        head = lines[0][1]
-    header = [cell.strip() for cell in split_cells(head, delimiter)]
-    if units is None:
-        return path.name, header, lines[1:], delimiter
-    return path.name, [f"column {at + 1}" for at in range(len(header))], lines, delimiter
 
 
 def _bare_angle(units: tuple[str, str]) -> tuple[int, float]:

@@ -14,20 +14,18 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Angle, Count, FileName, In, Part, Share
-from camwright.pipeline.engine.angle_trace import guard_order, guard_span
+from camwright.pipeline.engine.angle_trace import guard_order, guard_span, without_end
 from camwright.pipeline.engine.crankshaft import SpeedStatistics, speed_statistics, torque_of_motion
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.torque import SAMPLES, Torque, uniform_cycle
 from camwright.pipeline.engine.trace_file import (
     QUANTITY_UNITS,
     HeaderText,
+    TraceText,
     angle_column,
     columns_of,
     has_angle,
-    number_table,
-    split_cells,
-    table_delimiter,
-    text_lines,
+    trace_text,
 )
 from camwright.pipeline.engine.trigger_wheel import (
     Edges,
@@ -375,22 +373,13 @@ def tooth_times(path: str | Path, column: str = "") -> tuple[str, Array]:
     InputError
         As `read_trace`.
     """
-    name, header, lines, delimiter = _opened(Path(path))
-    wanted = columns_of(header, "time", column)
+    text = trace_text(Path(path), one_column=True)
+    wanted = columns_of(text.header, "time", column)
     if not wanted:
         limit = f"a column of time with its unit ({', '.join(QUANTITY_UNITS['time'])})"
-        raise InputError(f"{name} header", ", ".join(header), limit)
-    table = number_table(name, lines, header, delimiter, tuple(wanted))
-    return name, np.asarray((table * np.array(list(wanted.values()))).T)
-
-
-def _opened(path: Path) -> tuple[str, list[str], list[tuple[int, str]], str]:
-    lines = text_lines(path)
-    number, head = lines[0]
-    delimiter = ";" if ";" in head else "\t" if "\t" in head else ","
-    if len(lines) > 1 and delimiter == "," and "," not in head:
-        delimiter = table_delimiter(path.name, number, head) if "," in lines[1][1] else ";"
-    return path.name, [cell.strip() for cell in split_cells(head, delimiter)], lines[1:], delimiter
+        raise InputError(f"{text.name} header", ", ".join(text.header), limit)
+    table = text.numbers(tuple(wanted))
+    return text.name, np.asarray((table * np.array(list(wanted.values()))).T)
 
 
 def speed_from_csv(
@@ -425,10 +414,10 @@ def speed_from_csv(
     InputError
         As `read_trace`, `counted` and `speed_from_edges`.
     """
-    name, header, lines, delimiter = _opened(Path(path))
-    if has_angle(header):
-        angle, speeds = _speed_table(name, header, lines, delimiter, column, unit)
-        return speed_from_teeth(name, angle, speeds, band, averaged_over)
+    text = trace_text(Path(path), one_column=True)
+    if has_angle(text.header):
+        angle, speeds = _speed_table(text, column, unit)
+        return speed_from_teeth(text.name, angle, speeds, band, averaged_over)
     if reference is not None:
         label, steady = tooth_times(reference)
         known = [counted(f"{label} run {k + 1}", run, wheel, both_edges)
@@ -439,33 +428,23 @@ def speed_from_csv(
     return speed_from_edges(name, edges, wheel, band).with_firing()
 
 
-def _speed_table(
-    name: str,
-    header: list[str],
-    lines: list[tuple[int, str]],
-    delimiter: str,
-    column: str,
-    unit: str,
-) -> tuple[Array, Array]:
+def _speed_table(text: TraceText, column: str, unit: str) -> tuple[Array, Array]:
     """Angles (n,), rad, and speeds (m, n), rad/s, of one cycle."""
+    name, header = text.name, text.header
     at, factor = angle_column(name, header)
     wanted = columns_of(header, "speed", column)
+    known = ", ".join(QUANTITY_UNITS["speed"])
     if unit:
         if unit not in QUANTITY_UNITS["speed"]:
-            raise InputError(
-                "engine.speed_unit", unit, f"one of {', '.join(QUANTITY_UNITS['speed'])}"
-            )
-        bare = [k for k, text in enumerate(header) if text.lower().startswith(column.lower())]
+            raise InputError("engine.speed_unit", unit, f"one of {known}")
+        bare = [k for k, head in enumerate(header) if head.lower().startswith(column.lower())]
         wanted = {k: QUANTITY_UNITS["speed"][unit] for k in bare if k != at} | wanted
     if not wanted:
-        limit = (
-            f"a column of speed with its unit ({', '.join(QUANTITY_UNITS['speed'])}), or of time"
-        )
+        limit = f"a column of speed with its unit ({known}), or of time"
         raise InputError(f"{name} header", ", ".join(header), limit)
-    table = number_table(name, lines, header, delimiter, (at, *wanted))
-    guard_order(name, [number for number, _ in lines], table[:, 0], header[at])
+    table = text.numbers((at, *wanted))
+    guard_order(name, text.line_numbers, table[:, 0], header[at])
     angle, values = table[:, 0] * factor, table[:, 1:] * np.array(list(wanted.values()))
     guard_span(name, angle, factor, CYCLE_ANGLE)
-    if CYCLE_ANGLE - (angle[-1] - angle[0]) < 0.25 * float(np.median(np.diff(angle))):
-        angle, values = angle[:-1], np.vstack([0.5 * (values[0] + values[-1]), values[1:-1]])
+    angle, values = without_end(angle, values, CYCLE_ANGLE)
     return angle, np.asarray(values.T)

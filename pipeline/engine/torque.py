@@ -92,11 +92,6 @@ class Torque:
     def peak_to_peak(self) -> float:
         return float(np.ptp(self.total))
 
-    @property
-    def work(self) -> float:
-        """Work on the crank over one cycle, J."""
-        return self.mean * CYCLE_ANGLE
-
     def without_mean(self) -> Torque:
         """The same torque with the steady load that brings its mean to zero, as `load`."""
         load = np.full_like(self.theta_crank, -self.mean)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 from types import MappingProxyType
@@ -90,7 +91,91 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _UNIT_SPELLING = str.maketrans(dict.fromkeys(" ·⋅*.-^_⁻−", "") | {"¹": "1", "º": "°"})
 
 
-def text_lines(path: Path) -> list[tuple[int, str]]:
+@dataclass(frozen=True)
+class TraceText:
+    """Text of a trace file: header cells, and rows with their line numbers.
+
+    Parameters
+    ----------
+    name : str        of the file
+    header : list     text of each column's header
+    rows : list       line number from 1 and text of each row
+    delimiter : str   between the columns
+    """
+
+    name: str
+    header: list[str]
+    rows: list[tuple[int, str]]
+    delimiter: str
+
+    @property
+    def line_numbers(self) -> list[int]:
+        return [number for number, _ in self.rows]
+
+    def numbers(self, columns: Sequence[int]) -> Array:
+        """Cells of some columns as numbers, (rows, columns).
+
+        Raises
+        ------
+        InputError
+            For a row with too few or too many cells, or a cell that is no finite number.
+        """
+        header, delimiter = self.header, self.delimiter
+        table = np.empty((len(self.rows), len(columns)))
+        for row, (number, line) in enumerate(self.rows):
+            cells = [cell.strip() for cell in _cells(line, delimiter)]
+            if len(cells) < len(header) or any(cells[len(header) :]):
+                limit = f"{len(header)} as in the header"
+                raise InputError(f"{self.name} line {number}", f"{len(cells)} cells", limit)
+            for place, at in enumerate(columns):
+                cell = cells[at] if delimiter == "," else cells[at].replace(",", ".")
+                if not _NUMBER.fullmatch(cell) or not abs(float(cell)) < np.inf:
+                    field = f"{self.name} line {number}, {header[at]}"
+                    raise InputError(field, cells[at] or "nothing", "a finite number")
+                table[row, place] = float(cell)
+        return table
+
+
+def trace_text(path: Path, *, headed: bool = True, one_column: bool = False) -> TraceText:
+    """Text of a trace file.
+
+    Parameters
+    ----------
+    headed : bool       whether the first line is a header; without, blanks may part the columns
+    one_column : bool   whether a file of one column, without any delimiter, is accepted
+
+    Raises
+    ------
+    InputError
+        For a file that is missing, a folder, empty, binary or over 64 MiB, or a header without
+        delimiter.
+    """
+    lines, name = _text_lines(path), path.name
+    delimiter = _delimiter(name, lines, blanks=not headed, one_column=one_column)
+    if headed:
+        header = [cell.strip() for cell in _cells(lines[0][1], delimiter)]
+        return TraceText(name, header, lines[1:], delimiter)
+    rows = [(number, line.rstrip(f"{delimiter} ")) for number, line in lines]
+    count = len(_cells(rows[0][1], delimiter))
+    return TraceText(name, [f"column {at + 1}" for at in range(count)], rows, delimiter)
+
+
+def _delimiter(
+    name: str, lines: Sequence[tuple[int, str]], *, blanks: bool, one_column: bool
+) -> str:
+    number, head = lines[0]
+    for mark in ";\t,":
+        if mark in head:
+            return mark
+    if blanks:
+        return " "
+    if one_column and not any("," in line for _, line in lines[1:2]):
+        return ";"  # a decimal comma is no delimiter
+    limit = "a header of columns parted by semicolon, tab or comma"
+    raise InputError(f"{name} line {number}", head, limit)
+
+
+def _text_lines(path: Path) -> list[tuple[int, str]]:
     """The lines of a text file that hold something, with their numbers from 1."""
     raw = _bytes(path)
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
@@ -140,7 +225,7 @@ def _decoded(coded: bytes) -> str:
         return coded.decode("latin-1")
 
 
-def split_cells(line: str, delimiter: str) -> list[str]:
+def _cells(line: str, delimiter: str) -> list[str]:
     return next(csv.reader([line], delimiter=delimiter)) if '"' in line else line.split(delimiter)
 
 
@@ -172,15 +257,6 @@ def columns_of(header: Sequence[str], quantity: str, prefix: str = "") -> dict[i
 def has_angle(header: Sequence[str]) -> bool:
     """Whether a column is one of angle."""
     return bool(_with_unit(header, ANGLE_UNITS))
-
-
-def table_delimiter(name: str, number: int, line: str, *, blanks: bool = False) -> str:
-    """What parts the columns of a file, by its first line."""
-    found = next((mark for mark in ";\t," if mark in line), " " if blanks else None)
-    if found is None:
-        limit = "a header of columns parted by semicolon, tab or comma"
-        raise InputError(f"{name} line {number}", line, limit)
-    return found
 
 
 def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, float]:
@@ -218,26 +294,3 @@ def value_column(
         limit = f"{wanted} with its unit ({', '.join(QUANTITY_UNITS[quantity])})"
         raise InputError(f"{name} header", ", ".join(header), limit)
     return found[0], factors[found[0]]
-
-
-def number_table(
-    name: str,
-    lines: Sequence[tuple[int, str]],
-    header: Sequence[str],
-    delimiter: str,
-    columns: Sequence[int],
-) -> Array:
-    """The cells of some columns as numbers, (rows, columns)."""
-    table = np.empty((len(lines), len(columns)))
-    for row, (number, line) in enumerate(lines):
-        cells = [cell.strip() for cell in split_cells(line, delimiter)]
-        if len(cells) < len(header) or any(cells[len(header) :]):
-            limit = f"{len(header)} as in the header"
-            raise InputError(f"{name} line {number}", f"{len(cells)} cells", limit)
-        for place, at in enumerate(columns):
-            cell = cells[at] if delimiter == "," else cells[at].replace(",", ".")
-            if not _NUMBER.fullmatch(cell) or not abs(float(cell)) < np.inf:
-                field = f"{name} line {number}, {header[at]}"
-                raise InputError(field, cells[at] or "nothing", "a finite number")
-            table[row, place] = float(cell)
-    return table

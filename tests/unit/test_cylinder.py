@@ -9,7 +9,7 @@ from small_diesel import SMALL_DIESEL
 
 from camwright.geometry.errors import InputError
 from camwright.geometry.linkage import SliderCrank
-from camwright.pipeline.engine.combustion import burn_rate, burnt_fraction, wiebe
+from camwright.pipeline.engine.combustion import burnt_fraction, wiebe
 from camwright.pipeline.engine.cylinder import CylinderEngine, LiftPoint
 from camwright.pipeline.engine.heat_loss import Charge, film_coefficient, wall_area
 from camwright.pipeline.engine.valves import (
@@ -131,15 +131,6 @@ def test_burnt_fraction_runs_from_zero_to_one_within_the_burn():
     assert burnt[2] == pytest.approx(-np.expm1(-5.0 / 8.0) / -np.expm1(-5.0), rel=1e-12)
     np.testing.assert_allclose(burnt[3:], 1.0, rtol=1e-12)
     assert wiebe(0.5, 5.0, 2.0) == pytest.approx(burnt[2], rel=1e-12)
-
-
-@pytest.mark.parametrize("changes", [{}, SMALL_DIESEL])
-def test_burn_rate_is_the_derivative_of_the_burnt_fraction(changes):
-    engine = replace(ENGINE, **changes)
-    theta = np.radians(np.arange(351.5, 420.0, 1.0))
-    step = 1e-6
-    ahead, behind = burnt_fraction(engine, theta + step), burnt_fraction(engine, theta - step)
-    np.testing.assert_allclose(burn_rate(engine, theta), (ahead - behind) / (2 * step), atol=1e-7)
 
 
 def test_premixed_fuel_burns_first():

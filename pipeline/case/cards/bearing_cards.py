@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Count, In, Length, Part, Pressure
-from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.follower.roller_parts import Bearing, OuterRing
-
-CARDS = Path(__file__).parent / "bearings.toml"
 
 _Rating = Annotated[float, In("N", above=0, at_most=1e9)]
 _RING = ("balls", "pitch_diameter", "ring_thickness")
@@ -90,14 +85,3 @@ class BearingCard(Part):
             ring=ring,
             source=self.source,
         )
-
-
-def read_card(name: str, entry: Mapping[str, Any]) -> BearingCard:
-    """A bearing card from its table.
-
-    Raises
-    ------
-    InputError
-        For an unknown or missing key, a value out of its bounds, or an incomplete ring.
-    """
-    return read_part(BearingCard, entry, f"cards.{name}")

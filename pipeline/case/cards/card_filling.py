@@ -16,11 +16,13 @@ from typing import Any
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import read_toml
-from camwright.pipeline.case.cards.bearing_cards import CARDS, read_card
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.spring_selection import put_spring
 from camwright.pipeline.case.toml_text import tables_of
 
 KINDS = ("materials", "bushes", "oils", "wires", "bearings")
+FOLDER = Path(__file__).parent
 USER_FILE = "cards.toml"
 USER_BYTES = 256 * 1024
 CELSIUS = 273.15
@@ -28,41 +30,39 @@ CELSIUS = 273.15
 Cards = Mapping[str, Mapping[str, Mapping[str, Any]]]
 
 
-def filled(data: Mapping[str, Any], folder: Path | None) -> dict[str, Any]:
-    """The tables of a case file with their cards put in.
+def fill_cards(case: dict[str, Any], folder: Path | None) -> None:
+    """Put the cards that a case names into its tables, and the spring of its catalogue.
 
     Parameters
     ----------
-    data : mapping     the case file as TOML gives it
-    folder : Path      where the case lies; None: only the shipped cards are there
+    case : dict        tables of a case file, changed in place
+    folder : Path      folder of the case; None: shipped cards only
 
     Raises
     ------
     InputError
-        For a card that is not there, or a file of cards that cannot be read.
+        For an unknown card, or a file of cards that cannot be read.
     """
-    case = {key: _copied(value) for key, value in data.items()}
     put_spring(case, folder)
-    asked = [place for place in _places(case) if isinstance(place[2], dict) and "card" in place[2]]
-    if not asked:
-        return case
+    named = [place for place in _places(case) if isinstance(place[2], dict) and "card" in place[2]]
+    if not named:
+        return
     cards = known_cards(folder)
-    for field, kind, table in asked:
+    for field, kind, table in named:
         name = table.pop("card")
         card = cards[kind].get(name) if isinstance(name, str) else None
         if card is None:
             raise InputError(f"{field}.card", name, f"one of: {', '.join(sorted(cards[kind]))}")
         card = _oil(card, table, field) if kind == "oils" else card
         if kind == "bearings":
-            card = tables_of(read_card(name, card).bearing)
-        given = dict(table)
+            card = tables_of(read_part(BearingCard, card, f"cards.{name}").bearing)
+        own = dict(table)
         table.update(card)
-        table.update(given)
-        if "source" not in given:
+        table.update(own)
+        if "source" not in own:
             table["source"] = f"card {name}: {card['source']}"
         if kind == "bushes":
             _with_material(case, table["material"], cards["materials"])
-    return case
 
 
 def known_cards(folder: Path | None) -> Cards:
@@ -94,8 +94,7 @@ def viscosity(at_40: float, at_100: float, temperature: float) -> float:
 
 @cache
 def _shipped() -> Cards:
-    here = Path(__file__).parent
-    files = {kind: here / f"{kind}.toml" for kind in KINDS} | {"bearings": CARDS}
+    files = {kind: FOLDER / f"{kind}.toml" for kind in KINDS}
     return {
         kind: {
             name: _sourced(card, f"{kind}.{name}")
@@ -152,10 +151,3 @@ def _oil(card: Mapping[str, Any], table: dict[str, Any], field: str) -> dict[str
         "pressure_viscosity": card["pressure_viscosity"],
         "source": f"{card['source']}; at {temperature - CELSIUS:.1f} degC by ASTM D341",
     }
-
-
-def _copied(value: Any) -> Any:
-    """Tables copied all the way down, so that the caller's stay as they are."""
-    if isinstance(value, dict):
-        return {key: _copied(entry) for key, entry in value.items()}
-    return value

@@ -9,8 +9,9 @@ from typing import Any, TypeVar
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import marks_of
-from camwright.pipeline.case.cards.bearing_cards import BearingCard, read_card
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.cards.card_filling import known_cards
+from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.spring_catalogue import read_catalogue
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.spring import HelicalSpring
@@ -59,7 +60,10 @@ def catalogue_of(folder: Path | None) -> Catalogue:
     if own is not None and own.is_file():
         springs |= {spring.name: spring for spring in read_catalogue(own)}
     return Catalogue(
-        {name: read_card(name, entry) for name, entry in cards["bearings"].items()},
+        {
+            name: read_part(BearingCard, entry, f"cards.{name}")
+            for name, entry in cards["bearings"].items()
+        },
         springs,
         {name: _bush(name, entry) for name, entry in cards["bushes"].items()},
     )

@@ -37,7 +37,6 @@ class SpringDemand:
     travel : float             m, to the largest lift
     fatigue_safety : float     Goodman and Zimmerli
     solid_clearance : float    share of the largest deflection
-    mean_diameter_max : float  m
     rate_spread, preload_spread : float   shares by which a spring as made may exceed both; the
                                           hardest that may come has to do
     """
@@ -48,7 +47,6 @@ class SpringDemand:
     rate_tolerance: float = 0.05
     fatigue_safety: float = 1.2
     solid_clearance: float = 0.1
-    mean_diameter_max: float = float("inf")
     rate_spread: float = 0.0
     preload_spread: float = 0.0
 
@@ -67,8 +65,6 @@ class SpringDemand:
             found.append("fatigue")
         if spring.buckling_use > 1.0:
             found.append("buckling")
-        if spring.mean_diameter > self.mean_diameter_max:
-            found.append("too wide")
         return tuple(found)
 
 
