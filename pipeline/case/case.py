@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
@@ -27,7 +27,7 @@ from camwright.pipeline.case.requirements_section import (
     Waiver,
 )
 from camwright.pipeline.case.section import Name, Section, Table, Text, named
-from camwright.pipeline.case.toml_text import tables_of, to_toml
+from camwright.pipeline.case.toml_text import Tables, tables_of, to_toml
 from camwright.pipeline.case.workshop_section import FORM_TOLERANCE, Workshop, WorkshopOrder
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.oil_film import Lubricant
@@ -84,7 +84,7 @@ class Case(Section):
         """
         return to_toml(self, self._kept)
 
-    def tables(self) -> dict[str, Any]:
+    def tables(self) -> Tables:
         """The resolved case as the tables of a case file, included files as in `to_toml`."""
         return tables_of(self, self._kept)
 

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 from pydantic import ValidationError
 
@@ -21,9 +19,11 @@ from camwright.pipeline.case.error_text import first_error
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.renamed_keys import with_new_keys
 from camwright.pipeline.case.section import named
+from camwright.pipeline.case.toml_text import Tables, TomlValue
 
 CASE_BYTES = 256 * 1024
 INCLUDE_BYTES = 16 * 1024 * 1024
+DEPTH_MAX = 16
 SCHEMA_VERSION = 1
 _REFUSED = Material(E=1.0, nu=0.0, yield_strength=1.0, density=1.0, source="refused")
 
@@ -45,7 +45,7 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
     data = _parse_toml(content)
     version = data.get("schema_version")
     if version is not None and version != SCHEMA_VERSION:
-        raise InputError("schema_version", version, f"{SCHEMA_VERSION}, the one known here")
+        raise InputError("schema_version", str(version), f"{SCHEMA_VERSION}, the one known here")
     case = case_of(data, folder)
     case._folder = folder
     case._included = MappingProxyType(_read_includes(case, folder))
@@ -54,7 +54,7 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
     return case
 
 
-def case_of(data: Mapping[str, Any], folder: Path | None = None) -> Case:
+def case_of(data: Tables, folder: Path | None = None) -> Case:
     """A case from its tables, cards of `folder` filled in; files it includes are not read."""
     tables = with_new_keys(data)
     fill_cards(tables, folder)
@@ -66,7 +66,7 @@ def case_of(data: Mapping[str, Any], folder: Path | None = None) -> Case:
     return case
 
 
-def _cards(tables: object) -> dict[str, Material]:
+def _cards(tables: TomlValue | None) -> dict[str, Material]:
     """Material cards by name; a card that is refused stands for itself until `Case` refuses it."""
     found = {}
     for name, table in tables.items() if isinstance(tables, dict) else ():
@@ -77,14 +77,30 @@ def _cards(tables: object) -> dict[str, Material]:
     return named(found)
 
 
-def _parse_toml(content: str | bytes) -> dict[str, Any]:
+def _parse_toml(content: str | bytes) -> Tables:
     try:
         text = content if isinstance(content, str) else content.decode("utf-8-sig")
-        return tomllib.loads(text)
+        tables: Tables = tomllib.loads(text)
+        nested = _is_deeper(tables, DEPTH_MAX)
     except RecursionError:
-        raise InputError("case", "nested too deeply", "at most a few tables deep") from None
+        nested = True
     except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError alike
         raise InputError("case", " ".join(str(error).split()), "UTF-8 text in TOML") from None
+    if nested:
+        raise InputError("case", "nested too deeply", f"at most {DEPTH_MAX} tables deep")
+    return tables
+
+
+def _is_deeper(tables: Tables, depth: int) -> bool:
+    level: list[Tables | list[TomlValue]] = [tables]
+    for _ in range(depth):
+        level = [
+            entry
+            for each in level
+            for entry in (each.values() if isinstance(each, dict) else each)
+            if isinstance(entry, (dict, list))
+        ]
+    return bool(level)
 
 
 def _read(path: Path, field: str, limit: int) -> bytes:

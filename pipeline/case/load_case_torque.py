@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -127,7 +126,7 @@ def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
     )
 
 
-def measurement_record(case: Case) -> Mapping[str, Any] | None:
+def measurement_record(case: Case) -> Mapping[str, str | float] | None:
     """What a measurement tells beside the torque, for ``run.json``; None for a model."""
     engine = case.engine
     if isinstance(engine, PressureTable):

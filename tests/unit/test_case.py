@@ -171,6 +171,13 @@ def test_starts_at_the_torque_or_at_the_lift_never_at_both() -> None:
     assert "must be exactly one" in refused(GX120 + '\n[lift]\nfile = "lift.csv"\n')
 
 
+@pytest.mark.parametrize("depth", [17, 600, 20_000])
+def test_tables_nested_too_deeply_are_refused(depth: int) -> None:
+    text = f"{GX120}\n[{'.'.join(['a'] * depth)}]\nb = 1\n"
+    with pytest.raises(InputError, match="case = nested too deeply, must be at most 16 tables"):
+        parse_case(text)
+
+
 @pytest.mark.parametrize(
     "text",
     [

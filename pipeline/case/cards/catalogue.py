@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import marks_of
@@ -13,6 +13,7 @@ from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.spring_catalogue import read_catalogue
+from camwright.pipeline.case.toml_text import Tables
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.spring import HelicalSpring
 
@@ -69,7 +70,7 @@ def catalogue_of(folder: Path | None) -> Catalogue:
     )
 
 
-def _bush(name: str, entry: Mapping[str, Any]) -> Bush:
+def _bush(name: str, entry: Tables) -> Bush:
     field, marks = f"cards.bushes.{name}", marks_of(Guide)
     for key in ("friction", "pressure_limit", "pv_limit", "material"):
         if key not in entry:

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.error_text import first_error
 from camwright.pipeline.case.section import PartType, part_of, section_of
+from camwright.pipeline.case.toml_text import TomlValue
 
 
-def read_part(part: type[PartType], table: Mapping[str, Any], field: str) -> PartType:
+def read_part(part: type[PartType], table: TomlValue, field: str) -> PartType:
     """The part that a table describes.
 
     Parameters
     ----------
-    field : str   dotted name of the table, for messages
+    table : TOML value   refused unless a table
+    field : str          dotted name of the table, for messages
 
     Raises
     ------

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import read_toml
 from camwright.pipeline.base.quantities import Part, Pressure
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.renamed_keys import with_new_wire_keys
-from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.follower.spring import (
     HelicalSpring,
     Treatment,
@@ -119,27 +119,27 @@ class _Wire(Part):
     source: str
 
 
-def _wire(field: str, entry: Any) -> _Wire:
+def _wire(field: str, entry: TomlValue) -> _Wire:
     return read_part(_Wire, with_new_wire_keys(entry, field), field)
 
 
-def _spring(field: str, entry: Any, wires: Mapping[str, _Wire]) -> HelicalSpring:
+def _spring(field: str, entry: TomlValue, wires: Mapping[str, _Wire]) -> HelicalSpring:
     """The spring of an entry: its own keys and those of its wire."""
     if not isinstance(entry, dict):
-        raise InputError(field, entry, "a table")
+        raise InputError(field, str(entry), "a table")
     own = dict(entry)
     wire, name = own.pop("wire", None), own.pop("name", None)
     _require_own_keys(field, entry)
     if not isinstance(wire, str) or wire not in wires:
-        shown = "missing" if wire is None else wire
+        shown = "missing" if wire is None else str(wire)
         raise InputError(f"{field}.wire", shown, f"one of: {', '.join(sorted(wires))}")
     if not isinstance(name, str) or not name.strip() or not name.isprintable():
-        shown = "missing" if name is None else name
+        shown = "missing" if name is None else str(name)
         raise InputError(f"{field}.name", shown, "printable text in quotes")
     return replace(read_part(HelicalSpring, tables_of(wires[wire]) | own, field), name=name)
 
 
-def _require_own_keys(field: str, entry: Mapping[str, Any]) -> None:
+def _require_own_keys(field: str, entry: Tables) -> None:
     of_wire = {each.name for each in fields(_Wire)}
     known = {each.name for each in fields(HelicalSpring)} - of_wire | {"wire"}
     for key in entry:

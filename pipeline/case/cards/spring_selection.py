@@ -5,10 +5,8 @@ A case that names a catalogue holds the spring found, every number of it, once i
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
@@ -20,14 +18,14 @@ from camwright.pipeline.case.cards.spring_catalogue import (
     read_catalogue,
 )
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID
-from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 
 SHIPPED = "shipped"
 _NEAREST = 3
 _MISS = 0.05  # of the rate, where the case states no tolerance, as `spring_rate` has it
 
 
-def put_spring(case: dict[str, Any], folder: Path | None) -> None:
+def put_spring(case: Tables, folder: Path | None) -> None:
     """Replace ``spring.catalogue`` of a case's tables by ``[spring.design]`` of what it finds.
 
     The spring has to meet the rate, the preloads of all load cases, ``spring.travel_max`` and the
@@ -60,18 +58,19 @@ def put_spring(case: dict[str, Any], folder: Path | None) -> None:
         nearest = sorted(reasons, key=lambda each: len(reasons[each]))[:_NEAREST]
         why = "; ".join(f"{each}: {', '.join(reasons[each])}" for each in nearest)
         limit = f"a catalogue with a spring that will do; nearest are {why}"
-        raise InputError("spring.catalogue", name, limit if springs else "not empty")
+        raise InputError("spring.catalogue", str(name), limit if springs else "not empty")
     why = f"lightest of {len(springs)} in catalogue {name}: {best.name}; {best.source}"
     spring["design"] = tables_of(replace(best, source=why.rstrip("; ")))
 
 
-def _demand(case: Mapping[str, Any], spring: Mapping[str, Any]) -> SpringDemand | None:
+def _demand(case: Tables, spring: Tables) -> SpringDemand | None:
     """What a case asks of its spring; None where a number is missing that the case must have."""
 
-    def number(table: Mapping[str, Any], key: str, default: float) -> float:
-        value = table.get(key, default)
-        good = isinstance(value, (int, float)) and not isinstance(value, bool)
-        return float(value) if good else default
+    def number(table: Tables, key: str, default: float) -> float:
+        value = table.get(key)
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            return default
+        return float(value)
 
     states = case.get("load_case")
     own = [state for state in states if isinstance(state, dict)] if isinstance(states, list) else []
@@ -87,7 +86,7 @@ def _demand(case: Mapping[str, Any], spring: Mapping[str, Any]) -> SpringDemand 
     if not (rate > 0.0 and preload > 0.0):
         return None
     if not travel > 0.0:
-        raise InputError("spring.travel_max", spring["travel_max"], "> 0 mm")
+        raise InputError("spring.travel_max", str(spring["travel_max"]), "> 0 mm")
     spread = number(spring, "rate_tolerance", 0.0)
     return SpringDemand(
         rate=rate,
@@ -101,11 +100,11 @@ def _demand(case: Mapping[str, Any], spring: Mapping[str, Any]) -> SpringDemand 
     )
 
 
-def _path(name: Any, folder: Path | None) -> Path:
+def _path(name: TomlValue, folder: Path | None) -> Path:
     if name == SHIPPED:
         return CATALOGUE
     if not isinstance(name, str) or not name:
-        raise InputError("spring.catalogue", name, f'a file name, or "{SHIPPED}"')
+        raise InputError("spring.catalogue", str(name), f'a file name, or "{SHIPPED}"')
     if folder is None:
         raise InputError("spring.catalogue", name, f'"{SHIPPED}" where a case has no folder')
     return inside(folder, name, "spring.catalogue")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from camwright.pipeline.base import units
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
@@ -19,7 +18,7 @@ from camwright.pipeline.case.limits import (
     SPRING_FATIGUE,
     SPRING_SOLID,
 )
-from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.case.toml_text import Tables, table_in, tables_of
 from camwright.pipeline.follower.spring import HelicalSpring
 
 AS_GIVEN = "as given"
@@ -121,15 +120,17 @@ def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -
     """
     data = case.tables()
     _put_roller(data, case, card, name)
-    data["follower"]["mass"] = units.format(case.follower.mass + _heavier(case, card), "g")
+    table_in(data, "follower")["mass"] = units.format(
+        case.follower.mass + _heavier(case, card), "g"
+    )
     base = case.cam.prime_radius + 0.5 * card.outer_diameter - case.roller.radius
-    data["cam"]["prime_radius"] = _mm(base)
+    table_in(data, "cam")["prime_radius"] = _mm(base)
     return case_of(data, folder)
 
 
-def _put_roller(data: dict[str, Any], case: Case, card: BearingCard, name: str) -> None:
+def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
     given, radius = case.roller, 0.5 * card.outer_diameter
-    roller = data["roller"]
+    roller = table_in(data, "roller")
     inside = card.bore if card.pitch_diameter is None else card.pitch_diameter
     chamfer = min(given.chamfer, _CHAMFER_MOST * card.width)
     roller |= {
@@ -140,33 +141,38 @@ def _put_roller(data: dict[str, Any], case: Case, card: BearingCard, name: str) 
         "bearing": {"card": name},
     }
     roller.pop("inertia", None)
-    pin = {"material": case.follower.stem_material.name, "source": "as wide as the roller's bore"}
+    pin: Tables = {
+        "material": case.follower.stem_material.name,
+        "source": "as wide as the roller's bore",
+    }
     span = card.width + 2.0 * _FORK
     if given.pin is not None:
-        pin = roller["pin"]
+        pin = table_in(roller, "pin")
         span = card.width + max(given.pin.span - given.width, 0.0)
     roller["pin"] = pin | {"diameter": _mm(card.bore), "span": _mm(span)}
-    data["cam"]["width"] = _mm(card.width)
+    table_in(data, "cam")["width"] = _mm(card.width)
     overhang = case.follower.overhang_at_max_lift + radius - given.radius
-    data["follower"]["overhang_at_max_lift"] = _mm(overhang)
+    table_in(data, "follower")["overhang_at_max_lift"] = _mm(overhang)
 
 
-def _put_spring(data: dict[str, Any], case: Case, spring: HelicalSpring) -> None:
-    data["spring"] |= {
-        "rate": units.format(spring.rate, "kN/m"),
-        "travel_max": _mm(travel_of(spring, case)),
-        "source": f"catalogue: {spring.name}; preload as it was",
-        "design": tables_of(spring),
-    }
+def _put_spring(data: Tables, case: Case, spring: HelicalSpring) -> None:
+    table_in(data, "spring").update(
+        {
+            "rate": units.format(spring.rate, "kN/m"),
+            "travel_max": _mm(travel_of(spring, case)),
+            "source": f"catalogue: {spring.name}; preload as it was",
+            "design": tables_of(spring),
+        }
+    )
 
 
 def _put_mass(
-    data: dict[str, Any], case: Case, card: BearingCard, spring: HelicalSpring, parts: Catalogue
+    data: Tables, case: Case, card: BearingCard, spring: HelicalSpring, parts: Catalogue
 ) -> None:
     """The follower with the new roller and half the new spring."""
     old = case.spring.design or nearest_spring(list(parts.springs.values()), case.spring.rate)
     mass = case.follower.mass + _heavier(case, card) + 0.5 * (spring.mass - old.mass)
-    data["follower"]["mass"] = units.format(mass, "g")
+    table_in(data, "follower")["mass"] = units.format(mass, "g")
 
 
 def _heavier(case: Case, card: BearingCard) -> float:
@@ -176,14 +182,15 @@ def _heavier(case: Case, card: BearingCard) -> float:
     return math.pi * roller.material.density * disc
 
 
-def _put_bushes(data: dict[str, Any], name: str) -> None:
+def _put_bushes(data: Tables, name: str) -> None:
     place = ("length", "diameter", "clearance", "stiffness")
+    guides = table_in(data, "guides")
     for side in ("a", "b"):
-        kept = {key: value for key, value in data["guides"][side].items() if key in place}
-        data["guides"][side] = kept | {"card": name}
+        kept = {key: value for key, value in table_in(guides, side).items() if key in place}
+        guides[side] = kept | {"card": name}
 
 
-def _put_search(data: dict[str, Any], case: Case, choice: Choice, radius: float) -> None:
+def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None:
     smoothing = case.smoothing
     kept = [n for n in smoothing.free if n not in ("spring_rate", "prime_radius")]
     low = least_prime_radius(case, radius)
@@ -192,17 +199,21 @@ def _put_search(data: dict[str, Any], case: Case, choice: Choice, radius: float)
         given = smoothing.prime_radius_range
         low, high = max(low, given[0]), max(given[1], _IN_HAND * max(low, given[0]))
     start = min(max(case.cam.prime_radius, low), high)
-    data["cam"]["prime_radius"] = _mm(start)
-    data["smoothing"] |= {
-        "kind": "constrained",
-        "free": list(dict.fromkeys([*kept, "initial_energy", "prime_radius"])),
-        "prime_radius_range": [_mm(low), _mm(high)],
-        "source": "redesign: the least ripple that these parts allow",
-    }
-    data["mechanism"]["compensation"] = 1.0
+    table_in(data, "cam")["prime_radius"] = _mm(start)
+    table_in(data, "smoothing").update(
+        {
+            "kind": "constrained",
+            "free": list(dict.fromkeys([*kept, "initial_energy", "prime_radius"])),
+            "prime_radius_range": [_mm(low), _mm(high)],
+            "source": "redesign: the least ripple that these parts allow",
+        }
+    )
+    table_in(data, "mechanism")["compensation"] = 1.0
     if choice.cam_radius is not None:
-        data["limits"][CAM_RADIUS.id] = _mm(choice.cam_radius)
-        data["limits"].setdefault("sources", {})[CAM_RADIUS.id] = "a rung of the redesign"
+        limits = table_in(data, "limits")
+        limits[CAM_RADIUS.id] = _mm(choice.cam_radius)
+        limits.setdefault("sources", {})
+        table_in(limits, "sources")[CAM_RADIUS.id] = "a rung of the redesign"
 
 
 def _mm(length: float) -> str:
