@@ -8,6 +8,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.engine_section import KINDS
 from camwright.pipeline.case.lift_section import LIFT_KINDS
 
+_KINDS = {"engine": KINDS, "lift": LIFT_KINDS}
 _WORDS = {
     "missing": "given",
     "string_type": "text in quotes",
@@ -18,7 +19,7 @@ _WORDS = {
     "model_attributes_type": "a table",
     "tuple_type": "an array of tables",
     "date_type": "a date such as 2025-06-30",
-    "union_tag_not_found": "a table with kind = " + " or ".join(f'"{kind}"' for kind in KINDS),
+    "union_tag_not_found": "a table with kind = {kinds}",
     "too_short": "at least {min_length} long",
     "too_long": "at most {max_length} long",
     "string_too_short": "at least {min_length} characters",
@@ -47,7 +48,9 @@ def first_error(error: ValidationError, section: str = "") -> InputError:
         value = "missing"
     elif first["type"] == "union_tag_invalid":
         field, value = f"{field}.kind", context["tag"]
-    elif isinstance(value, (dict, list)):
+    if first["type"] == "union_tag_not_found":
+        context["kinds"] = " or ".join(f'"{kind}"' for kind in _kinds(first["loc"]))
+    if isinstance(value, (dict, list)):
         value = "a table" if isinstance(value, dict) else "an array"
     limit = _WORDS.get(first["type"], first["msg"]).format_map(context)
     more = f" (and {others} more)" if others else ""
@@ -58,9 +61,11 @@ def _dotted(location: tuple[int | str, ...]) -> str:
     """``("load_case", 0, "speed")`` as ``load_case[0].speed``; the tag of a union is left out."""
     text = ""
     for position, part in enumerate(location):
-        if position == 1 and part in {"engine": KINDS, "lift": LIFT_KINDS}.get(
-            str(location[0]), ()
-        ):
+        if position == 1 and part in _kinds(location):
             continue
         text += f"[{part}]" if isinstance(part, int) else f".{part}"
     return text.lstrip(".")
+
+
+def _kinds(location: tuple[int | str, ...]) -> tuple[str, ...]:
+    return _KINDS.get(str(location[0]), ())

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
 from camwright.geometry.motion_laws import Motion, Segment
 from camwright.pipeline.base.quantities import FileName, In, Length
 from camwright.pipeline.case.section import Section, Table
+from camwright.pipeline.case.toml_text import TomlValue
 from camwright.pipeline.engine.cylinder import LiftPoint
 
 Stroke = Annotated[float, In("mm", above=-10_000, below=10_000)]
@@ -71,10 +72,15 @@ class LiftEccentric(Section):
     eccentricity: Length
 
 
-def _kind(given: Any) -> str:
-    """The kind of a lift; a table needs not say that it is one."""
-    found = given.get("kind", "table") if isinstance(given, dict) else given.kind
-    return str(found)
+def _kind(
+    lift: TomlValue | LiftTable | LiftSegments | LiftPoints | LiftEccentric,
+) -> str | None:
+    """The kind of a lift; a table may leave it out. None for what is no table."""
+    if isinstance(lift, dict):
+        return str(lift.get("kind", "table"))
+    if isinstance(lift, (LiftTable, LiftSegments, LiftPoints, LiftEccentric)):
+        return lift.kind
+    return None
 
 
 GivenLift = Annotated[

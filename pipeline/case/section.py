@@ -28,6 +28,7 @@ from camwright.pipeline.base.quantities import Characters, Part
 SAFE_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9_-])?")
 
 PartType = TypeVar("PartType", bound=Part)
+Read = TypeVar("Read")  # what a validator reads and returns unchanged
 
 
 def refusal(limit: str, **context: str) -> PydanticCustomError:
@@ -52,13 +53,13 @@ class Section(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _know_every_key(cls, given: Any) -> Any:
+    def _know_every_key(cls, table: Read) -> Read:
         """Refuse unknown keys before missing ones: a slip of the pen is both."""
         known = [field.alias or name for name, field in cls.model_fields.items()]
-        for key in given if isinstance(given, dict) else ():
+        for key in table if isinstance(table, dict) else ():
             if key not in known:
                 raise refusal(f"a known key{suggestion(key, known)}", unknown_key=str(key))
-        return given
+        return table
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:

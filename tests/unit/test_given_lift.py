@@ -70,6 +70,13 @@ def test_bad_lift_is_refused_in_one_line(given, refusal):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("value", ["3", "[]", '"cosine"', "true"])
+def test_a_lift_that_is_no_table_is_refused(value):
+    limit = 'must be a table with kind = "table" or "segments" or "points" or "eccentric"'
+    with pytest.raises(InputError, match=limit):
+        case(f"lift = {value}\n")
+
+
 def test_resolved_case_reads_back_bit_for_bit():
     first = case(segments())
     again = parse_case(first.to_toml())
