@@ -87,10 +87,12 @@ class CrankDrive(Part):
 
     @property
     def stroke(self) -> float:
+        """m."""
         return self.linkage.stroke
 
     @property
     def piston_area(self) -> float:
+        """m2."""
         return 0.25 * pi * self.bore**2
 
     @property
@@ -100,11 +102,12 @@ class CrankDrive(Part):
 
     @property
     def clearance(self) -> float:
-        """Height of the gas over the piston at its top dead centre, m."""
+        """Height of the gas above the piston at its top dead centre, m."""
         return self.stroke / (self.compression_ratio - 1.0)
 
     @property
     def reciprocating_mass(self) -> float:
+        """Mass of piston and small end of the rod, kg."""
         return self.piston_mass + (1.0 - self.rod_big_end_share) * self.rod_mass
 
     def volume(self, theta: ArrayLike) -> Array:
@@ -122,7 +125,7 @@ class CrankDrive(Part):
         return np.asarray(force * self.linkage.travel_rate(theta))
 
     def reciprocating_inertia(self, theta: ArrayLike) -> Array:
-        """m x'^2 of all reciprocating masses, what they add to the crank's inertia, kg m2."""
+        """m x'^2 of all reciprocating masses, their part of the inertia at the crank, kg m2."""
         at = np.asarray(theta, dtype=float)
         rates = [self.linkage.travel_rate(at - offset) for offset in self.firing_offsets]
         return np.asarray(self.reciprocating_mass * sum(rate**2 for rate in rates))

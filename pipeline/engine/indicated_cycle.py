@@ -1,4 +1,4 @@
-"""The working cycle of one cylinder: single zone, first law, until it repeats itself."""
+"""Working cycle of one cylinder: state of the gas, torques, balance of energy and mass."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from camwright.pipeline.engine.valves import valve_train_torque
 
 @dataclass(frozen=True)
 class CycleBalance:
-    """What went in and out of one cylinder over its last cycle: J and kg."""
+    """Balance of energy (J) and mass (kg) of one cylinder over its last cycle."""
 
     heat_released: float
     heat_lost: float
     work: float  # of the gas on the piston
-    enthalpy_in: float  # net, with the gas through both valves
+    enthalpy_in: float  # net, through both valves
     energy_change: float
     intake_mass: float  # net
     exhaust_mass: float  # net, out of the cylinder
@@ -27,21 +27,21 @@ class CycleBalance:
 
     @property
     def energy_residual(self) -> float:
-        """What the first law leaves over, relative to the heat and work turned over."""
+        """Residual of the first law over the heat released, heat lost and work."""
         left = self.heat_released - self.heat_lost - self.work + self.enthalpy_in
         turned = abs(self.heat_released) + abs(self.heat_lost) + abs(self.work)
         return (left - self.energy_change) / max(turned, 1e-12)
 
     @property
     def mass_residual(self) -> float:
-        """What the conservation of mass leaves over, relative to the intake."""
+        """Residual of the mass balance over the intake mass."""
         left = self.intake_mass - self.exhaust_mass - self.mass_change
         return left / max(abs(self.intake_mass), 1e-12)
 
 
 @dataclass(frozen=True, eq=False)
 class CylinderCycle:
-    """One periodic cycle of one cylinder on whole crank degrees, 0 the TDC of intake.
+    """Periodic cycle of one cylinder at whole crank degrees, 0 the TDC of intake.
 
     Arrays are (720,): `theta` rad, `pressure` Pa, `temperature` K, `mass` kg.
     """
@@ -82,7 +82,7 @@ class CylinderCycle:
 
     @property
     def dipper_torque(self) -> Array:
-        """Drag of the oil dipper, where it dips: about both bottom dead centres, N m."""
+        """Drag torque of the oil dipper about both bottom dead centres, N m."""
         engine = self.engine
         if engine.dipper_area == 0.0:
             return np.zeros_like(self.theta)

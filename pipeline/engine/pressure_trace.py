@@ -1,4 +1,4 @@
-"""Cylinder pressure as measured: cycles, their scatter, where zero and dead centre lie."""
+"""Measured cylinder pressure: cycles and their scatter, pegging, dead centre, torque."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ from camwright.pipeline.engine.trace_file import (
 DeadCentre = Literal["given", "symmetry", "loss_angle"]
 
 PEAK_RANGE = (1.2e5, 4.0e7)  # Pa, of the peak of any engine that compresses
-FIRING_WINDOW = np.radians((300.0, 480.0))  # where the peak of a cycle is found
-BOTTOM_WINDOW = np.radians((170.0, 190.0))  # where the cylinder is taken to be at intake pressure
+FIRING_WINDOW = np.radians((300.0, 480.0))  # of the peak of a cycle
+BOTTOM_WINDOW = np.radians((170.0, 190.0))  # in which the cylinder is assumed at intake pressure
 COMPRESSION_WINDOW = np.radians((270.0, 320.0))
 POLYTROPIC_EXPONENT = 1.32
 SCALE_MAX = 2.2  # measured over expected rise in compression; a wrong unit is 10 or more
-LOSS_ANGLE = radians(0.6)  # by which a motored peak leads the dead centre, typical
+LOSS_ANGLE = radians(0.6)  # typical lead of a motored peak over the dead centre
 
 
 @dataclass(frozen=True, kw_only=True)
 class _PressureFile(Part):
-    """The file of a measured cylinder pressure, and how it is read."""
+    """File of a measured cylinder pressure: columns, units, angles, dead centre."""
 
     table: ClassVar[str] = "engine"
 
@@ -134,7 +134,7 @@ class PressureTrace:
         return np.asarray(self.cycles.std(axis=0, ddof=1))
 
     def pegged(self, intake_pressure: float) -> PressureTrace:
-        """Each cycle moved so that about the bottom dead centre of intake it is at intake pressure.
+        """Each cycle shifted to intake pressure (Pa) about the bottom dead centre of intake.
 
         References
         ----------
@@ -150,7 +150,7 @@ class PressureTrace:
         )
 
     def turned(self, offset: float) -> PressureTrace:
-        """The same with its angles shifted by `offset` (rad)."""
+        """The trace with its angles shifted by `offset` (rad)."""
         if offset == 0.0:
             return self
         order = np.arange(self.cycles.shape[1] // 2 + 1) * (2.0 * pi / CYCLE_ANGLE)
@@ -159,13 +159,13 @@ class PressureTrace:
         return replace(self, cycles=turned, offset=self.offset + offset)
 
     def guarded(self) -> PressureTrace:
-        """The same, refused where it cannot be the pressure of an engine.
+        """The trace, refused if it is implausible as a cylinder pressure.
 
         Raises
         ------
         InputError
-            If the mean cycle is not above zero, its peak is beyond any engine's, with the unit
-            that would fit, or does not lie about firing TDC.
+            If the mean cycle is not above zero, or its peak is out of range (with a hint at the
+            unit) or not about firing TDC.
         """
         mean, name = self.mean, f"{self.source} pressure"
         if not mean.min() > 0.0:
@@ -192,12 +192,12 @@ class PressureTrace:
         return float((ends[1] - ends[0]) / expected)
 
     def guard_scale(self, engine: CrankDrive, intake_pressure: float) -> None:
-        """Refuse pressures whose rise in compression does not fit the engine.
+        """Refuse pressures whose rise in compression does not agree with the engine.
 
         Raises
         ------
         InputError
-            With the unit that would fit, where one does.
+            With the unit that agrees, if one does.
         """
         scale = self.scale(engine, intake_pressure)
         if 1.0 / SCALE_MAX <= scale <= SCALE_MAX:
@@ -212,7 +212,7 @@ class PressureTrace:
 
 
 def _unit_hint(peak: float) -> str:
-    """What the values may be where their peak is beyond any engine's."""
+    """Unit in which a peak (Pa) out of range would be in range, for the message."""
     typical = (4e5, 2e7)
     for factor, words in ((1e5, "bar"), (1e6, "MPa"), (1e-5, "Pa"), (1e3, "kPa"), (1e-6, "Pa")):
         if typical[0] <= peak * factor <= typical[1]:
@@ -222,7 +222,7 @@ def _unit_hint(peak: float) -> str:
 
 @dataclass(frozen=True, eq=False)
 class CycleStatistics:
-    """Cycle-to-cycle figures; arrays (m,) of each cycle."""
+    """Statistics of the cycles; arrays (m,), a value per cycle."""
 
     imep: Array  # Pa, net, all four strokes
     peak: Array  # Pa
@@ -262,9 +262,9 @@ def dead_centre_offset(
 ) -> float:
     """Shift (rad) that brings the dead centre of a motored trace to 360 deg.
 
-    By `symmetry`, the axis about which both flanks within 60 deg agree best is the dead centre;
-    heat and leakage pull it ahead by some tenths of a degree. By `loss_angle`, the peak of the
-    mean cycle plus a stated loss angle is.
+    By `symmetry`, the dead centre is the axis about which both flanks within 60 deg agree best;
+    heat transfer and leakage advance it by some tenths of a degree. By `loss_angle`, it is the
+    peak of the mean cycle plus a stated loss angle.
 
     Parameters
     ----------
@@ -283,7 +283,7 @@ def dead_centre_offset(
     order = np.arange(mean.size // 2 + 1) * (2.0 * pi / CYCLE_ANGLE)
     spectrum = np.fft.rfft(mean) / mean.size
     spectrum[1:] *= 2.0
-    kept = order <= 60.0  # above lies noise; a compression has nothing there
+    kept = order <= 60.0  # a compression has no content above, only noise
     spectrum, order = spectrum[kept], order[kept]
 
     def pressure(angle: Array) -> Array:
@@ -300,10 +300,10 @@ def dead_centre_offset(
         return -float(pressure(np.array([axis]))[0])
 
     cost = skew if method == "symmetry" else below
-    found = minimize_scalar(
+    optimum = minimize_scalar(
         cost, bounds=(start - step, start + step), method="bounded", options={"xatol": 1e-7}
     )
-    axis = float(found.x) + (loss_angle if method == "loss_angle" else 0.0)
+    axis = float(optimum.x) + (loss_angle if method == "loss_angle" else 0.0)
     return 2.0 * pi - axis
 
 
@@ -315,23 +315,23 @@ def pressure_from_csv(
     firing_angle: float = 2.0 * pi,
     gap_max: float = GAP_MAX,
 ) -> PressureTrace:
-    """Pressure against crank angle: a column a cycle, or cycles one below the other.
+    """Cylinder pressure against crank angle: a column per cycle, or cycles one below the other.
 
-    Angles run on from cycle to cycle or start again with each.
+    Angles continue from cycle to cycle, or start again with each.
 
     Parameters
     ----------
     path : path
-    column : str                what the headers of the pressure columns begin with
+    column : str                beginning of the headers of the pressure columns
     units : (angle, pressure)   of a file without a header, whose first column is the angle
     firing_angle : float        rad, of firing TDC in the file's angles
-    gap_max : float             rad, the widest stretch without a row
+    gap_max : float             rad, maximum gap between rows
 
     Raises
     ------
     InputError
-        As `read_trace`; for a last cycle that is short; for what `PressureTrace.guarded` refuses
-        only the caller can tell, once the trace is pegged.
+        As `read_trace`; if a cycle is incomplete. `PressureTrace.guarded` checks the values, after
+        pegging.
     """
     text = trace_text(Path(path), headed=units is None)
     name, header = text.name, text.header
@@ -406,7 +406,7 @@ def _cycles(
 
 
 def _unwrapped(angle: Array) -> Array:
-    """Angles that start again with each cycle, running on instead."""
+    """Angles that start again with each cycle, made continuous."""
     steps = np.diff(angle)
     spacing = float(np.median(steps))
     back = np.abs(steps + CYCLE_ANGLE - spacing) <= 1.5 * abs(spacing)
@@ -414,10 +414,10 @@ def _unwrapped(angle: Array) -> Array:
 
 
 def torque_from_pressure(trace: PressureTrace, engine: PressureTable, crank_speed: float) -> Torque:
-    """Torque of an engine whose cylinders all run the mean of the measured cycles.
+    """Torque of an engine whose cylinders all have the mean of the measured cycles.
 
-    Parts are the gas, the inertia of the reciprocating masses at constant speed, and friction,
-    as the engine states it: a mean effective pressure, or what closes the balance.
+    Components are the gas, the inertia of the reciprocating masses at constant speed, and
+    friction: of the friction pressure, or what closes the torque balance.
 
     Raises
     ------
@@ -439,6 +439,6 @@ def torque_from_pressure(trace: PressureTrace, engine: PressureTable, crank_spee
 
 
 def _thinned(values: Array) -> Array:
-    """Values at the angles of a torque; the harmonics they cannot carry are left out."""
+    """Values at the angles of a torque, without the harmonics above their Nyquist order."""
     spectrum = np.fft.rfft(values)[: SAMPLES // 2 + 1]
     return np.asarray(np.fft.irfft(spectrum, n=SAMPLES) * (SAMPLES / values.size))

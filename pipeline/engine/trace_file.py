@@ -1,4 +1,4 @@
-"""The text of a trace file: its lines, the units in its header, its cells as numbers."""
+"""Text of a trace file: lines, units in the header, cells as numbers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Characters
 
-SIZE_MAX = 64 * 2**20  # bytes; looked up before the file is opened
+SIZE_MAX = 64 * 2**20  # bytes; checked before the file is opened
 ROWS_MAX = 1_000_000
 
 HeaderText = Annotated[str, Characters(0, 80)]
@@ -42,7 +42,7 @@ ANGLE_UNITS: Mapping[str, float] = MappingProxyType(
     }
 )
 
-# Written without blanks, dots, stars, dashes and carets; exact case is tried first (mPa, MPa).
+# Without blanks, dots, stars, dashes and carets; exact case is tried first (mPa, MPa).
 QUANTITY_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "lift": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254},
@@ -141,7 +141,7 @@ def trace_text(path: Path, *, headed: bool = True, one_column: bool = False) -> 
 
     Parameters
     ----------
-    headed : bool       whether the first line is a header; without, blanks may part the columns
+    headed : bool       whether the first line is a header; without, blanks may separate columns
     one_column : bool   whether a file of one column, without any delimiter, is accepted
 
     Raises
@@ -171,12 +171,12 @@ def _delimiter(
         return " "
     if one_column and not any("," in line for _, line in lines[1:2]):
         return ";"  # a decimal comma is no delimiter
-    limit = "a header of columns parted by semicolon, tab or comma"
+    limit = "a header of columns separated by semicolon, tab or comma"
     raise InputError(f"{name} line {number}", head, limit)
 
 
 def _text_lines(path: Path) -> list[tuple[int, str]]:
-    """The lines of a text file that hold something, with their numbers from 1."""
+    """Lines of a text file with their numbers from 1, without empty lines and comments."""
     raw = _bytes(path)
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raw = raw.decode("utf-16", errors="replace").encode()
@@ -196,7 +196,7 @@ def _text_lines(path: Path) -> list[tuple[int, str]]:
 
 
 def _bytes(path: Path) -> bytes:
-    """The bytes of a file, refused unread where it is no file or too large."""
+    """Bytes of a file; one that is no file or too large is refused unread."""
     try:
         if path.is_dir():
             raise InputError(path.name, "a folder", "a file")
@@ -218,7 +218,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _decoded(coded: bytes) -> str:
-    """One line, as UTF-8 or else Latin-1: files pasted together mix the two."""
+    """One line as UTF-8, else as Latin-1: a file may mix the two."""
     try:
         return coded.decode("utf-8")
     except UnicodeDecodeError:
@@ -230,7 +230,7 @@ def _cells(line: str, delimiter: str) -> list[str]:
 
 
 def _unit(header: str, units: Mapping[str, float]) -> float | None:
-    """The factor to SI of the unit a header ends with: all in its brackets, else the shortest
+    """Factor to SI of the unit at the end of a header: the text in its brackets, else the shortest
     ending that is a unit, so that `M_Nm` is a moment in N m."""
     bracketed = re.search(r"[\[({](.*)[\])}]\s*$", header)
     if bracketed:
@@ -249,24 +249,24 @@ def _unit(header: str, units: Mapping[str, float]) -> float | None:
 
 
 def columns_of(header: Sequence[str], quantity: str, prefix: str = "") -> dict[int, float]:
-    """All columns of a quantity whose header begins so, and their factors to SI."""
+    """Columns of a quantity whose header begins with `prefix`, and their factors to SI."""
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
     return {at: f for at, f in factors.items() if header[at].lower().startswith(prefix.lower())}
 
 
 def has_angle(header: Sequence[str]) -> bool:
-    """Whether a column is one of angle."""
+    """Whether a column has a unit of angle."""
     return bool(_with_unit(header, ANGLE_UNITS))
 
 
 def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, float]:
-    """Columns whose header ends with one of the units, and the factor to SI."""
+    """Columns whose header ends with one of the units, and their factors to SI."""
     factors = {at: _unit(text, units) for at, text in enumerate(header)}
     return {at: factor for at, factor in factors.items() if factor is not None}
 
 
 def angle_column(name: str, header: Sequence[str]) -> tuple[int, float]:
-    """Where the crank angle stands and its factor to rad."""
+    """Column of the crank angle and its factor to rad."""
     factors = _with_unit(header, ANGLE_UNITS)
     found = list(factors)
     if len(found) > 1:
@@ -280,7 +280,7 @@ def angle_column(name: str, header: Sequence[str]) -> tuple[int, float]:
 def value_column(
     name: str, header: Sequence[str], quantity: str, column: str | None
 ) -> tuple[int, float]:
-    """Where the quantity stands and its factor to SI."""
+    """Column of a quantity and its factor to SI."""
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
     found = list(factors)
     if column is not None:

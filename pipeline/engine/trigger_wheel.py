@@ -15,8 +15,8 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Angle, Count, In, Part
 
 FULL_TURN = 2.0 * pi
-NEIGHBOURS = 9  # intervals, of whose median a regular one is a share
-REGULAR = (0.6, 1.4)  # of that median: a crank within its cycle stays well inside
+NEIGHBOURS = 9  # intervals in the local median
+REGULAR = (0.6, 1.4)  # interval over local median; speed ripple stays well inside
 
 
 Teeth = Annotated[int, Count(4, 720)]
@@ -72,7 +72,7 @@ class TriggerWheel(Part):
         return self.teeth - self.missing_teeth
 
     def angle(self, place: Array, falling: bool) -> Array:
-        """Crank angle (rad) of an edge of the teeth counted from the reference, missing or not."""
+        """Crank angle (rad) of edges at places of teeth, counted from the reference."""
         turn, tooth = np.divmod(place, self.teeth)
         known = self.falling if falling else self.rising
         at = tooth * self.pitch + (self.tooth_share * self.pitch if falling else 0.0)
@@ -83,8 +83,8 @@ class TriggerWheel(Part):
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """Edges of one kind that passed: times (n,), s, and the places (n,) of their teeth, counted
-    from the reference on, gaps included."""
+    """Edges of one kind: times (n,), s, and places (n,) of their teeth, counted from the
+    reference, gaps included."""
 
     times: Array
     places: Array
@@ -118,14 +118,14 @@ def counted(field: str, times: ArrayLike, wheel: TriggerWheel, both: bool) -> tu
         raise InputError(f"{field} edge {k + 1}", f"{at[k]:.9g} s", f"after {at[k - 1]:.9g} s")
     rising = at[::2] if both else at
     places = tooth_places(field, rising, wheel)
-    found = [Edges(rising, places, False)]
+    edges = [Edges(rising, places, False)]
     if both:
-        found.append(Edges(at[1::2], places[: at[1::2].size], True))
-    return tuple(found)
+        edges.append(Edges(at[1::2], places[: at[1::2].size], True))
+    return tuple(edges)
 
 
 def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
-    """Places (n,) of the teeth whose edges of one kind passed at `times`.
+    """Places (n,) of the teeth whose edges of one kind have `times` (s).
 
     Raises
     ------
@@ -159,7 +159,7 @@ def _local_median(intervals: Array) -> Array:
 
 
 def _guard_gaps(field: str, times: Array, gaps: list[int], wheel: TriggerWheel) -> None:
-    """Refuse a gap that does not come back after every n - m teeth."""
+    """Refuse a gap that does not recur after every n - m teeth."""
     if not gaps:
         limit = f"a gap of {wheel.missing_teeth} missing teeth in every turn"
         raise InputError(field, "no gap", limit)
@@ -176,41 +176,43 @@ def _guard_gaps(field: str, times: Array, gaps: list[int], wheel: TriggerWheel) 
 def learned_wheel(
     wheel: TriggerWheel, runs: Sequence[Sequence[Edges]], turns_min: int = 3
 ) -> TriggerWheel:
-    """The wheel with the angles of its edges as reference turns at steady speed show them.
+    """The wheel with edge angles learned from reference turns at steady speed.
 
-    Each turn is cut into the shares of its time that the edges take; a speed that drifts
-    linearly from turn to turn is allowed for. What is left is averaged over all turns.
+    The angle of an edge is the share of the time of its turn, corrected for a speed that drifts
+    linearly from turn to turn, and averaged over all turns.
 
     Parameters
     ----------
     runs : sequence of runs     each the edges of `counted`, motored or coasting without firing
-    turns_min : int             whole turns needed
+    turns_min : int             least number of whole turns
 
     Raises
     ------
     InputError
-        If there are fewer turns.
+        If there are fewer whole turns.
 
     References
     ----------
     Kiencke and Nielsen, Automotive Control Systems (2005), ch. on crankshaft speed: adaptation
     of the sensor wheel, cited from memory: verify.
     """
-    found: dict[bool, list[Array]] = {False: [], True: []}
+    shares: dict[bool, list[Array]] = {False: [], True: []}
     for run in runs:
         rising = next(edges for edges in run if not edges.falling)
         starts = rising.times[np.mod(rising.places, wheel.teeth) == 0.0]
         for edges in run:
-            found[edges.falling] += _shares(edges, starts, wheel)
-    if len(found[False]) < turns_min:
-        raise InputError("engine.reference_file", f"{len(found[False])} whole turns", ">= 3")
-    rising = FULL_TURN * np.mean(found[False], axis=0)
-    falling = FULL_TURN * np.mean(found[True], axis=0) if found[True] else None
+            shares[edges.falling] += _shares(edges, starts, wheel)
+    if len(shares[False]) < turns_min:
+        raise InputError(
+            "engine.reference_file", f"{len(shares[False])} whole turns", f">= {turns_min}"
+        )
+    rising = FULL_TURN * np.mean(shares[False], axis=0)
+    falling = FULL_TURN * np.mean(shares[True], axis=0) if shares[True] else None
     return replace(wheel, rising=readonly(rising), falling=falling)
 
 
 def _shares(edges: Edges, starts: Array, wheel: TriggerWheel) -> list[Array]:
-    """For each turn with one before and one after it, the share at which its edges stand."""
+    """Shares of the time of a turn at its edges, for each turn between two others."""
     lengths = np.diff(starts)
     shares = []
     for k in range(1, lengths.size - 1):

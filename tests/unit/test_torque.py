@@ -151,7 +151,7 @@ def test_measured_torque_comes_back_on_whole_degrees(tmp_path, torque):
 
 def test_a_cycle_that_does_not_settle_raises(monkeypatch):
     monkeypatch.setattr(indicated_cycle_solver, "CYCLES_MAX", 2)
-    with pytest.raises(CamError, match="did not repeat itself within 2 cycles"):
+    with pytest.raises(CamError, match="did not become periodic within 2 cycles"):
         torque_from_cylinder(ENGINE, SPEED)
 
 
