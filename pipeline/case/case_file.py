@@ -1,4 +1,4 @@
-"""Reading a case file: TOML, cards, included files; the first error as one line."""
+"""Reading of a case file: TOML, cards, included files; the first error in one line."""
 
 from __future__ import annotations
 
@@ -34,18 +34,20 @@ def load_case_file(path: str | Path) -> Case:
     Raises
     ------
     InputError
-        For the first thing that is wrong, by its dotted name.
+        For the first error, by its dotted name.
     """
     path = Path(path)
     return parse_case(_read(path, "case", CASE_BYTES), path.resolve().parent)
 
 
 def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
-    """A case from its text; included files are looked for in `folder`."""
+    """A case from its text; included files are read from `folder`."""
     data = _parse_toml(content)
     version = data.get("schema_version")
     if version is not None and version != SCHEMA_VERSION:
-        raise InputError("schema_version", str(version), f"{SCHEMA_VERSION}, the one known here")
+        raise InputError(
+            "schema_version", str(version), f"{SCHEMA_VERSION}, the version of this program"
+        )
     case = case_of(data, folder)
     case._folder = folder
     case._included = MappingProxyType(_read_includes(case, folder))
@@ -55,7 +57,7 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
 
 
 def case_of(data: Tables, folder: Path | None = None) -> Case:
-    """A case from its tables, cards of `folder` filled in; files it includes are not read."""
+    """A case from its tables and the cards of `folder`; included files are not read."""
     tables = with_new_keys(data)
     fill_cards(tables, folder)
     try:
@@ -67,14 +69,14 @@ def case_of(data: Tables, folder: Path | None = None) -> Case:
 
 
 def _cards(tables: TomlValue | None) -> dict[str, Material]:
-    """Material cards by name; a card that is refused stands for itself until `Case` refuses it."""
-    found = {}
+    """Materials by name; a placeholder for an invalid one, which `Case` refuses by its field."""
+    cards = {}
     for name, table in tables.items() if isinstance(tables, dict) else ():
         try:
-            found[name] = read_part(Material, table, f"materials.{name}")
+            cards[name] = read_part(Material, table, f"materials.{name}")
         except InputError:
-            found[name] = _REFUSED
-    return named(found)
+            cards[name] = _REFUSED
+    return named(cards)
 
 
 def _parse_toml(content: str | bytes) -> Tables:

@@ -1,4 +1,4 @@
-"""A refusal of the case schema as one line: field, value, limit."""
+"""First error of a case file in one line: field, value, limit."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ _WORDS = {
 
 
 def first_error(error: ValidationError, section: str = "") -> InputError:
-    """The first refusal as one line; unknown keys go before what is missing for them."""
-    found = error.errors(include_url=False)
-    found.sort(key=lambda entry: "unknown_key" not in entry.get("ctx", {}))
-    first, others = found[0], len(found) - 1
+    """First error in one line; an unknown key comes before a missing one, often its misspelling."""
+    errors = error.errors(include_url=False)
+    errors.sort(key=lambda entry: "unknown_key" not in entry.get("ctx", {}))
+    first, others = errors[0], len(errors) - 1
     context = dict(first.get("ctx", {}))
     field, value = f"{section}.{_dotted(first['loc'])}".strip("."), first["input"]
     if "field" in context:
@@ -58,7 +58,7 @@ def first_error(error: ValidationError, section: str = "") -> InputError:
 
 
 def _dotted(location: tuple[int | str, ...]) -> str:
-    """``("load_case", 0, "speed")`` as ``load_case[0].speed``; the tag of a union is left out."""
+    """``("load_case", 0, "speed")`` as ``load_case[0].speed``; without the tag of a union."""
     text = ""
     for position, part in enumerate(location):
         if position == 1 and part in _kinds(location):

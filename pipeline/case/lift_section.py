@@ -46,7 +46,7 @@ class LiftSegment(Section):
 
 
 class LiftSegments(Section):
-    """Lift by motion laws; the segments fill the turn, or its part when they repeat."""
+    """Lift by motion laws; the segments, times `repeat`, fill the turn."""
 
     kind: Literal["segments"]
     repeat: Annotated[int, Field(ge=1, le=12)] = 1
@@ -56,7 +56,7 @@ class LiftSegments(Section):
 
 
 class LiftPoints(Section):
-    """Lift by a B-spline through points of the turn."""
+    """Lift by a B-spline through points of one cam turn."""
 
     kind: Literal["points"]
     points: Annotated[
@@ -66,7 +66,7 @@ class LiftPoints(Section):
 
 
 class LiftEccentric(Section):
-    """Lift of a circle that turns off its centre; its pitch radius is base plus eccentricity."""
+    """Lift of an eccentric circle."""
 
     kind: Literal["eccentric"]
     eccentricity: Length
@@ -93,13 +93,13 @@ GivenLift = Annotated[
 LIFT_KINDS = ("table", "segments", "points", "eccentric")
 
 
-def motion_of(given: LiftSegments) -> Motion:
-    """The segments of a case.
+def motion_of(section: LiftSegments) -> Motion:
+    """Motion of the segments of a case.
 
     Raises
     ------
     InputError
         If they do not add up to a turn or do not close.
     """
-    segments = tuple(Segment(part.law, part.angle, part.stroke) for part in given.segments)
-    return Motion(segments, given.repeat)
+    segments = tuple(Segment(part.law, part.angle, part.stroke) for part in section.segments)
+    return Motion(segments, section.repeat)

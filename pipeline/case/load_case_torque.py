@@ -1,4 +1,4 @@
-"""Engine torque of a load case, from the model or the measurement that a case names."""
+"""Engine torque of a load case, from the engine model or a measurement."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.indicated_cycle_solver import SPEED_RANGE
 from camwright.pipeline.engine.pickup_voltage import VoltageTable, speed_from_voltage
 from camwright.pipeline.engine.pressure_trace import (
     PressureTable,
@@ -28,14 +29,14 @@ from camwright.pipeline.engine.torque import (
     torque_from_cylinder,
 )
 
-CRANKING = 10.0
-"""Speed at which an engine that stands is turned over, rad/s: the slowest the model knows."""
+CRANKING = SPEED_RANGE[0]
+"""Cranking speed of an engine at rest, rad/s."""
 
 
 def engine_torques(case: Case) -> dict[str, Torque]:
     """Engine torque of each load case by name; empty for a case that starts at the lift.
 
-    An engine that stands has only the torque its load case names, or that of being started.
+    A load case at speed 0 has a torque only from a file, or of a cylinder model cranked unfired.
     """
     if case.engine is None:
         return {}
@@ -52,7 +53,7 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
     Raises
     ------
     InputError
-        For what is wrong with a file, in one line.
+        If a file cannot be read or has wrong contents; by file and line.
     """
     engine = case.engine
     if state.torque is not None:
@@ -69,9 +70,9 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
 
 
 def _has_torque(case: Case, state: LoadCase) -> bool:
-    """Whether an engine gives torque in a load case: not one that stands, unless it is started."""
-    started = isinstance(case.engine, CylinderEngine) and not state.fired
-    return state.speed > 0 or state.torque is not None or started
+    """Whether a load case has an engine torque: not at rest, unless it is cranked."""
+    cranked = isinstance(case.engine, CylinderEngine) and not state.fired
+    return state.speed > 0 or state.torque is not None or cranked
 
 
 def _loaded(engine: CylinderEngine, state: LoadCase) -> CylinderEngine:
@@ -86,7 +87,7 @@ def _loaded(engine: CylinderEngine, state: LoadCase) -> CylinderEngine:
 
 
 def pressure(case: Case, engine: PressureTable) -> PressureTrace:
-    """The measured cycles of a case: pegged, turned to the dead centre, judged by their range."""
+    """Measured cycles of a case, shifted to the dead centre, pegged and checked."""
 
     def read(name: str) -> PressureTrace:
         return pressure_from_csv(
@@ -109,7 +110,7 @@ def pressure(case: Case, engine: PressureTable) -> PressureTrace:
 
 
 def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
-    """The measured crank speed of a case."""
+    """Measured crank speed of a case."""
     if isinstance(engine, VoltageTable):
         path = case.path(engine.file)
         return speed_from_voltage(path, engine.wheel, engine.band, engine.threshold)
@@ -127,19 +128,19 @@ def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
 
 
 def measurement_record(case: Case) -> Mapping[str, str | float] | None:
-    """What a measurement tells beside the torque, for ``run.json``; None for a model."""
+    """Statistics of a measurement for ``run.json``; None for a model."""
     engine = case.engine
     if isinstance(engine, PressureTable):
         trace = pressure(case, engine)
-        found = cycle_statistics(trace, engine)
+        statistics = cycle_statistics(trace, engine)
         return {
             "kind": engine.kind,
             "cycles": int(trace.cycles.shape[0]),
-            "imep_mean_kPa": 1e-3 * float(found.imep.mean()),
-            "imep_std_kPa": 1e-3 * found.imep_std,
-            "imep_cov_percent": 100.0 * found.imep_variation,
-            "peak_mean_MPa": 1e-6 * float(found.peak.mean()),
-            "peak_angle_mean_deg": float(np.degrees(found.peak_angle.mean())),
+            "imep_mean_kPa": 1e-3 * float(statistics.imep.mean()),
+            "imep_std_kPa": 1e-3 * statistics.imep_std,
+            "imep_cov_percent": 100.0 * statistics.imep_variation,
+            "peak_mean_MPa": 1e-6 * float(statistics.peak.mean()),
+            "peak_angle_mean_deg": float(np.degrees(statistics.peak_angle.mean())),
             "scatter_max_kPa": 1e-3 * float(trace.scatter.max()),
             "pegging_mean_kPa": 1e-3 * float(np.mean(trace.pegging)),
             "dead_centre": engine.dead_centre,

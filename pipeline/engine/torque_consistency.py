@@ -21,24 +21,24 @@ class Finding:
     Parameters
     ----------
     id, title, unit : str
-    given, implied : float    in `unit`
+    stated, implied : float   in `unit`
     how : str                 derivation of the implied value
     """
 
     id: str
     title: str
-    given: float
+    stated: float
     implied: float
     unit: str
     how: str
 
     @property
     def difference(self) -> float:
-        """(implied - given) / |given|; infinite if given is zero and they differ."""
-        off = self.implied - self.given
-        if self.given == 0.0:
+        """(implied - stated) / |stated|; infinite if stated is zero and they differ."""
+        off = self.implied - self.stated
+        if self.stated == 0.0:
             return 0.0 if off == 0.0 else float(np.copysign(np.inf, off))
-        return off / abs(self.given)
+        return off / abs(self.stated)
 
     @property
     def flagged(self) -> bool:
@@ -51,7 +51,7 @@ class Finding:
         return {
             "id": self.id,
             "title": self.title,
-            "given": self.given,
+            "given": self.stated,
             "implied": self.implied,
             "unit": self.unit,
             "difference_percent": percent if np.isfinite(percent) else None,
@@ -80,13 +80,13 @@ def implied_inertia(torque: ArrayLike, mean_speed: float, speed_std: float) -> f
 
 
 def inertia_finding(
-    given: float, torque: ArrayLike, mean_speed: float, speed_std: float
+    stated: float, torque: ArrayLike, mean_speed: float, speed_std: float
 ) -> Finding:
     """Stated inertia against that implied by torque and measured speed ripple."""
     return Finding(
         "inertia",
         "inertia at the crank",
-        given,
+        stated,
         implied_inertia(torque, mean_speed, speed_std),
         "kg m^2",
         "std of the torque's integral / (mean speed x std of the measured speed)",

@@ -268,13 +268,13 @@ def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, f
 def angle_column(name: str, header: Sequence[str]) -> tuple[int, float]:
     """Column of the crank angle and its factor to rad."""
     factors = _with_unit(header, ANGLE_UNITS)
-    found = list(factors)
-    if len(found) > 1:
-        found = [at for at in found if "crank" in header[at].lower()] or found
-    if len(found) != 1:
+    columns = list(factors)
+    if len(columns) > 1:
+        columns = [at for at in columns if "crank" in header[at].lower()] or columns
+    if len(columns) != 1:
         limit = "one column of crank angle with its unit (deg, rad or rev)"
         raise InputError(f"{name} header", ", ".join(header), limit)
-    return found[0], factors[found[0]]
+    return columns[0], factors[columns[0]]
 
 
 def value_column(
@@ -282,15 +282,15 @@ def value_column(
 ) -> tuple[int, float]:
     """Column of a quantity and its factor to SI."""
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
-    found = list(factors)
+    columns = list(factors)
     if column is not None:
-        found = [at for at in found if header[at].lower().startswith(column.lower())]
-        found = [at for at in found if header[at] == column] or found
+        columns = [at for at in columns if header[at].lower().startswith(column.lower())]
+        columns = [at for at in columns if header[at] == column] or columns
     for word in (quantity, "total"):
-        if len(found) > 1:
-            found = [at for at in found if word in header[at].lower()] or found
-    if len(found) != 1:
+        if len(columns) > 1:
+            columns = [at for at in columns if word in header[at].lower()] or columns
+    if len(columns) != 1:
         wanted = f"one column of {column or quantity}"
         limit = f"{wanted} with its unit ({', '.join(QUANTITY_UNITS[quantity])})"
         raise InputError(f"{name} header", ", ".join(header), limit)
-    return found[0], factors[found[0]]
+    return columns[0], factors[columns[0]]

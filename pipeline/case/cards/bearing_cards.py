@@ -1,4 +1,4 @@
-"""Bearing cards: ratings and sizes of ball bearings as their makers print them, in TOML."""
+"""Bearing cards: ratings and dimensions of ball bearings from the makers' tables."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _STRENGTHS = ("ring_fatigue_bending", "ring_tensile_strength")
 
 @dataclass(frozen=True, kw_only=True)
 class BearingCard(Part):
-    """A ball bearing as its maker rates it, SI.
+    """A ball bearing with its maker's ratings.
 
-    radial_limit is the load that the outer ring bears without a housing; fatigue_load_limit P_u.
-    balls is the number in one row, pitch_diameter that of the balls' centres, ring_thickness that
+    radial_limit is the load limit of the outer ring without a housing; fatigue_load_limit is P_u.
+    balls is the number in one row, pitch_diameter that of the ball centres, ring_thickness that
     of the outer ring under the groove; the ring is described completely or not at all.
 
     Raises
@@ -63,7 +63,7 @@ class BearingCard(Part):
 
     @property
     def bearing(self) -> Bearing:
-        """The bearing of a roller, with its outer ring where the card describes it."""
+        """The bearing as part of a roller, with its outer ring if the card describes it."""
         ring = None
         if self.balls is not None and self.pitch_diameter and self.ring_thickness:
             ring = OuterRing(

@@ -1,8 +1,8 @@
-"""Cards put into a case as it is read: ``card = "NAME"`` fills what its table leaves out.
+"""Cards of a case: ``card = "NAME"`` supplies the keys that its table leaves out.
 
-Cards come from the files shipped here and from ``cards.toml`` beside the case, which goes first.
-A filled case names no cards any more: its resolved text holds every number and its source. So it
-is with ``spring.catalogue``.
+Cards are read from the files of this package and from ``cards.toml`` in the folder of the case,
+which takes precedence. The resolved case states every value and its source, and no card. The same
+holds for ``spring.catalogue``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Cards = Mapping[str, Mapping[str, Tables]]
 
 
 def fill_cards(case: Tables, folder: Path | None) -> None:
-    """Put the cards that a case names into its tables, and the spring of its catalogue.
+    """Complete the tables of a case from the cards and the spring catalogue that it names.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def fill_cards(case: Tables, folder: Path | None) -> None:
 
 
 def known_cards(folder: Path | None) -> Cards:
-    """Shipped cards by kind and name, those of the user beside the case over them."""
+    """Shipped cards by kind and name; those of the user in `folder` take precedence."""
     cards = {kind: dict(cards) for kind, cards in _shipped().items()}
     path = None if folder is None else folder / USER_FILE
     if path is None or not path.is_file():
@@ -83,11 +83,11 @@ def known_cards(folder: Path | None) -> Cards:
 
 
 def viscosity(at_40: float, at_100: float, temperature: float) -> float:
-    """Kinematic viscosity (mm2/s) of an oil at a temperature (K) from those at 40 and 100 degC.
+    """Kinematic viscosity (mm2/s) of an oil at a temperature (K), from those at 40 and 100 degC.
 
     References
     ----------
-    Walther's equation, ASTM D341: log log (v + 0.7) is straight over log T.
+    Walther's equation, ASTM D341: log log (v + 0.7) is linear in log T.
     """
     low, high = (math.log10(math.log10(v + 0.7)) for v in (at_40, at_100))
     start, end = math.log10(313.15), math.log10(373.15)
@@ -108,12 +108,12 @@ def _shipped() -> Cards:
 
 
 def _sourced(card: TomlValue, field: str) -> Tables:
-    """A card, refused without the source of its numbers."""
+    """A card; refused without the source of its values."""
     if not isinstance(card, dict):
         raise InputError(field, str(card), "a table")
     source = card.get("source")
     if not isinstance(source, str) or not source.strip():
-        raise InputError(f"{field}.source", "missing", "given: where the numbers come from")
+        raise InputError(f"{field}.source", "missing", "given: the source of its values")
     return card
 
 

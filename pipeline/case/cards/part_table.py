@@ -1,4 +1,4 @@
-"""A part read from one table of its own, outside a case file."""
+"""A part read from a table of a card or catalogue."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from camwright.pipeline.case.toml_text import TomlValue
 
 
 def read_part(part: type[PartType], table: TomlValue, field: str) -> PartType:
-    """The part that a table describes.
+    """Part described by a table.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A catalogue of springs in TOML, and the lightest in it that will do."""
+"""Catalogue of springs in TOML, and the lightest that meets a demand."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ _BYTES = 256 * 1024
 
 @dataclass(frozen=True)
 class SpringDemand:
-    """What a spring has to meet.
+    """Demand on a spring.
 
     Parameters
     ----------
     rate : float               N/m
-    rate_tolerance : float     share by which the rate may miss
+    rate_tolerance : float     permitted relative deviation of the rate
     preload : float            N, at zero lift
     travel : float             m, to the largest lift
-    fatigue_safety : float     Goodman and Zimmerli
-    solid_clearance : float    share of the largest deflection
-    rate_spread, preload_spread : float   shares by which a spring as made may exceed both; the
-                                          hardest that may come has to do
+    fatigue_safety : float     least safety by Goodman and Zimmerli
+    solid_clearance : float    least clearance to solid over the maximum deflection
+    rate_spread, preload_spread : float   tolerances of rate and preload, shares; the demand must
+                                          be met at their upper bounds
     """
 
     rate: float
@@ -51,21 +51,21 @@ class SpringDemand:
     preload_spread: float = 0.0
 
     def shortfalls(self, spring: HelicalSpring) -> tuple[str, ...]:
-        """What keeps a spring from meeting the demand, in words; empty when it does."""
+        """Reasons why a spring does not meet the demand; empty if it does."""
         preload = self.preload * (1.0 + self.preload_spread)
         greatest = preload + spring.rate * (1.0 + self.rate_spread) * self.travel
-        found = []
+        reasons = []
         if abs(spring.rate / self.rate - 1.0) > self.rate_tolerance:
-            found.append("rate")
+            reasons.append("rate")
         if spring.solid_clearance(preload, self.travel) < self.solid_clearance:
-            found.append("goes solid")
+            reasons.append("goes solid")
         if spring.static_use(greatest) > 1.0:
-            found.append("shear stress")
+            reasons.append("shear stress")
         if spring.fatigue_safety(preload, greatest) < self.fatigue_safety:
-            found.append("fatigue")
+            reasons.append("fatigue")
         if spring.buckling_use > 1.0:
-            found.append("buckling")
-        return tuple(found)
+            reasons.append("buckling")
+        return tuple(reasons)
 
 
 def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
@@ -74,7 +74,7 @@ def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
     Raises
     ------
     InputError
-        For a file that is not TOML, an unknown or missing key, or a spring that cannot be.
+        For a file that is not TOML, an unknown or missing key, or an impossible spring.
     """
     catalogue = read_toml(Path(path), "catalogue", _BYTES)
     for key in catalogue:
@@ -98,7 +98,7 @@ def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
 def lightest(
     catalogue: tuple[HelicalSpring, ...], demand: SpringDemand
 ) -> tuple[HelicalSpring | None, dict[str, tuple[str, ...]]]:
-    """The lightest spring that meets the demand (None: there is none), and why others do not."""
+    """The lightest spring that meets the demand, or None, and the reasons of those that do not."""
     reasons = {spring.name: demand.shortfalls(spring) for spring in catalogue}
     fit = [spring for spring in catalogue if not reasons[spring.name]]
     best = min(fit, key=lambda spring: spring.mass, default=None)
@@ -107,7 +107,7 @@ def lightest(
 
 @dataclass(frozen=True, kw_only=True)
 class _Wire(Part):
-    """The wire of a spring: those fields of `HelicalSpring` that a maker prints once."""
+    """Wire of several springs: the fields of `HelicalSpring` that depend on the wire alone."""
 
     table: ClassVar[str] = "wire"
 
@@ -124,7 +124,7 @@ def _wire(field: str, entry: TomlValue) -> _Wire:
 
 
 def _spring(field: str, entry: TomlValue, wires: Mapping[str, _Wire]) -> HelicalSpring:
-    """The spring of an entry: its own keys and those of its wire."""
+    """Spring of an entry: its own keys and those of its wire."""
     if not isinstance(entry, dict):
         raise InputError(field, str(entry), "a table")
     own = dict(entry)
