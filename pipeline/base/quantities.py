@@ -155,6 +155,50 @@ class Count:
             raise InputError(field, value, f">= {self.at_least} and <= {self.at_most}")
 
 
+_NOT_PRINTED = "\n\t\u200c\u200d\u200e\u200f"  # line ends, joiners, marks of direction
+
+
+@dataclass(frozen=True)
+class Characters:
+    """Marks a str field: printable text, its number of characters within bounds.
+
+    Line ends, and the joiners and direction marks that scripts and emoji need, are allowed;
+    overrides of the direction, which make a text read as another, are refused.
+    """
+
+    at_least: int
+    at_most: int
+
+    def __get_pydantic_core_schema__(
+        self, source: type[str], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        from pydantic_core import PydanticCustomError, core_schema
+
+        def printable(text: str) -> str:
+            if not _is_printable(text):
+                raise PydanticCustomError("limit", "must be {limit}", {"limit": "printable text"})
+            return text
+
+        return core_schema.no_info_after_validator_function(
+            printable,
+            core_schema.str_schema(min_length=self.at_least, max_length=self.at_most, strict=True),
+        )
+
+    def require(self, field: str, value: object) -> None:
+        """Refuse text that is too short, too long or not printable, as `In.require` does."""
+        if not isinstance(value, str):
+            raise InputError(field, _text(value), "text")
+        if not self.at_least <= len(value) <= self.at_most:
+            limit = f">= {self.at_least} and <= {self.at_most} characters"
+            raise InputError(field, f"{len(value)} characters", limit)
+        if not _is_printable(value):
+            raise InputError(field, repr(value), "printable text")
+
+
+def _is_printable(text: str) -> bool:
+    return all(character.isprintable() or character in _NOT_PRINTED for character in text)
+
+
 @dataclass(frozen=True)
 class OneOf:
     """Words that a field may hold."""
@@ -175,8 +219,8 @@ class Part:
     """Base of the frozen dataclasses that describe a part of the machine, values in SI.
 
     A part is a table of a case file and a value of the physics at once: its annotations (`In`,
-    `Count`) give unit and bounds of both. `table` names it in messages; the fields of `labels`
-    are set by the reader and stand in no table.
+    `Count`, `Characters`) give unit and bounds of both. `table` names it in messages; the fields
+    of `labels` are set by the reader and stand in no table.
 
     Raises
     ------
@@ -197,7 +241,7 @@ class Part:
 class _Rule(NamedTuple):
     """What a field may hold, besides None where it is optional."""
 
-    mark: In | Count | OneOf
+    mark: In | Count | Characters | OneOf
     optional: bool = False
 
 
@@ -219,7 +263,7 @@ def _rules_of(part: type[Part]) -> Mapping[str, _Rule]:
 def _rule_of(hint: object) -> _Rule | None:
     """The rule of a type hint; looks through ``X | None``, not into tuples."""
     for mark in getattr(hint, "__metadata__", ()):
-        if isinstance(mark, (In, Count)):
+        if isinstance(mark, (In, Count, Characters)):
             return _Rule(mark)
     if get_origin(hint) is Literal:
         return _Rule(OneOf(get_args(hint)))
@@ -255,3 +299,4 @@ Safety = Annotated[float, In(above=0, at_most=100)]
 Rate = Annotated[float, In("kN/m", above=0, at_most=1e6)]
 Preload = Annotated[float, In("N", above=0, at_most=1e9)]
 Residual = Annotated[float, In(above=0, at_most=1e-3)]
+FileName = Annotated[str, Characters(1, 200)]

@@ -1,1 +1,27 @@
-"""Case files: sections, consistency, resolved text, torque and lift of a case."""
+"""Case: sections of a case file, their consistency, torque, lift and machine of a case.
+
+In the order of the calculation:
+
+| module                 | responsibility                               | symbol, unit     |
+| ---------------------- | -------------------------------------------- | ---------------- |
+| `section`              | base of the sections; parts as fields        |                  |
+| `toml_text`            | tables of a case as TOML, units included     |                  |
+| `renamed_keys`         | former names of keys, in `renamed.toml`      |                  |
+| `limits`               | table of limits, section `[limits]`          | SI               |
+| `engine_section`       | engine: a cylinder model or a measurement    | T, N m           |
+| `lift_section`         | lift: table, segments, points or eccentric   | s, m; theta, rad |
+| `parts_section`        | follower, valve train                        | m, kg            |
+| `requirements_section` | smoothing, tolerances, load cases, solver    | rad/s; N; rad    |
+| `workshop_section`     | tool, table step, chord error                | m, rad           |
+| `case`                 | `Case`: all sections, included files, hash   |                  |
+| `consistency`          | consistency of the sections with one another |                  |
+| `error_text`           | first error in one line: field, value, limit |                  |
+| `cards`                | cards of materials and parts, catalogues     |                  |
+| `given_lift`           | lift of a case without engine                | s, m             |
+| `case_file`            | reading of a case file                       |                  |
+| `template`             | case file of `camwright init`                |                  |
+| `load_case_torque`     | engine torque of each load case              | T, N m           |
+| `machine`              | `Machine`: the parts in one load case        | SI               |
+
+Imports `geometry`, `pipeline.base`, `pipeline.engine`, `pipeline.contact` and `pipeline.follower`.
+"""

@@ -1,10 +1,10 @@
-"""Case file to `Case`: everything a run needs, resolved, in SI units."""
+"""`Case`: a design and its load cases as a case file has them, every default resolved, in SI."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
@@ -27,7 +27,7 @@ from camwright.pipeline.case.requirements_section import (
     Waiver,
 )
 from camwright.pipeline.case.section import Name, Section, Table, Text, named
-from camwright.pipeline.case.toml_text import tables_of, to_toml
+from camwright.pipeline.case.toml_text import Tables, tables_of, to_toml
 from camwright.pipeline.case.workshop_section import FORM_TOLERANCE, Workshop, WorkshopOrder
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.oil_film import Lubricant
@@ -45,7 +45,7 @@ Materials = Annotated[
 
 
 class Case(Section):
-    """One design and the states it has to bear."""
+    """A design and its load cases."""
 
     schema_version: Literal[1]
     name: Name
@@ -80,11 +80,11 @@ class Case(Section):
     def to_toml(self) -> str:
         """The case with every default written out; reads back bit for bit.
 
-        Included files are named as they are kept in a run folder, ``inputs/NAME``.
+        Included files have the names of their copies in a run folder, ``inputs/NAME``.
         """
         return to_toml(self, self._kept)
 
-    def tables(self) -> dict[str, Any]:
+    def tables(self) -> Tables:
         """The resolved case as the tables of a case file, included files as in `to_toml`."""
         return tables_of(self, self._kept)
 
@@ -99,20 +99,20 @@ class Case(Section):
 
     @property
     def sha256(self) -> str:
-        """Hash of all that decides the result: the resolved case and the included files."""
+        """Hash of the resolved case and the included files, which determine the result."""
         return hash_inputs(self.to_toml(), self._included)
 
     def with_positions(self, positions: int) -> Case:
         """The same case at another number of positions per cam turn."""
-        given = self.solver.model_dump() | {"positions": positions}
+        values = self.solver.model_dump() | {"positions": positions}
         try:
-            solver = Solver.model_validate(given)
+            solver = Solver.model_validate(values)
         except ValidationError as error:
             raise first_error(error, "solver") from None
         return self.model_copy(update={"solver": solver})
 
     def path(self, name: str) -> Path:
-        """Where an included file lies; `name` as the case file has it."""
+        """Path of an included file; `name` as in the case file."""
         if self._folder is None:
             raise InputError("case", name, "read from a file to include others")
         return self._folder / name
@@ -128,7 +128,7 @@ class Case(Section):
         """
         if self.roller_given is None:
             if self.follower.kind == "flat":
-                raise InputError("follower.kind", "flat", '"roller" for what only a roller has')
+                raise InputError("follower.kind", "flat", '"roller", as it is needed here')
             raise InputError("roller", "missing", 'given with follower.kind = "roller"')
         return self.roller_given
 
@@ -138,23 +138,23 @@ class Case(Section):
         return self.roller if self.follower.face is None else self.follower.face
 
     def contour(self, lift: Lift) -> Contour:
-        """Cam contour that moves the follower by a lift."""
+        """Cam contour of a lift."""
         return self.facing.contour(lift, self.cam)
 
     @property
     def base_circle(self) -> float:
-        """Radius of the cam's surface where the lift is zero, m."""
+        """Radius of the base circle, m: of the cam surface at zero lift."""
         inset = 0.0 if self.roller_given is None else self.roller_given.radius
         return self.cam.prime_radius - inset
 
     @property
     def contact_radius(self) -> float:
-        """Radius that stands for the contact, m: the roller's, under a face the base circle's."""
+        """Radius of the roller, m; under a flat face that of the base circle."""
         return self.base_circle if self.roller_given is None else self.roller_given.radius
 
     @property
     def largest_tool(self) -> float | None:
-        """Radius of the tool that must fit concave flanks, m: the limit's, else the workshop's."""
+        """Tool radius for concave flanks, m: that of the limits, else of the workshop."""
         limit = self.limits[TOOL_RADIUS]
         return self.workshop.tool_radius if limit is None else limit
 
@@ -163,13 +163,13 @@ class Case(Section):
         """Tables, tool, tolerance band and chord error of the workshop files."""
         shop = self.workshop
         tool = self.largest_tool if shop.tool_radius is None else shop.tool_radius
-        given = self.cam.profile_tolerance
-        band = FORM_TOLERANCE if given is None else given
+        profile = self.cam.profile_tolerance
+        band = FORM_TOLERANCE if profile is None else profile
         return WorkshopOrder(shop.table_step, tool, band, shop.chord_error)
 
 
 def includes(case: Case) -> Iterator[tuple[str, str]]:
-    """Dotted field and file name of every file a case draws in."""
+    """Dotted field and file name of every file that a case includes."""
     yield from engine_files(case.engine)
     if isinstance(case.lift, LiftTable):
         yield "lift.file", case.lift.file
@@ -179,5 +179,5 @@ def includes(case: Case) -> Iterator[tuple[str, str]]:
 
 
 def kept_as(name: str) -> str:
-    """Where a run folder keeps an included file."""
+    """Path of the copy of an included file in a run folder."""
     return f"{INPUTS}/{Path(name).name}"

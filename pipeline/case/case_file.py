@@ -1,30 +1,30 @@
-"""Reading a case file: TOML, cards, included files; the first error as one line."""
+"""Reading of a case file: TOML, cards, included files; the first error in one line."""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import inside
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.case.cards.card_filling import filled
+from camwright.pipeline.case.cards.card_filling import fill_cards
+from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case import Case, includes, kept_as
 from camwright.pipeline.case.consistency import check_sections
 from camwright.pipeline.case.error_text import first_error
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.renamed_keys import with_new_keys
-from camwright.pipeline.case.section import Table, named
+from camwright.pipeline.case.section import named
+from camwright.pipeline.case.toml_text import Tables, TomlValue
 
 CASE_BYTES = 256 * 1024
 INCLUDE_BYTES = 16 * 1024 * 1024
+DEPTH_MAX = 16
 SCHEMA_VERSION = 1
-_CARD = TypeAdapter(Table[Material])
 _REFUSED = Material(E=1.0, nu=0.0, yield_strength=1.0, density=1.0, source="refused")
 
 
@@ -34,18 +34,20 @@ def read_case(path: str | Path) -> Case:
     Raises
     ------
     InputError
-        For the first thing that is wrong, by its dotted name.
+        For the first error, by its dotted name.
     """
     path = Path(path)
     return parse_case(_read(path, "case", CASE_BYTES), path.resolve().parent)
 
 
 def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
-    """A case from its text; included files are looked for in `folder`."""
+    """A case from its text; included files are read from `folder`."""
     data = _parse_toml(content)
     version = data.get("schema_version")
     if version is not None and version != SCHEMA_VERSION:
-        raise InputError("schema_version", version, f"{SCHEMA_VERSION}, the one known here")
+        raise InputError(
+            "schema_version", str(version), f"{SCHEMA_VERSION}, the version of this program"
+        )
     case = case_of(data, folder)
     case._folder = folder
     case._included = MappingProxyType(_read_includes(case, folder))
@@ -54,9 +56,10 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
     return case
 
 
-def case_of(data: Mapping[str, Any], folder: Path | None = None) -> Case:
-    """A case from its tables, cards of `folder` filled in; files it includes are not read."""
-    tables = filled(with_new_keys(data), folder)
+def case_of(data: Tables, folder: Path | None = None) -> Case:
+    """A case from its tables and the cards of `folder`; included files are not read."""
+    tables = with_new_keys(data)
+    fill_cards(tables, folder)
     try:
         case = Case.model_validate(tables, context={"materials": _cards(tables.get("materials"))})
     except ValidationError as error:
@@ -65,25 +68,41 @@ def case_of(data: Mapping[str, Any], folder: Path | None = None) -> Case:
     return case
 
 
-def _cards(tables: object) -> dict[str, Material]:
-    """Material cards by name; a card that is refused stands for itself until `Case` refuses it."""
-    found = {}
+def _cards(tables: TomlValue | None) -> dict[str, Material]:
+    """Materials by name; a placeholder for an invalid one, which `Case` refuses by its field."""
+    cards = {}
     for name, table in tables.items() if isinstance(tables, dict) else ():
         try:
-            found[name] = _CARD.validate_python(table)
-        except ValidationError:
-            found[name] = _REFUSED
-    return named(found)
+            cards[name] = read_part(Material, table, f"materials.{name}")
+        except InputError:
+            cards[name] = _REFUSED
+    return named(cards)
 
 
-def _parse_toml(content: str | bytes) -> dict[str, Any]:
+def _parse_toml(content: str | bytes) -> Tables:
     try:
         text = content if isinstance(content, str) else content.decode("utf-8-sig")
-        return tomllib.loads(text)
+        tables: Tables = tomllib.loads(text)
+        nested = _is_deeper(tables, DEPTH_MAX)
     except RecursionError:
-        raise InputError("case", "nested too deeply", "at most a few tables deep") from None
+        nested = True
     except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError alike
         raise InputError("case", " ".join(str(error).split()), "UTF-8 text in TOML") from None
+    if nested:
+        raise InputError("case", "nested too deeply", f"at most {DEPTH_MAX} tables deep")
+    return tables
+
+
+def _is_deeper(tables: Tables, depth: int) -> bool:
+    level: list[Tables | list[TomlValue]] = [tables]
+    for _ in range(depth):
+        level = [
+            entry
+            for each in level
+            for entry in (each.values() if isinstance(each, dict) else each)
+            if isinstance(entry, (dict, list))
+        ]
+    return bool(level)
 
 
 def _read(path: Path, field: str, limit: int) -> bytes:

@@ -1,15 +1,16 @@
-"""Whether the sections of a case fit together: what no section can tell by itself."""
+"""Consistency of the sections of a case with one another."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.cylinder_section import Cylinder
-from camwright.pipeline.case.engine_section import PressureTable, SpeedTable, VoltageTable
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.limits import TOOL_RADIUS
 from camwright.pipeline.contact.cam_body import CamBody
+from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.pickup_voltage import VoltageTable
+from camwright.pipeline.engine.speed_trace import SpeedTable
 from camwright.pipeline.follower.roller import Roller
 
 if TYPE_CHECKING:
@@ -24,59 +25,55 @@ def check_sections(case: Case) -> None:
     InputError
         For the first contradiction, by its dotted name.
     """
-    _check_road(case)
+    _check_start(case)
     _check_geometry(case)
     _check_names(case)
     _check_film(case)
 
 
-def _check_road(case: Case) -> None:
-    """The case enters the road at the torque or at the lift, never at both."""
+def _check_start(case: Case) -> None:
+    """A case starts either at the torque of an engine or at a lift."""
     if (case.engine is None) == (case.lift is None):
-        found = "neither" if case.engine is None else "both"
-        raise InputError("engine, lift", found, "exactly one of the two")
+        count = "neither" if case.engine is None else "both"
+        raise InputError("engine, lift", count, "exactly one of the two")
     if isinstance(case.lift, LiftSegments):
         motion_of(case.lift)
     elif case.valve_train is not None:
         limit = 'left out unless lift.kind = "segments"'
         raise InputError("valve_train", "a table", limit)
     if case.follower.kind == "roller":
-        _ = case.roller  # refuses a case without
+        _ = case.roller  # refuses a case without roller
     elif case.roller_given is not None:
         raise InputError("roller", "a table", 'left out with follower.kind = "flat"')
     elif case.smoothing.kind == "constrained":
-        limit = 'another than "constrained", which knows rollers only, with a flat face'
+        limit = 'other than "constrained" with a flat face'
         raise InputError("smoothing.kind", "constrained", limit)
     ratio = case.mechanism.gear_ratio
     if case.engine is not None and ratio != 2.0:
         raise InputError("mechanism.gear_ratio", ratio, "2 with an engine: a cam turn is 720 deg")
     engine = case.engine
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is None:
-        raise InputError("crankshaft.inertia", "missing", "given, to draw torque from a speed")
-    if isinstance(engine, (Cylinder, PressureTable)):
-        throw = engine.crank_radius + abs(engine.pin_offset)
-        _require(
-            "engine.rod_length",
-            engine.rod_length,
-            engine.rod_length > throw,
-            "longer than the crank radius and the pin offset",
+        raise InputError(
+            "crankshaft.inertia", "missing", "given, for the torque of a measured speed"
         )
     if case.engine is not None and not case.load_cases[0].speed > 0:
-        raise InputError("load_case[0].speed", "0 rpm", "> 0 rpm: its torque designs the cam")
+        raise InputError(
+            "load_case[0].speed", "0 rpm", "> 0 rpm, as its torque is that of the cam design"
+        )
     share, constrained = case.mechanism.compensation, case.smoothing.kind == "constrained"
     if share != 1.0 and (case.engine is None or constrained):
         limit = "1 with a lift" if case.engine is None else '1 with smoothing.kind = "constrained"'
         raise InputError("mechanism.compensation", share, limit)
     for k, load_case in enumerate(case.load_cases):
         if constrained and load_case.preload is not None:
-            limit = 'left out with smoothing.kind = "constrained", which demands one spring'
+            limit = 'left out with smoothing.kind = "constrained", which has one spring'
             raise InputError(f"load_case[{k}].preload", load_case.preload, limit)
         if case.engine is None and load_case.torque is not None:
             raise InputError(f"load_case[{k}].torque", load_case.torque, "left out with a lift")
-        modelled = isinstance(case.engine, Cylinder) and load_case.torque is None
+        modelled = isinstance(case.engine, CylinderEngine) and load_case.torque is None
         if not modelled and (load_case.intake_pressure is not None or not load_case.fired):
             name = "fired" if load_case.intake_pressure is None else "intake_pressure"
-            limit = 'left out without engine.kind = "cylinder", or with a torque of its own'
+            limit = 'left out unless engine.kind = "cylinder" without a torque file'
             raise InputError(f"load_case[{k}].{name}", getattr(load_case, name), limit)
 
 

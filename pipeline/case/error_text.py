@@ -1,4 +1,4 @@
-"""A refusal of the case schema as one line: field, value, limit."""
+"""First error of a case file in one line: field, value, limit."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.engine_section import KINDS
 from camwright.pipeline.case.lift_section import LIFT_KINDS
 
+_KINDS = {"engine": KINDS, "lift": LIFT_KINDS}
 _WORDS = {
     "missing": "given",
     "string_type": "text in quotes",
@@ -18,7 +19,7 @@ _WORDS = {
     "model_attributes_type": "a table",
     "tuple_type": "an array of tables",
     "date_type": "a date such as 2025-06-30",
-    "union_tag_not_found": "a table with kind = " + " or ".join(f'"{kind}"' for kind in KINDS),
+    "union_tag_not_found": "a table with kind = {kinds}",
     "too_short": "at least {min_length} long",
     "too_long": "at most {max_length} long",
     "string_too_short": "at least {min_length} characters",
@@ -32,10 +33,10 @@ _WORDS = {
 
 
 def first_error(error: ValidationError, section: str = "") -> InputError:
-    """The first refusal as one line; unknown keys go before what is missing for them."""
-    found = error.errors(include_url=False)
-    found.sort(key=lambda entry: "unknown_key" not in entry.get("ctx", {}))
-    first, others = found[0], len(found) - 1
+    """First error in one line; an unknown key comes before a missing one, often its misspelling."""
+    errors = error.errors(include_url=False)
+    errors.sort(key=lambda entry: "unknown_key" not in entry.get("ctx", {}))
+    first, others = errors[0], len(errors) - 1
     context = dict(first.get("ctx", {}))
     field, value = f"{section}.{_dotted(first['loc'])}".strip("."), first["input"]
     if "field" in context:
@@ -47,7 +48,9 @@ def first_error(error: ValidationError, section: str = "") -> InputError:
         value = "missing"
     elif first["type"] == "union_tag_invalid":
         field, value = f"{field}.kind", context["tag"]
-    elif isinstance(value, (dict, list)):
+    if first["type"] == "union_tag_not_found":
+        context["kinds"] = " or ".join(f'"{kind}"' for kind in _kinds(first["loc"]))
+    if isinstance(value, (dict, list)):
         value = "a table" if isinstance(value, dict) else "an array"
     limit = _WORDS.get(first["type"], first["msg"]).format_map(context)
     more = f" (and {others} more)" if others else ""
@@ -55,12 +58,14 @@ def first_error(error: ValidationError, section: str = "") -> InputError:
 
 
 def _dotted(location: tuple[int | str, ...]) -> str:
-    """``("load_case", 0, "speed")`` as ``load_case[0].speed``; the tag of a union is left out."""
+    """``("load_case", 0, "speed")`` as ``load_case[0].speed``; without the tag of a union."""
     text = ""
     for position, part in enumerate(location):
-        if position == 1 and part in {"engine": KINDS, "lift": LIFT_KINDS}.get(
-            str(location[0]), ()
-        ):
+        if position == 1 and part in _kinds(location):
             continue
         text += f"[{part}]" if isinstance(part, int) else f".{part}"
     return text.lstrip(".")
+
+
+def _kinds(location: tuple[int | str, ...]) -> tuple[str, ...]:
+    return _KINDS.get(str(location[0]), ())

@@ -1,4 +1,4 @@
-"""The lift that a case gives, for a road that starts there and not at the torque."""
+"""Lift of a case without engine: from a table, segments, points or an eccentric circle."""
 
 from __future__ import annotations
 
@@ -22,60 +22,60 @@ if TYPE_CHECKING:
     from camwright.pipeline.case.case import Case
 
 
-def eccentric_of(case: Case, given: LiftEccentric) -> Eccentric:
-    """The eccentric disc of a case: the lowest place of its roller is the pitch base radius."""
-    rod = case.cam.prime_radius + given.eccentricity
-    return Eccentric(given.eccentricity, rod, case.cam.offset)
+def eccentric_of(case: Case, section: LiftEccentric) -> Eccentric:
+    """Eccentric disc of a case, its minimum pitch radius the prime radius."""
+    rod = case.cam.prime_radius + section.eccentricity
+    return Eccentric(section.eccentricity, rod, case.cam.offset)
 
 
 def given_lift(case: Case) -> Lift:
-    """The lift of a case that gives one.
+    """Lift of a case without engine.
 
     Raises
     ------
     InputError
-        For a lift that does not close, leaves gaps or goes below zero.
+        If the lift does not close, has gaps or is negative.
     """
-    given = case.lift
-    if isinstance(given, LiftSegments):
-        return motion_of(given).lift()
-    if isinstance(given, LiftPoints):
+    section = case.lift
+    if isinstance(section, LiftSegments):
+        return motion_of(section).lift()
+    if isinstance(section, LiftPoints):
         return lift_through(
-            [point.angle for point in given.points], [point.lift for point in given.points]
+            [point.angle for point in section.points], [point.lift for point in section.points]
         )
-    if isinstance(given, LiftEccentric):
+    if isinstance(section, LiftEccentric):
         if case.follower.kind == "flat":
-            return face_lift(given.eccentricity)
-        return eccentric_of(case, given).lift()
-    if given is None:
-        raise InputError("lift", "missing", "given where the road starts at it")
+            return face_lift(section.eccentricity)
+        return eccentric_of(case, section).lift()
+    if section is None:
+        raise InputError("lift", "missing", "given without an engine")
     fit = _fitted(case)
     if fit is not None:
         return fit.lift
-    trace = read_trace(case.path(given.file), "lift", period=FULL_TURN)
+    trace = read_trace(case.path(section.file), "lift", period=FULL_TURN)
     return Lift.from_samples(trace.angle, trace.values)
 
 
 def lift_origin(case: Case) -> str:
-    """One line on where a given lift comes from; a fitted table states its residual."""
-    given, fit = case.lift, _fitted(case)
+    """Origin of the lift in one line, with the residual of a fitted table."""
+    section, fit = case.lift, _fitted(case)
     if fit is not None:
         return (
             f"the lift is fitted to a table: residual {1e6 * fit.residual_rms:.3g} um rms, "
             f"{1e6 * fit.residual_max:.3g} um at most, by {fit.parts} spline parts"
         )
-    if isinstance(given, LiftSegments):
-        laws = dict.fromkeys(part.law for part in given.segments)
-        times = f", {given.repeat} times a turn" if given.repeat > 1 else ""
+    if isinstance(section, LiftSegments):
+        laws = dict.fromkeys(part.law for part in section.segments)
+        times = f", {section.repeat} times a turn" if section.repeat > 1 else ""
         return f"the lift is given by segments: {', '.join(laws)}{times}"
-    if isinstance(given, LiftEccentric):
+    if isinstance(section, LiftEccentric):
         return "the lift is that of an eccentric circle"
     return "the lift is given"
 
 
 def _fitted(case: Case) -> FittedLift | None:
-    given = case.lift
-    if not isinstance(given, LiftTable) or given.noise is None:
+    section = case.lift
+    if not isinstance(section, LiftTable) or section.noise is None:
         return None
-    trace = read_trace(case.path(given.file), "lift", period=FULL_TURN)
-    return fitted_lift(trace.angle, trace.values, given.noise)
+    trace = read_trace(case.path(section.file), "lift", period=FULL_TURN)
+    return fitted_lift(trace.angle, trace.values, section.noise)

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
 from camwright.geometry.motion_laws import Motion, Segment
-from camwright.pipeline.base.quantities import In, Length
-from camwright.pipeline.case.cylinder_section import LiftPoint
-from camwright.pipeline.case.section import FileName, Section
-
-if TYPE_CHECKING:
-    pass
+from camwright.pipeline.base.quantities import FileName, In, Length
+from camwright.pipeline.case.section import Section, Table
+from camwright.pipeline.case.toml_text import TomlValue
+from camwright.pipeline.engine.cylinder import LiftPoint
 
 Stroke = Annotated[float, In("mm", above=-10_000, below=10_000)]
 LawName = Literal[
@@ -48,7 +46,7 @@ class LiftSegment(Section):
 
 
 class LiftSegments(Section):
-    """Lift by motion laws; the segments fill the turn, or its part when they repeat."""
+    """Lift by motion laws; the segments, times `repeat`, fill the turn."""
 
     kind: Literal["segments"]
     repeat: Annotated[int, Field(ge=1, le=12)] = 1
@@ -58,25 +56,31 @@ class LiftSegments(Section):
 
 
 class LiftPoints(Section):
-    """Lift by a B-spline through points of the turn."""
+    """Lift by a B-spline through points of one cam turn."""
 
     kind: Literal["points"]
     points: Annotated[
-        tuple[LiftPoint, ...], Field(alias="point", strict=False, min_length=6, max_length=720)
+        tuple[Table[LiftPoint], ...],
+        Field(alias="point", strict=False, min_length=6, max_length=720),
     ]
 
 
 class LiftEccentric(Section):
-    """Lift of a circle that turns off its centre; its pitch radius is base plus eccentricity."""
+    """Lift of an eccentric circle."""
 
     kind: Literal["eccentric"]
     eccentricity: Length
 
 
-def _kind(given: Any) -> str:
-    """The kind of a lift; a table needs not say that it is one."""
-    found = given.get("kind", "table") if isinstance(given, dict) else given.kind
-    return str(found)
+def _kind(
+    lift: TomlValue | LiftTable | LiftSegments | LiftPoints | LiftEccentric,
+) -> str | None:
+    """The kind of a lift; a table may leave it out. None for what is no table."""
+    if isinstance(lift, dict):
+        return str(lift.get("kind", "table"))
+    if isinstance(lift, (LiftTable, LiftSegments, LiftPoints, LiftEccentric)):
+        return lift.kind
+    return None
 
 
 GivenLift = Annotated[
@@ -89,13 +93,13 @@ GivenLift = Annotated[
 LIFT_KINDS = ("table", "segments", "points", "eccentric")
 
 
-def motion_of(given: LiftSegments) -> Motion:
-    """The segments of a case.
+def motion_of(section: LiftSegments) -> Motion:
+    """Motion of the segments of a case.
 
     Raises
     ------
     InputError
         If they do not add up to a turn or do not close.
     """
-    segments = tuple(Segment(part.law, part.angle, part.stroke) for part in given.segments)
-    return Motion(segments, given.repeat)
+    segments = tuple(Segment(part.law, part.angle, part.stroke) for part in section.segments)
+    return Motion(segments, section.repeat)

@@ -1,8 +1,8 @@
 """The table of limits: one row for each value that a case may set in ``[limits]``.
 
-The table feeds the schema of the case file, the checks, the constrained synthesis with its shadow
-prices and conflicts, and the documentation. A row holds what a limit is; the demand that is held
-against it is bound to it in `pipeline/checks`.
+The table is used by the schema of the case file, the checks, the constrained synthesis with its
+shadow prices and conflicts, and the documentation. The demand of a limit is bound to it in
+`pipeline/checks`.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ AnyLimit = Limit | OpenLimit
 def utilisation_slope(limit: AnyLimit, value: float) -> float:
     """Fall of the utilisation for one more unit of a limit's value, where it is reached.
 
-    Below zero where a greater value takes room away.
+    Negative if a greater value reduces the margin.
     """
     sign = 1.0 if limit.sense == "at_most" else -1.0
     if limit.slope == "rest":
@@ -297,7 +297,7 @@ LIMITS: Mapping[str, AnyLimit] = MappingProxyType(
 
 
 class LimitValues(Section):
-    """Limits of the checks; a safety above 1 demands more than the bare limit."""
+    """Limits of the checks."""
 
     sources: dict[str, Text] = Field(default_factory=dict)
 
@@ -311,7 +311,7 @@ class LimitValues(Section):
         return value
 
     def source(self, limit: AnyLimit) -> str:
-        """Source of a value: the case's own words where it has some."""
+        """Source of a value: that of the case, else of the default."""
         return self.sources.get(limit.id) or limit.source
 
     @field_validator("sources")

@@ -1,40 +1,42 @@
-"""Engine torque of a load case, from the model or the measurement that a case names."""
+"""Engine torque of a load case, from the engine model or a measurement."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
 
 import numpy as np
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.cylinder_section import Cylinder, TorqueTable
-from camwright.pipeline.case.engine_section import PressureTable, SpeedTable, VoltageTable
 from camwright.pipeline.case.requirements_section import LoadCase
-from camwright.pipeline.engine.pickup_voltage import speed_from_voltage
+from camwright.pipeline.engine.cylinder import CylinderEngine
+from camwright.pipeline.engine.indicated_cycle_solver import SPEED_RANGE
+from camwright.pipeline.engine.pickup_voltage import VoltageTable, speed_from_voltage
 from camwright.pipeline.engine.pressure_trace import (
+    PressureTable,
     PressureTrace,
     cycle_statistics,
     dead_centre_offset,
     pressure_from_csv,
     torque_from_pressure,
 )
-from camwright.pipeline.engine.speed_trace import SpeedTrace, speed_from_csv
-from camwright.pipeline.engine.torque import Torque, torque_from_csv, torque_from_cylinder
+from camwright.pipeline.engine.speed_trace import SpeedTable, SpeedTrace, speed_from_csv
+from camwright.pipeline.engine.torque import (
+    Torque,
+    TorqueTable,
+    torque_from_csv,
+    torque_from_cylinder,
+)
 
-if TYPE_CHECKING:
-    from camwright.pipeline.engine.cylinder import CylinderEngine
-
-CRANKING = 10.0
-"""Speed at which an engine that stands is turned over, rad/s: the slowest the model knows."""
-NO_HEAT = 1e-9
+CRANKING = SPEED_RANGE[0]
+"""Cranking speed of an engine at rest, rad/s."""
 
 
 def engine_torques(case: Case) -> dict[str, Torque]:
     """Engine torque of each load case by name; empty for a case that starts at the lift.
 
-    An engine that stands has only the torque its load case names, or that of being started.
+    A load case at speed 0 has a torque only from a file, or of a cylinder model cranked unfired.
     """
     if case.engine is None:
         return {}
@@ -51,42 +53,41 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
     Raises
     ------
     InputError
-        For what is wrong with a file, in one line.
+        If a file cannot be read or has wrong contents; by file and line.
     """
     engine = case.engine
     if state.torque is not None:
         return torque_from_csv(case.path(state.torque))
     if isinstance(engine, TorqueTable):
         return torque_from_csv(case.path(engine.file))
-    if isinstance(engine, Cylinder):
+    if isinstance(engine, CylinderEngine):
         return torque_from_cylinder(_loaded(engine, state), state.speed or CRANKING)
     if isinstance(engine, PressureTable):
-        return torque_from_pressure(pressure(case, engine), engine.build(), state.speed)
+        return torque_from_pressure(pressure(case, engine), engine, state.speed)
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
         return crank_speed(case, engine).torque(case.crankshaft.inertia)
     raise InputError("engine", "missing", "given")
 
 
 def _has_torque(case: Case, state: LoadCase) -> bool:
-    """Whether an engine gives torque in a load case: not one that stands, unless it is started."""
-    started = isinstance(case.engine, Cylinder) and not state.fired
-    return state.speed > 0 or state.torque is not None or started
+    """Whether a load case has an engine torque: not at rest, unless it is cranked."""
+    cranked = isinstance(case.engine, CylinderEngine) and not state.fired
+    return state.speed > 0 or state.torque is not None or cranked
 
 
-def _loaded(engine: Cylinder, state: LoadCase) -> CylinderEngine:
-    """The cylinder at the throttle of a load case; unfired, its fuel gives no heat."""
-    changes: dict[str, float] = {}
+def _loaded(engine: CylinderEngine, state: LoadCase) -> CylinderEngine:
+    """The engine at the intake pressure of a load case; unfired, its fuel releases no heat."""
     if state.intake_pressure is not None:
-        changes["intake_pressure"] = state.intake_pressure
-    if not state.fired:
-        changes["combustion_efficiency"] = NO_HEAT
-        # Nothing drives but the hand that turns it: no friction could close the balance.
-        changes["friction_pressure"] = engine.friction_pressure or 0.0
-    return engine.model_copy(update=changes).build()
+        engine = replace(engine, intake_pressure=state.intake_pressure)
+    if state.fired:
+        return engine
+    # The starter drives an unfired engine: no friction could close the torque balance.
+    friction = engine.friction_pressure or 0.0
+    return replace(engine, combustion_efficiency=0.0, friction_pressure=friction)
 
 
 def pressure(case: Case, engine: PressureTable) -> PressureTrace:
-    """The measured cycles of a case: pegged, turned to the dead centre, judged by their range."""
+    """Measured cycles of a case, shifted to the dead centre, pegged and checked."""
 
     def read(name: str) -> PressureTrace:
         return pressure_from_csv(
@@ -104,20 +105,20 @@ def pressure(case: Case, engine: PressureTable) -> PressureTrace:
     if engine.intake_pressure is None:
         return trace.guarded()
     trace = trace.pegged(engine.intake_pressure).guarded()
-    trace.guard_scale(engine.build())
+    trace.guard_scale(engine, engine.intake_pressure)
     return trace
 
 
 def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
-    """The measured crank speed of a case."""
+    """Measured crank speed of a case."""
     if isinstance(engine, VoltageTable):
         path = case.path(engine.file)
-        return speed_from_voltage(path, engine.wheel(), engine.band(), engine.threshold)
+        return speed_from_voltage(path, engine.wheel, engine.band, engine.threshold)
     reference = engine.reference_file
     return speed_from_csv(
         case.path(engine.file),
-        engine.wheel(),
-        engine.band(),
+        engine.wheel,
+        engine.band,
         both_edges=engine.edges == 2,
         column=engine.column,
         unit=engine.speed_unit,
@@ -126,20 +127,20 @@ def crank_speed(case: Case, engine: SpeedTable | VoltageTable) -> SpeedTrace:
     )
 
 
-def measurement_record(case: Case) -> Mapping[str, Any] | None:
-    """What a measurement tells beside the torque, for ``run.json``; None for a model."""
+def measurement_record(case: Case) -> Mapping[str, str | float] | None:
+    """Statistics of a measurement for ``run.json``; None for a model."""
     engine = case.engine
     if isinstance(engine, PressureTable):
-        trace, gear = pressure(case, engine), engine.build()
-        found = cycle_statistics(trace, gear)
+        trace = pressure(case, engine)
+        statistics = cycle_statistics(trace, engine)
         return {
             "kind": engine.kind,
             "cycles": int(trace.cycles.shape[0]),
-            "imep_mean_kPa": 1e-3 * float(found.imep.mean()),
-            "imep_std_kPa": 1e-3 * found.imep_std,
-            "imep_cov_percent": 100.0 * found.imep_variation,
-            "peak_mean_MPa": 1e-6 * float(found.peak.mean()),
-            "peak_angle_mean_deg": float(np.degrees(found.peak_angle.mean())),
+            "imep_mean_kPa": 1e-3 * float(statistics.imep.mean()),
+            "imep_std_kPa": 1e-3 * statistics.imep_std,
+            "imep_cov_percent": 100.0 * statistics.imep_variation,
+            "peak_mean_MPa": 1e-6 * float(statistics.peak.mean()),
+            "peak_angle_mean_deg": float(np.degrees(statistics.peak_angle.mean())),
             "scatter_max_kPa": 1e-3 * float(trace.scatter.max()),
             "pegging_mean_kPa": 1e-3 * float(np.mean(trace.pegging)),
             "dead_centre": engine.dead_centre,

@@ -1,4 +1,4 @@
-"""One load case of a case as the physics sees it: frozen, typed, SI."""
+"""`Machine`: the parts of a case in one load case, in SI."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.stem_beam import Stem
 
-# A load case at rest is a turn so slow (rad/s) that inertia, film and heat vanish.
+# Crank speed of a load case at rest, rad/s: inertia, film and heat are negligible.
 CREEP = 1e-3
 
 
 @dataclass(frozen=True)
 class Corner:
-    """Position within the tolerances: factors on the nominal; phase rad of crank, profile m."""
+    """Tolerance corner: factors on the nominal values; phase, rad of crank; profile, m."""
 
     name: str
     friction_a: float = 1.0
@@ -49,9 +49,9 @@ class Machine:
     Parameters
     ----------
     load_case : str
-    speed : float              of the crank, rad/s, >= 0; 0: the cam creeps
+    speed : float              of the crank, rad/s, >= 0; 0: at rest
     gear_ratio : float         crank turns per cam turn
-    ripple_weight : float      weight of its torque ripple; 0: it only loads the cam
+    ripple_weight : float      weight of its torque ripple; 0: no reduction is required
     cam : CamBody
     follower : Roller or FlatFace   the part that touches the cam, see `FollowerKind`
     mass : float               that moves with the follower, kg
@@ -89,7 +89,7 @@ class Machine:
 
     @property
     def crank_speed(self) -> float:
-        """rad/s; at least that of a creeping cam."""
+        """rad/s, > 0 also at rest."""
         return max(self.speed, CREEP)
 
     @property
@@ -109,7 +109,7 @@ class Machine:
 
     @property
     def contact_width(self) -> float:
-        """Width of the line contact, m: that both cam and follower carry."""
+        """Width of the line contact, m: the smaller of cam and follower."""
         return min(self.cam.width, self.follower.line_width)
 
     @property
@@ -120,12 +120,12 @@ class Machine:
 
     @property
     def base_radius(self) -> float:
-        """Radius of the cam's surface at zero lift, m."""
+        """Radius of the base circle, m."""
         return self.cam.prime_radius - (self.follower.contact_radius or 0.0)
 
     @property
     def softer(self) -> Material:
-        """Material of cam or follower, whichever yields first."""
+        """Material of cam or follower, that with the lower yield strength."""
         return min(self.cam.material, self.follower.material, key=lambda card: card.yield_strength)
 
     @property
@@ -143,10 +143,10 @@ class Machine:
         )
 
     def at_corner(self, corner: Corner) -> Machine:
-        """The same machine at a corner of its tolerances; the contour is not its own to change."""
+        """The machine at a tolerance corner; the contour is not part of it."""
         spring, shaft = self.spring, self.crankshaft
         rate = spring.rate * corner.rate
-        # A cam that stands proud by some hundredths compresses the spring by as much.
+        # A profile deviation outwards compresses the spring by as much.
         preload = spring.preload * corner.preload + rate * corner.profile
         return replace(
             self,

@@ -1,4 +1,4 @@
-"""Parts of a case file that are read by the physics under other names: follower, valve train."""
+"""Sections of a case file without a part of their own: follower, valve train."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from camwright.pipeline.follower.flat_face import FlatFace
 
 
 class ValveTrain(Section):
-    """Asks for the machine motion of a valve cam; the cam's mass counts as that of a disc."""
+    """Requests the machine motion of a valve cam; the cam mass is taken as that of a disc."""
 
     cam_mass: Mass
     source: Text = ""
 
 
 class Follower(Section):
-    """The translating follower: a roller, or a flat face that slides.
+    """Translating follower with a roller or a flat face.
 
-    The overhang is from guide A to the roller's centre, or to the face.
+    The overhang is from guide A to the roller centre, or to the face.
     """
 
     kind: Literal["roller", "flat"] = "roller"
@@ -49,5 +49,5 @@ class Follower(Section):
 
     @property
     def face_friction(self) -> float:
-        """Friction of a face on the cam; 0 where it is not given, and for a roller."""
+        """Friction coefficient of a flat face on the cam; 0 if not given, and for a roller."""
         return 0.0 if self.face is None else self.face.friction or 0.0

@@ -4,57 +4,58 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
+from copy import deepcopy
 from functools import cache
 from importlib.resources import files
-from typing import Any
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.case.toml_text import Tables, TomlValue
 
 
 @cache
-def renamed_names() -> Mapping[str, Mapping[str, Any]]:
+def renamed_names() -> Mapping[str, Mapping[str, TomlValue]]:
     """Old names by kind (``case``, ``values``, ``columns``, ...), each with its new name."""
     text = files(__package__).joinpath("renamed.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)
 
 
-def with_new_keys(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables of a case file under today's names; the tables given stay as they are.
+def with_new_keys(tables: Tables) -> Tables:
+    """A copy of the tables of a case file under today's names.
 
     Raises
     ------
     InputError
         If a table has a key under its old and its new name.
     """
-    case = _copied(tables)
-    names = renamed_names()
-    for old, new in names["case"].items():
+    case = deepcopy(tables)
+    for old, new in _words(renamed_names()["case"]).items():
         table, key = _parent(case, old), old.rpartition(".")[2]
         if table is not None:
             _rename(table, key, new.rpartition(".")[2], old.removesuffix(key))
-    for field, words in names["values"].items():
+    for field, words in renamed_names()["values"].items():
         table, key = _parent(case, field), field.rpartition(".")[2]
-        if table is not None and isinstance(table.get(key), list):
-            table[key] = [_new(each, words) for each in table[key]]
-    waivers = case.get("waivers")
+        values = None if table is None else table.get(key)
+        if isinstance(values, list):
+            values[:] = [_new(each, _words(words)) for each in values]
+    checks, waivers = _words(renamed_names()["checks"]), case.get("waivers")
     for waiver in waivers if isinstance(waivers, list) else ():
         if isinstance(waiver, dict) and "check" in waiver:
-            waiver["check"] = _new(waiver["check"], names["checks"])
+            waiver["check"] = _new(waiver["check"], checks)
     return case
 
 
-def with_new_wire_keys(wire: Any, field: str) -> dict[str, Any]:
+def with_new_wire_keys(wire: TomlValue, field: str) -> Tables:
     """The table of a spring wire under today's names; `field` names it in messages.
 
     Raises
     ------
     InputError
-        If it is no table, or a key has no such value.
+        If it is no table, or a table has a key under its old and its new name.
     """
     if not isinstance(wire, dict):
-        raise InputError(field, wire, "a table")
+        raise InputError(field, str(wire), "a table")
     table = dict(wire)
-    for old, new in renamed_names()["wires"].items():
+    for old, new in _words(renamed_names()["wires"]).items():
         _rename(table, old, new, f"{field}.")
     treatment = table.get("treatment")
     if isinstance(treatment, bool):
@@ -62,8 +63,8 @@ def with_new_wire_keys(wire: Any, field: str) -> dict[str, Any]:
     return table
 
 
-def _rename(table: dict[str, Any], old: str, new: str, place: str) -> None:
-    """Give a key its new name, where it stands; `place` is its table's for messages."""
+def _rename(table: Tables, old: str, new: str, place: str) -> None:
+    """Give a key its new name; `place` is the dotted name of its table for messages."""
     if old not in table:
         return
     if new in table:
@@ -73,20 +74,22 @@ def _rename(table: dict[str, Any], old: str, new: str, place: str) -> None:
     table.update(entries)
 
 
-def _new(name: Any, known: Mapping[str, str]) -> Any:
+def _words(names: Mapping[str, TomlValue] | TomlValue) -> dict[str, str]:
+    """Old names and their new ones, where both are words."""
+    entries = names.items() if isinstance(names, Mapping) else ()
+    return {old: new for old, new in entries if isinstance(new, str)}
+
+
+def _new(name: TomlValue, known: Mapping[str, str]) -> TomlValue:
     return known.get(name, name) if isinstance(name, str) else name
 
 
-def _copied(value: Any) -> Any:
-    """Tables and arrays copied all the way down."""
-    if isinstance(value, Mapping):
-        return {key: _copied(entry) for key, entry in value.items()}
-    return [_copied(entry) for entry in value] if isinstance(value, list) else value
-
-
-def _parent(case: dict[str, Any], field: str) -> dict[str, Any] | None:
+def _parent(case: Tables, field: str) -> Tables | None:
     """The table that holds a dotted field."""
-    table: Any = case
+    table = case
     for part in field.split(".")[:-1]:
-        table = table.get(part) if isinstance(table, dict) else None
-    return table if isinstance(table, dict) else None
+        inner = table.get(part)
+        if not isinstance(inner, dict):
+            return None
+        table = inner
+    return table

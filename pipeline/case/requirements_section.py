@@ -1,4 +1,4 @@
-"""What is asked of a design: smoothing, tolerances, load cases, the solver's settings."""
+"""Requirements on a design: smoothing, tolerances, load cases, waivers; solver settings."""
 
 from __future__ import annotations
 
@@ -6,30 +6,26 @@ import datetime as dt
 from math import radians
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import (
+    Characters,
     Duration,
+    FileName,
     GasPressure,
     In,
     Length,
     Preload,
     Rate,
 )
-from camwright.pipeline.case.section import (
-    FileName,
-    Name,
-    Section,
-    Text,
-    printable,
-)
+from camwright.pipeline.case.section import Name, Section, Text
 
 
 class Mechanism(Section):
     """The drive between crank and cam: crank turns per cam turn.
 
-    compensation is the share of the engine's torque that the cam is cut to take.
+    compensation is the share of the engine torque that the cam balances.
     """
 
     gear_ratio: Annotated[float, In(above=0, at_most=100)] = 2.0
@@ -41,12 +37,11 @@ Phase = Annotated[float, In("deg", at_least=-180, at_most=180)]
 
 
 class Smoothing(Section):
-    """What is done to the torque before the lift is drawn from it; angles are crank angles.
+    """Smoothing of the torque before the lift is computed from it; angles are crank angles.
 
-    `constrained` draws the lift of least ripple within all limits; what is `free` it may change
-    as well, within its range: a phase is one of the cam on its shaft, in degrees of cam. It is
-    looked for from `starts` places, all but one of them random, so that its optimum is known for
-    one of many or not.
+    `constrained` computes the lift of least ripple within all limits; values named by `free` are
+    variables within their ranges. The phase is that of the cam on its shaft, in cam angle. The
+    optimisation starts from `starts` points, all but one random, to find several local optima.
     """
 
     kind: Literal[
@@ -79,14 +74,14 @@ class Smoothing(Section):
     source: Text = ""
 
     @model_validator(mode="after")
-    def _knows_how_far(self) -> Self:
+    def _has_its_ranges(self) -> Self:
         for name in self.free:
             if name == "initial_energy":
                 continue
             ends = getattr(self, f"{name}_range")
             if ends is None or not ends[0] < ends[1]:
                 field = f"smoothing.{name}_range"
-                raise InputError(field, ends, "two rising values, as it is free")
+                raise InputError(field, ends, "two rising values, as smoothing.free names it")
         return self
 
     @model_validator(mode="after")
@@ -97,7 +92,7 @@ class Smoothing(Section):
 
 
 class Solver(Section):
-    """How finely and how long to compute."""
+    """Resolution and number of trials."""
 
     positions: Annotated[int, Field(ge=36, le=7200)] = 720
     max_trials: Annotated[int, Field(ge=1, le=20)] = 6
@@ -108,17 +103,17 @@ class Waiver(Section):
     """A failed check that a named person has accepted, and why."""
 
     check: Name
-    name: Annotated[str, Field(min_length=1, max_length=200), AfterValidator(printable)]
-    reason: Annotated[str, Field(min_length=1, max_length=2000), AfterValidator(printable)]
+    name: Annotated[str, Characters(1, 200)]
+    reason: Annotated[str, Characters(1, 2000)]
     date: dt.date
 
 
 class Tolerances(Section):
-    """How far the case may be from what is built: shares of the nominal, phase in crank degrees.
+    """Tolerances: shares of the nominal values, phase in crank angle.
 
-    mass is that of the follower, inertia that of the crankshaft. Those of the spring and the line
-    profile stand in their own sections; friction goes from
-    guides.*.friction_min to friction_max where they are given.
+    mass is that of the follower, inertia that of the crankshaft. Tolerances of the spring and of
+    the line profile are in their own sections; friction ranges from guides.*.friction_min to
+    friction_max if these are given.
     """
 
     friction: Annotated[float, In(at_least=0, below=1)] = 0.0
@@ -131,13 +126,12 @@ class Tolerances(Section):
 
 
 class LoadCase(Section):
-    """One state the cam has to bear: crank speed and, where it differs, the torque.
+    """A load case: crank speed, and what differs from the rest of the case.
 
-    At speed 0 the cam stands or creeps: springs and friction act, inertia does not. The ripple
-    counts with its weight; at 0 the case only loads the cam and no reduction is asked for.
-    A preload of its own loads the cam that was cut for spring.preload. Of a cylinder model the
-    case may have an intake pressure of its own, which is its load, and be turned over unfired; so
-    an engine is started, slowly, where the speed is 0.
+    At speed 0 spring and friction act, inertia does not. The torque ripple counts with its weight;
+    at weight 0 no reduction is required. A preload acts on the cam designed for spring.preload.
+    With a cylinder model the intake pressure sets the engine load, and an unfired load case is
+    motored, at cranking speed if its speed is 0.
     """
 
     name: Name

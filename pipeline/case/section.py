@@ -1,4 +1,4 @@
-"""Base of all sections of a case file, and the texts, names and parts they accept."""
+"""Base of the sections of a case file; names, materials and parts as their fields."""
 
 from __future__ import annotations
 
@@ -23,28 +23,17 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import Part
+from camwright.pipeline.base.quantities import Characters, Part
 
 SAFE_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9_-])?")
-_ALLOWED = "\n\t\u200c\u200d\u200e\u200f"
 
 PartType = TypeVar("PartType", bound=Part)
+Read = TypeVar("Read")  # what a validator reads and returns unchanged
 
 
 def refusal(limit: str, **context: str) -> PydanticCustomError:
-    """A validation error that says what would be accepted."""
+    """A validation error that states the limit."""
     return PydanticCustomError("limit", "must be {limit}", {"limit": limit, **context})
-
-
-def printable(text: str) -> str:
-    """The text, refused if it holds control characters.
-
-    Joiners and direction marks, which scripts and emoji are made with, are none; overrides of the
-    direction, which make a text read as another, are.
-    """
-    if not all(character.isprintable() or character in _ALLOWED for character in text):
-        raise refusal("printable text")
-    return text
 
 
 def _safe_name(name: str) -> str:
@@ -54,8 +43,7 @@ def _safe_name(name: str) -> str:
 
 
 Name = Annotated[str, AfterValidator(_safe_name)]
-Text = Annotated[str, Field(max_length=10_000), AfterValidator(printable)]
-FileName = Annotated[str, Field(min_length=1, max_length=200), AfterValidator(printable)]
+Text = Annotated[str, Characters(0, 10_000)]
 
 
 class Section(BaseModel):
@@ -65,24 +53,24 @@ class Section(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _know_every_key(cls, given: Any) -> Any:
-        """Refuse unknown keys before missing ones: a slip of the pen is both."""
+    def _know_every_key(cls, table: Read) -> Read:
+        """Refuse unknown keys before missing ones: a misspelt key is both."""
         known = [field.alias or name for name, field in cls.model_fields.items()]
-        for key in given if isinstance(given, dict) else ():
+        for key in table if isinstance(table, dict) else ():
             if key not in known:
                 raise refusal(f"a known key{suggestion(key, known)}", unknown_key=str(key))
-        return given
+        return table
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
-    """What may have been meant, else what is known."""
+    """The closest known word, else all of them, for a message."""
     close = difflib.get_close_matches(word, list(known), n=1)
     return f"; did you mean {close[0]}?" if close else f": {', '.join(known)}"
 
 
 @dataclass(frozen=True)
 class FromTable:
-    """Marks a field whose table is read into a `Part`, by the units and bounds of its fields."""
+    """Marks a field whose table is read as a `Part`, by the units and bounds of its fields."""
 
     def __get_pydantic_core_schema__(
         self, source: type[Part], handler: GetCoreSchemaHandler
@@ -98,7 +86,7 @@ class FromTable:
 
 
 Table = Annotated[PartType, FromTable()]
-"""A field that holds a `Part` and is written as a table."""
+"""A field with a `Part`, written as a table."""
 
 
 def part_of(part: type[PartType], section: Section) -> PartType:
@@ -107,7 +95,7 @@ def part_of(part: type[PartType], section: Section) -> PartType:
     Raises
     ------
     InputError
-        If values of it do not fit together, by the name of a field within the table.
+        If its values contradict one another, by the name of a field within the table.
     """
     values = {name: getattr(section, name) for name in type(section).model_fields}
     try:
@@ -121,7 +109,7 @@ _SECTIONS: dict[type[Part], type[Section]] = {}  # each made once
 
 
 def section_of(part: type[Part]) -> type[Section]:
-    """The section of a case file that describes a part; its fields in the order of the part's."""
+    """Section of a case file that describes a part, with the fields of the part in their order."""
     if part not in _SECTIONS:
         _SECTIONS[part] = _section_made_of(part)
     return _SECTIONS[part]
@@ -156,7 +144,7 @@ def _in_section(hint: Any) -> Any:
 
 @dataclass(frozen=True)
 class MaterialName:
-    """Marks a field that names a material of the case and holds its card."""
+    """Marks a field of a `Material` that is written as its name in the case."""
 
     def __get_pydantic_core_schema__(
         self, source: type[Material], handler: GetCoreSchemaHandler
@@ -173,5 +161,5 @@ class MaterialName:
 
 
 def named(cards: dict[str, Material]) -> dict[str, Material]:
-    """Material cards that know the names of their tables."""
+    """Materials with the names of their tables."""
     return {name: replace(card, name=name) for name, card in cards.items()}

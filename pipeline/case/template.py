@@ -1,4 +1,4 @@
-"""The case file that `camwright init` writes: short, commented, and it runs."""
+"""Case file written by `camwright init`: short, commented, ready to run."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def template(name: str) -> str:
     Raises
     ------
     InputError
-        If the name cannot name a folder.
+        If the name is not valid for a folder.
     """
     if not SAFE_NAME.fullmatch(name):
         raise InputError("name", name, "1 to 40 letters, digits, '_', '-' or '.'")
@@ -23,15 +23,15 @@ _TEMPLATE = """\
 # A balancing cam. Run it with:  camwright run @NAME@.toml --out runs/@NAME@
 #
 # A number with a dimension is written as text with its unit: "24.2 kN/m", "60 deg", "1500 rpm".
-# What is left out takes its default; the run folder's case.toml has all of it written out.
+# Keys left out have their defaults; case.toml in the run folder states all of them.
 
 schema_version = 1
 name = "@NAME@"
 title = "What is this design for?"
 
 # --- The torque to balance. Crank angle 0: top dead centre where intake starts; 360 deg: firing.
-# Measured torque instead of a model: kind = "table" and file = "torque.csv", beside this file,
-# with an angle column and a torque column, the units in the header.
+# Measured torque instead of a model: kind = "table" and file = "torque.csv", in the same folder,
+# with a column of angle and one of torque, units in the header.
 [engine]
 kind = "cylinder"
 bore = "60 mm"
@@ -53,7 +53,7 @@ gear_ratio = 2.0                     # crank turns per cam turn
 rate = "24.2 kN/m"
 preload = "400 N"                    # at the smallest cam radius
 # travel_max = "40 mm"
-# catalogue = "shipped"              # or a file: puts in the lightest spring for travel_max
+# catalogue = "shipped"              # or a file: selects the lightest spring for travel_max
 
 [cam]
 prime_radius = "60 mm"          # smallest radius of the roller's CENTRE
@@ -63,10 +63,10 @@ material = "hardened_steel"
 # [cam.keyway]
 # width = "6 mm"
 # depth = "2.8 mm"
-# [cam.counter_hole]                 # drill the hole that takes the unbalance away
+# [cam.counter_hole]                 # hole that removes the unbalance
 # wall = "3 mm"
 
-# [camshaft]                         # its fatigue, bearings and gear are judged where given
+# [camshaft]                         # for the checks of its fatigue, bearings and gear
 # bearing_spacing = "60 mm"
 # cam_position = "20 mm"             # from the first bearing; overhung places may be negative
 # gear_position = "-15 mm"
@@ -120,7 +120,7 @@ pressure_limit = "14 MPa"
 pv_limit = "1.75 MPa m/s"
 source = "as guide A"
 
-# --- Materials, each with where its numbers come from
+# --- Materials, each with the source of its values
 [materials.hardened_steel]
 E = "210 GPa"
 nu = 0.3
@@ -137,35 +137,35 @@ yield_strength = "150 MPa"
 density = "8800 kg/m^3"
 source = "assumed"
 
-# --- How the cam is drawn, judged and computed
+# --- Smoothing, limits and solver
 [smoothing]
-# or none, gaussian, harmonic, savitzky_golay, smoothing_spline; "constrained" finds the least
-# ripple within all limits and frees what `free` names, such as initial_energy or spring_rate
+# or none, gaussian, harmonic, savitzky_golay, smoothing_spline; "constrained" minimises the
+# ripple within all limits, over the values that `free` names, such as spring_rate
 kind = "moving_average"
 points = 12
 spacing = "5 deg"                    # crank angle: 12 points make a window of 60 deg
 
 [limits]
 pressure_angle = "30 deg"
-torque_reduction = 0.4               # least share of the torque ripple to take away
-# curvature_rate = "500 1/m/rad"     # how fast the contour's curvature may change
-# tool_radius = "10 mm"              # hollows at least a tenth wider than the tool
+torque_reduction = 0.4               # minimum reduction of the torque ripple
+# curvature_rate = "500 1/m/rad"     # maximum rate of change of the contour curvature
+# tool_radius = "10 mm"              # concave radii at least a tenth above it
 
 [limits.sources]
 torque_reduction = "what this design is for"
 
 [solver]
-positions = 72                       # per cam turn; 720 for the real answer
-max_trials = 3                       # lifts tried, each gentler than the last
-certificate_positions = 1            # angles solved again on ever finer meshes
+positions = 72                       # per cam turn; 720 for a final run
+max_trials = 3                       # number of lifts, each smoother than the last
+certificate_positions = 1            # cam angles solved on three meshes
 
-# --- What the files in workshop/ are written for
+# --- Workshop files
 [workshop]
-table_step = "0.5 deg"               # between the rows of the contour's table, 0.1 to 1 deg
+table_step = "0.5 deg"               # step of the contour table, 0.1 to 1 deg
 # tool_radius = "10 mm"              # cutter or grinding wheel; left out: that of the roller
-# chord_error = "1 um"               # of the drawing's polyline
+# chord_error = "1 um"               # of the polyline of the drawing
 
-# --- One table for each state the cam has to bear
+# --- Load cases, one table each
 [[load_case]]
 name = "idle"
 speed = "1500 rpm"

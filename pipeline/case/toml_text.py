@@ -1,16 +1,29 @@
-"""A case written back as TOML: unit strings, every default written out."""
+"""A case as TOML text: values with their units, every default included."""
 
 from __future__ import annotations
 
+import datetime as dt
 from collections.abc import Mapping
-from typing import Any, get_args
+from typing import Any, TypeAlias, get_args
 
 import tomli_w
 
+from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In, Part
 from camwright.pipeline.case.section import Section, section_of
+
+TomlValue: TypeAlias = (
+    "str | int | float | bool | dt.date | dt.time | list[TomlValue] | dict[str, TomlValue]"
+)
+"""A value of a TOML file."""
+Tables: TypeAlias = dict[str, TomlValue]
+"""A table of a TOML file, or the tables of a whole file."""
+_FieldValue: TypeAlias = (
+    "str | int | float | bool | dt.date | Section | Part | tuple[_FieldValue, ...]"
+    " | Mapping[str, _FieldValue]"
+)
 
 _HEADING = "# Camwright case, resolved: every default is written out.\n"
 _FILE_KEYS = ("file", "torque", "motored_file", "reference_file")
@@ -21,10 +34,10 @@ def to_toml(case: Section, renamed: Mapping[str, str]) -> str:
     return _HEADING + tomli_w.dumps(tables_of(case, renamed))
 
 
-def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -> dict[str, Any]:
+def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -> Tables:
     """A section or part as the tables of a case file; absent fields are left out."""
     section = section_of(type(model)) if isinstance(model, Part) else type(model)
-    tables = {}
+    tables: Tables = {}
     for name, field in section.model_fields.items():
         key, value = field.alias or name, getattr(model, name)
         if value is None or value in ((), {}):
@@ -35,14 +48,30 @@ def tables_of(model: Section | Part, renamed: Mapping[str, str] | None = None) -
     return tables
 
 
-def _written(value: Any, unit: str | None, renamed: Mapping[str, str] | None) -> Any:
+def table_in(tables: Tables, name: str) -> Tables:
+    """A table within tables.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name.
+    """
+    table = tables.get(name)
+    if not isinstance(table, dict):
+        raise InputError(name, "missing" if table is None else str(table), "a table")
+    return table
+
+
+def _written(value: _FieldValue, unit: str | None, renamed: Mapping[str, str] | None) -> TomlValue:
     if isinstance(value, Material):
         return value.name
     if isinstance(value, (Section, Part)):
         return tables_of(value, renamed)
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         return {
-            key: tables_of(entry, renamed) if isinstance(entry, Part) else entry
+            key: tables_of(entry, renamed)
+            if isinstance(entry, Part)
+            else _written(entry, unit, renamed)
             for key, entry in value.items()
         }
     if isinstance(value, tuple):

@@ -1,4 +1,4 @@
-"""The workshop in a case file: its tool, the step of its tables, the error of its chords."""
+"""Workshop section of a case file: tool, table step, chord error."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from camwright.pipeline.base.quantities import In, Length
 from camwright.pipeline.case.section import Section
 
 FORM_TOLERANCE = 20e-6
-"""m: band of the inspection sheet where the case states no profile tolerance."""
+"""Tolerance band of the inspection sheet, m, if the case states no profile tolerance."""
 
 
 class Workshop(Section):
-    """What the files of ``workshop/`` are written for.
+    """Settings of the files in ``workshop/``.
 
-    table_step : rad        between the rows of its tables
-    tool_radius : m         of the cutter or grinding wheel; the roller's, or base circle's, if none
-    chord_error : m         of the drawing's polyline; by default its area is true to a millionth
+    table_step : rad        between the rows of the tables
+    tool_radius : m         of milling cutter or grinding wheel; by default that of the roller, or
+                            of the base circle
+    chord_error : m         of the polyline of the drawing; by default its area is exact to 1e-6
     """
 
     table_step: Annotated[float, In("deg", at_least=0.1, at_most=1)] = radians(0.5)
@@ -29,9 +30,9 @@ class Workshop(Section):
 
 @dataclass(frozen=True)
 class WorkshopOrder:
-    """Step of the tables, rad; tool, tolerance band of the form, chord error, m.
+    """Step of the tables, rad; tool radius, tolerance band of the form, chord error, m.
 
-    A tool of the roller's radius, or the base circle's, is taken where none is given: it fits
+    Without a tool radius that of the roller, or of the base circle, is used: such a tool fits
     wherever the follower does.
     """
 
@@ -42,5 +43,5 @@ class WorkshopOrder:
 
     @property
     def theta(self) -> Array:
-        """Angles of the tables (n,), rad: the nearest equal division of the turn."""
+        """Cam angles of the tables (n,), rad: the nearest equal division of the turn."""
         return uniform_turn(round(2.0 * pi / self.step))

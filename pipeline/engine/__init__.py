@@ -1,1 +1,25 @@
-"""Engine torque over the cycle."""
+"""Engine: working cycle, torque over the cycle, measured traces, crank speed.
+
+In the order of the calculation:
+
+| module                   | responsibility                              | symbol, unit            |
+| ------------------------ | ------------------------------------------- | ----------------------- |
+| `cylinder`               | crank drive, valves, charge, burn, friction | x, m; V, m3; theta, rad |
+| `working_gas`            | heat capacity, energy and enthalpy          | gamma, -; u, h, J/kg    |
+| `valves`                 | valve lift, mass flow, valve spring torque  | s, m; kg/(s m2); T, N m |
+| `combustion`             | burnt fraction by Wiebe functions           | x_b, -                  |
+| `heat_loss`              | film coefficient: Hohenberg, Woschni        | W/(m2 K)                |
+| `indicated_cycle`        | working cycle: gas, torques, balance        | p, Pa; T, K; m, kg      |
+| `indicated_cycle_solver` | first law until the cycle is periodic       | p, Pa; T, K; m, kg      |
+| `trace_file`             | text of a trace file, units of its header   |                         |
+| `angle_trace`            | one quantity against crank angle            | theta, rad; SI          |
+| `torque`                 | engine torque as a sum of components        | T, N m                  |
+| `pressure_trace`         | measured cylinder pressure, its torque      | p, Pa; T, N m           |
+| `trigger_wheel`          | teeth of the wheel, places of the edges     | t, s; theta, rad        |
+| `crankshaft`             | crank speed from torques, energy swing      | J, kg m2; omega, rad/s  |
+| `speed_trace`            | measured crank speed, its torque            | omega, rad/s; T, N m    |
+| `pickup_voltage`         | edges from the voltage of a pick-up         | U, V; t, s              |
+| `torque_consistency`     | torque, speed, inertia and work compared    | J, kg m2; E, J          |
+
+Imports `geometry` and `pipeline.base`.
+"""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import pi
+from math import radians
 from pathlib import Path
 
 import numpy as np
@@ -13,27 +13,24 @@ from scipy.interpolate import Akima1DInterpolator
 
 from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import InputError
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.trace_file import (
     QUANTITY_UNITS,
     angle_column,
-    number_table,
-    split_cells,
-    table_delimiter,
-    text_lines,
+    trace_text,
     value_column,
 )
 
-CYCLE_ANGLE = 4.0 * pi
 ROWS_MIN = 12
-GAP_MAX = np.radians(20.0)
+GAP_MAX = radians(20.0)
 GAP_OVER_MEDIAN_MAX = 5.0
-VALUE_MAX = 1e12  # beyond what any engine shows, and what sums and squares can bear
-END_TOLERANCE = 0.25  # of the usual spacing, by which the last sample may miss the period's end
+VALUE_MAX = 1e12  # SI, above any engine's values; sums of squares stay finite
+END_TOLERANCE = 0.25  # of the median spacing, between the last sample and the end of the period
 
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """Samples of one quantity over one period of the crank, as the file gave them.
+    """Samples of one quantity over one period of the crank.
 
     Parameters
     ----------
@@ -43,8 +40,6 @@ class Trace:
     angle : array (n,)         rad, strictly increasing over less than one period, n >= 12
     values : array (n,)        N m, Pa or rad/s
     period : float             rad
-    end_difference : float     value at the end minus that at the start where the file gave both
-                               (their mean was kept), else 0
     """
 
     source: str
@@ -53,7 +48,6 @@ class Trace:
     angle: Array
     values: Array
     period: float = CYCLE_ANGLE
-    end_difference: float = 0.0
 
     def __post_init__(self) -> None:
         freeze(self, angle=self.angle, values=finite(f"{self.source}, {self.column}", self.values))
@@ -65,12 +59,12 @@ class Trace:
 
     @property
     def spacing(self) -> Array:
-        """Angle from each sample to the next, the last to the first one period on, rad."""
+        """Angle from each sample to the next, the last to the first of the next period, rad."""
         return np.diff(np.append(self.angle, self.angle[0] + self.period))
 
     @property
     def _curve(self) -> Akima1DInterpolator:
-        """The interpolant over the period and some samples either side of it."""
+        """Interpolant over the period and some samples on either side of it."""
         pad = min(self.angle.size, 6)
         ahead, behind = self.angle[:pad] + self.period, self.angle[-pad:] - self.period
         angle = np.concatenate([behind, self.angle, ahead])
@@ -80,18 +74,18 @@ class Trace:
     def __call__(self, angle: ArrayLike) -> Array:
         """Value at crank angles (rad, any shape), periodic, through every sample.
 
-        A modified Akima spline: a cubic whose slopes come from the five nearest samples. Unlike
-        the C2 cubic it does not ring along the cycle from one noisy sample, a step or an uneven
-        spacing; unlike the monotone cubic (pchip) it does not cut off a peak between two samples.
+        A modified Akima spline: a cubic whose slopes follow from the five nearest samples. Unlike
+        the C2 cubic it does not oscillate after a noisy sample, a step or an uneven spacing; unlike
+        the monotone cubic (pchip) it does not cut off a peak between two samples.
         """
         wrapped = self.angle[0] + np.mod(np.asarray(angle) - self.angle[0], self.period)
         return readonly(self._curve(wrapped))
 
     def uniform(self, count: int) -> Array:
-        """Values at `count` equally spaced angles from 0, the end left out.
+        """Values at `count` equally spaced angles from 0, the end of the period excluded.
 
-        Of a file sampled at least twice as densely each value is the mean over its own cell,
-        so that no sample is lost and noise is not folded back.
+        If the samples are at least twice as dense, each value is the mean over its interval:
+        noise is not aliased.
         """
         step = self.period / count
         angle = np.arange(count) * step
@@ -116,42 +110,38 @@ def read_trace(
 
     The first line that is not a comment (`#`) names the columns and their units, in any usual
     form: `crank_angle_deg`, `crank angle [deg]`, `angle (rad)`, `torque_Nm`, `torque [kN m]`.
-    Columns are parted by semicolons, tabs or commas; the decimal sign is a point, or a comma where
-    columns are not parted by it. Angles increase strictly; both ends of the period may be present,
-    the mean of their values is then kept.
+    Columns are separated by semicolons, tabs or commas; the decimal sign is a point, or a comma
+    where it does not separate columns. Angles increase strictly; if both ends of the period are
+    present, the mean of their values is kept.
 
     Parameters
     ----------
     path : path
     quantity : str            "torque", "pressure" or "speed"
-    column : str, optional    the value column by its header or the header's name part; needed
-                              where several fit
+    column : str, optional    header of the value column, or its beginning; needed if several
+                              columns are of the quantity
     period : float            rad
 
     Raises
     ------
     InputError
-        One line with file, line, value and what would be accepted, for a file that is missing, a
-        folder, empty, binary or over 64 MiB; a unit missing or unknown; a cell that is no finite
-        number; angles repeated, out of order or with gaps over 20 deg or 5 times the usual
-        spacing; another span than the period; fewer than 12 rows.
+        With file, line, value and limit: if the file is missing, a folder, empty, binary or over
+        64 MiB; a unit is missing or unknown; a cell is no finite number; angles repeat, fall or
+        have gaps over 20 deg or 5 times the median spacing; the span is not the period; there
+        are fewer than 12 rows.
     """
-    path = Path(path)
     if quantity not in QUANTITY_UNITS:
         raise InputError("quantity", quantity, "one of " + ", ".join(QUANTITY_UNITS))
-    lines = text_lines(path)
-    head_line, head = lines[0]
-    delimiter = table_delimiter(path.name, head_line, head)
-    header = [cell.strip() for cell in split_cells(head, delimiter)]
-    angle_at, angle_factor = angle_column(path.name, header)
-    value_at, value_factor = value_column(path.name, header, quantity, column)
-    table = number_table(path.name, lines[1:], header, delimiter, (angle_at, value_at))
-    numbers = [number for number, _ in lines[1:]]
+    text = trace_text(Path(path))
+    name, header, lines = text.name, text.header, text.line_numbers
+    angle_at, angle_factor = angle_column(name, header)
+    value_at, value_factor = value_column(name, header, quantity, column)
+    table = text.numbers((angle_at, value_at))
     angle = table[:, 0] * angle_factor
-    guard_order(path.name, numbers, table[:, 0], header[angle_at])
-    guard_span(path.name, angle, angle_factor, period)
+    guard_order(name, lines, table[:, 0], header[angle_at])
+    guard_span(name, angle, angle_factor, period)
     values = table[:, 1] * value_factor
-    return one_period(path.name, quantity, header[value_at], numbers, angle, values, period)
+    return one_period(name, quantity, header[value_at], lines, angle, values, period)
 
 
 def one_period(
@@ -164,32 +154,36 @@ def one_period(
     period: float = CYCLE_ANGLE,
     gap_max: float = GAP_MAX,
 ) -> Trace:
-    """The trace of one column whose order and span are known to be right.
+    """Trace of one column; order and span of its angles are checked before.
 
     Parameters
     ----------
     lines : sequence (n,)   line of each row in the file
     angle : array (n,)      rad; a row at the end of the period is averaged with the first
     values : array (n,)     SI
-    gap_max : float         rad, the widest stretch without a row
+    gap_max : float         rad, maximum gap between rows
 
     Raises
     ------
     InputError
-        If a gap is wider, or above 5 times the usual spacing.
+        If a gap is wider, or above 5 times the median spacing.
     """
-    difference = 0.0
-    if period - (angle[-1] - angle[0]) <= END_TOLERANCE * np.median(np.diff(angle)):
-        difference = float(values[-1] - values[0])
-        values = np.append(0.5 * (values[0] + values[-1]), values[1:-1])
-        angle = angle[:-1]
-    trace = Trace(name, quantity, column, angle, values, period, difference)
+    angle, values = without_end(angle, values, period)
+    trace = Trace(name, quantity, column, angle, values, period)
     _guard_gaps(trace, lines, gap_max)
     return trace
 
 
+def without_end(angle: Array, values: Array, period: float) -> tuple[Array, Array]:
+    """Angles (n,) and values (n, ...) of one period; a row at its end joins the first."""
+    if period - (angle[-1] - angle[0]) > END_TOLERANCE * np.median(np.diff(angle)):
+        return angle, values
+    mean = 0.5 * (values[:1] + values[-1:])
+    return angle[:-1], np.concatenate([mean, values[1:-1]])
+
+
 def guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> None:
-    """Refuse too few rows, and angles that repeat or fall, as the file wrote them."""
+    """Refuse too few rows, and angles (in the unit of the file) that do not increase."""
     if angle.size < ROWS_MIN:
         raise InputError(name, f"{angle.size} rows", f"{ROWS_MIN} rows or more")
     steps = np.diff(angle)
@@ -204,7 +198,7 @@ def guard_order(name: str, lines: Sequence[int], angle: Array, header: str) -> N
 def guard_span(
     name: str, angle: Array, factor: float, period: float, gap_max: float = GAP_MAX
 ) -> None:
-    """Refuse a trace that is not one period long, with a hint where the unit seems wrong."""
+    """Refuse a trace that is not one period long, with a hint if the unit seems wrong."""
     spacing = float(np.median(np.diff(angle)))
     span = float(angle[-1] - angle[0])
     excess = span - period
@@ -225,14 +219,14 @@ def guard_span(
 
 
 def _gap_limit(spacing: float, gap_max: float) -> float:
-    """The widest gap let through beside a usual spacing, rad; one asked for is taken as it is."""
+    """Maximum gap at a median spacing, rad; a `gap_max` above the default is used as it is."""
     if gap_max > GAP_MAX:
         return float(gap_max) * (1.0 + 1e-9)
     return min(float(gap_max), GAP_OVER_MEDIAN_MAX * spacing) * (1.0 + 1e-9)
 
 
 def _guard_gaps(trace: Trace, lines: Sequence[int], gap_max: float) -> None:
-    """Refuse a trace with a stretch too long to be guessed."""
+    """Refuse a trace with a gap too wide to interpolate."""
     limit = _gap_limit(float(np.median(trace.spacing)), gap_max)
     widest = int(np.argmax(trace.spacing))
     if trace.spacing[widest] > limit:

@@ -1,4 +1,4 @@
-"""Wiebe burn: how much of the fuel has burnt at a crank angle."""
+"""Burnt fraction of the fuel against crank angle, by Wiebe functions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def wiebe(progress: ArrayLike, a: float, m: float) -> Array:
     """Burnt fraction at a progress of the burn (0 at its start, 1 at its end), any shape.
 
     The exponential leaves exp(-a) unburnt at the end (0.7 % for a = 5); it is scaled to reach 1,
-    so that all fuel set free by `combustion_efficiency` is indeed set free.
+    so that the heat released is the share `combustion_efficiency` of that of the fuel.
 
     References
     ----------
@@ -21,14 +21,6 @@ def wiebe(progress: ArrayLike, a: float, m: float) -> Array:
     """
     reached = np.clip(progress, 0.0, 1.0)
     return np.asarray(np.expm1(-a * reached ** (m + 1.0)) / np.expm1(-a))
-
-
-def wiebe_rate(progress: ArrayLike, a: float, m: float) -> Array:
-    """Derivative of the burnt fraction by the progress; zero outside the burn."""
-    progress = np.asarray(progress, dtype=float)
-    reached = np.clip(progress, 0.0, 1.0)
-    rate = a * (m + 1.0) * reached**m * np.exp(-a * reached ** (m + 1.0)) / -np.expm1(-a)
-    return np.where((progress >= 0.0) & (progress <= 1.0), rate, 0.0)
 
 
 def _burns(engine: CylinderEngine) -> tuple[tuple[float, float, float, float], ...]:
@@ -41,7 +33,7 @@ def _burns(engine: CylinderEngine) -> tuple[tuple[float, float, float, float], .
 
 
 def _since_start(engine: CylinderEngine, theta: ArrayLike) -> Array:
-    """Crank angle past the start of the burn, counted from half a cycle before it (rad)."""
+    """Crank angle from the start of the burn, rad, within half a cycle of it."""
     past = np.asarray(theta, dtype=float) - (engine.spark + engine.ignition_delay)
     return np.asarray(np.mod(past + 0.5 * CYCLE_ANGLE, CYCLE_ANGLE) - 0.5 * CYCLE_ANGLE)
 
@@ -49,15 +41,8 @@ def _since_start(engine: CylinderEngine, theta: ArrayLike) -> Array:
 def burnt_fraction(engine: CylinderEngine, theta: ArrayLike) -> Array:
     """Fraction of the fuel burnt at crank angles (rad, any shape), 0 before the spark.
 
-    A compression-ignition engine burns `premixed_share` of it in a first, short burn.
+    With compression ignition the share `premixed_share` burns in a first, short burn.
     """
     past = _since_start(engine, theta)
     parts = [s * wiebe(past / length, a, m) for s, length, a, m in _burns(engine)]
-    return np.asarray(sum(parts))
-
-
-def burn_rate(engine: CylinderEngine, theta: ArrayLike) -> Array:
-    """Derivative of the burnt fraction by the crank angle, 1/rad."""
-    past = _since_start(engine, theta)
-    parts = [s / length * wiebe_rate(past / length, a, m) for s, length, a, m in _burns(engine)]
     return np.asarray(sum(parts))

@@ -1,4 +1,4 @@
-"""Crank speed over a cycle: what the torques leave of it, by work and kinetic energy."""
+"""Crank speed over a cycle from the torques on the crank, by work and kinetic energy."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from scipy.optimize import brentq
 from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
 from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.quantities import In, Part
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 
-CYCLE_ANGLE = 4.0 * pi
-SETTLED = 1e-13  # of the mean speed, between two passes
+SETTLED = 1e-13  # change of the speed between two passes over its mean
 PASSES_MAX = 200
 
 # Crank torque (n,) of a mechanism without the inertia of its moving parts, N m, from crank
@@ -44,7 +44,7 @@ class Crankshaft(Part):
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """What turns with the crank: a constant part and what the linkages add at each angle.
+    """Moment of inertia at the crank: a constant part, and one that varies with crank angle.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class Inertia:
     Raises
     ------
     InputError
-        If a part is negative, or nothing is left that could keep the crank turning.
+        If a part is negative, or their sum is zero at an angle.
     """
 
     constant: float
@@ -84,13 +84,13 @@ class Inertia:
         return float(self.total.mean())
 
     def plus(self, constant: float, varying: ArrayLike = 0.0) -> Inertia:
-        """The same with more turning along."""
+        """The inertia with that of further parts added, kg m2."""
         return Inertia(self.constant + constant, self.varying + np.asarray(varying, dtype=float))
 
 
 @dataclass(frozen=True)
 class Load:
-    """What the crank drives: T = T0 (omega / mean omega)^exponent, T0 closing the balance.
+    """Load torque T = T0 (omega / mean omega)^exponent; T0 balances the mean torque.
 
     Parameters
     ----------
@@ -115,10 +115,9 @@ class CrankMotion:
     acceleration : array (n,)   rad/s2
     load_torque : array (n,)    N m, taken from the crank
     mechanism_torque : array (n,)    N m, on the crank, inertia of its parts left out
-    net_torque : array (n,)     N m, what changes the kinetic energy
-    closure : float             work of the net torque over the cycle, by the loads at the speed
-                                found, over the mean kinetic energy
-    passes : int                until loads and speed agreed
+    net_torque : array (n,)     N m, derivative of the kinetic energy by the crank angle
+    closure : float             work of the net torque over the cycle at the final speed, over the
+                                mean kinetic energy
     """
 
     theta: Array
@@ -128,7 +127,6 @@ class CrankMotion:
     mechanism_torque: Array
     net_torque: Array
     closure: float
-    passes: int
 
     def __post_init__(self) -> None:
         names = ("theta", "speed", "acceleration", "load_torque", "mechanism_torque", "net_torque")
@@ -141,7 +139,7 @@ class CrankMotion:
 
 @dataclass(frozen=True)
 class SpeedStatistics:
-    """Ripple of a crank speed given at equal crank angles; rad/s, angles in rad."""
+    """Ripple of a crank speed at equal crank angles; rad/s, angles in rad."""
 
     mean: float  # over the time of the cycle: what a tachometer shows
     std: float  # over the crank angle, about the mean over the angle
@@ -183,9 +181,9 @@ def crank_motion(
     r"""The periodic solution of J omega domega/dtheta + omega^2 J'/2 = T_engine + T_mech - T_load.
 
     In the form of work and kinetic energy, d(J omega^2 / 2)/dtheta = T, the speed at each angle
-    follows from the integral of the torques alone, and the cycle closes when their mean is zero:
-    the level of the load is found so. The integral is that of the trigonometric interpolant.
-    Loads that depend on the motion are found by going round until both agree.
+    follows from the integral of the torques, and the cycle closes when their mean is zero, which
+    sets the level of the load. The integral is that of the trigonometric interpolant. Loads that
+    depend on the motion are iterated until loads and speed agree.
 
     Parameters
     ----------
@@ -201,7 +199,7 @@ def crank_motion(
     InputError
         If lengths differ or a value is out of bounds.
     CamError
-        If the torques would stop the crank within the cycle, or nothing settles.
+        If the torques stop the crank within the cycle, or the iteration does not converge.
 
     References
     ----------
@@ -214,19 +212,19 @@ def crank_motion(
         raise InputError("mean_speed", mean_speed, "> 0 rad/s")
     slope = _derivative(total)
     speed, acceleration = np.full_like(torque, mean_speed), np.zeros_like(torque)
-    for passes in range(1, PASSES_MAX + 1):  # noqa: B007 - told in the result
+    for _ in range(PASSES_MAX):
         mechanical = np.zeros_like(torque) if mechanism is None else mechanism(speed, acceleration)
         driven = torque + mechanical
         loaded = _closing_load(driven, speed, load)
         net = driven - loaded
-        found = _speed(_integral(net), total, mean_speed)
-        moved = float(np.abs(found - speed).max()) / mean_speed
-        speed, acceleration = found, (net - 0.5 * found**2 * slope) / total
-        if moved < SETTLED:
+        before, speed = speed, _speed(_integral(net), total, mean_speed)
+        acceleration = (net - 0.5 * speed**2 * slope) / total
+        change = float(np.abs(speed - before).max()) / mean_speed
+        if change < SETTLED:
             break
     else:
-        text = f"the crank speed did not settle within {PASSES_MAX} passes"
-        raise CamError(f"{text}: it still moves by {moved:.1e} of its mean")
+        text = f"the crank speed did not converge within {PASSES_MAX} passes"
+        raise CamError(f"{text}: it still changes by {change:.1e} of its mean")
     again = mechanical if mechanism is None else mechanism(speed, acceleration)
     level = float(loaded.mean())
     loaded_again = level * _shape(speed, load)
@@ -239,18 +237,17 @@ def crank_motion(
         mechanism_torque=mechanical,
         net_torque=net,
         closure=abs(work) / float((0.5 * total * speed**2).mean()),
-        passes=passes,
     )
 
 
 def equivalent_inertia(engine_torque: ArrayLike, mean_speed: float, speed_std: float) -> float:
-    """Constant inertia with which a torque alone gives a speed ripple, kg m2.
+    """Constant inertia at which a torque alone causes a speed ripple, kg m2.
 
     Parameters
     ----------
     engine_torque : array (n,)   N m at equal crank angles over the cycle
     mean_speed : float           rad/s
-    speed_std : float            rad/s, of the ripple wanted, > 0
+    speed_std : float            rad/s, standard deviation of the ripple, > 0
 
     Raises
     ------
@@ -292,7 +289,7 @@ def torque_of_motion(speed: ArrayLike, inertia: float) -> Array:
 
 
 def _closing_load(driven: Array, speed: Array, load: Load) -> Array:
-    """Load that takes as much work over the cycle as is given."""
+    """Load torque whose work over the cycle is that of the driving torque, N m."""
     shape = _shape(speed, load)
     return np.asarray(float(driven.mean()) * shape)
 
@@ -303,7 +300,7 @@ def _shape(speed: Array, load: Load) -> Array:
 
 
 def _speed(energy: Array, inertia: Array, mean_speed: float) -> Array:
-    """Speed of the kinetic energy `energy` + constant whose mean over time is given."""
+    """Speed of the kinetic energy `energy` + constant; `mean_speed` over time sets the constant."""
 
     def speed(floor: float) -> Array:
         return np.asarray(np.sqrt(2.0 * (energy + floor) / inertia))

@@ -1,11 +1,11 @@
-"""One cylinder of a four-stroke engine: what is known of it before its cycle is solved."""
+"""One cylinder of a four-stroke engine: geometry, valves, charge, combustion, friction."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from math import degrees, inf, isfinite, pi, radians
-from typing import Any, Literal, get_args
+from math import degrees, isfinite, pi, radians
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,148 +13,216 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.geometry.linkage import SliderCrank
-
-Ignition = Literal["spark", "compression"]
-HeatLoss = Literal["hohenberg", "woschni"]
-Friction = Literal["closing"] | float
-LiftTable = tuple[tuple[float, float], ...]
+from camwright.pipeline.base.quantities import (
+    Angle,
+    Duration,
+    Force,
+    Fraction,
+    GasPressure,
+    In,
+    Length,
+    Mass,
+    Part,
+    Positive,
+    Share,
+    Temperature,
+)
 
 CYCLE_ANGLE = 4.0 * pi
+LIFT_ROWS = (4, 720)  # least and most rows of a lift table
 
-_POSITIVE = (
-    "bore",
-    "valve_lift",
-    "intake_valve_diameter",
-    "exhaust_valve_diameter",
-    "valve_discharge_coefficient",
-    "rocker_ratio",
-    "intake_pressure",
-    "exhaust_pressure",
-    "crankcase_pressure",
-    "intake_temperature",
-    "exhaust_temperature",
-    "wall_temperature",
-    "burn_duration",
-    "wiebe_a",
-    "premixed_duration",
-    "air_fuel_ratio",
-    "lower_heating_value",
-)
-_NOT_NEGATIVE = (
-    "piston_mass",
-    "rod_mass",
-    "valve_spring_rate",
-    "valve_spring_preload",
-    "ignition_delay",
-    "wiebe_m",
-    "premixed_m",
-    "heat_loss_factor",
-    "dipper_area",
-    "dipper_radius",
-    "dipper_drag_coefficient",
-    "dipper_immersion",
-    "oil_density",
-)
+FrictionPressure = Annotated[float, In("kPa", at_least=0, at_most=1e4)]
 
 
-@dataclass(frozen=True)
-class CylinderEngine:
-    """A four-stroke engine of equal cylinders; SI units, crank angles in rad.
+@dataclass(frozen=True, kw_only=True)
+class LiftPoint(Part):
+    """One row of a lift table: an angle and the lift there."""
 
-    Crank angle 0 is the top dead centre at the start of intake, 2 pi that of firing. Angles of
-    the valves may leave [0, 4 pi): they wrap, so an intake valve may open at -10 deg.
+    table: ClassVar[str] = "lift_point"
 
-    The defaults past the running gear are those of a small spark-ignition engine;
-    `COMPRESSION_IGNITION` holds the set to lay over them for a small diesel.
+    angle: Angle
+    lift: Annotated[float, In("mm", at_least=0, at_most=1000)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CrankDrive(Part):
+    """Piston, connecting rod and crank of equal cylinders, and their firing order.
+
+    The piston mass includes rings and pin. The pin offset is that of the cylinder axis from the
+    crank axis, positive on the side to which the crank pin moves from angle 0; the big-end share
+    that of the rod mass that rotates with the crank pin; a firing offset the crank angle by which
+    the cycle of a cylinder lags.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds, the crank cannot rotate fully, or no cylinder fires.
     """
 
-    bore: float
-    crank_radius: float
-    rod_length: float
-    compression_ratio: float
-    piston_mass: float  # piston, rings and pin
-    rod_mass: float
-    pin_offset: float = 0.0  # of the cylinder axis from the crank axis, towards positive angles
-    rod_big_end_share: float = 2.0 / 3.0  # of the rod mass that turns with the crank pin
-    firing_offsets: tuple[float, ...] = (0.0,)  # one per cylinder, delay of its cycle
+    table: ClassVar[str] = "engine"
 
-    intake_valve_open: float = 0.0
-    intake_valve_close: float = radians(220.0)
-    exhaust_valve_open: float = radians(470.0)
-    exhaust_valve_close: float = radians(720.0)
-    valve_lift: float = 0.0055  # at the valve
-    intake_lift_table: LiftTable | None = None  # (angle, lift), in place of timing and lift
-    exhaust_lift_table: LiftTable | None = None
-    intake_valve_diameter: float = 0.025
-    exhaust_valve_diameter: float = 0.022
-    valve_discharge_coefficient: float = 0.6
-    valve_spring_rate: float = 5884.0
-    valve_spring_preload: float = 47.0
-    rocker_ratio: float = 1.0  # valve lift over cam lift
-
-    intake_pressure: float = 30.5e3
-    exhaust_pressure: float = 101.3e3
-    crankcase_pressure: float = 101.3e3
-    intake_temperature: float = 305.0
-    exhaust_temperature: float = 700.0  # of exhaust gas that flows back
-    wall_temperature: float = 400.0
-
-    ignition: Ignition = "spark"
-    spark: float = radians(335.0)  # or the start of injection
-    ignition_delay: float = radians(8.0)
-    burn_duration: float = radians(80.0)
-    wiebe_a: float = 5.0
-    wiebe_m: float = 2.0
-    premixed_share: float = 0.0  # of the fuel burnt in a first, short Wiebe burn (compression)
-    premixed_duration: float = radians(8.0)
-    premixed_m: float = 1.5
-    combustion_efficiency: float = 0.9
-    air_fuel_ratio: float = 13.5
-    lower_heating_value: float = 43.5e6
-
-    heat_loss: HeatLoss = "hohenberg"
-    heat_loss_factor: float = 1.0
-
-    friction: Friction = "closing"  # a mean effective pressure (Pa), or what closes the balance
-    dipper_area: float = 0.0  # of the oil dipper across its motion; 0: no dipper
-    dipper_radius: float = 0.035
-    dipper_drag_coefficient: float = 1.2
-    dipper_immersion: float = radians(40.0)  # half the crank angle under oil, about BDC
-    oil_density: float = 870.0
+    kind: str
+    bore: Length
+    crank_radius: Length
+    rod_length: Length
+    compression_ratio: Annotated[float, In(above=1, at_most=40)]
+    piston_mass: Mass
+    rod_mass: Mass
+    pin_offset: Annotated[float, In("mm", above=-1000, below=1000)] = 0.0
+    rod_big_end_share: Share = 2.0 / 3.0
+    firing_offsets: tuple[Angle, ...] = (0.0,)
 
     def __post_init__(self) -> None:
-        for name in _POSITIVE:
-            if not 0.0 < getattr(self, name) < inf:
-                raise InputError(f"engine.{name}", getattr(self, name), "> 0")
-        for name in _NOT_NEGATIVE:
-            if not 0.0 <= getattr(self, name) < inf:
-                raise InputError(f"engine.{name}", getattr(self, name), ">= 0")
-        for name in ("rod_big_end_share", "combustion_efficiency", "premixed_share"):
-            if not 0.0 <= getattr(self, name) <= 1.0:
-                raise InputError(f"engine.{name}", getattr(self, name), "from 0 to 1")
-        if not 1.0 < self.compression_ratio <= 40.0:
-            raise InputError("engine.compression_ratio", self.compression_ratio, "from 1 to 40")
-        _ = self.linkage  # refuses what cannot turn over
-        self._guard_choices()
+        super().__post_init__()
+        if not self.rod_length > self.crank_radius + abs(self.pin_offset):
+            limit = "longer than the crank radius and the pin offset"
+            raise InputError("engine.rod_length", f"{self.rod_length:.6g} m", limit)
+        if not self.firing_offsets or not all(isfinite(angle) for angle in self.firing_offsets):
+            shown = self.firing_offsets or "empty"
+            raise InputError("engine.firing_offsets", shown, "one angle per cylinder")
+
+    @property
+    def linkage(self) -> SliderCrank:
+        return SliderCrank(self.crank_radius, self.rod_length, self.pin_offset)
+
+    @property
+    def stroke(self) -> float:
+        """m."""
+        return self.linkage.stroke
+
+    @property
+    def piston_area(self) -> float:
+        """m2."""
+        return 0.25 * pi * self.bore**2
+
+    @property
+    def displacement(self) -> float:
+        """Swept volume of one cylinder, m3."""
+        return self.piston_area * self.stroke
+
+    @property
+    def clearance(self) -> float:
+        """Height of the gas above the piston at its top dead centre, m."""
+        return self.stroke / (self.compression_ratio - 1.0)
+
+    @property
+    def reciprocating_mass(self) -> float:
+        """Mass of piston and small end of the rod, kg."""
+        return self.piston_mass + (1.0 - self.rod_big_end_share) * self.rod_mass
+
+    def volume(self, theta: ArrayLike) -> Array:
+        """Gas volume of the cylinder at crank angles (rad), any shape, m3."""
+        return np.asarray(self.piston_area * (self.clearance + self.linkage.travel(theta)))
+
+    def volume_rate(self, theta: ArrayLike) -> Array:
+        """Derivative of the gas volume by the crank angle, m3/rad."""
+        return np.asarray(self.piston_area * self.linkage.travel_rate(theta))
+
+    def inertia_torque(self, theta: ArrayLike, crank_speed: float) -> Array:
+        """Torque of one reciprocating mass on the crank at constant speed, exact, N m."""
+        acceleration = crank_speed**2 * self.linkage.travel_acceleration(theta)
+        force = -self.reciprocating_mass * acceleration
+        return np.asarray(force * self.linkage.travel_rate(theta))
+
+    def reciprocating_inertia(self, theta: ArrayLike) -> Array:
+        """m x'^2 of all reciprocating masses, their part of the inertia at the crank, kg m2."""
+        at = np.asarray(theta, dtype=float)
+        rates = [self.linkage.travel_rate(at - offset) for offset in self.firing_offsets]
+        return np.asarray(self.reciprocating_mass * sum(rate**2 for rate in rates))
+
+    def friction_torque(self, pressure: float | None, driving: float) -> float:
+        """Mean friction torque of one cylinder on the crank, N m, <= 0.
+
+        Parameters
+        ----------
+        pressure : float or None   friction mean effective pressure (FMEP), Pa; None: the friction
+                                   that closes the torque balance of the cycle
+        driving : float            mean torque of all other components, N m
+
+        Raises
+        ------
+        InputError
+            If friction has to close the balance of a cycle with a negative mean torque.
+        """
+        if pressure is not None:
+            return -pressure * self.displacement / CYCLE_ANGLE
+        if driving < 0.0:
+            limit = f"given, as the cycle itself needs {-driving:.3g} N m to turn"
+            raise InputError("engine.friction_pressure", "missing", limit)
+        return -driving
+
+
+@dataclass(frozen=True, kw_only=True)
+class CylinderEngine(CrankDrive):
+    """Model of a four-stroke engine of equal cylinders; crank angle 0 is the TDC of intake.
+
+    Firing TDC is at 360 deg. Valve angles may leave [0, 720 deg): an intake valve may open at
+    -10 deg. A lift table replaces timing and lift of its valve. `valve_lift` is at the valve,
+    `rocker_ratio` valve lift over cam lift. `exhaust_temperature` is that of exhaust gas that
+    flows back. `spark` is the start of injection with compression ignition, where
+    `premixed_share` of the fuel burns in a first, short Wiebe burn. Without a friction pressure
+    friction closes the torque balance. A dipper area of 0 means no oil dipper; `dipper_immersion`
+    is half the crank angle under oil about BDC.
+
+    Raises
+    ------
+    InputError
+        As `CrankDrive`; if valve timing, lift tables, spark and burn contradict one another.
+    """
+
+    kind: Literal["cylinder"] = "cylinder"
+    intake_valve_open: Angle = 0.0
+    intake_valve_close: Angle = radians(220.0)
+    exhaust_valve_open: Angle = radians(470.0)
+    exhaust_valve_close: Angle = radians(720.0)
+    valve_lift: Length = 0.0055
+    intake_lift_table: tuple[LiftPoint, ...] = ()
+    exhaust_lift_table: tuple[LiftPoint, ...] = ()
+    intake_valve_diameter: Length = 0.025
+    exhaust_valve_diameter: Length = 0.022
+    valve_discharge_coefficient: Fraction = 0.6
+    valve_spring_rate: Annotated[float, In("N/m", at_least=0, at_most=1e9)] = 5884.0
+    valve_spring_preload: Force = 47.0
+    rocker_ratio: Positive = 1.0
+
+    intake_pressure: GasPressure = 30.5e3
+    exhaust_pressure: GasPressure = 101.3e3
+    crankcase_pressure: GasPressure = 101.3e3
+    intake_temperature: Temperature = 305.0
+    exhaust_temperature: Temperature = 700.0
+    wall_temperature: Temperature = 400.0
+
+    ignition: Literal["spark", "compression"] = "spark"
+    spark: Angle = radians(335.0)
+    ignition_delay: Annotated[float, In("deg", at_least=0, at_most=180)] = radians(8.0)
+    burn_duration: Duration = radians(80.0)
+    wiebe_a: Positive = 5.0
+    wiebe_m: Positive = 2.0
+    premixed_share: Share = 0.0
+    premixed_duration: Duration = radians(8.0)
+    premixed_m: Positive = 1.5
+    combustion_efficiency: Share = 0.9
+    air_fuel_ratio: Annotated[float, In(above=1, at_most=1000)] = 13.5
+    lower_heating_value: Annotated[float, In("MJ/kg", above=0, at_most=1000)] = 43.5e6
+
+    heat_loss: Literal["hohenberg", "woschni"] = "hohenberg"
+    heat_loss_factor: Annotated[float, In(at_least=0, at_most=100)] = 1.0
+    friction_pressure: FrictionPressure | None = None
+    dipper_area: Annotated[float, In("mm^2", at_least=0, at_most=1e6)] = 0.0
+    dipper_radius: Length = 0.035
+    dipper_drag_coefficient: Positive = 1.2
+    dipper_immersion: Annotated[float, In("deg", above=0, at_most=180)] = radians(40.0)
+    oil_density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)] = 870.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
         self._guard_valves()
         self._guard_burn()
-        if not self.firing_offsets or not all(isfinite(angle) for angle in self.firing_offsets):
-            raise InputError("engine.firing_offsets", self.firing_offsets, "one angle per cylinder")
-
-    def _guard_choices(self) -> None:
-        for name, choices in (("ignition", Ignition), ("heat_loss", HeatLoss)):
-            if getattr(self, name) not in get_args(choices):
-                limit = " or ".join(get_args(choices))
-                raise InputError(f"engine.{name}", getattr(self, name), limit)
-        if self.friction != "closing" and not (
-            isinstance(self.friction, (int, float)) and 0.0 <= self.friction < inf
-        ):
-            raise InputError("engine.friction", self.friction, '"closing", or a pressure >= 0 Pa')
 
     def _guard_valves(self) -> None:
         for name in ("intake", "exhaust"):
-            table = getattr(self, f"{name}_lift_table")
-            if table is not None:
+            table: tuple[LiftPoint, ...] = getattr(self, f"{name}_lift_table")
+            if table:
                 _guard_lift_table(f"engine.{name}_lift_table", table)
             opens, closes = getattr(self, f"{name}_window")
             if not opens < closes < opens + CYCLE_ANGLE:
@@ -179,90 +247,26 @@ class CylinderEngine:
             raise InputError("engine.burn_duration", f"{degrees(self.burn_duration):g} deg", limit)
 
     @property
-    def linkage(self) -> SliderCrank:
-        return SliderCrank(self.crank_radius, self.rod_length, self.pin_offset)
-
-    @property
-    def stroke(self) -> float:
-        return self.linkage.stroke
-
-    @property
-    def piston_area(self) -> float:
-        return 0.25 * pi * self.bore**2
-
-    @property
-    def displacement(self) -> float:
-        """Swept volume of one cylinder, m3."""
-        return self.piston_area * self.stroke
-
-    @property
-    def clearance(self) -> float:
-        """Height of the gas over the piston at its top dead centre, m."""
-        return self.stroke / (self.compression_ratio - 1.0)
-
-    @property
-    def reciprocating_mass(self) -> float:
-        return self.piston_mass + (1.0 - self.rod_big_end_share) * self.rod_mass
-
-    @property
     def intake_window(self) -> tuple[float, float]:
         """Crank angles at which the intake valve opens and closes, rad."""
-        if self.intake_lift_table is not None:
-            return self.intake_lift_table[0][0], self.intake_lift_table[-1][0]
+        if self.intake_lift_table:
+            return self.intake_lift_table[0].angle, self.intake_lift_table[-1].angle
         return self.intake_valve_open, self.intake_valve_close
 
     @property
     def exhaust_window(self) -> tuple[float, float]:
         """Crank angles at which the exhaust valve opens and closes, rad."""
-        if self.exhaust_lift_table is not None:
-            return self.exhaust_lift_table[0][0], self.exhaust_lift_table[-1][0]
+        if self.exhaust_lift_table:
+            return self.exhaust_lift_table[0].angle, self.exhaust_lift_table[-1].angle
         return self.exhaust_valve_open, self.exhaust_valve_close
 
-    def volume(self, theta: ArrayLike) -> Array:
-        """Gas volume of the cylinder at crank angles (rad), any shape, m3."""
-        return np.asarray(self.piston_area * (self.clearance + self.linkage.travel(theta)))
 
-    def volume_rate(self, theta: ArrayLike) -> Array:
-        """Derivative of the gas volume by the crank angle, m3/rad."""
-        return np.asarray(self.piston_area * self.linkage.travel_rate(theta))
-
-    def inertia_torque(self, theta: ArrayLike, crank_speed: float) -> Array:
-        """Torque of one reciprocating mass on the crank at constant speed, exact, N m."""
-        acceleration = crank_speed**2 * self.linkage.travel_acceleration(theta)
-        force = -self.reciprocating_mass * acceleration
-        return np.asarray(force * self.linkage.travel_rate(theta))
-
-    def reciprocating_inertia(self, theta: ArrayLike) -> Array:
-        """m x'^2 of all reciprocating masses, what they add to the crank's inertia, kg m2."""
-        at = np.asarray(theta, dtype=float)
-        rates = [self.linkage.travel_rate(at - offset) for offset in self.firing_offsets]
-        return np.asarray(self.reciprocating_mass * sum(rate**2 for rate in rates))
-
-
-def _guard_lift_table(field: str, table: LiftTable) -> None:
+def _guard_lift_table(field: str, table: tuple[LiftPoint, ...]) -> None:
     """Refuse a lift table that does not open from the seat and close upon it again."""
-    if len(table) < 4:
-        raise InputError(field, f"{len(table)} rows", "4 rows or more")
-    if not all(isfinite(angle) and 0.0 <= lift < inf for angle, lift in table):
-        raise InputError(field, "a cell", "a finite angle and a lift >= 0 m")
-    if not all(here[0] < there[0] for here, there in pairwise(table)):
+    least, most = LIFT_ROWS
+    if not least <= len(table) <= most:
+        raise InputError(field, f"{len(table)} rows", f"from {least} to {most} rows")
+    if not all(here.angle < there.angle for here, there in pairwise(table)):
         raise InputError(field, "angles", "strictly increasing")
-    if table[0][1] != 0.0 or table[-1][1] != 0.0:
+    if table[0].lift != 0.0 or table[-1].lift != 0.0:
         raise InputError(field, "first and last lift", "0 m")
-
-
-# What to lay over the defaults for a small naturally aspirated diesel, as keyword arguments.
-COMPRESSION_IGNITION: dict[str, Any] = {
-    "ignition": "compression",
-    "compression_ratio": 20.0,
-    "intake_pressure": 98.0e3,
-    "spark": radians(342.0),
-    "ignition_delay": radians(8.0),
-    "burn_duration": radians(60.0),
-    "wiebe_a": 5.0,
-    "wiebe_m": 0.9,
-    "premixed_share": 0.35,
-    "combustion_efficiency": 0.98,
-    "air_fuel_ratio": 40.0,
-    "lower_heating_value": 42.8e6,
-}

@@ -1,4 +1,4 @@
-"""Heat from the gas to the walls: Hohenberg's and Woschni's film coefficients."""
+"""Heat transfer from the gas to the walls by the laws of Hohenberg and Woschni."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
 
-# W/(m2 K), of the node of a step table, the pressure (Pa) and the temperature (K)
+# W/(m2 K), of node, pressure (Pa) and temperature (K)
 FilmCoefficient = Callable[[int, float, float], float]
 
 MOTORED_EXPONENT = 1.32  # of the polytropic compression Woschni compares with
@@ -20,7 +20,7 @@ MOTORED_EXPONENT = 1.32  # of the polytropic compression Woschni compares with
 
 @dataclass(frozen=True)
 class Charge:
-    """The gas as the intake valve shuts."""
+    """State of the gas at intake valve close: Pa, K, m3."""
 
     pressure: float
     temperature: float
@@ -28,7 +28,7 @@ class Charge:
 
 
 def wall_area(engine: CylinderEngine, theta: ArrayLike) -> Array:
-    """Piston crown, flat head and the liner laid bare at crank angles (rad), m2."""
+    """Area of piston crown, flat head and exposed liner at crank angles (rad), m2."""
     crown = 0.25 * pi * engine.bore**2
     liner = pi * engine.bore * (engine.linkage.travel(theta) + engine.clearance)
     return np.asarray(2.0 * crown + liner)
@@ -37,13 +37,13 @@ def wall_area(engine: CylinderEngine, theta: ArrayLike) -> Array:
 def film_coefficient(
     engine: CylinderEngine, crank_speed: float, theta: Array, volume: Array, charge: Charge
 ) -> FilmCoefficient:
-    """The film coefficient over the nodes of a step table, as a function quick to call.
+    """Film coefficient at the nodes of a cycle, as a function of node, pressure and temperature.
 
     Parameters
     ----------
     crank_speed : float        rad/s
     theta, volume : array (n,) crank angle (rad) and cylinder volume (m3) at the nodes
-    charge : Charge            at intake valve close; Woschni alone needs it
+    charge : Charge            at intake valve close; used by Woschni only
 
     References
     ----------

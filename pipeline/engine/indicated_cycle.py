@@ -1,4 +1,4 @@
-"""The working cycle of one cylinder: single zone, first law, until it repeats itself."""
+"""Working cycle of one cylinder: state of the gas, torques, balance of energy and mass."""
 
 from __future__ import annotations
 
@@ -8,20 +8,18 @@ from math import pi
 import numpy as np
 
 from camwright.geometry.arrays import Array, finite, freeze
-from camwright.geometry.errors import InputError
-from camwright.pipeline.engine.combustion import burn_rate, burnt_fraction
-from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.valves import valve_train_torque
 
 
 @dataclass(frozen=True)
 class CycleBalance:
-    """What went in and out of one cylinder over its last cycle: J and kg."""
+    """Balance of energy (J) and mass (kg) of one cylinder over its last cycle."""
 
     heat_released: float
     heat_lost: float
     work: float  # of the gas on the piston
-    enthalpy_in: float  # net, with the gas through both valves
+    enthalpy_in: float  # net, through both valves
     energy_change: float
     intake_mass: float  # net
     exhaust_mass: float  # net, out of the cylinder
@@ -29,21 +27,21 @@ class CycleBalance:
 
     @property
     def energy_residual(self) -> float:
-        """What the first law leaves over, relative to the heat and work turned over."""
+        """Residual of the first law over the heat released, heat lost and work."""
         left = self.heat_released - self.heat_lost - self.work + self.enthalpy_in
         turned = abs(self.heat_released) + abs(self.heat_lost) + abs(self.work)
         return (left - self.energy_change) / max(turned, 1e-12)
 
     @property
     def mass_residual(self) -> float:
-        """What the conservation of mass leaves over, relative to the intake."""
+        """Residual of the mass balance over the intake mass."""
         left = self.intake_mass - self.exhaust_mass - self.mass_change
         return left / max(abs(self.intake_mass), 1e-12)
 
 
 @dataclass(frozen=True, eq=False)
 class CylinderCycle:
-    """One periodic cycle of one cylinder on whole crank degrees, 0 the TDC of intake.
+    """Periodic cycle of one cylinder at whole crank degrees, 0 the TDC of intake.
 
     Arrays are (720,): `theta` rad, `pressure` Pa, `temperature` K, `mass` kg.
     """
@@ -57,7 +55,6 @@ class CylinderCycle:
     fuel_mass: float  # kg per cycle
     residual_fraction: float  # burnt mass over all mass as the intake valve closes
     balance: CycleBalance
-    cycles: int  # it took to repeat
     closure: float  # relative pressure difference of the last two cycles at intake valve close
 
     def __post_init__(self) -> None:
@@ -67,19 +64,6 @@ class CylinderCycle:
     @property
     def volume(self) -> Array:
         return self.engine.volume(self.theta)
-
-    @property
-    def burnt_fraction(self) -> Array:
-        return burnt_fraction(self.engine, self.theta)
-
-    @property
-    def heat_release_rate(self) -> Array:
-        """J/rad."""
-        return self.balance.heat_released * burn_rate(self.engine, self.theta)
-
-    @property
-    def pressure_max(self) -> float:
-        return float(self.pressure.max())
 
     @property
     def gas_torque(self) -> Array:
@@ -98,9 +82,9 @@ class CylinderCycle:
 
     @property
     def dipper_torque(self) -> Array:
-        """Drag of the oil dipper, where it dips: about both bottom dead centres, N m."""
+        """Drag torque of the oil dipper about both bottom dead centres, N m."""
         engine = self.engine
-        if engine.dipper_area == 0.0 or engine.dipper_immersion == 0.0:
+        if engine.dipper_area == 0.0:
             return np.zeros_like(self.theta)
         from_bottom = np.mod(self.theta, 2.0 * pi) - pi
         reached = np.minimum(np.abs(from_bottom) / engine.dipper_immersion, 1.0)
@@ -111,38 +95,14 @@ class CylinderCycle:
 
     @property
     def friction_torque(self) -> Array:
-        """Constant torque of friction: of the given pressure, or what closes the balance, N m.
+        """Constant torque of friction, N m: of the friction pressure, or what closes the balance.
 
         Raises
         ------
         InputError
-            If it should close the balance of a cycle that drives nothing.
+            As `CrankDrive.friction_torque`.
         """
-        if self.engine.friction == "closing":
-            others = self.gas_torque + self.inertia_torque
-            mean = float((others + self.valve_train_torque + self.dipper_torque).mean())
-            if mean < 0.0:
-                limit = f"a pressure, for the cycle itself needs {-mean:.3g} N m to turn"
-                raise InputError("engine.friction", "closing", limit)
-            return np.full_like(self.theta, -mean)
-        mean = self.engine.friction * self.engine.displacement / CYCLE_ANGLE
-        return np.full_like(self.theta, -mean)
-
-    @property
-    def friction_pressure(self) -> float:
-        """Friction mean effective pressure (FMEP), Pa."""
-        return self._mean_effective_pressure(-self.friction_torque)
-
-    @property
-    def indicated_pressure_net(self) -> float:
-        """Net indicated mean effective pressure (IMEP), all four strokes, Pa."""
-        return self._mean_effective_pressure(self.gas_torque)
-
-    @property
-    def indicated_pressure_gross(self) -> float:
-        """Gross indicated mean effective pressure (IMEP), compression and expansion alone, Pa."""
-        fired = (self.theta >= pi - 1e-9) & (self.theta < 3.0 * pi - 1e-9)
-        return self._mean_effective_pressure(np.where(fired, self.gas_torque, 0.0))
-
-    def _mean_effective_pressure(self, torque: Array) -> float:
-        return float(torque.mean()) * CYCLE_ANGLE / self.engine.displacement
+        others = self.gas_torque + self.inertia_torque
+        mean = float((others + self.valve_train_torque + self.dipper_torque).mean())
+        friction = self.engine.friction_torque(self.engine.friction_pressure, mean)
+        return np.full_like(self.theta, friction)

@@ -1,4 +1,4 @@
-"""Steps through the working cycle of one cylinder until it repeats itself."""
+"""Single-zone working cycle of one cylinder, integrated until it is periodic."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SPEED_RANGE = (10.0, 2000.0)  # rad/s
 
 @dataclass(frozen=True)
 class _Steps:
-    """The steps of one cycle; tables of plain floats, which a scalar loop reads fastest.
+    """Steps of one cycle; lists of floats, which a scalar loop reads fastest.
 
     Node 2 i is the start of step i, node 2 i + 1 its middle.
     """
@@ -47,8 +47,8 @@ def _steps(engine: CylinderEngine, crank_speed: float) -> _Steps:
     intake, exhaust = intake_valve(engine), exhaust_valve(engine)
     start = ceil(degrees(engine.intake_window[1]) - 1e-9)
     whole = np.radians(start + np.arange(STEPS_PER_CYCLE + 1.0))
-    # The open valves ask for a step below the time the gas takes to level out through them,
-    # the faster the nearer to equal pressures, where the nozzle law is steepest.
+    # With open valves the step must be below the time of pressure equalisation, which is shortest
+    # near equal pressures, where the nozzle law is steepest.
     gas_speed = 1.3 * sqrt(AIR_AND_FUEL.constant * 900.0) * sqrt(2.0 / NEARLY_EQUAL)
     area = intake.flow_area(whole) + exhaust.flow_area(whole)
     levelling = gas_speed / crank_speed * area / engine.volume(whole)
@@ -74,7 +74,7 @@ def _steps(engine: CylinderEngine, crank_speed: float) -> _Steps:
 
 @dataclass
 class _Port:
-    """Gas pushed back into the intake; it is drawn in again before fresh charge is."""
+    """Gas pushed back into the intake, drawn in again before fresh charge: kg, J, kg."""
 
     fresh_enthalpy: float  # J/kg
     mass: float = 0.0
@@ -83,7 +83,7 @@ class _Port:
 
     @property
     def offered(self) -> float:
-        """Specific enthalpy of what flows in next, J/kg."""
+        """Specific enthalpy of the gas that flows in next, J/kg."""
         return self.enthalpy / self.mass if self.mass > 0.0 else self.fresh_enthalpy
 
     def give(self, drawn: float) -> tuple[float, float]:
@@ -91,22 +91,22 @@ class _Port:
 
         Returns
         -------
-        burnt : float       the burnt gas in it, kg
-        enthalpy : float    what it holds over its mass at the enthalpy offered, J: not zero where
-                            the gas pushed back runs out and fresh charge follows
+        burnt : float       burnt gas in it, kg
+        enthalpy : float    excess over its mass at the enthalpy offered, J: not zero if the gas
+                            pushed back runs out and fresh charge follows
         """
         if self.mass == 0.0:
             return 0.0, 0.0
         beyond = max(drawn - self.mass, 0.0) * (self.fresh_enthalpy - self.offered)
-        given = min(drawn / self.mass, 1.0)
-        burnt = given * self.burnt
-        self.mass -= given * self.mass
-        self.enthalpy -= given * self.enthalpy
+        share = min(drawn / self.mass, 1.0)
+        burnt = share * self.burnt
+        self.mass -= share * self.mass
+        self.enthalpy -= share * self.enthalpy
         self.burnt -= burnt
         return burnt, beyond
 
     def take(self, pushed: float, enthalpy: float, burnt: float) -> None:
-        """Let a mass flow out of the cylinder, its specific enthalpy and burnt fraction given."""
+        """Let a mass flow out of the cylinder, with its specific enthalpy and burnt fraction."""
         self.mass += pushed
         self.enthalpy += pushed * enthalpy
         self.burnt += pushed * burnt
@@ -138,9 +138,9 @@ def _rates_of(
     steps: _Steps,
     film: FilmCoefficient,
 ) -> Rates:
-    """The flows at a node, of mass, energy and the specific enthalpy the intake offers.
+    """Flows at a node, as a function of mass, energy and specific enthalpy offered by the intake.
 
-    Everything they need is bound to local names: they are asked for some 1e4 times per cycle.
+    Its inputs are bound to local names, since it is called some 1e4 times per cycle.
     """
     volume, volume_rate = steps.volume.tolist(), steps.volume_rate
     wall, intake_area, exhaust_area = steps.wall, steps.intake, steps.exhaust
@@ -191,7 +191,7 @@ def _step(
     heat: float,
     offered: float,
 ) -> list[float]:
-    """The flows of one classical Runge-Kutta step, with heat set free at a given rate (J/rad)."""
+    """Flows of one classical Runge-Kutta step with heat released at a constant rate (J/rad)."""
     mass, energy = content.mass, content.energy
 
     def after(flows: Flows, part: float) -> tuple[float, float]:
@@ -208,9 +208,9 @@ def _step(
 
 
 def _exchange(content: _Content, port: _Port, intake: float, exhaust: float, gas: Gas) -> float:
-    """Carry the burnt gas and the intake's contents along with what passed the valves.
+    """Update burnt gas and intake contents by the gas that passed the valves (kg).
 
-    Returns the enthalpy (J) that the gas drawn in holds over what the intake offered.
+    Returns the excess enthalpy (J) of the gas drawn in over its mass at the enthalpy offered.
     """
     own, over = content.burnt / content.mass, 0.0
     if intake > 0.0:
@@ -227,7 +227,7 @@ def _exchange(content: _Content, port: _Port, intake: float, exhaust: float, gas
 def fuel_mass(engine: CylinderEngine, fresh: float) -> float:
     """Fuel (kg) burnt with a fresh charge (kg): drawn in with it, or injected into it.
 
-    The injected mass itself, a few per cent, is not added to the gas.
+    The injected mass, a few per cent, is not added to the gas.
     """
     parts = engine.air_fuel_ratio + (1.0 if engine.ignition == "spark" else 0.0)
     return fresh / parts
@@ -248,7 +248,7 @@ def _one_cycle(
     Returns
     -------
     states : array (2, 720)   mass (kg) and energy (J) at the whole degrees, from `steps.start`
-    balance : CycleBalance    what went in and out
+    balance : CycleBalance
     """
     pressure, temperature = content.state(gas, float(steps.volume[0]))
     charge = Charge(pressure, temperature, float(steps.volume[0]))
@@ -265,7 +265,7 @@ def _one_cycle(
             flows = _step(rates, 2 * step, length, content, heat, port.offered)
             intake, exhaust, _, work, lost = flows
             if steps.burnt[step] > 0.0:
-                content.burnt = content.mass  # the flame leaves no fresh charge behind
+                content.burnt = content.mass  # the flame consumes all fresh charge
             if intake != 0.0 or exhaust != 0.0:
                 flows[2] += _exchange(content, port, intake, exhaust, gas)
             content.mass += intake + exhaust
@@ -292,9 +292,9 @@ def working_cycle(
 ) -> CylinderCycle:
     """The periodic working cycle of one cylinder at constant crank speed.
 
-    A single zone of ideal gas: first law with Wiebe heat, heat to the walls and isentropic flow
-    through both valves. Cycles are stepped until pressure, mass, energy and burnt gas as the
-    intake valve closes repeat within 1e-6.
+    A single zone of ideal gas: first law with Wiebe heat release, heat transfer to the walls and
+    isentropic flow through both valves. Cycles are integrated until pressure, mass, energy and
+    burnt gas at intake valve close repeat within 1e-6.
 
     Parameters
     ----------
@@ -307,7 +307,7 @@ def working_cycle(
     InputError
         If the speed is out of range.
     CamError
-        If the cycle does not repeat itself within 200 cycles.
+        If the cycle is not periodic within 200 cycles.
 
     References
     ----------
@@ -323,17 +323,15 @@ def working_cycle(
     mass = engine.intake_pressure * volume / (gas.constant * temperature)
     content = _Content(mass, mass * gas.energy(temperature), 0.2 * mass)
     port = _Port(gas.enthalpy(engine.intake_temperature))
-    cycles = 0
-    while cycles < CYCLES_MAX:
-        cycles += 1
+    for _ in range(CYCLES_MAX):
         before = _fingerprint(content, gas, volume)
         states, balance = _one_cycle(engine, crank_speed, gas, steps, content, port)
         change = np.abs(_fingerprint(content, gas, volume) / before - 1.0)
         if change.max() < REPEATS_WITHIN:
             break
     else:
-        text = f"the working cycle did not repeat itself within {CYCLES_MAX} cycles"
-        raise CamError(f"{text}: the pressure still moves by {change[0]:.1e}")
+        text = f"the working cycle did not become periodic within {CYCLES_MAX} cycles"
+        raise CamError(f"{text}: the pressure still changes by {change[0]:.1e} of itself")
     mass_at, energy_at = np.roll(states, steps.start, axis=1)
     theta = np.radians(np.arange(float(STEPS_PER_CYCLE)))
     temperature_at = gas.temperature(energy_at / mass_at)
@@ -347,12 +345,11 @@ def working_cycle(
         fuel_mass=fuel_mass(engine, before[1] * (1.0 - before[3])),
         residual_fraction=float(before[3]),
         balance=balance,
-        cycles=cycles,
         closure=float(change[0]),
     )
 
 
 def _fingerprint(content: _Content, gas: Gas, volume: float) -> Array:
-    """Pressure, mass, energy and burnt fraction: what must repeat from cycle to cycle."""
+    """Pressure, mass, energy and burnt fraction, which must repeat from cycle to cycle."""
     pressure, _ = content.state(gas, volume)
     return np.array([pressure, content.mass, content.energy, content.burnt / content.mass])

@@ -1,32 +1,36 @@
-"""Raw voltage of a variable-reluctance pick-up: the moments at which edges passed."""
+"""Edge times from the voltage of a variable-reluctance pick-up."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite
 from camwright.geometry.errors import InputError
-from camwright.pipeline.engine.speed_trace import Filter, SpeedTrace, speed_from_edges
-from camwright.pipeline.engine.trace_file import (
-    columns_of,
-    number_table,
-    split_cells,
-    table_delimiter,
-    text_lines,
-)
+from camwright.pipeline.base.quantities import In
+from camwright.pipeline.engine.speed_trace import Filter, SpeedTrace, WheelTable, speed_from_edges
+from camwright.pipeline.engine.trace_file import columns_of, trace_text
 from camwright.pipeline.engine.trigger_wheel import Edges, TriggerWheel, tooth_places
 
-THRESHOLD = 0.25  # of the usual peak, which the voltage must pass on both sides of a crossing
+THRESHOLD = 0.25  # of the usual peak, exceeded on both sides of a crossing
 SAMPLES_PER_TOOTH_MIN = 6.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class VoltageTable(WheelTable):
+    """Voltage of a variable-reluctance pick-up at the trigger wheel, from a file."""
+
+    kind: Literal["voltage"] = "voltage"
+    threshold: Annotated[float, In(above=0, below=1)] = THRESHOLD
 
 
 @dataclass(frozen=True, eq=False)
 class Crossings:
-    """When a voltage crosses zero, s (n,), and whether it rises there."""
+    """Times of zero crossings of a voltage, s (n,), and whether it rises there."""
 
     times: Array
     rising: NDArray[np.bool_]
@@ -35,9 +39,9 @@ class Crossings:
 def zero_crossings(time: ArrayLike, voltage: ArrayLike, threshold: float = THRESHOLD) -> Crossings:
     """Zero crossings of an alternating voltage, by straight lines between the samples.
 
-    A crossing counts where the voltage goes from beyond the threshold on one side to beyond it
-    on the other; of several changes of sign in between, which noise makes, the mean of the first
-    and the last is taken. So nothing counts in a gap of the wheel, where the voltage rests.
+    A crossing counts if the voltage exceeds the threshold before and after it, with opposite
+    signs; of several changes of sign in between, caused by noise, the mean of the first and the
+    last is taken. In a gap of the wheel the voltage is near zero, and nothing counts.
 
     Parameters
     ----------
@@ -50,15 +54,15 @@ def zero_crossings(time: ArrayLike, voltage: ArrayLike, threshold: float = THRES
     InputError
         If the times do not rise, or the voltage does not alternate.
     """
-    at, given = finite("time", time), finite("voltage", voltage)
-    if at.shape != given.shape or at.ndim != 1 or at.size < 16:
-        raise InputError("voltage", given.shape, "as many values as times, 16 or more")
+    at, volts = finite("time", time), finite("voltage", voltage)
+    if at.shape != volts.shape or at.ndim != 1 or at.size < 16:
+        raise InputError("voltage", volts.shape, "as many values as times, 16 or more")
     if not (np.diff(at) > 0.0).all():
         k = int(np.flatnonzero(~(np.diff(at) > 0.0))[0]) + 1
         raise InputError(f"time, sample {k + 1}", f"{at[k]:.9g} s", f"after {at[k - 1]:.9g} s")
     if not 0.0 < threshold < 1.0:
         raise InputError("engine.threshold", threshold, "from 0 to 1")
-    value = given - float(np.median(given))  # the mean would follow a cycle cut off half way
+    value = volts - float(np.median(volts))  # the mean would shift with an incomplete cycle
     bound = threshold * float(np.quantile(np.abs(value), 0.9))
     if not bound > 0.0:
         raise InputError("voltage", "constant", "an alternating voltage")
@@ -73,16 +77,16 @@ def zero_crossings(time: ArrayLike, voltage: ArrayLike, threshold: float = THRES
 
 
 def _between(time: Array, value: Array, start: int, end: int) -> float:
-    """Where the voltage crosses zero between two samples on either side of it, s."""
+    """Time of the zero crossing between two samples on either side of it, s."""
     part = value[start : end + 1]
     signs = np.where(part >= 0.0, 1.0, -1.0)
     changes = np.flatnonzero(signs[1:] != signs[:-1])
-    found = []
+    crossings = []
     for k in (int(changes[0]), int(changes[-1])):
         low, high = part[k], part[k + 1]
         share = low / (low - high)
-        found.append(time[start + k] + share * (time[start + k + 1] - time[start + k]))
-    return float(0.5 * (found[0] + found[1]))
+        crossings.append(time[start + k] + share * (time[start + k + 1] - time[start + k]))
+    return float(0.5 * (crossings[0] + crossings[1]))
 
 
 def edges_from_voltage(
@@ -92,11 +96,11 @@ def edges_from_voltage(
     wheel: TriggerWheel,
     threshold: float = THRESHOLD,
 ) -> tuple[Edges, ...]:
-    """Edges that passed a pick-up, both kinds, missing teeth found.
+    """Edges that passed a pick-up, both kinds, with the places of their teeth.
 
-    The falling crossings, steep ones, are the middles of the teeth and carry the count; so
+    The falling crossings, which are steep, are the middles of the teeth and are counted;
     `wheel.reference_angle` is that of the middle of the first tooth after the gap. Rising ones
-    are the middles of the gaps between teeth; in the wheel's gap there is none worth having.
+    are the middles between teeth; those in the gap of the wheel are left out.
 
     Raises
     ------
@@ -104,8 +108,9 @@ def edges_from_voltage(
         As `zero_crossings` and `tooth_places`; if the sampling is too coarse for the teeth.
     """
     at = finite("time", time)
-    found = zero_crossings(at, voltage, threshold)
-    middles, between = found.times[~found.rising], found.times[found.rising]
+    crossings = zero_crossings(at, voltage, threshold)
+    falling, rising = ~crossings.rising, crossings.rising
+    middles, between = crossings.times[falling], crossings.times[rising]
     places = tooth_places(field, middles, wheel)
     spacing = float(np.median(np.diff(at)))
     per_tooth = float(np.median(np.diff(middles))) / spacing
@@ -113,7 +118,7 @@ def edges_from_voltage(
         limit = f"{SAMPLES_PER_TOOTH_MIN:g} or more"
         raise InputError(field, f"{per_tooth:.3g} samples per tooth", limit)
     edges = [Edges(middles, places, False)]
-    # Each rising crossing that lies in a single pitch, taken half a pitch before its tooth.
+    # Rising crossings within a single pitch, half a pitch before their tooth.
     index = np.searchsorted(middles, between)
     inside = (index > 0) & (index < middles.size)
     index, between = index[inside], between[inside]
@@ -128,27 +133,22 @@ def speed_from_voltage(
     band: Filter,
     threshold: float = THRESHOLD,
 ) -> SpeedTrace:
-    """Crank speed from a CSV file of time and voltage; each column of voltage is a run.
+    """Crank speed from a CSV file of time and voltage; every voltage column is a run.
 
     Raises
     ------
     InputError
         As `read_trace`, `edges_from_voltage` and `speed_from_edges`.
     """
-    path = Path(path)
-    lines = text_lines(path)
-    number, head = lines[0]
-    delimiter = table_delimiter(path.name, number, head)
-    header = [cell.strip() for cell in split_cells(head, delimiter)]
-    times, volts = columns_of(header, "time"), columns_of(header, "voltage")
+    text = trace_text(Path(path))
+    times, volts = columns_of(text.header, "time"), columns_of(text.header, "voltage")
     if len(times) != 1 or not volts:
         limit = "one column of time (s, ms, us) and one or more of voltage (V, mV)"
-        raise InputError(f"{path.name} header", ", ".join(header), limit)
-    table = number_table(path.name, lines[1:], header, delimiter, (*times, *volts))
+        raise InputError(f"{text.name} header", ", ".join(text.header), limit)
+    table = text.numbers((*times, *volts))
     at = table[:, 0] * next(iter(times.values()))
-    runs = [
-        edges_from_voltage(f"{path.name} {header[column]}", at, factor * table[:, k + 1], wheel,
-                           threshold)
-        for k, (column, factor) in enumerate(volts.items())
-    ]  # fmt: skip
-    return speed_from_edges(path.name, runs, wheel, band).with_firing()
+    runs = []
+    for k, (column, factor) in enumerate(volts.items(), start=1):
+        field = f"{text.name} {text.header[column]}"
+        runs.append(edges_from_voltage(field, at, factor * table[:, k], wheel, threshold))
+    return speed_from_edges(text.name, runs, wheel, band).with_firing()

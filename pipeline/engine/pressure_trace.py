@@ -1,18 +1,19 @@
-"""Cylinder pressure as measured: cycles, their scatter, where zero and dead centre lie."""
+"""Measured cylinder pressure: cycles and their scatter, pegging, dead centre, torque."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import pi
+from math import pi, radians
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Annotated, ClassVar, Literal, get_args
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Angle, FileName, GasPressure, In, Part
 from camwright.pipeline.engine.angle_trace import (
     GAP_MAX,
     Trace,
@@ -20,28 +21,77 @@ from camwright.pipeline.engine.angle_trace import (
     guard_span,
     one_period,
 )
-from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CrankDrive, FrictionPressure
 from camwright.pipeline.engine.torque import SAMPLES, Torque, all_cylinders, uniform_cycle
 from camwright.pipeline.engine.trace_file import (
     ANGLE_UNITS,
     QUANTITY_UNITS,
+    HeaderText,
     angle_column,
     columns_of,
-    number_table,
-    split_cells,
-    table_delimiter,
-    text_lines,
+    trace_text,
 )
 
 DeadCentre = Literal["given", "symmetry", "loss_angle"]
 
 PEAK_RANGE = (1.2e5, 4.0e7)  # Pa, of the peak of any engine that compresses
-FIRING_WINDOW = np.radians((300.0, 480.0))  # where the peak of a cycle is found
-BOTTOM_WINDOW = np.radians((170.0, 190.0))  # where the cylinder is taken to be at intake pressure
+FIRING_WINDOW = np.radians((300.0, 480.0))  # of the peak of a cycle
+BOTTOM_WINDOW = np.radians((170.0, 190.0))  # in which the cylinder is assumed at intake pressure
 COMPRESSION_WINDOW = np.radians((270.0, 320.0))
 POLYTROPIC_EXPONENT = 1.32
 SCALE_MAX = 2.2  # measured over expected rise in compression; a wrong unit is 10 or more
-LOSS_ANGLE = float(np.radians(0.6))  # by which a motored peak leads the dead centre, typical
+LOSS_ANGLE = radians(0.6)  # typical lead of a motored peak over the dead centre
+
+
+@dataclass(frozen=True, kw_only=True)
+class _PressureFile(Part):
+    """File of a measured cylinder pressure: columns, units, angles, dead centre."""
+
+    table: ClassVar[str] = "engine"
+
+    kind: str
+    file: FileName
+    column: HeaderText = ""
+    angle_unit: HeaderText = ""
+    pressure_unit: HeaderText = ""
+    firing_angle: Angle = 2.0 * pi
+    gap_max: Annotated[float, In("deg", above=0, at_most=90)] = GAP_MAX
+    dead_centre: DeadCentre = "given"
+    motored_file: FileName | None = None
+    loss_angle: Annotated[float, In("deg", at_least=0, at_most=5)] = LOSS_ANGLE
+
+
+@dataclass(frozen=True, kw_only=True)
+class PressureTable(CrankDrive, _PressureFile):
+    """Cylinder pressure against crank angle from a file, and the crank drive it acts on.
+
+    The file has one column a cycle, or cycles one below the other. `angle_unit` and
+    `pressure_unit` together mean that it has no header. With an `intake_pressure` each cycle is
+    pegged to it; without, the pressure is absolute. Without a friction pressure friction closes
+    the torque balance.
+
+    Raises
+    ------
+    InputError
+        As `CrankDrive`; if one unit lacks the other, or a dead centre its motored file.
+    """
+
+    kind: Literal["pressure"] = "pressure"
+    intake_pressure: GasPressure | None = None
+    crankcase_pressure: GasPressure = 101.3e3
+    friction_pressure: FrictionPressure | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if bool(self.angle_unit) != bool(self.pressure_unit):
+            raise InputError("engine.pressure_unit", self.pressure_unit, "given with angle_unit")
+        if self.dead_centre != "given" and self.motored_file is None:
+            raise InputError("engine.motored_file", "missing", f"given for {self.dead_centre}")
+
+    @property
+    def units(self) -> tuple[str, str] | None:
+        """Units of angle and pressure of a file without a header; None: the header has them."""
+        return (self.angle_unit, self.pressure_unit) if self.angle_unit else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +134,7 @@ class PressureTrace:
         return np.asarray(self.cycles.std(axis=0, ddof=1))
 
     def pegged(self, intake_pressure: float) -> PressureTrace:
-        """Each cycle moved so that about the bottom dead centre of intake it is at intake pressure.
+        """Each cycle shifted to intake pressure (Pa) about the bottom dead centre of intake.
 
         References
         ----------
@@ -100,7 +150,7 @@ class PressureTrace:
         )
 
     def turned(self, offset: float) -> PressureTrace:
-        """The same with its angles shifted by `offset` (rad)."""
+        """The trace with its angles shifted by `offset` (rad)."""
         if offset == 0.0:
             return self
         order = np.arange(self.cycles.shape[1] // 2 + 1) * (2.0 * pi / CYCLE_ANGLE)
@@ -109,13 +159,13 @@ class PressureTrace:
         return replace(self, cycles=turned, offset=self.offset + offset)
 
     def guarded(self) -> PressureTrace:
-        """The same, refused where it cannot be the pressure of an engine.
+        """The trace, refused if it is implausible as a cylinder pressure.
 
         Raises
         ------
         InputError
-            If the mean cycle is not above zero, its peak is beyond any engine's, with the unit
-            that would fit, or does not lie about firing TDC.
+            If the mean cycle is not above zero, or its peak is out of range (with a hint at the
+            unit) or not about firing TDC.
         """
         mean, name = self.mean, f"{self.source} pressure"
         if not mean.min() > 0.0:
@@ -132,24 +182,24 @@ class PressureTrace:
             raise InputError(f"{name} peak angle", f"{np.degrees(at):.4g} deg", limit)
         return self
 
-    def scale(self, engine: CylinderEngine) -> float:
-        """Rise in compression over that of a polytropic from intake pressure; near 1 when right."""
+    def scale(self, engine: CrankDrive, intake_pressure: float) -> float:
+        """Pressure rise in compression over that of a polytropic from intake pressure (Pa)."""
         low, high = COMPRESSION_WINDOW
         ends = np.interp([low, high], self.theta, self.mean)
         volumes = engine.volume(np.array([pi, low, high]))
         share = (volumes[0] / volumes[1:]) ** POLYTROPIC_EXPONENT
-        expected = engine.intake_pressure * (share[1] - share[0])
+        expected = intake_pressure * (share[1] - share[0])
         return float((ends[1] - ends[0]) / expected)
 
-    def guard_scale(self, engine: CylinderEngine) -> None:
-        """Refuse pressures whose rise in compression does not fit the engine.
+    def guard_scale(self, engine: CrankDrive, intake_pressure: float) -> None:
+        """Refuse pressures whose rise in compression does not agree with the engine.
 
         Raises
         ------
         InputError
-            With the unit that would fit, where one does.
+            With the unit that agrees, if one does.
         """
-        scale = self.scale(engine)
+        scale = self.scale(engine, intake_pressure)
         if 1.0 / SCALE_MAX <= scale <= SCALE_MAX:
             return
         limit = f"from {1 / SCALE_MAX:.2g} to {SCALE_MAX:g} times that of a polytropic"
@@ -162,7 +212,7 @@ class PressureTrace:
 
 
 def _unit_hint(peak: float) -> str:
-    """What the values may be where their peak is beyond any engine's."""
+    """Unit in which a peak (Pa) out of range would be in range, for the message."""
     typical = (4e5, 2e7)
     for factor, words in ((1e5, "bar"), (1e6, "MPa"), (1e-5, "Pa"), (1e3, "kPa"), (1e-6, "Pa")):
         if typical[0] <= peak * factor <= typical[1]:
@@ -172,7 +222,7 @@ def _unit_hint(peak: float) -> str:
 
 @dataclass(frozen=True, eq=False)
 class CycleStatistics:
-    """Cycle-to-cycle figures; arrays (m,) of each cycle."""
+    """Statistics of the cycles; arrays (m,), a value per cycle."""
 
     imep: Array  # Pa, net, all four strokes
     peak: Array  # Pa
@@ -196,7 +246,7 @@ class CycleStatistics:
         return self.imep_std / abs(float(self.imep.mean()))
 
 
-def cycle_statistics(trace: PressureTrace, engine: CylinderEngine) -> CycleStatistics:
+def cycle_statistics(trace: PressureTrace, engine: CrankDrive) -> CycleStatistics:
     """Net IMEP, peak pressure and its angle of each cycle."""
     step = CYCLE_ANGLE / trace.cycles.shape[1]
     work = trace.cycles @ engine.volume_rate(trace.theta) * step
@@ -212,9 +262,9 @@ def dead_centre_offset(
 ) -> float:
     """Shift (rad) that brings the dead centre of a motored trace to 360 deg.
 
-    By `symmetry`, the axis about which both flanks within 60 deg agree best is the dead centre;
-    heat and leakage pull it ahead by some tenths of a degree. By `loss_angle`, the peak of the
-    mean cycle plus a stated loss angle is.
+    By `symmetry`, the dead centre is the axis about which both flanks within 60 deg agree best;
+    heat transfer and leakage advance it by some tenths of a degree. By `loss_angle`, it is the
+    peak of the mean cycle plus a stated loss angle.
 
     Parameters
     ----------
@@ -233,7 +283,7 @@ def dead_centre_offset(
     order = np.arange(mean.size // 2 + 1) * (2.0 * pi / CYCLE_ANGLE)
     spectrum = np.fft.rfft(mean) / mean.size
     spectrum[1:] *= 2.0
-    kept = order <= 60.0  # above lies noise; a compression has nothing there
+    kept = order <= 60.0  # a compression has no content above, only noise
     spectrum, order = spectrum[kept], order[kept]
 
     def pressure(angle: Array) -> Array:
@@ -250,10 +300,10 @@ def dead_centre_offset(
         return -float(pressure(np.array([axis]))[0])
 
     cost = skew if method == "symmetry" else below
-    found = minimize_scalar(
+    optimum = minimize_scalar(
         cost, bounds=(start - step, start + step), method="bounded", options={"xatol": 1e-7}
     )
-    axis = float(found.x) + (loss_angle if method == "loss_angle" else 0.0)
+    axis = float(optimum.x) + (loss_angle if method == "loss_angle" else 0.0)
     return 2.0 * pi - axis
 
 
@@ -265,39 +315,39 @@ def pressure_from_csv(
     firing_angle: float = 2.0 * pi,
     gap_max: float = GAP_MAX,
 ) -> PressureTrace:
-    """Pressure against crank angle: a column a cycle, or cycles one below the other.
+    """Cylinder pressure against crank angle: a column per cycle, or cycles one below the other.
 
-    Angles run on from cycle to cycle or start again with each.
+    Angles continue from cycle to cycle, or start again with each.
 
     Parameters
     ----------
     path : path
-    column : str                what the headers of the pressure columns begin with
+    column : str                beginning of the headers of the pressure columns
     units : (angle, pressure)   of a file without a header, whose first column is the angle
     firing_angle : float        rad, of firing TDC in the file's angles
-    gap_max : float             rad, the widest stretch without a row
+    gap_max : float             rad, maximum gap between rows
 
     Raises
     ------
     InputError
-        As `read_trace`; for a last cycle that is short; for what `PressureTrace.guarded` refuses
-        only the caller can tell, once the trace is pegged.
+        As `read_trace`; if a cycle is incomplete. `PressureTrace.guarded` checks the values, after
+        pegging.
     """
-    name, header, lines, delimiter = _opened(Path(path), units)
+    text = trace_text(Path(path), headed=units is None)
+    name, header = text.name, text.header
     angle_at, angle_factor = angle_column(name, header) if units is None else _bare_angle(units)
+    known = ", ".join(QUANTITY_UNITS["pressure"])
     if units is None:
         wanted = columns_of(header, "pressure", column)
     else:
         unit = QUANTITY_UNITS["pressure"].get(units[1])
         if unit is None:
-            limit = f"one of {', '.join(QUANTITY_UNITS['pressure'])}"
-            raise InputError("engine.pressure_unit", units[1], limit)
+            raise InputError("engine.pressure_unit", units[1], f"one of {known}")
         wanted = dict.fromkeys(range(1, len(header)), unit)
     if not wanted:
-        limit = f"a column of pressure with its unit ({', '.join(QUANTITY_UNITS['pressure'])})"
+        limit = f"a column of pressure with its unit ({known})"
         raise InputError(f"{name} header", ", ".join(header), limit)
-    table = number_table(name, lines, header, delimiter, (angle_at, *wanted))
-    numbers = [number for number, _ in lines]
+    table, numbers = text.numbers((angle_at, *wanted)), text.line_numbers
     values = table[:, 1:] * np.array(list(wanted.values()))
     labels = [header[at] for at in wanted]
     traces = _cycles(name, numbers, table[:, 0], angle_factor, values, labels, gap_max)
@@ -305,22 +355,6 @@ def pressure_from_csv(
     count = max(SAMPLES, round(CYCLE_ANGLE / spacing))
     cycles = np.array([trace.uniform(count) for trace in traces])
     return PressureTrace(name, cycles, np.zeros(len(cycles))).turned(2.0 * pi - firing_angle)
-
-
-def _opened(
-    path: Path, units: tuple[str, str] | None
-) -> tuple[str, list[str], list[tuple[int, str]], str]:
-    """Name, header, rows and delimiter of a file; without units given it has a header."""
-    lines = text_lines(path)
-    number, head = lines[0]
-    delimiter = table_delimiter(path.name, number, head, blanks=units is not None)
-    if units is not None:
-        lines = [(at, line.rstrip(f"{delimiter} ")) for at, line in lines]
-        head = lines[0][1]
-    header = [cell.strip() for cell in split_cells(head, delimiter)]
-    if units is None:
-        return path.name, header, lines[1:], delimiter
-    return path.name, [f"column {at + 1}" for at in range(len(header))], lines, delimiter
 
 
 def _bare_angle(units: tuple[str, str]) -> tuple[int, float]:
@@ -372,37 +406,29 @@ def _cycles(
 
 
 def _unwrapped(angle: Array) -> Array:
-    """Angles that start again with each cycle, running on instead."""
+    """Angles that start again with each cycle, made continuous."""
     steps = np.diff(angle)
     spacing = float(np.median(steps))
     back = np.abs(steps + CYCLE_ANGLE - spacing) <= 1.5 * abs(spacing)
     return np.asarray(angle + np.concatenate([[0.0], np.cumsum(back)]) * CYCLE_ANGLE)
 
 
-def torque_from_pressure(
-    trace: PressureTrace, engine: CylinderEngine, crank_speed: float
-) -> Torque:
-    """Torque of an engine whose cylinders all run the mean of the measured cycles.
+def torque_from_pressure(trace: PressureTrace, engine: PressureTable, crank_speed: float) -> Torque:
+    """Torque of an engine whose cylinders all have the mean of the measured cycles.
 
-    Parts are the gas, the inertia of the reciprocating masses at constant speed, and friction,
-    as the engine states it: a mean effective pressure, or what closes the balance.
+    Components are the gas, the inertia of the reciprocating masses at constant speed, and
+    friction: of the friction pressure, or what closes the torque balance.
 
     Raises
     ------
     InputError
-        If friction should close the balance of a trace that drives nothing.
+        As `CrankDrive.friction_torque`.
     """
     theta = trace.theta
     gas = (trace.mean - engine.crankcase_pressure) * engine.volume_rate(theta)
     inertia = engine.inertia_torque(theta, crank_speed)
-    if engine.friction == "closing":
-        mean = float(gas.mean())
-        if mean < 0.0:
-            limit = f"a pressure, for the trace itself needs {-mean:.3g} N m to turn"
-            raise InputError("engine.friction", "closing", limit)
-    else:
-        mean = float(engine.friction) * engine.displacement / CYCLE_ANGLE
-    parts = {"gas": gas, "inertia": inertia, "friction": np.full_like(theta, -mean)}
+    friction = engine.friction_torque(engine.friction_pressure, float(gas.mean()))
+    parts = {"gas": gas, "inertia": inertia, "friction": np.full_like(theta, friction)}
     coarse = uniform_cycle(SAMPLES)
     parts = {name: _thinned(part) for name, part in parts.items()}
     return Torque(
@@ -413,6 +439,6 @@ def torque_from_pressure(
 
 
 def _thinned(values: Array) -> Array:
-    """Values at the angles of a torque; the harmonics they cannot carry are left out."""
+    """Values at the angles of a torque, without the harmonics above their Nyquist order."""
     spectrum = np.fft.rfft(values)[: SAMPLES // 2 + 1]
     return np.asarray(np.fft.irfft(spectrum, n=SAMPLES) * (SAMPLES / values.size))

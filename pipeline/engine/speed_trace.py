@@ -1,4 +1,4 @@
-"""Crank speed as measured tooth by tooth, and the torque it tells of."""
+"""Measured crank speed, and the torque that follows from it."""
 
 from __future__ import annotations
 
@@ -6,51 +6,64 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
 from camwright.geometry.errors import InputError
-from camwright.pipeline.engine.angle_trace import guard_order, guard_span
+from camwright.pipeline.base.quantities import Angle, Count, FileName, In, Part, Share
+from camwright.pipeline.engine.angle_trace import guard_order, guard_span, without_end
 from camwright.pipeline.engine.crankshaft import SpeedStatistics, speed_statistics, torque_of_motion
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 from camwright.pipeline.engine.torque import SAMPLES, Torque, uniform_cycle
 from camwright.pipeline.engine.trace_file import (
     QUANTITY_UNITS,
+    HeaderText,
+    TraceText,
     angle_column,
     columns_of,
     has_angle,
-    number_table,
-    split_cells,
-    table_delimiter,
-    text_lines,
+    trace_text,
 )
-from camwright.pipeline.engine.trigger_wheel import Edges, TriggerWheel, counted, learned_wheel
+from camwright.pipeline.engine.trigger_wheel import (
+    Edges,
+    MissingTeeth,
+    Teeth,
+    ToothShare,
+    TriggerWheel,
+    counted,
+    learned_wheel,
+)
 
-HARMONICS = 20  # of the cycle, 10 per crank turn: where noise of 0.2 rad/s costs least
+HARMONICS = 20  # of the cycle, 10 per crank turn: least error at a noise of 0.2 rad/s
 TAPER = 0.25
 SPEED_RANGE = (5.0, 3000.0)  # rad/s, of a crank
 
 
+Harmonics = Annotated[int, Count(1, SAMPLES // 4)]
+
+
 @dataclass(frozen=True)
-class Filter:
+class Filter(Part):
     """Harmonics of the cycle kept of a speed, with a cosine edge from 1 - taper to 1 + taper.
 
     Parameters
     ----------
-    harmonics : int    where the edge is half way, the bandwidth; 2 are one per crank turn
-    taper : float      half-width of the edge as a share, 0 cuts hard
+    harmonics : int    at the middle of the edge, the bandwidth; 2 are one per crank turn
+    taper : float      half-width of the edge as a share; 0: a sharp edge
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds.
     """
 
-    harmonics: int = HARMONICS
-    taper: float = TAPER
+    table: ClassVar[str] = "engine"
 
-    def __post_init__(self) -> None:
-        if not 1 <= self.harmonics <= SAMPLES // 4:
-            raise InputError("engine.harmonics", self.harmonics, f"from 1 to {SAMPLES // 4}")
-        if not 0.0 <= self.taper <= 1.0:
-            raise InputError("engine.taper", self.taper, "from 0 to 1")
+    harmonics: Harmonics = HARMONICS
+    taper: Share = TAPER
 
     @property
     def last(self) -> int:
@@ -71,16 +84,66 @@ class Filter:
         return self.harmonics * mean_speed / CYCLE_ANGLE
 
 
+@dataclass(frozen=True, kw_only=True)
+class WheelTable(Part):
+    """A measurement at a trigger wheel from a file: the wheel and the filter of the speed.
+
+    Raises
+    ------
+    InputError
+        As `TriggerWheel`.
+    """
+
+    table: ClassVar[str] = "engine"
+
+    file: FileName
+    teeth: Teeth = 36
+    missing_teeth: MissingTeeth = 0
+    reference_angle: Angle = 0.0
+    harmonics: Harmonics = HARMONICS
+    taper: Share = TAPER
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _ = self.wheel  # refuses too many missing teeth
+
+    @property
+    def wheel(self) -> TriggerWheel:
+        return TriggerWheel(self.teeth, self.missing_teeth, self.reference_angle)
+
+    @property
+    def band(self) -> Filter:
+        """Filter of the speed."""
+        return Filter(self.harmonics, self.taper)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedTable(WheelTable):
+    """Crank speed from a file: tooth times, or speed per tooth against crank angle."""
+
+    kind: Literal["speed"] = "speed"
+    column: HeaderText = ""
+    speed_unit: HeaderText = ""
+    edges: Annotated[int, Count(1, 2)] = 2
+    tooth_share: ToothShare = 0.5
+    averaged_over: Annotated[float, In("deg", at_least=0, at_most=60)] = 0.0
+    reference_file: FileName | None = None
+
+    @property
+    def wheel(self) -> TriggerWheel:
+        return replace(super().wheel, tooth_share=self.tooth_share)
+
+
 @dataclass(frozen=True, eq=False)
 class SpeedTrace:
-    """Crank speed over a cycle, of several cycles or runs, band limited.
+    """Band-limited crank speed over a cycle, of several cycles or runs.
 
     Parameters
     ----------
     source : str               name of the file
     speeds : array (m, 720)    rad/s at equal crank angles, of each cycle of each run
     filter : Filter
-    noise : float              rad/s, standard deviation of a single tooth's speed about the curve
+    noise : float              rad/s, standard deviation of one tooth's speed about the curve
     slope_gain : float         1/rad, standard deviation of domega/dtheta per unit of `noise`
     """
 
@@ -126,7 +189,7 @@ class SpeedTrace:
 
     @property
     def bandwidth(self) -> float:
-        """Hz, to which the speed is followed."""
+        """Bandwidth of the speed, Hz."""
         return self.filter.bandwidth(self.statistics.mean)
 
     def noise_amplification(self, inertia: float) -> float:
@@ -134,27 +197,28 @@ class SpeedTrace:
         return inertia * self.statistics.mean * self.slope_gain
 
     def noise_floor(self, inertia: float) -> float:
-        """Standard deviation of the torque of the mean cycle that noise alone makes, N m."""
+        """Standard deviation of the torque of the mean cycle due to noise, N m."""
         return self.noise_amplification(inertia) * self.noise / float(np.sqrt(self.count))
 
     def torque(self, inertia: float) -> Torque:
         """J omega domega/dtheta of the mean speed, its one component `measured`.
 
-        That is the torque of the gas and of all else about its mean, inertia of the reciprocating
-        parts included.
+        That is the torque of gas, friction and load about its mean, with the inertia torque of the
+        reciprocating masses.
 
         Parameters
         ----------
-        inertia : float    J, kg m2, of all that turns with the crank, > 0
+        inertia : float    J, kg m2, of all parts that turn with the crank, > 0
         """
         if not 0.0 < inertia < np.inf:
             raise InputError("engine.inertia", inertia, "> 0 kg m^2")
         return Torque(self.theta, {"measured": torque_of_motion(self.mean, inertia)})
 
     def with_firing(self) -> SpeedTrace:
-        """The same, each cycle turned by a crank turn if it else gained speed in its intake.
+        """The trace with the expansion of each cycle in its second crank turn.
 
-        A crank wheel does not tell the two turns of a cycle apart; the expansion does.
+        A trigger wheel on the crank does not distinguish the two turns of a cycle: the one in which
+        the speed rises more after its middle has the expansion.
         """
         energy = self.speeds**2
         quarter = self.speeds.shape[1] // 4
@@ -167,11 +231,11 @@ class SpeedTrace:
 def speed_from_edges(
     source: str, runs: Sequence[Sequence[Edges]], wheel: TriggerWheel, band: Filter
 ) -> SpeedTrace:
-    """Speed from the times at which edges passed.
+    """Speed from the times of edges.
 
     The slowness 1/omega is a band-limited series over the cycle whose integral from edge to edge
-    of one kind is the time between them, by least squares. So neither the width of a tooth nor
-    the length of an interval, a gap included, distorts the speed.
+    of one kind is the time between them, by least squares. Neither the width of a tooth nor the
+    length of an interval, a gap included, distorts the speed.
 
     Parameters
     ----------
@@ -199,14 +263,14 @@ def speed_from_edges(
 def speed_from_teeth(
     source: str, angle: ArrayLike, speeds: ArrayLike, band: Filter, width: float = 0.0
 ) -> SpeedTrace:
-    """Speed from values of it at given crank angles.
+    """Speed from its values at crank angles.
 
     Parameters
     ----------
     angle : array (n,)        rad, over one cycle
-    speeds : array (m, n)     rad/s, a row a cycle or run
+    speeds : array (m, n)     rad/s, a row per cycle or run
     band : Filter
-    width : float             rad, of the angle over which each value is a mean; 0: a point
+    width : float             rad, over which each value is a mean; 0: a point
 
     Raises
     ------
@@ -225,7 +289,7 @@ def speed_from_teeth(
 
 
 def _fit(source: str, matrix: Array, weight: Array, band: Filter) -> tuple[Array, float]:
-    """Values at the angles of a torque per observation, and the gain of their slope.
+    """Linear maps from the observations: to the filtered series, and the gain of its slope.
 
     Returns
     -------
@@ -262,7 +326,7 @@ def _points(angle: Array, last: int, derivative: bool = False) -> Array:
 
 
 def _integrals(start: Array, end: Array, last: int) -> Array:
-    """Integrals of the same from `start` to `end`."""
+    """Integrals of constant, cosines and sines from `start` to `end`, (n, 2 last + 1)."""
     order = np.arange(1, last + 1) * (2.0 * pi / CYCLE_ANGLE)
     from_, to = np.outer(start, order), np.outer(end, order)
     cosines, sines = (np.sin(to) - np.sin(from_)) / order, (np.cos(from_) - np.cos(to)) / order
@@ -272,60 +336,51 @@ def _integrals(start: Array, end: Array, last: int) -> Array:
 def _cycles_of(
     source: str, runs: Sequence[Sequence[Edges]], wheel: TriggerWheel
 ) -> tuple[Array, Array, Array]:
-    """Intervals of a cycle and how long they took in each: angles (n,), (n,), times (m, n)."""
-    found: list[Array] = []
+    """Intervals of the cycle, rad, (n,) and (n,), and their durations in each cycle, s, (m, n)."""
+    durations: list[Array] = []
     spans: tuple[Array, Array] | None = None
     for run in runs:
         first = float(run[0].places[0])
         from_ = np.concatenate([wheel.angle(e.places[:-1], e.falling) for e in run])
         to = np.concatenate([wheel.angle(e.places[1:], e.falling) for e in run])
-        lasted = np.concatenate([np.diff(edges.times) for edges in run])
+        times = np.concatenate([np.diff(edges.times) for edges in run])
         start = np.concatenate([edges.places[:-1] for edges in run])
         cycle = np.floor((start - first) / (2 * wheel.teeth))
         for k in range(int(cycle.max()) + 1):
             inside = cycle == k
             covered = float((to - from_)[inside].sum())
             if not np.isclose(covered, len(run) * CYCLE_ANGLE, rtol=0.0, atol=1e-6):
-                continue  # begun or ended within the cycle
+                continue  # the run begins or ends within the cycle
             begin = np.mod(from_[inside], CYCLE_ANGLE)
             order = np.argsort(begin, kind="stable")
             span = begin[order], begin[order] + (to - from_)[inside][order]
             if spans is None:
                 spans = span
             elif span[0].shape != spans[0].shape or not np.allclose(span, spans, atol=1e-6):
-                continue  # edges of another kind, or a run that began elsewhere on the wheel
-            found.append(lasted[inside][order])
+                continue  # other edges, or a run with another start on the wheel
+            durations.append(times[inside][order])
     if spans is None:
         held = max(sum(edges.times.size for edges in run) for run in runs)
         limit = f"a whole cycle, {len(runs[0]) * (2 * wheel.present + 1)} edges or more"
         raise InputError(source, f"{held} edges", limit)
-    return spans[0], spans[1], np.array(found)
+    return spans[0], spans[1], np.array(durations)
 
 
 def tooth_times(path: str | Path, column: str = "") -> tuple[str, Array]:
-    """Times of edges from a CSV file, one column a run: array (runs, edges), s.
+    """Times of edges from a CSV file, a column per run: array (runs, edges), s.
 
     Raises
     ------
     InputError
         As `read_trace`.
     """
-    name, header, lines, delimiter = _opened(Path(path))
-    wanted = columns_of(header, "time", column)
+    text = trace_text(Path(path), one_column=True)
+    wanted = columns_of(text.header, "time", column)
     if not wanted:
         limit = f"a column of time with its unit ({', '.join(QUANTITY_UNITS['time'])})"
-        raise InputError(f"{name} header", ", ".join(header), limit)
-    table = number_table(name, lines, header, delimiter, tuple(wanted))
-    return name, np.asarray((table * np.array(list(wanted.values()))).T)
-
-
-def _opened(path: Path) -> tuple[str, list[str], list[tuple[int, str]], str]:
-    lines = text_lines(path)
-    number, head = lines[0]
-    delimiter = ";" if ";" in head else "\t" if "\t" in head else ","
-    if len(lines) > 1 and delimiter == "," and "," not in head:
-        delimiter = table_delimiter(path.name, number, head) if "," in lines[1][1] else ";"
-    return path.name, [cell.strip() for cell in split_cells(head, delimiter)], lines[1:], delimiter
+        raise InputError(f"{text.name} header", ", ".join(text.header), limit)
+    table = text.numbers(tuple(wanted))
+    return text.name, np.asarray((table * np.array(list(wanted.values()))).T)
 
 
 def speed_from_csv(
@@ -341,29 +396,29 @@ def speed_from_csv(
 ) -> SpeedTrace:
     """Crank speed from a CSV file: tooth times, or speed per tooth against crank angle.
 
-    A file with a column of crank angle holds speeds, one column a run; any other holds the times
-    at which edges passed, one column a run. Without a gap the cycle begins with the record; which
-    of its turns fires is told by the speed itself.
+    A file with a column of crank angle has speeds, a column per run; any other has the times of
+    edges, a column per run. Without a gap the cycle begins with the record; the turn with the
+    expansion follows from the speed.
 
     Parameters
     ----------
     wheel : TriggerWheel
     band : Filter
     both_edges : bool         times: every second edge is a falling one
-    column : str              what the headers of the columns wanted begin with
-    unit : str                speeds: the unit of columns that name none
+    column : str              beginning of the headers of the columns to read
+    unit : str                speeds: the unit of columns without one
     averaged_over : float     speeds: rad over which each is a mean
-    reference : path          times: steady turns from which the places of the teeth are learned
+    reference : path          times: turns at steady speed, to learn the angles of the edges
 
     Raises
     ------
     InputError
         As `read_trace`, `counted` and `speed_from_edges`.
     """
-    name, header, lines, delimiter = _opened(Path(path))
-    if has_angle(header):
-        angle, speeds = _speed_table(name, header, lines, delimiter, column, unit)
-        return speed_from_teeth(name, angle, speeds, band, averaged_over)
+    text = trace_text(Path(path), one_column=True)
+    if has_angle(text.header):
+        angle, speeds = _speed_table(text, column, unit)
+        return speed_from_teeth(text.name, angle, speeds, band, averaged_over)
     if reference is not None:
         label, steady = tooth_times(reference)
         known = [counted(f"{label} run {k + 1}", run, wheel, both_edges)
@@ -374,33 +429,23 @@ def speed_from_csv(
     return speed_from_edges(name, edges, wheel, band).with_firing()
 
 
-def _speed_table(
-    name: str,
-    header: list[str],
-    lines: list[tuple[int, str]],
-    delimiter: str,
-    column: str,
-    unit: str,
-) -> tuple[Array, Array]:
+def _speed_table(text: TraceText, column: str, unit: str) -> tuple[Array, Array]:
     """Angles (n,), rad, and speeds (m, n), rad/s, of one cycle."""
+    name, header = text.name, text.header
     at, factor = angle_column(name, header)
     wanted = columns_of(header, "speed", column)
+    known = ", ".join(QUANTITY_UNITS["speed"])
     if unit:
         if unit not in QUANTITY_UNITS["speed"]:
-            raise InputError(
-                "engine.speed_unit", unit, f"one of {', '.join(QUANTITY_UNITS['speed'])}"
-            )
-        bare = [k for k, text in enumerate(header) if text.lower().startswith(column.lower())]
+            raise InputError("engine.speed_unit", unit, f"one of {known}")
+        bare = [k for k, head in enumerate(header) if head.lower().startswith(column.lower())]
         wanted = {k: QUANTITY_UNITS["speed"][unit] for k in bare if k != at} | wanted
     if not wanted:
-        limit = (
-            f"a column of speed with its unit ({', '.join(QUANTITY_UNITS['speed'])}), or of time"
-        )
+        limit = f"a column of speed with its unit ({known}), or of time"
         raise InputError(f"{name} header", ", ".join(header), limit)
-    table = number_table(name, lines, header, delimiter, (at, *wanted))
-    guard_order(name, [number for number, _ in lines], table[:, 0], header[at])
+    table = text.numbers((at, *wanted))
+    guard_order(name, text.line_numbers, table[:, 0], header[at])
     angle, values = table[:, 0] * factor, table[:, 1:] * np.array(list(wanted.values()))
     guard_span(name, angle, factor, CYCLE_ANGLE)
-    if CYCLE_ANGLE - (angle[-1] - angle[0]) < 0.25 * float(np.median(np.diff(angle))):
-        angle, values = angle[:-1], np.vstack([0.5 * (values[0] + values[-1]), values[1:-1]])
+    angle, values = without_end(angle, values, CYCLE_ANGLE)
     return angle, np.asarray(values.T)

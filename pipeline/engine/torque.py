@@ -1,4 +1,4 @@
-"""Engine torque over one cycle: modelled or measured, as the sum of its parts."""
+"""Engine torque over one cycle, modelled or measured, as the sum of its components."""
 
 from __future__ import annotations
 
@@ -6,18 +6,30 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
+from typing import ClassVar, Literal
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import FileName, Part
 from camwright.pipeline.engine.angle_trace import read_trace
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
 from camwright.pipeline.engine.indicated_cycle import CylinderCycle
 from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
 
 SAMPLES = 720
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueTable(Part):
+    """Engine torque over one cycle from a file: a column of crank angle, one of torque."""
+
+    table: ClassVar[str] = "engine"
+
+    kind: Literal["table"] = "table"
+    file: FileName
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,10 +39,10 @@ class Torque:
     Parameters
     ----------
     theta_crank : array (n,)               rad, uniform over [0, 4 pi), 0 the TDC of intake
-    components : mapping to array (n,)     N m, of each part by its name; the total is their sum
+    components : mapping to array (n,)     N m, by name; the total is their sum
     varying_inertia : array (n,)           kg m2, of the reciprocating masses whose torque at
-                                           constant speed is the component ``inertia``; None where
-                                           it is not known
+                                           constant speed is the component ``inertia``; None: not
+                                           known
 
     Raises
     ------
@@ -80,19 +92,14 @@ class Torque:
     def peak_to_peak(self) -> float:
         return float(np.ptp(self.total))
 
-    @property
-    def work(self) -> float:
-        """Work on the crank over one cycle, J."""
-        return self.mean * CYCLE_ANGLE
-
     def without_mean(self) -> Torque:
-        """The same torque with the steady load that brings its mean to zero, as `load`."""
+        """The torque with a steady load, component `load`, that brings its mean to zero."""
         load = np.full_like(self.theta_crank, -self.mean)
         known = self.components.get("load", np.zeros_like(load))
         return replace(self, components={**self.components, "load": known + load})
 
     def resampled(self, n: int) -> Torque:
-        """The same torque at `n` angles, by a periodic cubic spline through each component."""
+        """The torque at `n` angles, by a periodic cubic spline through each component."""
         if n == self.theta_crank.size:
             return self
         theta = uniform_cycle(n)
@@ -102,19 +109,19 @@ class Torque:
 
 
 def uniform_cycle(count: int) -> Array:
-    """`count` equal crank angles of one cycle, from 0, the end left out (rad)."""
+    """`count` equally spaced crank angles of one cycle from 0, its end excluded, rad."""
     return np.arange(float(count)) * (CYCLE_ANGLE / count)
 
 
 def _periodic(values: Array, theta: Array) -> Array:
-    """Values on a uniform cycle, at other crank angles (rad)."""
+    """Values on a uniform cycle at other crank angles (rad)."""
     knots = np.arange(values.size + 1) * (CYCLE_ANGLE / values.size)
     spline = CubicSpline(knots, np.append(values, values[0]), bc_type="periodic")
     return np.asarray(spline(np.mod(theta, CYCLE_ANGLE)))
 
 
 def torque_from_cycle(cycle: CylinderCycle) -> Torque:
-    """Torque of an engine whose cylinders all run one cycle, each at its firing offset."""
+    """Torque of an engine whose cylinders all have the same cycle, at their firing offsets."""
     parts = {
         "gas": cycle.gas_torque,
         "inertia": cycle.inertia_torque,
@@ -134,7 +141,7 @@ def torque_from_cycle(cycle: CylinderCycle) -> Torque:
 def all_cylinders(
     parts: Mapping[str, Array], theta: Array, offsets: tuple[float, ...]
 ) -> dict[str, Array]:
-    """Torques (n,) of one cylinder summed over cylinders that lag by their firing offsets."""
+    """Torques (n,) of one cylinder, summed over cylinders that lag by their firing offsets."""
     if offsets == (0.0,):
         return dict(parts)
     shifted = [theta - offset for offset in offsets]
@@ -146,15 +153,15 @@ def all_cylinders(
 def torque_from_cylinder(engine: CylinderEngine, crank_speed: float) -> Torque:
     """Torque of an engine model at a steady crank speed (rad/s).
 
-    With `engine.friction` "closing" the mean is zero; with a friction pressure it is the brake
-    torque, which `without_mean` loads away.
+    Without a friction pressure the mean is zero; with one it is the brake torque, which
+    `without_mean` balances by a steady load.
 
     Raises
     ------
     InputError
         If the speed is out of range.
     CamError
-        If the working cycle does not repeat itself.
+        If the working cycle does not become periodic.
     """
     return torque_from_cycle(working_cycle(engine, crank_speed))
 

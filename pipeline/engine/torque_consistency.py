@@ -1,4 +1,4 @@
-"""Whether torque, speed, inertia and work of one engine fit together."""
+"""Consistency of torque, speed, inertia and work of one engine."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ FLAG_ABOVE = 0.10
 
 @dataclass(frozen=True)
 class Finding:
-    """One quantity as it was given and as the other inputs imply it.
+    """A quantity as stated and as the other inputs imply it.
 
     Parameters
     ----------
     id, title, unit : str
-    given, implied : float    in `unit`
-    how : str                 where the implied value comes from
+    stated, implied : float   in `unit`
+    how : str                 derivation of the implied value
     """
 
     id: str
     title: str
-    given: float
+    stated: float
     implied: float
     unit: str
     how: str
 
     @property
     def difference(self) -> float:
-        """(implied - given) / given; infinite where that is zero and they differ."""
-        off = self.implied - self.given
-        if self.given == 0.0:
+        """(implied - stated) / |stated|; infinite if stated is zero and they differ."""
+        off = self.implied - self.stated
+        if self.stated == 0.0:
             return 0.0 if off == 0.0 else float(np.copysign(np.inf, off))
-        return off / abs(self.given)
+        return off / abs(self.stated)
 
     @property
     def flagged(self) -> bool:
@@ -46,12 +46,12 @@ class Finding:
         return not abs(self.difference) <= FLAG_ABOVE
 
     def as_record(self) -> dict[str, object]:
-        """Plain values; a difference beyond all bounds is null."""
+        """Plain values; an infinite difference is null."""
         percent = 100.0 * self.difference
         return {
             "id": self.id,
             "title": self.title,
-            "given": self.given,
+            "given": self.stated,
             "implied": self.implied,
             "unit": self.unit,
             "difference_percent": percent if np.isfinite(percent) else None,
@@ -61,7 +61,7 @@ class Finding:
 
 
 def implied_inertia(torque: ArrayLike, mean_speed: float, speed_std: float) -> float:
-    """Inertia that a torque and the ripple of the speed it makes imply, kg m2.
+    """Inertia implied by a torque and the ripple of the speed that it causes, kg m2.
 
     J = std(integral of T - mean T) / (mean omega std omega), from J omega domega = T dtheta in
     the limit of a small ripple.
@@ -80,13 +80,13 @@ def implied_inertia(torque: ArrayLike, mean_speed: float, speed_std: float) -> f
 
 
 def inertia_finding(
-    given: float, torque: ArrayLike, mean_speed: float, speed_std: float
+    stated: float, torque: ArrayLike, mean_speed: float, speed_std: float
 ) -> Finding:
-    """The inertia stated against the one that torque and a measured speed ripple imply."""
+    """Stated inertia against that implied by torque and measured speed ripple."""
     return Finding(
         "inertia",
         "inertia at the crank",
-        given,
+        stated,
         implied_inertia(torque, mean_speed, speed_std),
         "kg m^2",
         "std of the torque's integral / (mean speed x std of the measured speed)",
@@ -94,15 +94,15 @@ def inertia_finding(
 
 
 def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: float) -> Finding:
-    """Torque at the cam over the torque at the crank that it balances, against the gear ratio.
+    """Cam torque over the crank torque that it balances, against the gear ratio.
 
-    Speeds stand as 1 to the gear ratio, so for equal power at every angle the cam's torque must be
-    that of the crank times the ratio.
+    The cam speed is the crank speed over the gear ratio: for equal power at every angle the cam
+    torque must be the crank torque times the ratio.
 
     Parameters
     ----------
-    crank_torque : array (n,)   N m about its mean, that the cam should balance
-    cam_torque : array (n,)     N m, that the spring gives the cam at the same angles
+    crank_torque : array (n,)   N m about its mean, to be balanced by the cam
+    cam_torque : array (n,)     N m, of the spring on the cam at the same angles
     gear_ratio : float          crank turns per cam turn
     """
     crank, cam = finite("crank_torque", crank_torque), finite("cam_torque", cam_torque)
@@ -119,7 +119,7 @@ def ratio_finding(crank_torque: ArrayLike, cam_torque: ArrayLike, gear_ratio: fl
 def energy_finding(
     crank_torque: ArrayLike, stored: float, title: str = "energy stored per cycle"
 ) -> Finding:
-    """Energy a spring stores against the swing of the torque it should balance, J."""
+    """Energy stored by a spring against the energy swing of the torque to balance, J."""
     swing = float(np.ptp(energy_swing(crank_torque)))
     return Finding(
         "energy", title, swing, stored, "J",
@@ -128,7 +128,7 @@ def energy_finding(
 
 
 def work_finding(friction_loss: float, crank_work: float) -> Finding:
-    """Work the crank gives the mechanism per cycle against the heat of its guides, J."""
+    """Work of the crank on the mechanism per cycle against the friction loss of its guides, J."""
     return Finding(
         "work",
         "work of the mechanism per cycle",

@@ -1,21 +1,27 @@
-"""The text of a trace file: its lines, the units in its header, its cells as numbers."""
+"""Text of a trace file: lines, units in the header, cells as numbers."""
 
 from __future__ import annotations
 
 import csv
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 from types import MappingProxyType
+from typing import Annotated
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Characters
 
-SIZE_MAX = 64 * 2**20  # bytes; looked up before the file is opened
+SIZE_MAX = 64 * 2**20  # bytes; checked before the file is opened
 ROWS_MAX = 1_000_000
+
+HeaderText = Annotated[str, Characters(0, 80)]
+"""A column's header, what it begins with, or a unit in it."""
 
 ANGLE_UNITS: Mapping[str, float] = MappingProxyType(
     {
@@ -36,7 +42,7 @@ ANGLE_UNITS: Mapping[str, float] = MappingProxyType(
     }
 )
 
-# Written without blanks, dots, stars, dashes and carets; exact case is tried first (mPa, MPa).
+# Without blanks, dots, stars, dashes and carets; exact case is tried first (mPa, MPa).
 QUANTITY_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "lift": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254},
@@ -85,8 +91,92 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _UNIT_SPELLING = str.maketrans(dict.fromkeys(" ·⋅*.-^_⁻−", "") | {"¹": "1", "º": "°"})
 
 
-def text_lines(path: Path) -> list[tuple[int, str]]:
-    """The lines of a text file that hold something, with their numbers from 1."""
+@dataclass(frozen=True)
+class TraceText:
+    """Text of a trace file: header cells, and rows with their line numbers.
+
+    Parameters
+    ----------
+    name : str        of the file
+    header : list     text of each column's header
+    rows : list       line number from 1 and text of each row
+    delimiter : str   between the columns
+    """
+
+    name: str
+    header: list[str]
+    rows: list[tuple[int, str]]
+    delimiter: str
+
+    @property
+    def line_numbers(self) -> list[int]:
+        return [number for number, _ in self.rows]
+
+    def numbers(self, columns: Sequence[int]) -> Array:
+        """Cells of some columns as numbers, (rows, columns).
+
+        Raises
+        ------
+        InputError
+            For a row with too few or too many cells, or a cell that is no finite number.
+        """
+        header, delimiter = self.header, self.delimiter
+        table = np.empty((len(self.rows), len(columns)))
+        for row, (number, line) in enumerate(self.rows):
+            cells = [cell.strip() for cell in _cells(line, delimiter)]
+            if len(cells) < len(header) or any(cells[len(header) :]):
+                limit = f"{len(header)} as in the header"
+                raise InputError(f"{self.name} line {number}", f"{len(cells)} cells", limit)
+            for place, at in enumerate(columns):
+                cell = cells[at] if delimiter == "," else cells[at].replace(",", ".")
+                if not _NUMBER.fullmatch(cell) or not abs(float(cell)) < np.inf:
+                    field = f"{self.name} line {number}, {header[at]}"
+                    raise InputError(field, cells[at] or "nothing", "a finite number")
+                table[row, place] = float(cell)
+        return table
+
+
+def trace_text(path: Path, *, headed: bool = True, one_column: bool = False) -> TraceText:
+    """Text of a trace file.
+
+    Parameters
+    ----------
+    headed : bool       whether the first line is a header; without, blanks may separate columns
+    one_column : bool   whether a file of one column, without any delimiter, is accepted
+
+    Raises
+    ------
+    InputError
+        For a file that is missing, a folder, empty, binary or over 64 MiB, or a header without
+        delimiter.
+    """
+    lines, name = _text_lines(path), path.name
+    delimiter = _delimiter(name, lines, blanks=not headed, one_column=one_column)
+    if headed:
+        header = [cell.strip() for cell in _cells(lines[0][1], delimiter)]
+        return TraceText(name, header, lines[1:], delimiter)
+    rows = [(number, line.rstrip(f"{delimiter} ")) for number, line in lines]
+    count = len(_cells(rows[0][1], delimiter))
+    return TraceText(name, [f"column {at + 1}" for at in range(count)], rows, delimiter)
+
+
+def _delimiter(
+    name: str, lines: Sequence[tuple[int, str]], *, blanks: bool, one_column: bool
+) -> str:
+    number, head = lines[0]
+    for mark in ";\t,":
+        if mark in head:
+            return mark
+    if blanks:
+        return " "
+    if one_column and not any("," in line for _, line in lines[1:2]):
+        return ";"  # a decimal comma is no delimiter
+    limit = "a header of columns separated by semicolon, tab or comma"
+    raise InputError(f"{name} line {number}", head, limit)
+
+
+def _text_lines(path: Path) -> list[tuple[int, str]]:
+    """Lines of a text file with their numbers from 1, without empty lines and comments."""
     raw = _bytes(path)
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raw = raw.decode("utf-16", errors="replace").encode()
@@ -106,7 +196,7 @@ def text_lines(path: Path) -> list[tuple[int, str]]:
 
 
 def _bytes(path: Path) -> bytes:
-    """The bytes of a file, refused unread where it is no file or too large."""
+    """Bytes of a file; one that is no file or too large is refused unread."""
     try:
         if path.is_dir():
             raise InputError(path.name, "a folder", "a file")
@@ -128,19 +218,19 @@ def _bytes(path: Path) -> bytes:
 
 
 def _decoded(coded: bytes) -> str:
-    """One line, as UTF-8 or else Latin-1: files pasted together mix the two."""
+    """One line as UTF-8, else as Latin-1: a file may mix the two."""
     try:
         return coded.decode("utf-8")
     except UnicodeDecodeError:
         return coded.decode("latin-1")
 
 
-def split_cells(line: str, delimiter: str) -> list[str]:
+def _cells(line: str, delimiter: str) -> list[str]:
     return next(csv.reader([line], delimiter=delimiter)) if '"' in line else line.split(delimiter)
 
 
 def _unit(header: str, units: Mapping[str, float]) -> float | None:
-    """The factor to SI of the unit a header ends with: all in its brackets, else the shortest
+    """Factor to SI of the unit at the end of a header: the text in its brackets, else the shortest
     ending that is a unit, so that `M_Nm` is a moment in N m."""
     bracketed = re.search(r"[\[({](.*)[\])}]\s*$", header)
     if bracketed:
@@ -159,80 +249,48 @@ def _unit(header: str, units: Mapping[str, float]) -> float | None:
 
 
 def columns_of(header: Sequence[str], quantity: str, prefix: str = "") -> dict[int, float]:
-    """All columns of a quantity whose header begins so, and their factors to SI."""
+    """Columns of a quantity whose header begins with `prefix`, and their factors to SI."""
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
     return {at: f for at, f in factors.items() if header[at].lower().startswith(prefix.lower())}
 
 
 def has_angle(header: Sequence[str]) -> bool:
-    """Whether a column is one of angle."""
+    """Whether a column has a unit of angle."""
     return bool(_with_unit(header, ANGLE_UNITS))
 
 
-def table_delimiter(name: str, number: int, line: str, *, blanks: bool = False) -> str:
-    """What parts the columns of a file, by its first line."""
-    found = next((mark for mark in ";\t," if mark in line), " " if blanks else None)
-    if found is None:
-        limit = "a header of columns parted by semicolon, tab or comma"
-        raise InputError(f"{name} line {number}", line, limit)
-    return found
-
-
 def _with_unit(header: Sequence[str], units: Mapping[str, float]) -> dict[int, float]:
-    """Columns whose header ends with one of the units, and the factor to SI."""
+    """Columns whose header ends with one of the units, and their factors to SI."""
     factors = {at: _unit(text, units) for at, text in enumerate(header)}
     return {at: factor for at, factor in factors.items() if factor is not None}
 
 
 def angle_column(name: str, header: Sequence[str]) -> tuple[int, float]:
-    """Where the crank angle stands and its factor to rad."""
+    """Column of the crank angle and its factor to rad."""
     factors = _with_unit(header, ANGLE_UNITS)
-    found = list(factors)
-    if len(found) > 1:
-        found = [at for at in found if "crank" in header[at].lower()] or found
-    if len(found) != 1:
+    columns = list(factors)
+    if len(columns) > 1:
+        columns = [at for at in columns if "crank" in header[at].lower()] or columns
+    if len(columns) != 1:
         limit = "one column of crank angle with its unit (deg, rad or rev)"
         raise InputError(f"{name} header", ", ".join(header), limit)
-    return found[0], factors[found[0]]
+    return columns[0], factors[columns[0]]
 
 
 def value_column(
     name: str, header: Sequence[str], quantity: str, column: str | None
 ) -> tuple[int, float]:
-    """Where the quantity stands and its factor to SI."""
+    """Column of a quantity and its factor to SI."""
     factors = _with_unit(header, QUANTITY_UNITS[quantity])
-    found = list(factors)
+    columns = list(factors)
     if column is not None:
-        found = [at for at in found if header[at].lower().startswith(column.lower())]
-        found = [at for at in found if header[at] == column] or found
+        columns = [at for at in columns if header[at].lower().startswith(column.lower())]
+        columns = [at for at in columns if header[at] == column] or columns
     for word in (quantity, "total"):
-        if len(found) > 1:
-            found = [at for at in found if word in header[at].lower()] or found
-    if len(found) != 1:
+        if len(columns) > 1:
+            columns = [at for at in columns if word in header[at].lower()] or columns
+    if len(columns) != 1:
         wanted = f"one column of {column or quantity}"
         limit = f"{wanted} with its unit ({', '.join(QUANTITY_UNITS[quantity])})"
         raise InputError(f"{name} header", ", ".join(header), limit)
-    return found[0], factors[found[0]]
-
-
-def number_table(
-    name: str,
-    lines: Sequence[tuple[int, str]],
-    header: Sequence[str],
-    delimiter: str,
-    columns: Sequence[int],
-) -> Array:
-    """The cells of some columns as numbers, (rows, columns)."""
-    table = np.empty((len(lines), len(columns)))
-    for row, (number, line) in enumerate(lines):
-        cells = [cell.strip() for cell in split_cells(line, delimiter)]
-        if len(cells) < len(header) or any(cells[len(header) :]):
-            limit = f"{len(header)} as in the header"
-            raise InputError(f"{name} line {number}", f"{len(cells)} cells", limit)
-        for place, at in enumerate(columns):
-            cell = cells[at] if delimiter == "," else cells[at].replace(",", ".")
-            if not _NUMBER.fullmatch(cell) or not abs(float(cell)) < np.inf:
-                field = f"{name} line {number}, {header[at]}"
-                raise InputError(field, cells[at] or "nothing", "a finite number")
-            table[row, place] = float(cell)
-    return table
+    return columns[0], factors[columns[0]]

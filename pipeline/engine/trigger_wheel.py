@@ -5,51 +5,63 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Angle, Count, In, Part
 
 FULL_TURN = 2.0 * pi
-NEIGHBOURS = 9  # intervals, of whose median a regular one is a share
-REGULAR = (0.6, 1.4)  # of that median: a crank within its cycle stays well inside
+NEIGHBOURS = 9  # intervals in the local median
+REGULAR = (0.6, 1.4)  # interval over local median; speed ripple stays well inside
+
+
+Teeth = Annotated[int, Count(4, 720)]
+MissingTeeth = Annotated[int, Count(0, 180)]
+ToothShare = Annotated[float, In(above=0, below=1)]
 
 
 @dataclass(frozen=True, eq=False)
-class TriggerWheel:
-    """A wheel of `teeth` equal places of which the last `missing` are left empty.
+class TriggerWheel(Part):
+    """A wheel with `teeth` equal pitches whose last `missing_teeth` teeth are left out.
 
     Parameters
     ----------
-    teeth : int                n, places for teeth
-    missing : int              m, empty ones; 0: no gap, no reference
-    reference_angle : float    rad, crank angle of the first rising edge after a gap, of the first
-                               gap recorded; without a gap that of the first edge recorded
+    teeth : int                n, pitches of the wheel
+    missing_teeth : int        m, <= n/4; 0: no gap, no reference
+    reference_angle : float    rad, crank angle of the first rising edge after the first gap
+                               recorded; without a gap that of the first edge recorded
     tooth_share : float        of the pitch, from the rising to the falling edge
-    rising, falling : array (n - m,), optional   rad from the reference, in place of equal pitches
+    rising, falling : array (n - m,), optional   rad from the reference, instead of equal pitches
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds.
     """
 
-    teeth: int = 36
-    missing: int = 0
-    reference_angle: float = 0.0
-    tooth_share: float = 0.5
+    table: ClassVar[str] = "engine"
+    labels: ClassVar[tuple[str, ...]] = ("rising", "falling")
+
+    teeth: Teeth = 36
+    missing_teeth: MissingTeeth = 0
+    reference_angle: Angle = 0.0
+    tooth_share: ToothShare = 0.5
     rising: Array | None = None
     falling: Array | None = None
 
     def __post_init__(self) -> None:
-        if not 4 <= self.teeth <= 720:
-            raise InputError("engine.teeth", self.teeth, "from 4 to 720")
-        if not 0 <= self.missing <= self.teeth // 4:
-            raise InputError("engine.missing_teeth", self.missing, "from 0 to a quarter of them")
-        if not 0.0 < self.tooth_share < 1.0:
-            raise InputError("engine.tooth_share", self.tooth_share, "from 0 to 1")
-        finite("engine.reference_angle", self.reference_angle)
+        super().__post_init__()
+        if self.missing_teeth > self.teeth // 4:
+            limit = f"<= {self.teeth // 4}, a quarter of engine.teeth"
+            raise InputError("engine.missing_teeth", self.missing_teeth, limit)
         for name in ("rising", "falling"):
-            given = getattr(self, name)
-            if given is not None:
-                freeze(self, **{name: finite(f"wheel.{name}", given)})
+            angles = getattr(self, name)
+            if angles is not None:
+                freeze(self, **{name: finite(f"wheel.{name}", angles)})
 
     @property
     def pitch(self) -> float:
@@ -57,10 +69,10 @@ class TriggerWheel:
 
     @property
     def present(self) -> int:
-        return self.teeth - self.missing
+        return self.teeth - self.missing_teeth
 
     def angle(self, place: Array, falling: bool) -> Array:
-        """Crank angle (rad) of an edge of the teeth counted from the reference, missing or not."""
+        """Crank angle (rad) of edges at places of teeth, counted from the reference."""
         turn, tooth = np.divmod(place, self.teeth)
         known = self.falling if falling else self.rising
         at = tooth * self.pitch + (self.tooth_share * self.pitch if falling else 0.0)
@@ -71,8 +83,8 @@ class TriggerWheel:
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """Edges of one kind that passed: times (n,), s, and the places (n,) of their teeth, counted
-    from the reference on, gaps included."""
+    """Edges of one kind: times (n,), s, and places (n,) of their teeth, counted from the
+    reference, gaps included."""
 
     times: Array
     places: Array
@@ -106,14 +118,14 @@ def counted(field: str, times: ArrayLike, wheel: TriggerWheel, both: bool) -> tu
         raise InputError(f"{field} edge {k + 1}", f"{at[k]:.9g} s", f"after {at[k - 1]:.9g} s")
     rising = at[::2] if both else at
     places = tooth_places(field, rising, wheel)
-    found = [Edges(rising, places, False)]
+    edges = [Edges(rising, places, False)]
     if both:
-        found.append(Edges(at[1::2], places[: at[1::2].size], True))
-    return tuple(found)
+        edges.append(Edges(at[1::2], places[: at[1::2].size], True))
+    return tuple(edges)
 
 
 def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
-    """Places (n,) of the teeth whose edges of one kind passed at `times`.
+    """Places (n,) of the teeth whose edges of one kind have `times` (s).
 
     Raises
     ------
@@ -123,20 +135,20 @@ def tooth_places(field: str, times: Array, wheel: TriggerWheel) -> Array:
     intervals = np.diff(times)
     share = intervals / _local_median(intervals)
     expected = np.ones_like(share)
-    if wheel.missing:
-        expected[share > 1.0 + 0.5 * wheel.missing] = 1.0 + wheel.missing
+    if wheel.missing_teeth:
+        expected[share > 1.0 + 0.5 * wheel.missing_teeth] = 1.0 + wheel.missing_teeth
     off = (share / expected < REGULAR[0]) | (share / expected > REGULAR[1])
     if off.any():
         k = int(np.flatnonzero(off)[0])
         what = "a missing tooth" if share[k] > 1.0 else "an edge too many"
         value = f"{share[k]:.3g} times its neighbours ({what})"
-        limit = f"1, or {1 + wheel.missing} in the gap" if wheel.missing else "near 1"
+        limit = f"1, or {1 + wheel.missing_teeth} in the gap" if wheel.missing_teeth else "near 1"
         raise InputError(f"{field} interval after {times[k]:.6g} s", value, limit)
     gaps = [int(k) for k in np.flatnonzero(expected > 1.0)]
-    if wheel.missing:
+    if wheel.missing_teeth:
         _guard_gaps(field, times, gaps, wheel)
     steps = np.concatenate([[0.0], np.cumsum(expected)])
-    origin = steps[gaps[0] + 1] if wheel.missing else 0.0
+    origin = steps[gaps[0] + 1] if wheel.missing_teeth else 0.0
     return np.asarray(steps - origin)
 
 
@@ -147,9 +159,9 @@ def _local_median(intervals: Array) -> Array:
 
 
 def _guard_gaps(field: str, times: Array, gaps: list[int], wheel: TriggerWheel) -> None:
-    """Refuse a gap that does not come back after every n - m teeth."""
+    """Refuse a gap that does not recur after every n - m teeth."""
     if not gaps:
-        limit = f"a gap of {wheel.missing} missing teeth in every turn"
+        limit = f"a gap of {wheel.missing_teeth} missing teeth in every turn"
         raise InputError(field, "no gap", limit)
     ends = np.diff(gaps)
     wrong = np.flatnonzero(ends != wheel.present)
@@ -164,41 +176,43 @@ def _guard_gaps(field: str, times: Array, gaps: list[int], wheel: TriggerWheel) 
 def learned_wheel(
     wheel: TriggerWheel, runs: Sequence[Sequence[Edges]], turns_min: int = 3
 ) -> TriggerWheel:
-    """The wheel with the angles of its edges as reference turns at steady speed show them.
+    """The wheel with edge angles learned from reference turns at steady speed.
 
-    Each turn is cut into the shares of its time that the edges take; a speed that drifts
-    linearly from turn to turn is allowed for. What is left is averaged over all turns.
+    The angle of an edge is the share of the time of its turn, corrected for a speed that drifts
+    linearly from turn to turn, and averaged over all turns.
 
     Parameters
     ----------
     runs : sequence of runs     each the edges of `counted`, motored or coasting without firing
-    turns_min : int             whole turns needed
+    turns_min : int             least number of whole turns
 
     Raises
     ------
     InputError
-        If there are fewer turns.
+        If there are fewer whole turns.
 
     References
     ----------
     Kiencke and Nielsen, Automotive Control Systems (2005), ch. on crankshaft speed: adaptation
     of the sensor wheel, cited from memory: verify.
     """
-    found: dict[bool, list[Array]] = {False: [], True: []}
+    shares: dict[bool, list[Array]] = {False: [], True: []}
     for run in runs:
         rising = next(edges for edges in run if not edges.falling)
         starts = rising.times[np.mod(rising.places, wheel.teeth) == 0.0]
         for edges in run:
-            found[edges.falling] += _shares(edges, starts, wheel)
-    if len(found[False]) < turns_min:
-        raise InputError("engine.reference_file", f"{len(found[False])} whole turns", ">= 3")
-    rising = FULL_TURN * np.mean(found[False], axis=0)
-    falling = FULL_TURN * np.mean(found[True], axis=0) if found[True] else None
+            shares[edges.falling] += _shares(edges, starts, wheel)
+    if len(shares[False]) < turns_min:
+        raise InputError(
+            "engine.reference_file", f"{len(shares[False])} whole turns", f">= {turns_min}"
+        )
+    rising = FULL_TURN * np.mean(shares[False], axis=0)
+    falling = FULL_TURN * np.mean(shares[True], axis=0) if shares[True] else None
     return replace(wheel, rising=readonly(rising), falling=falling)
 
 
 def _shares(edges: Edges, starts: Array, wheel: TriggerWheel) -> list[Array]:
-    """For each turn with one before and one after it, the share at which its edges stand."""
+    """Shares of the time of a turn at its edges, for each turn between two others."""
     lengths = np.diff(starts)
     shares = []
     for k in range(1, lengths.size - 1):

@@ -1,4 +1,4 @@
-"""Valves: their lift, the gas that passes them, the torque that opens them."""
+"""Valve lift, mass flow through the valves, torque of the valve springs on the crank."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, LiftTable
+from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, LiftPoint
 
-# Near equal pressures the nozzle flow rises with an infinite slope; below this relative
-# difference it is bent into a straight line, worth some 10 Pa in a cylinder that breathes.
+# At equal pressures the slope of the nozzle flow is infinite; below this relative difference the
+# flow is linearised, which changes the cylinder pressure by some 10 Pa.
 NEARLY_EQUAL = 1e-3
 
 
 @dataclass(frozen=True)
 class Valve:
-    """One poppet valve: when it opens (crank angle, rad), how far, and how wide (m).
+    """A poppet valve: timing (crank angle, rad), lift and diameter (m).
 
-    The lift is (1 - cos)/2 between its timings, or a monotone curve through a table.
+    The lift is (1 - cos)/2 between opening and closing, or a monotone curve through a table.
     """
 
     opens: float
@@ -29,16 +29,16 @@ class Valve:
     lift_max: float
     diameter: float
     discharge_coefficient: float
-    table: LiftTable | None = None
+    table: tuple[LiftPoint, ...] = ()
 
     def lift(self, theta: ArrayLike, derivative: int = 0) -> Array:
         """Lift (m), or its derivative by the crank angle (m/rad), at crank angles, any shape."""
         past = np.mod(np.asarray(theta, dtype=float) - self.opens, CYCLE_ANGLE)
         duration = self.closes - self.opens
         is_open = past < duration
-        if self.table is not None:
-            angle, lift = np.array(self.table).T
-            curve = PchipInterpolator(angle - self.opens, lift)
+        if self.table:
+            angle = np.array([point.angle for point in self.table])
+            curve = PchipInterpolator(angle - self.opens, [point.lift for point in self.table])
             return np.where(is_open, curve(np.minimum(past, duration), nu=derivative), 0.0)
         phase = 2.0 * pi * past / duration
         if derivative == 0:
@@ -46,7 +46,7 @@ class Valve:
         return np.where(is_open, pi * self.lift_max / duration * np.sin(phase), 0.0)
 
     def flow_area(self, theta: ArrayLike) -> Array:
-        """Curtain area under the valve, at most that of its port, times discharge (m2)."""
+        """Curtain area, at most that of the port, times the discharge coefficient, m2."""
         curtain = pi * self.diameter * self.lift(theta)
         port = 0.25 * pi * (0.85 * self.diameter) ** 2
         return np.asarray(self.discharge_coefficient * np.minimum(curtain, port))
@@ -79,11 +79,11 @@ def nozzle_flow(
     gas_constant: float,
     gamma: float,
 ) -> float:
-    """Mass flow through an area of 1 m2, isentropic to the throat, choked or not: kg/(s m2).
+    """Mass flow per area, isentropic to the throat, choked or not, kg/(s m2).
 
     Parameters
     ----------
-    pressure_up, temperature_up : float    of the still gas upstream, Pa and K
+    pressure_up, temperature_up : float    of the gas at rest upstream, Pa and K
     pressure_down : float                  Pa, at most `pressure_up`
     gas_constant, gamma : float            J/(kg K) and 1, of the gas upstream
 
@@ -102,17 +102,17 @@ def nozzle_flow(
 
 
 def tappet_force(engine: CylinderEngine, valve: Valve, theta: ArrayLike) -> Array:
-    """Force of the rocker on the cam of a valve that is open, else zero (N)."""
+    """Force of the rocker on the cam of an open valve, else zero, N."""
     lift = valve.lift(theta)
     spring = engine.valve_spring_rate * lift + engine.valve_spring_preload
     return np.where(lift > 0.0, engine.rocker_ratio * spring, 0.0)
 
 
 def valve_train_torque(engine: CylinderEngine, theta: ArrayLike) -> Array:
-    """Torque of both valve springs on the crank, positive when they drive it (N m).
+    """Torque of both valve springs on the crank, positive when they drive it, N m.
 
-    The power goes from crank to cam, to rocker, to spring without loss, so the rocker ratio
-    cancels: force on the cam up, way of the cam down.
+    Without friction the rocker ratio cancels: it raises the force on the cam by as much as it
+    reduces the cam lift.
     """
     total = np.zeros(np.shape(theta))
     for valve in (intake_valve(engine), exhaust_valve(engine)):

@@ -3,9 +3,13 @@
 from pathlib import Path
 
 from camwright.pipeline.base.files import read_toml
-from camwright.pipeline.case.cards.bearing_cards import CARDS, BearingCard, read_card
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.cards.card_filling import FOLDER
+from camwright.pipeline.case.cards.part_table import read_part
+
+CARDS = FOLDER / "bearings.toml"
 
 
 def read_cards(path: Path = CARDS) -> dict[str, BearingCard]:
     tables = read_toml(path, "cards", 64 * 1024)
-    return {name: read_card(name, table) for name, table in tables.items()}
+    return {name: read_part(BearingCard, table, f"cards.{name}") for name, table in tables.items()}

@@ -111,6 +111,28 @@ def test_a_users_card_that_is_none(tmp_path, written, message):
         parse_case(text, tmp_path)
 
 
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ('density = "880 kg/m^3"', "cards.oils.own.viscosity_40 = missing, must be given"),
+        ("viscosity_40 = 68.0\nviscosity_100 = 8.7", "cards.oils.own.density = missing"),
+        (
+            'density = "880 kg/m^3"\nviscosity_40 = 0\nviscosity_100 = 8.7',
+            "viscosity_40 = 0, must be > 0",
+        ),
+        (
+            'density = "880 kg/m^3"\nviscosity_40 = 68.0\nviscosity_100 = 8.7',
+            "pressure_viscosity = missing",
+        ),
+    ],
+)
+def test_a_users_oil_that_is_incomplete_is_refused(tmp_path, entries, message):
+    (tmp_path / "cards.toml").write_text(f'[oils.own]\n{entries}\nsource = "label"\n')
+    text = template("cards") + '\n[lubricant]\ncard = "own"\n'
+    with pytest.raises(InputError, match=message.replace(".", r"\.")):
+        parse_case(text, tmp_path)
+
+
 def test_an_unknown_card_is_refused_with_the_known_ones():
     with pytest.raises(InputError, match=r"materials\.extra\.card = kryptonite, must be one of"):
         extra('card = "kryptonite"')

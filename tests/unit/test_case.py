@@ -22,6 +22,7 @@ from camwright.pipeline.case.limits import (
     Limits,
 )
 from camwright.pipeline.case.template import template
+from camwright.pipeline.engine.cylinder import CylinderEngine
 
 ROOT = Path(__file__).resolve().parents[2]
 GX120 = (ROOT / "cases" / "gx120.toml").read_text(encoding="utf-8")
@@ -56,16 +57,17 @@ def test_gx120_is_the_published_design() -> None:
     assert [load_case.name for load_case in case.load_cases] == ["idle"]
 
 
-def test_cylinder_builds_the_engine_it_describes() -> None:
-    case = parse_case(GX120)
-    engine = case.engine.build()  # type: ignore[union-attr]
+def test_a_case_holds_the_engine_it_describes() -> None:
+    engine = parse_case(GX120).engine
+    assert isinstance(engine, CylinderEngine)
     assert engine.crank_radius == 0.021
-    assert engine.friction == "closing"
+    assert engine.friction_pressure is None
     text = changed(
         'heat_loss = "hohenberg"', 'friction_pressure = "165 kPa"\nheat_loss = "woschni"'
     )
-    engine = parse_case(text).engine.build()  # type: ignore[union-attr]
-    assert engine.friction == 165e3
+    engine = parse_case(text).engine
+    assert isinstance(engine, CylinderEngine)
+    assert engine.friction_pressure == 165e3
     assert engine.heat_loss == "woschni"
 
 
@@ -167,6 +169,13 @@ def test_load_case_names_differ() -> None:
 
 def test_starts_at_the_torque_or_at_the_lift_never_at_both() -> None:
     assert "must be exactly one" in refused(GX120 + '\n[lift]\nfile = "lift.csv"\n')
+
+
+@pytest.mark.parametrize("depth", [17, 600, 20_000])
+def test_tables_nested_too_deeply_are_refused(depth: int) -> None:
+    text = f"{GX120}\n[{'.'.join(['a'] * depth)}]\nb = 1\n"
+    with pytest.raises(InputError, match="case = nested too deeply, must be at most 16 tables"):
+        parse_case(text)
 
 
 @pytest.mark.parametrize(

@@ -70,6 +70,13 @@ def test_bad_lift_is_refused_in_one_line(given, refusal):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("value", ["3", "[]", '"cosine"', "true"])
+def test_a_lift_that_is_no_table_is_refused(value):
+    limit = 'must be a table with kind = "table" or "segments" or "points" or "eccentric"'
+    with pytest.raises(InputError, match=limit):
+        case(f"lift = {value}\n")
+
+
 def test_resolved_case_reads_back_bit_for_bit():
     first = case(segments())
     again = parse_case(first.to_toml())
@@ -147,7 +154,7 @@ def test_flat_face_takes_the_place_of_the_roller():
     found = parse_case(flat(with_lift(ECCENTRIC)))
     assert found.facing is found.follower.face
     assert found.follower.face_friction == 0.08
-    with pytest.raises(InputError, match=r"follower\.kind = flat, must be .roller. for what only"):
+    with pytest.raises(InputError, match=r"follower\.kind = flat, must be .roller., as"):
         _ = found.roller
     assert parse_case(found.to_toml()) == found
     lift = given_lift(found)
@@ -187,5 +194,5 @@ def test_bad_face_is_refused(change, message):
 
 def test_synthesis_within_limits_knows_rollers_only():
     text = flat(template("flat")).replace('kind = "moving_average"', 'kind = "constrained"')
-    with pytest.raises(InputError, match=r"smoothing\.kind = constrained, must be another than"):
+    with pytest.raises(InputError, match=r"smoothing\.kind = constrained, must be other than"):
         parse_case(text)

@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from cycle_pressures import net_imep
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.indicated_cycle_solver import working_cycle
 from camwright.pipeline.engine.pressure_trace import (
+    PressureTable,
     PressureTrace,
     cycle_statistics,
     dead_centre_offset,
@@ -15,7 +17,16 @@ from camwright.pipeline.engine.pressure_trace import (
 )
 from camwright.pipeline.engine.torque import torque_from_cycle
 
-ENGINE = CylinderEngine(0.06, 0.021, 0.073, 8.5, 0.144, 0.123)
+DRIVE = {
+    "bore": 0.060,
+    "crank_radius": 0.021,
+    "rod_length": 0.073,
+    "compression_ratio": 8.5,
+    "piston_mass": 0.144,
+    "rod_mass": 0.123,
+}
+ENGINE = CylinderEngine(**DRIVE)
+RIG = PressureTable(file="rig.csv", **DRIVE)
 DEGREES = np.arange(720.0)
 
 
@@ -38,7 +49,7 @@ def write(folder, columns, header, delimiter=",", decimal="."):
 
 def test_torque_of_a_modelled_cycle_is_that_of_the_model(modelled):
     """Gas and inertia are the same; the pressure trace knows no valve train: 1e-9 N m."""
-    torque = torque_from_pressure(trace_of(modelled.pressure), ENGINE, 157.08)
+    torque = torque_from_pressure(trace_of(modelled.pressure), RIG, 157.08)
     whole = torque_from_cycle(modelled)
     for name in ("gas", "inertia"):
         np.testing.assert_allclose(torque.components[name], whole.components[name], atol=1e-9)
@@ -48,8 +59,8 @@ def test_torque_of_a_modelled_cycle_is_that_of_the_model(modelled):
 def test_two_cylinders_are_two_cycles_apart(modelled):
     from dataclasses import replace
 
-    twin = replace(ENGINE, firing_offsets=(0.0, 2.0 * np.pi))
-    one = torque_from_pressure(trace_of(modelled.pressure), ENGINE, 157.08).total
+    twin = replace(RIG, firing_offsets=(0.0, 2.0 * np.pi))
+    one = torque_from_pressure(trace_of(modelled.pressure), RIG, 157.08).total
     two = torque_from_pressure(trace_of(modelled.pressure), twin, 157.08).total
     np.testing.assert_allclose(two, one + np.roll(one, 360), atol=1e-9)
 
@@ -88,12 +99,12 @@ def test_mean_scatter_and_cycle_statistics(modelled):
     trace = trace_of(*(share[:, None] * modelled.pressure))
     np.testing.assert_allclose(trace.mean, modelled.pressure, rtol=1e-12)
     np.testing.assert_allclose(trace.scatter, 0.1 * modelled.pressure, rtol=1e-9)
-    found = cycle_statistics(trace, ENGINE)
+    found = cycle_statistics(trace, RIG)
     imep = found.imep / share
     np.testing.assert_allclose(imep, imep[0], rtol=1e-12)
     assert found.imep_variation == pytest.approx(0.1, rel=1e-9)
-    assert found.peak[1] == pytest.approx(modelled.pressure_max)
-    net = modelled.indicated_pressure_net  # the same work, the crankcase's left out of it
+    assert found.peak[1] == pytest.approx(modelled.pressure.max())
+    net = net_imep(modelled)  # the same work, the crankcase's left out of it
     assert found.imep[1] == pytest.approx(net, rel=1e-9)
 
 
@@ -109,8 +120,8 @@ def motored(heat_loss_factor):
     from dataclasses import replace
 
     cold = replace(
-        ENGINE, combustion_efficiency=0.0, heat_loss_factor=heat_loss_factor, friction=0.0,
-        intake_pressure=95e3,
+        ENGINE, combustion_efficiency=0.0, heat_loss_factor=heat_loss_factor,
+        friction_pressure=0.0, intake_pressure=95e3,
     )  # fmt: skip
     return working_cycle(cold, 157.08).pressure
 
@@ -149,12 +160,9 @@ def test_a_wrong_unit_is_out_of_range(modelled, factor, words):
 @pytest.mark.parametrize(("factor", "words"), [(10.0, "bar, not MPa"), (0.1, "MPa, not bar")])
 def test_bar_for_mpa_shows_in_the_compression(modelled, factor, words):
     """Both lie in the range of some engine; the rise in compression tells."""
-    from dataclasses import replace
-
-    engine = replace(ENGINE, intake_pressure=30.5e3)
-    trace_of(modelled.pressure).pegged(30.5e3).guard_scale(engine)
+    trace_of(modelled.pressure).pegged(30.5e3).guard_scale(RIG, 30.5e3)
     with pytest.raises(InputError, match=words):
-        trace_of(factor * modelled.pressure).pegged(30.5e3).guard_scale(engine)
+        trace_of(factor * modelled.pressure).pegged(30.5e3).guard_scale(RIG, 30.5e3)
 
 
 def test_negative_absolute_pressure_is_refused(modelled):

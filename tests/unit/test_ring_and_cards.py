@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bearing_files import read_cards
+from bearing_files import CARDS, read_cards
 from ring_beams import ring_section_forces, ring_stiffness
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.cards.bearing_cards import CARDS, BearingCard
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.follower.bearing_ring import (
     Ring,

@@ -5,10 +5,11 @@ import pytest
 from crank_traces import CYCLE, noisy_times, time_at, tooth_angles
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.engine_section import SpeedTable, VoltageTable
 from camwright.pipeline.engine.crankshaft import torque_of_motion
+from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.speed_trace import (
     Filter,
+    SpeedTable,
     SpeedTrace,
     speed_from_csv,
     speed_from_edges,
@@ -238,7 +239,7 @@ def test_a_filter_beyond_the_teeth_is_refused():
 
 def test_the_wheel_of_a_case_has_its_tooth_share():
     speed = SpeedTable(kind="speed", file="a.csv", teeth=60, missing_teeth=2, tooth_share=0.3)
-    wheel = speed.wheel()
-    assert (wheel.teeth, wheel.missing, wheel.tooth_share) == (60, 2, 0.3)
+    wheel = speed.wheel
+    assert (wheel.teeth, wheel.missing_teeth, wheel.tooth_share) == (60, 2, 0.3)
     voltage = VoltageTable(kind="voltage", file="a.csv")
-    assert voltage.wheel().tooth_share == TriggerWheel().tooth_share
+    assert voltage.wheel.tooth_share == TriggerWheel().tooth_share

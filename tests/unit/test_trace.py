@@ -110,7 +110,7 @@ def test_both_ends_are_one_sample_of_their_mean(tmp_path):
     values[0], values[-1] = 1.0, 1.5
     trace = read_trace(write(tmp_path, "angle_deg,torque_Nm\n" + rows(angle, values)))
     assert trace.angle.size == 720
-    assert (trace.values[0], trace.end_difference) == (1.25, 0.5)
+    assert trace.values[0] == 1.25
 
 
 def test_half_degree_file_without_its_end_keeps_its_last_row(tmp_path):

@@ -40,8 +40,7 @@ def case(name: str) -> Case:
 @pytest.mark.parametrize("name", ["c25_preload", "c25_half_torque"])
 def test_machine_of_2025(name: str) -> None:
     paper = case(name)
-    assert paper.engine is not None
-    assert paper.engine.build() == GX120
+    assert paper.engine == GX120
     system = machines(paper)[0].system
     bare = Spring(rate=system.spring.rate, preload=system.spring.preload)
     assert replace(system, spring=bare) == FOLLOWER_2025
@@ -74,8 +73,7 @@ def test_half_torque_case_asks_half() -> None:
 
 def test_machine_of_2024() -> None:
     paper = case("c24_idle800")
-    assert paper.engine is not None
-    assert paper.engine.build() == ENGINE_800
+    assert paper.engine == ENGINE_800
     assert paper.load_cases[0].speed == pytest.approx(SLOW_IDLE, rel=1e-3)  # 800 rpm, 83.8 rad/s
     assert paper.spring.rate == cardoso_2024.SPRING.rate
     assert paper.spring.preload == cardoso_2024.SPRING.preload

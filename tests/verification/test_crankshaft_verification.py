@@ -93,7 +93,10 @@ def test_the_reciprocating_mass_in_the_inertia_is_its_torque_at_constant_speed()
     """At a large flywheel the speed is constant and both ways of counting agree: 1e-4."""
     from camwright.pipeline.engine.cylinder import CylinderEngine
 
-    engine = CylinderEngine(0.06, 0.021, 0.073, 8.5, 0.144, 0.123)
+    engine = CylinderEngine(
+        bore=0.06, crank_radius=0.021, rod_length=0.073, compression_ratio=8.5,
+        piston_mass=0.144, rod_mass=0.123,
+    )  # fmt: skip
     varying = Inertia(10.0, engine.reciprocating_inertia(THETA))
     by_inertia = crank_motion(np.zeros(COUNT), varying, 157.08)
     by_torque = crank_motion(

@@ -1,18 +1,13 @@
-"""Bearing cards: ratings and sizes of ball bearings as their makers print them, in TOML."""
+"""Bearing cards: ratings and dimensions of ball bearings from the makers' tables."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Count, In, Length, Part, Pressure
-from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.follower.roller_parts import Bearing, OuterRing
-
-CARDS = Path(__file__).parent / "bearings.toml"
 
 _Rating = Annotated[float, In("N", above=0, at_most=1e9)]
 _RING = ("balls", "pitch_diameter", "ring_thickness")
@@ -21,10 +16,10 @@ _STRENGTHS = ("ring_fatigue_bending", "ring_tensile_strength")
 
 @dataclass(frozen=True, kw_only=True)
 class BearingCard(Part):
-    """A ball bearing as its maker rates it, SI.
+    """A ball bearing with its maker's ratings.
 
-    radial_limit is the load that the outer ring bears without a housing; fatigue_load_limit P_u.
-    balls is the number in one row, pitch_diameter that of the balls' centres, ring_thickness that
+    radial_limit is the load limit of the outer ring without a housing; fatigue_load_limit is P_u.
+    balls is the number in one row, pitch_diameter that of the ball centres, ring_thickness that
     of the outer ring under the groove; the ring is described completely or not at all.
 
     Raises
@@ -68,7 +63,7 @@ class BearingCard(Part):
 
     @property
     def bearing(self) -> Bearing:
-        """The bearing of a roller, with its outer ring where the card describes it."""
+        """The bearing as part of a roller, with its outer ring if the card describes it."""
         ring = None
         if self.balls is not None and self.pitch_diameter and self.ring_thickness:
             ring = OuterRing(
@@ -90,14 +85,3 @@ class BearingCard(Part):
             ring=ring,
             source=self.source,
         )
-
-
-def read_card(name: str, entry: Mapping[str, Any]) -> BearingCard:
-    """A bearing card from its table.
-
-    Raises
-    ------
-    InputError
-        For an unknown or missing key, a value out of its bounds, or an incomplete ring.
-    """
-    return read_part(BearingCard, entry, f"cards.{name}")

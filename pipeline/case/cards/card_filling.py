@@ -1,8 +1,8 @@
-"""Cards put into a case as it is read: ``card = "NAME"`` fills what its table leaves out.
+"""Cards of a case: ``card = "NAME"`` supplies the keys that its table leaves out.
 
-Cards come from the files shipped here and from ``cards.toml`` beside the case, which goes first.
-A filled case names no cards any more: its resolved text holds every number and its source. So it
-is with ``spring.catalogue``.
+Cards are read from the files of this package and from ``cards.toml`` in the folder of the case,
+which takes precedence. The resolved case states every value and its source, and no card. The same
+holds for ``spring.catalogue``.
 """
 
 from __future__ import annotations
@@ -11,62 +11,65 @@ import math
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import read_toml
-from camwright.pipeline.case.cards.bearing_cards import CARDS, read_card
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.spring_selection import put_spring
-from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 
 KINDS = ("materials", "bushes", "oils", "wires", "bearings")
+FOLDER = Path(__file__).parent
 USER_FILE = "cards.toml"
 USER_BYTES = 256 * 1024
-CELSIUS = 273.15
 
-Cards = Mapping[str, Mapping[str, Mapping[str, Any]]]
+Cards = Mapping[str, Mapping[str, Tables]]
+"""Cards by kind and name."""
 
 
-def filled(data: Mapping[str, Any], folder: Path | None) -> dict[str, Any]:
-    """The tables of a case file with their cards put in.
+def fill_cards(case: Tables, folder: Path | None) -> None:
+    """Complete the tables of a case from the cards and the spring catalogue that it names.
 
     Parameters
     ----------
-    data : mapping     the case file as TOML gives it
-    folder : Path      where the case lies; None: only the shipped cards are there
+    case : dict        tables of a case file, changed in place
+    folder : Path      folder of the case; None: shipped cards only
 
     Raises
     ------
     InputError
-        For a card that is not there, or a file of cards that cannot be read.
+        For an unknown card, or a file of cards that cannot be read.
     """
-    case = {key: _copied(value) for key, value in data.items()}
     put_spring(case, folder)
-    asked = [place for place in _places(case) if isinstance(place[2], dict) and "card" in place[2]]
-    if not asked:
-        return case
+    named = [place for place in _places(case) if "card" in place[2]]
+    if not named:
+        return
     cards = known_cards(folder)
-    for field, kind, table in asked:
+    for field, kind, table in named:
         name = table.pop("card")
         card = cards[kind].get(name) if isinstance(name, str) else None
         if card is None:
-            raise InputError(f"{field}.card", name, f"one of: {', '.join(sorted(cards[kind]))}")
-        card = _oil(card, table, field) if kind == "oils" else card
-        if kind == "bearings":
-            card = tables_of(read_card(name, card).bearing)
-        given = dict(table)
+            raise InputError(
+                f"{field}.card", str(name), f"one of: {', '.join(sorted(cards[kind]))}"
+            )
+        if kind == "oils":
+            card = _oil(card, table, f"cards.oils.{name}", field)
+        elif kind == "bearings":
+            card = tables_of(read_part(BearingCard, card, f"cards.{name}").bearing)
+        own = dict(table)
         table.update(card)
-        table.update(given)
-        if "source" not in given:
+        table.update(own)
+        if "source" not in own:
             table["source"] = f"card {name}: {card['source']}"
         if kind == "bushes":
-            _with_material(case, table["material"], cards["materials"])
-    return case
+            material = _entry(table, "material", field)
+            _with_material(case, material, cards["materials"])
 
 
 def known_cards(folder: Path | None) -> Cards:
-    """Shipped cards by kind and name, those of the user beside the case over them."""
+    """Shipped cards by kind and name; those of the user in `folder` take precedence."""
     cards = {kind: dict(cards) for kind, cards in _shipped().items()}
     path = None if folder is None else folder / USER_FILE
     if path is None or not path.is_file():
@@ -80,22 +83,21 @@ def known_cards(folder: Path | None) -> Cards:
 
 
 def viscosity(at_40: float, at_100: float, temperature: float) -> float:
-    """Kinematic viscosity (mm2/s) of an oil at a temperature (K) from those at 40 and 100 degC.
+    """Kinematic viscosity (mm2/s) of an oil at a temperature (K), from those at 40 and 100 degC.
 
     References
     ----------
-    Walther's equation, ASTM D341: log log (v + 0.7) is straight over log T.
+    Walther's equation, ASTM D341: log log (v + 0.7) is linear in log T.
     """
     low, high = (math.log10(math.log10(v + 0.7)) for v in (at_40, at_100))
-    start, end = math.log10(CELSIUS + 40.0), math.log10(CELSIUS + 100.0)
+    start, end = math.log10(313.15), math.log10(373.15)
     place = (math.log10(temperature) - start) / (end - start)
     return float(10.0 ** (10.0 ** (low + place * (high - low))) - 0.7)
 
 
 @cache
 def _shipped() -> Cards:
-    here = Path(__file__).parent
-    files = {kind: here / f"{kind}.toml" for kind in KINDS} | {"bearings": CARDS}
+    files = {kind: FOLDER / f"{kind}.toml" for kind in KINDS}
     return {
         kind: {
             name: _sourced(card, f"{kind}.{name}")
@@ -105,57 +107,74 @@ def _shipped() -> Cards:
     }
 
 
-def _sourced(card: Any, field: str) -> Mapping[str, Any]:
-    """A card says where its numbers come from, or it is none."""
+def _sourced(card: TomlValue, field: str) -> Tables:
+    """A card; refused without the source of its values."""
     if not isinstance(card, dict):
-        raise InputError(field, card, "a table")
-    if not isinstance(card.get("source"), str) or not card["source"].strip():
-        raise InputError(f"{field}.source", "missing", "given: where the numbers come from")
+        raise InputError(field, str(card), "a table")
+    source = card.get("source")
+    if not isinstance(source, str) or not source.strip():
+        raise InputError(f"{field}.source", "missing", "given: the source of its values")
     return card
 
 
-def _places(case: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+def _places(case: Tables) -> Iterator[tuple[str, str, Tables]]:
     """Every table that may name a card: its dotted name, the kind of card, the table."""
+    materials = case.get("materials")
+    kinds = {
+        **{
+            f"materials.{name}": "materials"
+            for name in (materials if isinstance(materials, dict) else ())
+        },
+        "guides.a": "bushes",
+        "guides.b": "bushes",
+        "lubricant": "oils",
+        "spring.design": "wires",
+        "roller.bearing": "bearings",
+    }
+    for field, kind in kinds.items():
+        table: TomlValue | None = case
+        for part in field.split(".", 1):
+            table = table.get(part) if isinstance(table, dict) else None
+        if isinstance(table, dict):
+            yield field, kind, table
 
-    def table(*path: str) -> Any:
-        found: Any = case
-        for part in path:
-            found = found.get(part) if isinstance(found, dict) else None
-        return found
 
-    materials = table("materials")
-    for name in materials if isinstance(materials, dict) else ():
-        yield f"materials.{name}", "materials", materials[name]
-    for side in ("a", "b"):
-        yield f"guides.{side}", "bushes", table("guides", side)
-    yield "lubricant", "oils", table("lubricant")
-    yield "spring.design", "wires", table("spring", "design")
-    yield "roller.bearing", "bearings", table("roller", "bearing")
-
-
-def _with_material(case: dict[str, Any], name: Any, cards: Mapping[str, Any]) -> None:
+def _with_material(case: Tables, name: TomlValue, cards: Mapping[str, Tables]) -> None:
+    """Put the card of a bush's material among the materials, unless one has its name."""
     materials = case.setdefault("materials", {})
-    if isinstance(materials, dict) and name not in materials and name in cards:
-        card = cards[name]
-        materials[name] = {**card, "source": f"card {name}: {card['source']}"}
+    if isinstance(materials, dict) and isinstance(name, str) and name not in materials:
+        card = cards.get(name)
+        if card is not None:
+            materials[name] = {**card, "source": f"card {name}: {card['source']}"}
 
 
-def _oil(card: Mapping[str, Any], table: dict[str, Any], field: str) -> dict[str, Any]:
-    """The dynamic viscosity of an oil's card at the temperature of the contact."""
-    given = table.pop("temperature", "313.15 K")
-    temperature = units.parse(given, "K", f"{field}.temperature")
-    density = units.parse(card["density"], "kg/m^3", f"{field}.density")
-    kinematic = viscosity(card["viscosity_40"], card["viscosity_100"], temperature)
-    dynamic = 1e-6 * kinematic * density
+def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:
+    """The dynamic viscosity of an oil's card at the temperature of the contact.
+
+    Parameters
+    ----------
+    card : dict         of the oil, `source` its dotted name
+    table : dict        of the lubricant, `field` its dotted name; its temperature is taken out
+    """
+    temperature = units.parse(table.pop("temperature", "313.15 K"), "K", f"{field}.temperature")
+    density = units.parse(_entry(card, "density", source), "kg/m^3", f"{source}.density")
+    at_40, at_100 = (_positive(card, f"viscosity_{celsius}", source) for celsius in (40, 100))
+    dynamic = 1e-6 * viscosity(at_40, at_100, temperature) * density
     return {
         "viscosity": units.format(dynamic, "mPa s"),
-        "pressure_viscosity": card["pressure_viscosity"],
-        "source": f"{card['source']}; at {temperature - CELSIUS:.1f} degC by ASTM D341",
+        "pressure_viscosity": _entry(card, "pressure_viscosity", source),
+        "source": f"{card['source']}; at {units.celsius(temperature):.1f} degC by ASTM D341",
     }
 
 
-def _copied(value: Any) -> Any:
-    """Tables copied all the way down, so that the caller's stay as they are."""
-    if isinstance(value, dict):
-        return {key: _copied(entry) for key, entry in value.items()}
-    return value
+def _positive(card: Tables, key: str, field: str) -> float:
+    value = _entry(card, key, field)
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 < value < math.inf:
+        raise InputError(f"{field}.{key}", str(value), "> 0, a number without a unit")
+    return float(value)
+
+
+def _entry(card: Tables, key: str, field: str) -> TomlValue:
+    if key not in card:
+        raise InputError(f"{field}.{key}", "missing", "given")
+    return card[key]

@@ -1,29 +1,31 @@
-"""What a redesign may choose from: rollers, springs and bushes, shipped or beside the case."""
+"""Catalogue of a redesign: rollers, springs and bushes, shipped or of the user."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import marks_of
-from camwright.pipeline.case.cards.bearing_cards import BearingCard, read_card
+from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.cards.card_filling import known_cards
+from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.cards.spring_catalogue import read_catalogue
+from camwright.pipeline.case.toml_text import Tables
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.spring import HelicalSpring
 
 SPRINGS_FILE = "springs.toml"
-SAME_RATE = 0.05  # springs nearer than this share in rate are of one kind
+SAME_RATE = 0.05  # relative difference below which rates count as equal
 
 Candidate = TypeVar("Candidate")
 
 
 @dataclass(frozen=True)
 class Bush:
-    """A bush by its card: friction and its upper bound, pressure Pa and PV Pa m/s it bears."""
+    """A bush by its card: friction and its upper bound, limits of pressure, Pa, and PV, Pa m/s."""
 
     name: str
     friction: float
@@ -42,16 +44,16 @@ class Catalogue:
 
 
 def catalogue_of(folder: Path | None) -> Catalogue:
-    """The shipped parts and those of the user: ``cards.toml`` and ``springs.toml``.
+    """Catalogue of the shipped parts and those of the user, ``cards.toml`` and ``springs.toml``.
 
     Parameters
     ----------
-    folder : Path   where the case lies; None: the shipped parts alone
+    folder : Path   folder of the case; None: shipped parts only
 
     Raises
     ------
     InputError
-        For a file or a card that cannot be read, by name.
+        For a file or a card that cannot be read, by its name.
     """
     cards = known_cards(folder)
     springs = {spring.name: spring for spring in read_catalogue()}
@@ -59,13 +61,16 @@ def catalogue_of(folder: Path | None) -> Catalogue:
     if own is not None and own.is_file():
         springs |= {spring.name: spring for spring in read_catalogue(own)}
     return Catalogue(
-        {name: read_card(name, entry) for name, entry in cards["bearings"].items()},
+        {
+            name: read_part(BearingCard, entry, f"cards.{name}")
+            for name, entry in cards["bearings"].items()
+        },
         springs,
         {name: _bush(name, entry) for name, entry in cards["bushes"].items()},
     )
 
 
-def _bush(name: str, entry: Mapping[str, Any]) -> Bush:
+def _bush(name: str, entry: Tables) -> Bush:
     field, marks = f"cards.bushes.{name}", marks_of(Guide)
     for key in ("friction", "pressure_limit", "pv_limit", "material"):
         if key not in entry:
@@ -89,11 +94,11 @@ def _bush(name: str, entry: Mapping[str, Any]) -> Bush:
 def undominated(
     parts: Mapping[str, Candidate], better: Callable[[Candidate, Candidate], bool]
 ) -> dict[str, Candidate]:
-    """The parts no other is as good as in every respect; of equal ones the first.
+    """Parts that no other part dominates; the first of equal ones.
 
     Parameters
     ----------
-    better : callable   (one, other) -> whether `one` is in no respect worse than `other`
+    better : callable   (one, other): whether `one` is at least as good in every respect
     """
     kept: dict[str, Candidate] = {}
     for name, part in parts.items():
@@ -105,7 +110,7 @@ def undominated(
 
 
 def better_roller(one: BearingCard, other: BearingCard) -> bool:
-    """Of the same size, no rating lower, and its outer ring's no less known."""
+    """Whether a bearing of the same size has no lower rating or radial limit."""
     same = (one.outer_diameter, one.width) == (other.outer_diameter, other.width)
     ring = (one.radial_limit or 0.0) >= (other.radial_limit or 0.0)
     rated = one.C >= other.C and one.C0 >= other.C0 and one.speed_limit >= other.speed_limit
@@ -113,22 +118,25 @@ def better_roller(one: BearingCard, other: BearingCard) -> bool:
 
 
 def better_bush(one: Bush, other: Bush) -> bool:
-    """No more friction, no limit lower."""
-    slick = one.friction <= other.friction and one.friction_max <= other.friction_max
-    return slick and one.pressure >= other.pressure and one.pv >= other.pv
+    """Whether a bush has no higher friction and no lower limit."""
+    low_friction = one.friction <= other.friction and one.friction_max <= other.friction_max
+    return low_friction and one.pressure >= other.pressure and one.pv >= other.pv
 
 
 def better_spring(
     one: tuple[HelicalSpring, float], other: tuple[HelicalSpring, float], *, by_mass: bool
 ) -> bool:
-    """Of the same rate with no less travel, and no heavier where mass counts."""
+    """Whether a spring of the same rate has no less travel and, `by_mass`, no more mass.
+
+    Each spring comes with its travel, m.
+    """
     rate = abs(one[0].rate / other[0].rate - 1.0) <= SAME_RATE
     light = not by_mass or one[0].mass <= other[0].mass
     return rate and one[1] >= other[1] and light
 
 
 def nearest_spring(springs: Sequence[HelicalSpring], rate: float) -> HelicalSpring:
-    """The lightest spring of a rate (N/m), or the nearest where there is none of it."""
+    """The lightest spring of a rate (N/m), or that of the nearest rate."""
     alike = [spring for spring in springs if abs(spring.rate / rate - 1.0) <= SAME_RATE]
     if alike:
         return min(alike, key=lambda spring: spring.mass)

@@ -1,23 +1,22 @@
-"""A part read from one table of its own, outside a case file."""
+"""A part read from a table of a card or catalogue."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
-from typing import Any
 
 from pydantic import ValidationError
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.error_text import first_error
 from camwright.pipeline.case.section import PartType, part_of, section_of
+from camwright.pipeline.case.toml_text import TomlValue
 
 
-def read_part(part: type[PartType], table: Mapping[str, Any], field: str) -> PartType:
-    """The part that a table describes.
+def read_part(part: type[PartType], table: TomlValue, field: str) -> PartType:
+    """Part described by a table.
 
     Parameters
     ----------
-    field : str   dotted name of the table, for messages
+    table : TOML value   refused unless a table
+    field : str          dotted name of the table, for messages
 
     Raises
     ------

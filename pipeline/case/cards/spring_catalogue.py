@@ -1,18 +1,18 @@
-"""A catalogue of springs in TOML, and the lightest in it that will do."""
+"""Catalogue of springs in TOML, and the lightest that meets a demand."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import read_toml
 from camwright.pipeline.base.quantities import Part, Pressure
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.renamed_keys import with_new_wire_keys
-from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.follower.spring import (
     HelicalSpring,
     Treatment,
@@ -27,19 +27,18 @@ _BYTES = 256 * 1024
 
 @dataclass(frozen=True)
 class SpringDemand:
-    """What a spring has to meet.
+    """Demand on a spring.
 
     Parameters
     ----------
     rate : float               N/m
-    rate_tolerance : float     share by which the rate may miss
+    rate_tolerance : float     permitted relative deviation of the rate
     preload : float            N, at zero lift
     travel : float             m, to the largest lift
-    fatigue_safety : float     Goodman and Zimmerli
-    solid_clearance : float    share of the largest deflection
-    mean_diameter_max : float  m
-    rate_spread, preload_spread : float   shares by which a spring as made may exceed both; the
-                                          hardest that may come has to do
+    fatigue_safety : float     least safety by Goodman and Zimmerli
+    solid_clearance : float    least clearance to solid over the maximum deflection
+    rate_spread, preload_spread : float   tolerances of rate and preload, shares; the demand must
+                                          be met at their upper bounds
     """
 
     rate: float
@@ -48,28 +47,25 @@ class SpringDemand:
     rate_tolerance: float = 0.05
     fatigue_safety: float = 1.2
     solid_clearance: float = 0.1
-    mean_diameter_max: float = float("inf")
     rate_spread: float = 0.0
     preload_spread: float = 0.0
 
     def shortfalls(self, spring: HelicalSpring) -> tuple[str, ...]:
-        """What keeps a spring from meeting the demand, in words; empty when it does."""
+        """Reasons why a spring does not meet the demand; empty if it does."""
         preload = self.preload * (1.0 + self.preload_spread)
         greatest = preload + spring.rate * (1.0 + self.rate_spread) * self.travel
-        found = []
+        reasons = []
         if abs(spring.rate / self.rate - 1.0) > self.rate_tolerance:
-            found.append("rate")
+            reasons.append("rate")
         if spring.solid_clearance(preload, self.travel) < self.solid_clearance:
-            found.append("goes solid")
+            reasons.append("goes solid")
         if spring.static_use(greatest) > 1.0:
-            found.append("shear stress")
+            reasons.append("shear stress")
         if spring.fatigue_safety(preload, greatest) < self.fatigue_safety:
-            found.append("fatigue")
+            reasons.append("fatigue")
         if spring.buckling_use > 1.0:
-            found.append("buckling")
-        if spring.mean_diameter > self.mean_diameter_max:
-            found.append("too wide")
-        return tuple(found)
+            reasons.append("buckling")
+        return tuple(reasons)
 
 
 def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
@@ -78,7 +74,7 @@ def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
     Raises
     ------
     InputError
-        For a file that is not TOML, an unknown or missing key, or a spring that cannot be.
+        For a file that is not TOML, an unknown or missing key, or an impossible spring.
     """
     catalogue = read_toml(Path(path), "catalogue", _BYTES)
     for key in catalogue:
@@ -102,7 +98,7 @@ def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
 def lightest(
     catalogue: tuple[HelicalSpring, ...], demand: SpringDemand
 ) -> tuple[HelicalSpring | None, dict[str, tuple[str, ...]]]:
-    """The lightest spring that meets the demand (None: there is none), and why others do not."""
+    """The lightest spring that meets the demand, or None, and the reasons of those that do not."""
     reasons = {spring.name: demand.shortfalls(spring) for spring in catalogue}
     fit = [spring for spring in catalogue if not reasons[spring.name]]
     best = min(fit, key=lambda spring: spring.mass, default=None)
@@ -111,7 +107,7 @@ def lightest(
 
 @dataclass(frozen=True, kw_only=True)
 class _Wire(Part):
-    """The wire of a spring: those fields of `HelicalSpring` that a maker prints once."""
+    """Wire of several springs: the fields of `HelicalSpring` that depend on the wire alone."""
 
     table: ClassVar[str] = "wire"
 
@@ -123,27 +119,27 @@ class _Wire(Part):
     source: str
 
 
-def _wire(field: str, entry: Any) -> _Wire:
+def _wire(field: str, entry: TomlValue) -> _Wire:
     return read_part(_Wire, with_new_wire_keys(entry, field), field)
 
 
-def _spring(field: str, entry: Any, wires: Mapping[str, _Wire]) -> HelicalSpring:
-    """The spring of an entry: its own keys and those of its wire."""
+def _spring(field: str, entry: TomlValue, wires: Mapping[str, _Wire]) -> HelicalSpring:
+    """Spring of an entry: its own keys and those of its wire."""
     if not isinstance(entry, dict):
-        raise InputError(field, entry, "a table")
+        raise InputError(field, str(entry), "a table")
     own = dict(entry)
     wire, name = own.pop("wire", None), own.pop("name", None)
     _require_own_keys(field, entry)
     if not isinstance(wire, str) or wire not in wires:
-        shown = "missing" if wire is None else wire
+        shown = "missing" if wire is None else str(wire)
         raise InputError(f"{field}.wire", shown, f"one of: {', '.join(sorted(wires))}")
     if not isinstance(name, str) or not name.strip() or not name.isprintable():
-        shown = "missing" if name is None else name
+        shown = "missing" if name is None else str(name)
         raise InputError(f"{field}.name", shown, "printable text in quotes")
     return replace(read_part(HelicalSpring, tables_of(wires[wire]) | own, field), name=name)
 
 
-def _require_own_keys(field: str, entry: Mapping[str, Any]) -> None:
+def _require_own_keys(field: str, entry: Tables) -> None:
     of_wire = {each.name for each in fields(_Wire)}
     known = {each.name for each in fields(HelicalSpring)} - of_wire | {"wire"}
     for key in entry:

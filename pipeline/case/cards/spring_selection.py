@@ -1,14 +1,12 @@
-"""``spring.catalogue = "FILE"``: the lightest spring of a catalogue, put into a case as it is read.
+"""``spring.catalogue = "FILE"``: the lightest spring of a catalogue for a case.
 
-A case that names a catalogue holds the spring found, every number of it, once it is resolved.
+The resolved case states the dimensions of the selected spring instead of the catalogue.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
@@ -20,28 +18,29 @@ from camwright.pipeline.case.cards.spring_catalogue import (
     read_catalogue,
 )
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID
-from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 
 SHIPPED = "shipped"
 _NEAREST = 3
-_MISS = 0.05  # of the rate, where the case states no tolerance, as `spring_rate` has it
+_RATE_TOLERANCE = 0.05  # if the case states none
 
 
-def put_spring(case: dict[str, Any], folder: Path | None) -> None:
-    """Replace ``spring.catalogue`` of a case's tables by ``[spring.design]`` of what it finds.
+def put_spring(case: Tables, folder: Path | None) -> None:
+    """Replace ``spring.catalogue`` of a case by ``[spring.design]`` of the selected spring.
 
-    The spring has to meet the rate, the preloads of all load cases, ``spring.travel_max`` and the
-    limits of fatigue and solid clearance, also as hard as the tolerances let it be.
+    The spring must meet the rate, the preloads of all load cases, ``spring.travel_max`` and the
+    limits of fatigue and solid clearance, also at the upper bounds of its tolerances.
 
     Parameters
     ----------
     case : dict        tables of a case file, changed in place
-    folder : Path      where the case lies; None: only the shipped catalogue is there
+    folder : Path      folder of the case; None: shipped catalogue only
 
     Raises
     ------
     InputError
-        If the catalogue cannot be read, travel is not given, a design is, or no spring will do.
+        If the catalogue cannot be read, the travel is missing, a design is given, or no spring
+        meets the demand.
     """
     spring = case.get("spring")
     if not isinstance(spring, dict) or "catalogue" not in spring:
@@ -53,25 +52,26 @@ def put_spring(case: dict[str, Any], folder: Path | None) -> None:
         raise InputError("spring.travel_max", "missing", "given with spring.catalogue")
     demand = _demand(case, spring)
     if demand is None:
-        return  # the case is refused for its rate or preload
+        return  # `Case` refuses the rate or preload
     springs = read_catalogue(_path(name, folder))
     best, reasons = lightest(springs, demand)
     if best is None:
         nearest = sorted(reasons, key=lambda each: len(reasons[each]))[:_NEAREST]
         why = "; ".join(f"{each}: {', '.join(reasons[each])}" for each in nearest)
-        limit = f"a catalogue with a spring that will do; nearest are {why}"
-        raise InputError("spring.catalogue", name, limit if springs else "not empty")
+        limit = f"a catalogue with a suitable spring; nearest are {why}"
+        raise InputError("spring.catalogue", str(name), limit if springs else "not empty")
     why = f"lightest of {len(springs)} in catalogue {name}: {best.name}; {best.source}"
     spring["design"] = tables_of(replace(best, source=why.rstrip("; ")))
 
 
-def _demand(case: Mapping[str, Any], spring: Mapping[str, Any]) -> SpringDemand | None:
-    """What a case asks of its spring; None where a number is missing that the case must have."""
+def _demand(case: Tables, spring: Tables) -> SpringDemand | None:
+    """Demand of a case on its spring; None if its rate or preload is missing or not positive."""
 
-    def number(table: Mapping[str, Any], key: str, default: float) -> float:
-        value = table.get(key, default)
-        good = isinstance(value, (int, float)) and not isinstance(value, bool)
-        return float(value) if good else default
+    def number(table: Tables, key: str, default: float) -> float:
+        value = table.get(key)
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            return default
+        return float(value)
 
     states = case.get("load_case")
     own = [state for state in states if isinstance(state, dict)] if isinstance(states, list) else []
@@ -87,13 +87,13 @@ def _demand(case: Mapping[str, Any], spring: Mapping[str, Any]) -> SpringDemand 
     if not (rate > 0.0 and preload > 0.0):
         return None
     if not travel > 0.0:
-        raise InputError("spring.travel_max", spring["travel_max"], "> 0 mm")
+        raise InputError("spring.travel_max", str(spring["travel_max"]), "> 0 mm")
     spread = number(spring, "rate_tolerance", 0.0)
     return SpringDemand(
         rate=rate,
         preload=preload,
         travel=travel,
-        rate_tolerance=spread or _MISS,
+        rate_tolerance=spread or _RATE_TOLERANCE,
         fatigue_safety=number(limits, SPRING_FATIGUE.id, SPRING_FATIGUE.default),
         solid_clearance=number(limits, SPRING_SOLID.id, SPRING_SOLID.default),
         rate_spread=spread,
@@ -101,11 +101,11 @@ def _demand(case: Mapping[str, Any], spring: Mapping[str, Any]) -> SpringDemand 
     )
 
 
-def _path(name: Any, folder: Path | None) -> Path:
+def _path(name: TomlValue, folder: Path | None) -> Path:
     if name == SHIPPED:
         return CATALOGUE
     if not isinstance(name, str) or not name:
-        raise InputError("spring.catalogue", name, f'a file name, or "{SHIPPED}"')
+        raise InputError("spring.catalogue", str(name), f'a file name, or "{SHIPPED}"')
     if folder is None:
         raise InputError("spring.catalogue", name, f'"{SHIPPED}" where a case has no folder')
     return inside(folder, name, "spring.catalogue")

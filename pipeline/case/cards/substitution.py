@@ -1,11 +1,10 @@
-"""A case with other parts: roller, spring and bushes of a catalogue, and what follows from them."""
+"""A case with other parts: roller, spring and bushes of a catalogue, with dependent values."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from camwright.pipeline.base import units
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
@@ -19,19 +18,19 @@ from camwright.pipeline.case.limits import (
     SPRING_FATIGUE,
     SPRING_SOLID,
 )
-from camwright.pipeline.case.toml_text import tables_of
+from camwright.pipeline.case.toml_text import Tables, table_in, tables_of
 from camwright.pipeline.follower.spring import HelicalSpring
 
 AS_GIVEN = "as given"
-WIDEST_PRIME = 1.5  # times the prime radius of the case: where a search ends
-_IN_HAND = 1.002
+WIDEST_PRIME = 1.5  # upper end of a search over the prime radius of the case
+_MARGIN = 1.002
 _CHAMFER_MOST = 0.05  # of the roller's width
-_FORK = 2e-3  # m between roller and cheek where the case has no pin
+_FORK = 2e-3  # m between roller and fork if the case has no pin
 
 
 @dataclass(frozen=True)
 class Choice:
-    """Parts by name, and the room for the cam, m; None: that of the case."""
+    """Parts by name, and the limit of the cam radius, m; None: that of the case."""
 
     roller: str
     spring: str
@@ -44,21 +43,21 @@ class Choice:
 
 
 def travel_of(spring: HelicalSpring, case: Case) -> float:
-    """Greatest lift (m) at which a spring keeps its limits in a case; 0 when none does.
+    """Maximum lift (m) at which a spring meets its limits in a case; 0 if it meets them at none.
 
-    Strength, fatigue, buckling and the way to solid are looked at as the checks do, at the
-    hardest spring of the tolerances.
+    Static strength, fatigue, buckling and clearance to solid are evaluated as in the checks, at
+    the upper bounds of rate and preload.
     """
-    given, limits = case.spring, case.limits
+    spring_now, limits = case.spring, case.limits
     free = case.smoothing.preload_range if "preload" in case.smoothing.free else None
     still = SpringDemand(
         spring.rate,
-        given.preload if free is None else free[1],
+        spring_now.preload if free is None else free[1],
         travel=0.0,
         fatigue_safety=limits[SPRING_FATIGUE],
         solid_clearance=limits[SPRING_SOLID],
-        rate_spread=given.rate_tolerance,
-        preload_spread=given.preload_tolerance,
+        rate_spread=spring_now.rate_tolerance,
+        preload_spread=spring_now.preload_tolerance,
     )
 
     def works(travel: float) -> bool:
@@ -74,23 +73,23 @@ def travel_of(spring: HelicalSpring, case: Case) -> float:
 
 
 def least_prime_radius(case: Case, roller_radius: float) -> float:
-    """Prime radius (m) that leaves the wall about bore and keyway, a little in hand."""
+    """Least prime radius (m) with the minimum wall about bore and keyway."""
     key = case.cam.keyway
     inside = case.cam.bore_radius + (0.0 if key is None else key.depth)
-    return _IN_HAND * (roller_radius + case.limits[MINIMUM_WALL] * inside)
+    return _MARGIN * (roller_radius + case.limits[MINIMUM_WALL] * inside)
 
 
 def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -> Case:
-    """The case with the parts of a choice; whatever a roller or spring brings along is changed.
+    """The case with the parts of a choice and all values that depend on them.
 
-    The roller brings its radius, width, bore, ratings, and with them the cam's width, pin,
-    overhang and mass of the follower; the spring its rate, travel and mass; the bush friction and
-    limits of both guides. The cam's prime radius is free within what wall and room leave. Waivers
-    are left out: nobody signed for this design.
+    The roller sets its radius, width, bore and ratings, and with them the cam width, the pin, the
+    overhang and the mass of the follower; the spring sets rate, travel and mass; the bush friction
+    and limits of both guides. The prime radius is a variable between the minimum wall and the
+    limit of the cam radius. Waivers are left out, as they are not signed for this design.
 
     Parameters
     ----------
-    folder : Path   where the case lies, for the user's cards
+    folder : Path   folder of the case, with the user's cards
 
     Raises
     ------
@@ -112,7 +111,7 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
 
 
 def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -> Case:
-    """The case with another roller alone; the cam keeps the base circle of its surface.
+    """The case with another roller and the same base circle.
 
     Raises
     ------
@@ -121,17 +120,19 @@ def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -
     """
     data = case.tables()
     _put_roller(data, case, card, name)
-    data["follower"]["mass"] = units.format(case.follower.mass + _heavier(case, card), "g")
+    table_in(data, "follower")["mass"] = units.format(
+        case.follower.mass + _heavier(case, card), "g"
+    )
     base = case.cam.prime_radius + 0.5 * card.outer_diameter - case.roller.radius
-    data["cam"]["prime_radius"] = _mm(base)
+    table_in(data, "cam")["prime_radius"] = _mm(base)
     return case_of(data, folder)
 
 
-def _put_roller(data: dict[str, Any], case: Case, card: BearingCard, name: str) -> None:
-    given, radius = case.roller, 0.5 * card.outer_diameter
-    roller = data["roller"]
+def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
+    old, radius = case.roller, 0.5 * card.outer_diameter
+    roller = table_in(data, "roller")
     inside = card.bore if card.pitch_diameter is None else card.pitch_diameter
-    chamfer = min(given.chamfer, _CHAMFER_MOST * card.width)
+    chamfer = min(old.chamfer, _CHAMFER_MOST * card.width)
     roller |= {
         "radius": _mm(radius),
         "width": _mm(card.width),
@@ -140,69 +141,80 @@ def _put_roller(data: dict[str, Any], case: Case, card: BearingCard, name: str) 
         "bearing": {"card": name},
     }
     roller.pop("inertia", None)
-    pin = {"material": case.follower.stem_material.name, "source": "as wide as the roller's bore"}
-    span = card.width + 2.0 * _FORK
-    if given.pin is not None:
-        pin = roller["pin"]
-        span = card.width + max(given.pin.span - given.width, 0.0)
-    roller["pin"] = pin | {"diameter": _mm(card.bore), "span": _mm(span)}
-    data["cam"]["width"] = _mm(card.width)
-    overhang = case.follower.overhang_at_max_lift + radius - given.radius
-    data["follower"]["overhang_at_max_lift"] = _mm(overhang)
-
-
-def _put_spring(data: dict[str, Any], case: Case, spring: HelicalSpring) -> None:
-    data["spring"] |= {
-        "rate": units.format(spring.rate, "kN/m"),
-        "travel_max": _mm(travel_of(spring, case)),
-        "source": f"catalogue: {spring.name}; preload as it was",
-        "design": tables_of(spring),
+    pin: Tables = {
+        "material": case.follower.stem_material.name,
+        "source": "as wide as the roller's bore",
     }
+    span = card.width + 2.0 * _FORK
+    if old.pin is not None:
+        pin = table_in(roller, "pin")
+        span = card.width + max(old.pin.span - old.width, 0.0)
+    roller["pin"] = pin | {"diameter": _mm(card.bore), "span": _mm(span)}
+    table_in(data, "cam")["width"] = _mm(card.width)
+    overhang = case.follower.overhang_at_max_lift + radius - old.radius
+    table_in(data, "follower")["overhang_at_max_lift"] = _mm(overhang)
+
+
+def _put_spring(data: Tables, case: Case, spring: HelicalSpring) -> None:
+    table_in(data, "spring").update(
+        {
+            "rate": units.format(spring.rate, "kN/m"),
+            "travel_max": _mm(travel_of(spring, case)),
+            "source": f"catalogue: {spring.name}; preload as it was",
+            "design": tables_of(spring),
+        }
+    )
 
 
 def _put_mass(
-    data: dict[str, Any], case: Case, card: BearingCard, spring: HelicalSpring, parts: Catalogue
+    data: Tables, case: Case, card: BearingCard, spring: HelicalSpring, parts: Catalogue
 ) -> None:
-    """The follower with the new roller and half the new spring."""
+    """Set the mass of the follower with the new roller and half of the new spring."""
     old = case.spring.design or nearest_spring(list(parts.springs.values()), case.spring.rate)
     mass = case.follower.mass + _heavier(case, card) + 0.5 * (spring.mass - old.mass)
-    data["follower"]["mass"] = units.format(mass, "g")
+    table_in(data, "follower")["mass"] = units.format(mass, "g")
 
 
 def _heavier(case: Case, card: BearingCard) -> float:
-    """What a roller weighs more than the case's, kg; each solid with its pin."""
+    """Mass of a roller above that of the case, kg; both as solid discs."""
     roller = case.roller
     disc = 0.25 * card.outer_diameter**2 * card.width - roller.radius**2 * roller.width
     return math.pi * roller.material.density * disc
 
 
-def _put_bushes(data: dict[str, Any], name: str) -> None:
+def _put_bushes(data: Tables, name: str) -> None:
     place = ("length", "diameter", "clearance", "stiffness")
+    guides = table_in(data, "guides")
     for side in ("a", "b"):
-        kept = {key: value for key, value in data["guides"][side].items() if key in place}
-        data["guides"][side] = kept | {"card": name}
+        kept = {key: value for key, value in table_in(guides, side).items() if key in place}
+        guides[side] = kept | {"card": name}
 
 
-def _put_search(data: dict[str, Any], case: Case, choice: Choice, radius: float) -> None:
+def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None:
     smoothing = case.smoothing
     kept = [n for n in smoothing.free if n not in ("spring_rate", "prime_radius")]
     low = least_prime_radius(case, radius)
     high = max(WIDEST_PRIME * case.cam.prime_radius, 1.2 * low)
     if "prime_radius" in smoothing.free and smoothing.prime_radius_range is not None:
-        given = smoothing.prime_radius_range
-        low, high = max(low, given[0]), max(given[1], _IN_HAND * max(low, given[0]))
+        least, most = smoothing.prime_radius_range
+        low = max(low, least)
+        high = max(most, _MARGIN * low)
     start = min(max(case.cam.prime_radius, low), high)
-    data["cam"]["prime_radius"] = _mm(start)
-    data["smoothing"] |= {
-        "kind": "constrained",
-        "free": list(dict.fromkeys([*kept, "initial_energy", "prime_radius"])),
-        "prime_radius_range": [_mm(low), _mm(high)],
-        "source": "redesign: the least ripple that these parts allow",
-    }
-    data["mechanism"]["compensation"] = 1.0
+    table_in(data, "cam")["prime_radius"] = _mm(start)
+    table_in(data, "smoothing").update(
+        {
+            "kind": "constrained",
+            "free": list(dict.fromkeys([*kept, "initial_energy", "prime_radius"])),
+            "prime_radius_range": [_mm(low), _mm(high)],
+            "source": "redesign: the least ripple that these parts allow",
+        }
+    )
+    table_in(data, "mechanism")["compensation"] = 1.0
     if choice.cam_radius is not None:
-        data["limits"][CAM_RADIUS.id] = _mm(choice.cam_radius)
-        data["limits"].setdefault("sources", {})[CAM_RADIUS.id] = "a rung of the redesign"
+        limits = table_in(data, "limits")
+        limits[CAM_RADIUS.id] = _mm(choice.cam_radius)
+        limits.setdefault("sources", {})
+        table_in(limits, "sources")[CAM_RADIUS.id] = "cam radius of this redesign"
 
 
 def _mm(length: float) -> str:

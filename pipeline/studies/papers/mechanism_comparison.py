@@ -13,9 +13,9 @@ from pydantic import Field, ValidationError
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.eccentric import Eccentric
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import Force, In, Length, Mass
+from camwright.pipeline.base.quantities import FileName, Force, In, Length, Mass
 from camwright.pipeline.case.case_file import CASE_BYTES
-from camwright.pipeline.case.section import FileName, Name, Section, Text
+from camwright.pipeline.case.section import Name, Section, Text
 from camwright.pipeline.studies.papers.friction_identification import (
     Pendulum,
     from_pendulum,

@@ -1,9 +1,9 @@
-"""The engines of the papers as the cylinder model has them; what is tuned says so."""
+"""Engines of the papers as cylinder models; tuned values are marked."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from math import radians
+from math import degrees, radians
 
 from scipy.optimize import brentq
 
@@ -28,10 +28,10 @@ GX120 = CylinderEngine(
     combustion_efficiency=0.9,
 )
 TUNED = {
-    "intake_pressure_kPa": 30.5,
-    "spark_deg": 335.0,
-    "burn_duration_deg": 80.0,
-    "combustion_efficiency": 0.9,
+    "intake_pressure_kPa": 1e-3 * GX120.intake_pressure,
+    "spark_deg": degrees(GX120.spark),
+    "burn_duration_deg": degrees(GX120.burn_duration),
+    "combustion_efficiency": GX120.combustion_efficiency,
     "inertia_kg_m2": EFFECTIVE_INERTIA,
 }
 
@@ -49,17 +49,17 @@ FULL_LOAD_800 = replace(
     spark=radians(340.0),
     burn_duration=radians(50.0),
     combustion_efficiency=0.95,
-    friction=0.0,
+    friction_pressure=0.0,
 )
 
 
 def with_peak_torque(peak: float) -> CylinderEngine:
-    """The GX120 with a faster, later burn and the intake pressure that gives a peak (N m)."""
+    """The GX120 with a faster, later burn and the intake pressure of a peak torque (N m)."""
     fast = replace(GX120, spark=radians(342.0), burn_duration=radians(50.0))
 
     def excess(pressure: float) -> float:
         engine = replace(fast, intake_pressure=pressure)
         return torque_from_cylinder(engine, IDLE_SPEED).peak - peak
 
-    found = brentq(excess, 34e3, 60e3, xtol=20.0, maxiter=12)
-    return replace(fast, intake_pressure=float(found))
+    pressure = brentq(excess, 34e3, 60e3, xtol=20.0, maxiter=12)
+    return replace(fast, intake_pressure=float(pressure))
