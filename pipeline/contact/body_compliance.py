@@ -13,7 +13,6 @@ import hashlib
 import sys
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +74,7 @@ class LoadedBody:
         return np.hstack([mesh.facet_triples(n) for n in (self.surface, *self.also_free)])
 
     @cached_property
-    def _quadrature(self) -> tuple[Array, Array, Any]:
+    def _quadrature(self) -> tuple[Array, Array, sparse.csr_array]:
         """Points (2, q), outward normals times weights (2, q), shape values (nodes, q)."""
         triples = self._free_facets
         corners = self.body.mesh.points[:, triples]
@@ -91,7 +90,7 @@ class LoadedBody:
         rows = np.broadcast_to(triples[:, :, None], (3, facets, per_facet))
         values = np.broadcast_to(shapes[:, None, :], rows.shape)
         columns = np.broadcast_to(columns, rows.shape)
-        entries: Any = (values.ravel(), (rows.ravel(), columns.ravel()))
+        entries = (values.ravel(), (rows.ravel(), columns.ravel()))
         shape = (self.body.mesh.points.shape[1], facets * per_facet)
         operator = sparse.coo_array(entries, shape=shape).tocsr()
         return points.reshape(2, -1), outward.reshape(2, -1), operator

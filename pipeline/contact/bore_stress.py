@@ -8,9 +8,9 @@ grows with refinement. Such places are counted as any other, and named.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.pipeline.contact.body_compliance import LoadedBody
@@ -70,7 +70,9 @@ def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Arr
     )
 
 
-def _holes(cam: LoadedBody) -> tuple[Any, Any, StressRecovery, float]:
+def _holes(
+    cam: LoadedBody,
+) -> tuple[NDArray[np.int64], NDArray[np.bool_], StressRecovery, float]:
     """Nodes (m,) of bore and keyway, which lie by an edge, their recovery, and how near that is."""
     mesh = cam.body.mesh
     bore = mesh.boundary_nodes("bore")
@@ -108,6 +110,6 @@ def _half_plane(points: Array, contacts: Array, normals: Array) -> Array:
     )
 
 
-def _rows(recovery: StressRecovery, nodes: Any) -> Any:
+def _rows(recovery: StressRecovery, nodes: NDArray[np.int64]) -> NDArray[np.intp]:
     order = np.argsort(recovery.nodes)
     return order[np.searchsorted(recovery.nodes, nodes, sorter=order)]

@@ -86,7 +86,7 @@ def solve_pair(
     )
 
     def gap(xi: Array) -> Array:
-        return pair.gap(np.array([theta]), xi[None])[0]
+        return np.asarray(pair.gap(np.array([theta]), xi[None])[0])
 
     solution = solve_contact(sides, frame, gap, load, float(half_width))
     return SolvedPair(theta, frame, cam, facing, sides, float(half_width), solution)

@@ -226,7 +226,7 @@ def _one_ellipse(shapes: PressureShapes, pressure: Array, ellipses: Ellipses) ->
     low, high = (ellipses.centre + side * ellipses.half_width for side in (-1, 1))
     apart = np.maximum(np.abs(shapes.centres[first] - low), np.abs(shapes.centres[last] - high))
     step = float(np.diff(shapes.knots).max())
-    return (carrying.sum(axis=1) == last - first + 1) & (apart <= 2 * step)
+    return np.asarray((carrying.sum(axis=1) == last - first + 1) & (apart <= 2 * step))
 
 
 def _elliptic_pressure(

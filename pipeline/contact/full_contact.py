@@ -214,7 +214,7 @@ class _Pressed:
     def edges(self) -> Array:
         """Ends (2,) of the fitted ellipse, m."""
         reach = self.ellipse.half_width[0]
-        return self.ellipse.centre[0] + np.array([-reach, reach])
+        return np.asarray(self.ellipse.centre[0] + np.array([-reach, reach]))
 
 
 def _pressed(

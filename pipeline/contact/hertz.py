@@ -7,13 +7,12 @@ Coordinates of the subsurface field are those of the half-plane: `x` along the s
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from camwright.geometry.arrays import Array, finite, positive
+from camwright.geometry.arrays import Array, Values, finite, positive
 from camwright.geometry.errors import InputError
 from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_any_plane, von_mises
 
@@ -83,7 +82,7 @@ def line_contact(
     return half_width, np.sqrt(peak_pressure_square(load, 1 / radius, stiffness))
 
 
-def peak_pressure_square(line_load: Any, curvature: Any, modulus: float) -> Any:
+def peak_pressure_square(line_load: Values, curvature: Values | float, modulus: float) -> Values:
     """p0^2 (...), Pa^2, at the curvature 1/R = 1/R1 + 1/R2, 1/m; linear in load and curvature."""
     return line_load * curvature * (modulus / np.pi)
 
@@ -203,4 +202,4 @@ def disc_correction(line_load: ArrayLike, radius: ArrayLike) -> Array:
     xx, zz, _ = curved_surface_stress(0.0, SHEAR_MAX_DEPTH)
     # p0 a = 2 P' / pi
     share = 1 / (2 * np.pi) + (xx - zz) / np.pi
-    return share * np.asarray(line_load, dtype=float) / np.asarray(radius, dtype=float)
+    return np.asarray(share * np.asarray(line_load, dtype=float) / np.asarray(radius, dtype=float))

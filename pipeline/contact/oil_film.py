@@ -117,7 +117,7 @@ def lambda_ratio(thickness: ArrayLike, roughness_1: float, roughness_2: float) -
         float(positive("roughness", roughness_1, "m")),
         float(positive("roughness", roughness_2, "m")),
     )
-    return np.asarray(thickness, dtype=float) / both
+    return np.asarray(np.asarray(thickness, dtype=float) / both)
 
 
 @dataclass(frozen=True, eq=False)

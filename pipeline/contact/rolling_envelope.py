@@ -47,7 +47,7 @@ class FatigueLimits:
     @property
     def crossland(self) -> float:
         """Weight of the greatest hydrostatic stress beside the root of J2's amplitude."""
-        return max(3 * self.torsion / self.bending - np.sqrt(3), 0.0)
+        return float(max(3 * self.torsion / self.bending - np.sqrt(3), 0.0))
 
     @property
     def dang_van(self) -> float:
@@ -92,7 +92,7 @@ class RollingPass:
         Dang Van (1993); the cap: Desimone, Bernasconi, Beretta, Wear 260 (2006) 567.
         """
         tension = np.maximum(self.hydrostatic, 0.0)
-        return (self.shear + limits.dang_van * tension).max(axis=1)
+        return np.asarray((self.shear + limits.dang_van * tension).max(axis=1))
 
 
 @lru_cache(maxsize=8)
@@ -244,7 +244,7 @@ def arc_length(pair: ContactPair, theta: Array) -> Array:
     dense = np.linspace(0, FULL_TURN, 20001)
     speed = np.abs(pair.contour.speed(dense))
     steps = np.diff(dense) * (speed[1:] + speed[:-1]) / 2
-    return np.interp(theta, dense, np.concatenate([[0.0], np.cumsum(steps)]))
+    return np.asarray(np.interp(theta, dense, np.concatenate([[0.0], np.cumsum(steps)])))
 
 
 def _between(at: Array, theta: Array, found: Array, closed_form: Array) -> Array:
@@ -272,7 +272,9 @@ def _with_body(unit: RollingPass, p0: Array, extra: Array, poisson: float) -> tu
 def _crossland(unit: RollingPass, p0: Array, pulled: Array, limits: FatigueLimits) -> Array:
     """Crossland's value (n, k) with the body's hydrostatic stress `pulled` (n,) added."""
     greatest = p0[:, None] * unit.hydrostatic.max(axis=1) + pulled[:, None]
-    return p0[:, None] * unit.shear_amplitude + limits.crossland * np.maximum(greatest, 0.0)
+    return np.asarray(
+        p0[:, None] * unit.shear_amplitude + limits.crossland * np.maximum(greatest, 0.0)
+    )
 
 
 def _dang_van(unit: RollingPass, p0: Array, pulled: Array, limits: FatigueLimits) -> Array:

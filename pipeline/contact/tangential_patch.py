@@ -10,9 +10,9 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.pipeline.base import disk_cache
@@ -110,7 +110,9 @@ def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
     return {"points": points, "stress": nodal}
 
 
-def _arc_displacement(points: Array, arc: Any, shapes: PressureShapes, poisson: float) -> Array:
+def _arc_displacement(
+    points: Array, arc: NDArray[np.int64], shapes: PressureShapes, poisson: float
+) -> Array:
     """Half-plane displacement (2, nodes, n) of the arc under each traction shape.
 
     The field of a force depends on the angle from its line alone, whichever way the surface

@@ -61,8 +61,8 @@ def _sheared(x: ArrayLike, stick: float, centre: float) -> Array:
     at = np.asarray(x, dtype=float)
     full = np.sqrt(np.maximum(1 - at**2, 0.0))
     if stick == 0:
-        return full
-    return full - stick * np.sqrt(np.maximum(1 - ((at - centre) / stick) ** 2, 0.0))
+        return np.asarray(full)
+    return np.asarray(full - stick * np.sqrt(np.maximum(1 - ((at - centre) / stick) ** 2, 0.0)))
 
 
 def creepage(

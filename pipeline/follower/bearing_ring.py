@@ -130,7 +130,7 @@ def ball_stiffness(force: float, diameter: float, modulus: float, poisson: float
             raise InputError(f"ball.{name}", value, "> 0")
     contact = modulus / (2.0 * (1.0 - poisson**2))
     way = (9.0 * force**2 / (16.0 * contact**2 * 0.5 * diameter)) ** (1.0 / 3.0)
-    return 1.3 * force / (2.0 * way)
+    return float(1.3 * force / (2.0 * way))
 
 
 def pin_bending_stress(

@@ -7,7 +7,6 @@ the load, so one unit load tells all.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,14 +83,14 @@ def _second(basis: Basis) -> Array:
     return way
 
 
-def _assembled(local: Array, dofs: NDArray[np.intp], size: int) -> Any:
+def _assembled(local: Array, dofs: NDArray[np.intp], size: int) -> csr_array:
     """Matrix (size, size) of the local ones (m, d, d) of some elements, dofs (m, d)."""
     rows = np.broadcast_to(dofs[:, :, None], local.shape).ravel()
     columns = np.broadcast_to(dofs[:, None, :], local.shape).ravel()
     return coo_array((local.ravel(), (rows, columns)), (size, size)).tocsr()
 
 
-def _row(dofs: NDArray[np.intp], values: Array, size: int) -> Any:
+def _row(dofs: NDArray[np.intp], values: Array, size: int) -> coo_array:
     return coo_array((values.ravel(), (np.zeros(dofs.size, int), dofs.ravel())), (1, size))
 
 

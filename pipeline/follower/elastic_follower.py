@@ -11,10 +11,9 @@ Time derivatives; the loose foot has no mass. The mass sits P/K below the cam at
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
@@ -125,7 +124,7 @@ def harmonic_response(lift: Array, cam_speed: float, follower: ElasticFollower) 
     drive[0] += n * f.preload
     short = drive / dynamic
 
-    def back(spectrum: Any) -> Array:
+    def back(spectrum: NDArray[np.complex128]) -> Array:
         return np.fft.irfft(spectrum, n)
 
     return Response(
@@ -199,7 +198,7 @@ def _differentiation(n: int) -> Array:
     slope = np.tan(half) if n % 2 == 0 else np.sin(half)
     matrix = 0.5 * (-1.0) ** (k[:, None] - k) / slope
     np.fill_diagonal(matrix, 0.0)
-    return matrix
+    return np.asarray(matrix)
 
 
 def elastic_jump_speed(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -99,15 +100,15 @@ def bounce(
         start = (float(quasi_static(s, follower)), u)
     state = np.array([*start, 0.0, 0.0, 0.0])
     touching = motion.force(0.0, state) >= 0.0
-    angle, pieces, flights = 0.0, [], []
+    angle, phases, flights = 0.0, [], []
     for _ in range(_EVENTS_MAX):
-        found = motion.phase(angle, end, state, touching)
-        pieces.append((found.t, found.y, np.full(found.t.size, touching)))
+        phase = motion.phase(angle, end, state, touching)
+        phases.append(phase)
         if not touching:
-            flights.append(motion.flight(found))
-        angle, state = float(found.t[-1]), found.y[:, -1].copy()
-        if found.status == 0:
-            return motion.record(pieces, tuple(flights))
+            flights.append(motion.flight(phase))
+        angle, state = float(phase.theta[-1]), phase.state[:, -1].copy()
+        if phase.last:
+            return motion.record(phases, tuple(flights))
         if touching:  # the foot, without mass, relaxes at once; its damper takes what was left
             state[3] += 0.5 * follower.stiffness * (motion.foot(angle)[0] - state[0]) ** 2
         touching = not touching
@@ -121,6 +122,15 @@ def _law(cam_speed: float | PeriodicPolynomial) -> PeriodicPolynomial:
     if not 0.0 < least < np.inf:
         raise InputError("cam_speed", least, "> 0 rad/s")
     return cam_speed
+
+
+class _Phase(NamedTuple):
+    """Cam angles (k,), rad, and states (5, k) in contact or in flight; whether it is the last."""
+
+    theta: Array
+    state: Array
+    touching: bool
+    last: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,8 +150,8 @@ class _Motion:
         f = self.follower
         return float(f.stiffness * (s - state[0]) + f.damping * (u - state[1]))
 
-    def phase(self, angle: float, end: float, state: Array, touching: bool) -> Any:
-        """One phase, to its end or the last angle."""
+    def phase(self, angle: float, end: float, state: Array, touching: bool) -> _Phase:
+        """One phase, to the change of contact or the last angle."""
         f = self.follower
 
         def rates(at: float, y: Array) -> list[float]:
@@ -155,35 +165,30 @@ class _Motion:
             ) / f.mass
             return [pace * y[1], pace * acceleration, pace * push * u, pace * lost, pace]
 
-        def over(at: float, y: Array) -> float:
-            return self.force(at, y) if touching else self.foot(at)[0] - y[0]
-
-        over.terminal = True  # type: ignore[attr-defined]
-        over.direction = -1.0 if touching else 1.0  # type: ignore[attr-defined]
         stem = np.sqrt(f.stiffness / f.mass)
-        return solve_ivp(
+        solution = solve_ivp(
             rates,
             (angle, end),
             state,
             method="DOP853",
-            events=over,
+            events=_ContactChange(self, touching),
             rtol=_TOLERANCE,
             atol=[1e-14, 1e-14 * stem, 1e-12, 1e-12, 1e-12],
             max_step=min(0.02 * FULL_TURN, end),
         )
+        return _Phase(solution.t, solution.y, touching, last=solution.status == 0)
 
-    def flight(self, found: Any) -> Flight:
-        gaps = [x - self.foot(t)[0] for t, x in zip(found.t, found.y[0], strict=True)]
-        closing = self.foot(found.t[-1])[1] - found.y[1, -1]
-        return Flight(
-            float(found.t[0]), float(found.t[-1]), float(max(gaps)), float(max(closing, 0.0))
-        )
+    def flight(self, phase: _Phase) -> Flight:
+        theta = phase.theta
+        gaps = [x - self.foot(t)[0] for t, x in zip(theta, phase.state[0], strict=True)]
+        closing = self.foot(theta[-1])[1] - phase.state[1, -1]
+        return Flight(float(theta[0]), float(theta[-1]), float(max(gaps)), float(max(closing, 0.0)))
 
-    def record(self, pieces: list[Any], flights: tuple[Flight, ...]) -> Bounce:
+    def record(self, phases: Sequence[_Phase], flights: tuple[Flight, ...]) -> Bounce:
         f = self.follower
-        theta = np.concatenate([t for t, _, _ in pieces])
-        x, v, work, lost, time = np.concatenate([y for _, y, _ in pieces], axis=1)
-        touching = np.concatenate([on for _, _, on in pieces])
+        theta = np.concatenate([phase.theta for phase in phases])
+        x, v, work, lost, time = np.concatenate([phase.state for phase in phases], axis=1)
+        touching = np.concatenate([np.full(phase.theta.size, phase.touching) for phase in phases])
         s, slope = self.lift.derivatives(theta, 1)
         squeeze = np.where(touching, s - x, 0.0)
         approach = np.where(touching, slope * self.speed(theta) - v, 0.0)
@@ -198,3 +203,24 @@ class _Motion:
             dissipated=lost,
             flights=flights,
         )
+
+
+@dataclass(frozen=True, eq=False)
+class _ContactChange:
+    """Event that ends a phase: the contact force or the gap between foot and cam falls to zero.
+
+    `terminal` and `direction` are read by `solve_ivp`.
+    """
+
+    motion: _Motion
+    touching: bool
+    terminal: bool = True
+
+    @property
+    def direction(self) -> float:
+        return -1.0 if self.touching else 1.0
+
+    def __call__(self, angle: float, state: Array) -> float:
+        if self.touching:
+            return self.motion.force(angle, state)
+        return self.motion.foot(angle)[0] - float(state[0])

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.follower.spring import Spring
@@ -268,13 +267,13 @@ def jump_speed(
     return float(np.sqrt(square[first])), float(theta[first])
 
 
-def share_left(lift_slope: Any, jam_index: Any) -> Any:
+def share_left(lift_slope: Array, jam_index: Array) -> Array:
     """Share of the cam's axial push that friction leaves over: above 1 on the way back."""
-    share = 1.0 - np.sign(np.real(lift_slope)) * jam_index
-    return np.where(np.real(share) < JAM_FLOOR, JAM_FLOOR, share)  # NaN stays
+    share = 1.0 - np.sign(lift_slope) * jam_index
+    return np.where(share < JAM_FLOOR, JAM_FLOOR, share)  # NaN stays
 
 
-def levers(overhang: Any, guide_spacing: float) -> tuple[Any, Any]:
+def levers(overhang: Values, guide_spacing: float) -> tuple[Values, Values]:
     """|A|/F_t = (a+b)/b and |B|/F_t = a/b of a stem on two point supports.
 
     References

@@ -74,7 +74,7 @@ class BearingLine:
         deflection = self.deflection(push, rigid)
         scale = np.abs(deflection).max(axis=0)
         miss = self.law_miss(deflection, push)
-        return np.divide(miss, scale, out=np.zeros_like(scale), where=scale > 0.0)
+        return np.asarray(np.divide(miss, scale, out=np.zeros_like(scale), where=scale > 0.0))
 
     def settled(self, push: Array, rigid: Array) -> NDArray[np.bool_]:
         """Where the contact law holds, (n,) bool, to `TOLERANCE` of the depth in the bore.

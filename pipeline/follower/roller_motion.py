@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import PitchCurve, magnitude
 
@@ -108,12 +107,12 @@ def roller_motion(
     )
 
 
-def rolling_share(pitch_speed: Any, roller_radius: float) -> Any:
+def rolling_share(pitch_speed: Values, roller_radius: float) -> Values:
     """Spin of the roller against the follower over the cam's, from |dP/dtheta|, m/rad."""
     return pitch_speed / roller_radius - 1.0
 
 
-def wear(normal_force: Any, spin: Any, exponent: float = BALL_LIFE_EXPONENT) -> Any:
+def wear(normal_force: Values, spin: Values, exponent: float = BALL_LIFE_EXPONENT) -> Values:
     """N^p |n| at each place of the turn: its mean decides the rating life; ISO 281:2007, 6.2."""
     return normal_force**exponent * magnitude(spin)
 
@@ -147,7 +146,7 @@ def equivalent_load(
     if largest == 0.0:
         return 0.0
     share = wear(force / largest, turns, exponent).mean() / turns.mean()
-    return largest * float(share) ** (1.0 / exponent)
+    return float(largest * float(share) ** (1.0 / exponent))
 
 
 def rating_life(

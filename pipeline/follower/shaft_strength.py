@@ -140,4 +140,4 @@ def tooth_contact_stress(
     zone = 2.0 / (np.cos(pressure_angle) ** 2 * np.tan(pressure_angle))
     elastic = contact_modulus / np.pi
     line = np.asarray(force, dtype=float) * (ratio + 1.0) / (width * pinion_diameter * ratio)
-    return np.sqrt(zone * elastic * line)
+    return np.asarray(np.sqrt(zone * elastic * line))

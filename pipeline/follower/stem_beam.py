@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from skfem import Basis, BilinearForm, ElementLineHermite, MeshLine
+from skfem.assembly.form.form import FormExtraParams
+from skfem.element import DiscreteField
 from skfem.helpers import dd, ddot
 
 from camwright.geometry.arrays import Array, readonly
@@ -72,10 +73,12 @@ class Stem:
         return float(1.0 / (kappa * modulus * area))
 
 
-@BilinearForm
-def bending(u: Any, v: Any, _: Any) -> Any:
-    """Virtual work of unit bending stiffness, the integral of u'' v''."""
-    return ddot(dd(u), dd(v))
+def _bending_work(u: DiscreteField, v: DiscreteField, _: FormExtraParams) -> Array:
+    return np.asarray(ddot(dd(u), dd(v)))
+
+
+bending = BilinearForm(_bending_work)
+"""Virtual work of unit bending stiffness, the integral of u'' v''."""
 
 
 @lru_cache(maxsize=1)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,11 +50,13 @@ class Springs:
 
     def forces(self, displacement: Array) -> Array:
         """What the springs do to the nodes, (2, nodes, k), N/m, at displacements of that shape."""
-        return -np.einsum("mcn,mk->cnk", self.ways, self.pulls(displacement))
+        return np.asarray(-np.einsum("mcn,mk->cnk", self.ways, self.pulls(displacement)))
 
     def pulls(self, displacement: Array) -> Array:
         """Force (m, k), N/m, in each spring, positive where it is drawn along its way."""
-        return self.stiffness[:, None] * np.einsum("mcn,cnk->mk", self.ways, displacement)
+        return np.asarray(
+            self.stiffness[:, None] * np.einsum("mcn,cnk->mk", self.ways, displacement)
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,16 +75,16 @@ class ElasticBody:
     springs: Springs | None = None
 
     @cached_property
-    def basis(self) -> Any:
+    def basis(self) -> Basis:
         return Basis(self.mesh.to_skfem(), ElementVector(ElementTriP2()), intorder=4)
 
     @cached_property
-    def dofs(self) -> Any:
+    def dofs(self) -> NDArray[np.int64]:
         """Degrees of freedom (2, nodes) of the mesh's nodes."""
         return self.mesh.dof_map(self.basis)
 
     @cached_property
-    def stiffness(self) -> Any:
+    def stiffness(self) -> sparse.csc_matrix:
         """Stiffness matrix, that of skfem's form for linear elasticity, put together faster."""
         scalar = self.basis.with_element(ElementTriP2())
         slopes = np.stack([shape[0].grad for shape in scalar.basis])  # (6, 2, elements, points)
@@ -99,16 +100,13 @@ class ElasticBody:
         dofs = self.basis.element_dofs.T
         rows = np.broadcast_to(dofs[:, :, None], (count, 12, 12))
         columns = np.broadcast_to(dofs[:, None, :], rows.shape)
-        entries: Any = (local.ravel(), (rows.ravel(), columns.ravel()))
+        entries = (local.ravel(), (rows.ravel(), columns.ravel()))
         own = sparse.coo_matrix(entries, shape=(self.basis.N, self.basis.N)).tocsc()
         return own if self.springs is None else own + self._stiffness_of(self.springs)
 
-    def _stiffness_of(self, springs: Springs) -> Any:
+    def _stiffness_of(self, springs: Springs) -> sparse.csc_array:
         spring, component, node = np.nonzero(springs.ways)
-        entries: Any = (
-            springs.ways[spring, component, node],
-            (spring, self.dofs[component, node]),
-        )
+        entries = (springs.ways[spring, component, node], (spring, self.dofs[component, node]))
         ways = sparse.csc_matrix(entries, shape=(springs.stiffness.size, self.basis.N))
         return (ways.T @ sparse.diags_array(springs.stiffness) @ ways).tocsc()
 
@@ -150,7 +148,7 @@ class ElasticBody:
         return np.flatnonzero(felt[self.dofs].any(axis=0))
 
     @cached_property
-    def _solver(self) -> tuple[Callable[[Array], Array], Any]:
+    def _solver(self) -> tuple[Callable[[Array], Array], sparse.csc_matrix]:
         rows = self.stiffness[self.free_dofs]
         return factorised(rows[:, self.free_dofs]), rows[:, self.held_dofs]
 
@@ -195,7 +193,7 @@ class ElasticBody:
         flat[self.dofs] = displacement
         forces = np.zeros(self.basis.N)
         forces[self.held_dofs] = self.stiffness[self.held_dofs] @ flat
-        return forces[self.dofs].sum(axis=1)
+        return np.asarray(forces[self.dofs].sum(axis=1))
 
 
 class CondensedBody:
@@ -247,7 +245,7 @@ class CondensedBody:
         return solution[body.dofs]
 
 
-def elements_near(body: ElasticBody, point: ArrayLike, reach: float) -> Any:
+def elements_near(body: ElasticBody, point: ArrayLike, reach: float) -> NDArray[np.int64]:
     """Elements with a corner within `reach` of a point (2,)."""
     corners = body.mesh.points[:, body.mesh.triangles[:3]]
     distance = np.hypot(*(corners - np.reshape(point, (2, 1, 1))))
@@ -307,7 +305,9 @@ class StressRecovery:
         )
 
 
-def _stacked(values: list[Any], dofs: Any, shape: tuple[int, int]) -> Any:
+def _stacked(
+    values: list[Array], dofs: NDArray[np.int64], shape: tuple[int, int]
+) -> sparse.csr_array:
     """Sparse matrix (quadrature points, degrees of freedom) from values per local shape."""
     elements, quadrature = values[0].shape
     rows = np.arange(elements * quadrature)

@@ -14,7 +14,7 @@ from camwright.geometry.arrays import Array
 def shear_in_plane(stress: ArrayLike) -> Array:
     """Maximum shear in the plane, from (xx, yy, xy) stacked first."""
     xx, yy, xy = np.asarray(stress, dtype=float)
-    return np.hypot((xx - yy) / 2, xy)
+    return np.asarray(np.hypot((xx - yy) / 2, xy))
 
 
 def shear_any_plane(field: ArrayLike, poisson: float) -> Array:
@@ -23,7 +23,7 @@ def shear_any_plane(field: ArrayLike, poisson: float) -> Array:
     middle, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
     out = poisson * (xx + yy)
     high, low = np.maximum(middle + radius, out), np.minimum(middle - radius, out)
-    return (high - low) / 2
+    return np.asarray((high - low) / 2)
 
 
 def von_mises(stress: ArrayLike, poisson: float) -> Array:
@@ -31,7 +31,7 @@ def von_mises(stress: ArrayLike, poisson: float) -> Array:
     xx, yy, xy = np.asarray(stress, dtype=float)
     zz = poisson * (xx + yy)
     squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    return np.sqrt(squares / 2 + 3 * xy**2)
+    return np.asarray(np.sqrt(squares / 2 + 3 * xy**2))
 
 
 _POWERS = np.array([(i, j) for i in range(5) for j in range(5 - i)])
@@ -92,7 +92,7 @@ def _summit(fit: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Height (k,) and place (2, k) of the summits of polynomials (15, k); whether there is one."""
 
     def of(by_x: int, by_y: int) -> Array:
-        return (fit * _terms(at, by_x, by_y)).sum(axis=0)
+        return np.asarray((fit * _terms(at, by_x, by_y)).sum(axis=0))
 
     at = np.zeros((2, fit.shape[1]))
     trusted = np.ones(fit.shape[1], dtype=bool)

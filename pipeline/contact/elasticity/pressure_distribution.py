@@ -38,7 +38,7 @@ class PressureShapes:
         """Integral (n,) of each shape, m."""
         widths = np.diff(self.knots) / 2
         total = np.concatenate([[0.0], widths]) + np.concatenate([widths, [0.0]])
-        return total if self.open_ends else total[1:-1]
+        return np.asarray(total if self.open_ends else total[1:-1])
 
     def values(self, xi: ArrayLike) -> Array:
         """Shapes (n, ...) at the coordinates xi (...)."""

@@ -123,4 +123,4 @@ def _local_coordinate(xi_nodes: Array, xi: Array) -> Array:
         s = s - step
         if np.abs(step).max(initial=0.0) < 1e-14:
             break
-    return s
+    return np.asarray(s)
