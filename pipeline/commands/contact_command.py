@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Annotated
 
@@ -71,9 +70,13 @@ def deck(
 
     text = angle if any(c.isalpha() or c == "°" for c in angle) else f"{angle} deg"
     theta = units.parse(text, "deg", "--angle")
-    path = folder / "exports" / f"contact_{math.degrees(theta):07.3f}.inp" if out is None else out
+    path = (
+        folder / "exports" / f"contact_{units.in_unit(theta, 'deg'):07.3f}.inp"
+        if out is None
+        else out
+    )
     path.parent.mkdir(parents=True, exist_ok=True)
     solved = decks.deck(folder, theta, path, load_case)
-    p0 = solved.solution.p0 / 1e6
-    stdout.print(f"deck: {path} (peak pressure {p0:.5g} MPa)", markup=False)
+    p0 = units.shown(solved.solution.p0, "MPa", 5)
+    stdout.print(f"deck: {path} (peak pressure {p0})", markup=False)
     return PASSED

@@ -50,7 +50,7 @@ def inspect(
             case, contour, points, keep_phase=keep_phase, jobs=jobs, progress=progress
         )
     record = cam_inspection.write_inspection(folder, part, band)
-    picture = draw(folder, 1e6 * band)
+    picture = draw(folder, units.in_unit(band, "um"))
     if as_json:
         show_json(record)
     else:

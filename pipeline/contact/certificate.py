@@ -10,6 +10,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
 from camwright.meshes.body_mesh import BodyMesh, cam_mesh
 from camwright.meshes.element_size import Sizing
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair, elastic_body
@@ -74,7 +75,7 @@ def solve_pair(
     """
     load = normal_force / pair.width
     if not load > 0:
-        raise ContactError(f"no load at {np.degrees(theta):.3f} deg, nothing to certify")
+        raise ContactError(f"no load at {shown(theta, 'deg', 6)}: no contact to certify")
     half_width, _ = hertz.line_contact(load, pair.relative_radius(theta), pair.contact_modulus)
     other = pair.follower
     cam, facing = contact_meshes(pair, theta, float(half_width), edges)

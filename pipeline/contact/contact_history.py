@@ -111,18 +111,18 @@ class CertificatePoint:
     residual_complementarity: float
 
     @property
-    def spread_percent(self) -> float:
-        """Largest difference between cycle and certificate of any signed figure, %; a NaN wins."""
+    def spread(self) -> float:
+        """Largest relative difference of cycle and certificate in any figure; NaN if one is."""
         pairs = (
             (self.p0, self.p0_cycle),
             (self.half_width, self.half_width_cycle),
             (self.tau_max, self.tau_max_cycle),
             (self.von_mises, self.von_mises_cycle),
         )
-        return 100 * float(np.max([abs(value / one.extrapolated - 1) for one, value in pairs]))
+        return float(np.max([abs(value / one.extrapolated - 1) for one, value in pairs]))
 
     @property
-    def gci_percent(self) -> float:
-        """Largest grid convergence index of the figures, %; a NaN wins."""
+    def gci(self) -> float:
+        """Largest grid convergence index of the figures, relative; NaN if one is."""
         figures = (self.p0, self.half_width, self.tau_max, self.von_mises)
-        return 100 * float(np.max([figure.gci for figure in figures]))
+        return float(np.max([figure.gci for figure in figures]))

@@ -12,6 +12,7 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import ContactError
 from camwright.meshes.body_mesh import BodyMesh
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, ElasticBody, Springs
 from camwright.pipeline.contact.follower_body import FollowerBody
@@ -46,9 +47,10 @@ class ContactPair:
         """
         curvature = self.contour.follower_curvature + self.contour.curvature(theta)
         if not (curvature > 0).all():
-            worst = float(np.degrees(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))]))
+            worst = float(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))])
             name = self.follower.name
-            raise ContactError(f"the {name} does not fit the hollow of the cam at {worst:.3f} deg")
+            place = shown(worst, "deg", 6)
+            raise ContactError(f"the {name} does not fit the concave contour at {place}")
         return 1 / curvature
 
     def gap(self, theta: Array, xi: Array) -> Array:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import Array, finite, freeze, positive
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In, Part
+from camwright.pipeline.base.units import shown
 
 UNVERIFIED = (
     "regression of Masjedi and Khonsari (2012) as recalled, not checked against the paper: verify"
@@ -207,8 +208,8 @@ def _refusals(
         share = _asperity_share(film, roughness, hardness, modulus)
     above = np.asarray(share > 1)
     if above.any():
-        value = 100 * float(share[above].max() if share.ndim else share)
-        yield above, InputError("mixed film, asperity load share", value, "<= 100 %")
+        largest = shown(float(share[above].max() if share.ndim else share), "%")
+        yield above, InputError("mixed film, asperity load share", largest, "<= 100 %")
 
 
 def _asperity_share(film: LineFilm, roughness: float, hardness: float, modulus: float) -> Array:

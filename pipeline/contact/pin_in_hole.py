@@ -20,6 +20,7 @@ from scipy.optimize import brentq
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact.elasticity.active_set import solve
 from camwright.pipeline.contact.elasticity.radial_compliance import (
     Bush,
@@ -150,8 +151,8 @@ def pin_in_hole(
             break
         if share > _FILLED[1] and window >= WINDOW_MAX:
             raise ContactError(
-                f"pin in hole: half contact angle {np.degrees(found.contact_angle):.0f} deg,"
-                f" must be < {np.degrees(WINDOW_MAX):.0f} deg"
+                f"pin in hole: half contact angle = {shown(found.contact_angle, 'deg', 3)},"
+                f" must be < {shown(WINDOW_MAX, 'deg', 3)}"
             )
         window = min(window * (1.4 if share > _FILLED[1] else share / 0.75), WINDOW_MAX)
     return Conforming(

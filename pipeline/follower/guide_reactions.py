@@ -14,6 +14,7 @@ from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.guide_contact import BearingLine, settle
 from camwright.pipeline.follower.stem_beam import Stem, end_flexibility, stem_compliance
 
@@ -25,7 +26,7 @@ WALL_SHARE = 0.25  # wall of a plain bushing over its bore, where the drawing gi
 
 def _no_press_fit(field: str, clearance: float) -> None:
     if clearance < 0.0:
-        raise InputError(field, f"{1e3 * clearance:g} mm", ">= 0 mm: a press fit cannot slide")
+        raise InputError(field, shown(clearance, "mm"), ">= 0 mm: a press fit cannot slide")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,6 +16,7 @@ from camwright.pipeline.base.quantities import In, Length, Part, Preload, Pressu
 DEAD_COILS = 2.0  # squared and ground ends
 SHEAR_STRENGTH_SHARE = 0.67  # S_su over R_m
 ZIMMERLI = {"plain": (241e6, 379e6), "peened": (398e6, 534e6)}  # S_sa, S_sm by treatment, Pa
+_STRENGTH_DIAMETER = 0.001  # m, of strength_at_1mm
 BUCKLING = 2.63  # free length over mean diameter and end factor, steel
 
 WireModulus = Annotated[float, In("GPa", above=0, at_most=1e5)]
@@ -67,7 +68,10 @@ class HelicalSpring(Part):
     @property
     def tensile_strength(self) -> float:
         """R_m of the wire, Pa."""
-        return float(self.strength_at_1mm * (self.wire_diameter / 1e-3) ** -self.strength_exponent)
+        return float(
+            self.strength_at_1mm
+            * (self.wire_diameter / _STRENGTH_DIAMETER) ** -self.strength_exponent
+        )
 
     @property
     def index(self) -> float:

@@ -16,9 +16,11 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.measured_contour import Inspection, inspected, real_contour
+from camwright.pipeline.base import units
 from camwright.pipeline.base.files import json_text, write_atomic
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import Column, Table, read_table, table
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.run_records import cycle_columns
@@ -70,9 +72,9 @@ def read_measured(path: Path) -> Array:
         if names.issuperset(pair):
             first, second = (np.array(column) for column in _numbers(rows, pair))
             if pair in _PLACES:
-                return np.stack([first, second]) * 1e-3
+                return np.stack([first, second]) * units.factor("mm")
             turned = np.radians(first)
-            return np.stack([np.cos(turned), np.sin(turned)]) * second * 1e-3
+            return np.stack([np.cos(turned), np.sin(turned)]) * second * units.factor("mm")
     known = " or ".join(", ".join(pair) for pair in (*_PLACES, *_POLAR))
     raise InputError("measured", f"columns {', '.join(sorted(map(str, names)))[:200]}", known)
 
@@ -145,13 +147,13 @@ def write_inspection(run: Path, part: RealPart, tolerance: float) -> dict[str, A
     records = [check.as_record() for check in part.trial.checks]
     write_atomic(folder / "checks.json", json_text(records) + "\n")
     record = {
-        "phase_deg": float(np.degrees(fit.phase)),
-        "size_um": 1e6 * fit.size,
-        "deviation_min_um": 1e6 * float(fit.deviation.min()),
-        "deviation_max_um": 1e6 * float(fit.deviation.max()),
-        "scatter_rms_um": 1e6 * fit.scatter,
+        "phase_deg": in_unit(fit.phase, "deg"),
+        "size_um": in_unit(fit.size, "um"),
+        "deviation_min_um": in_unit(float(fit.deviation.min()), "um"),
+        "deviation_max_um": in_unit(float(fit.deviation.max()), "um"),
+        "scatter_rms_um": in_unit(fit.scatter, "um"),
         "points": int(fit.theta.size),
-        "tolerance_um": 1e6 * tolerance,
+        "tolerance_um": in_unit(tolerance, "um"),
         "within_tolerance": bool(np.abs(fit.deviation).max() <= 0.5 * tolerance),
         "waves_um": _waves(fit),
         "nominal": _figures_of(run_reader.load_run(run).final.cycle),
@@ -165,7 +167,7 @@ def write_inspection(run: Path, part: RealPart, tolerance: float) -> dict[str, A
 
 def _waves(fit: Inspection) -> dict[str, float]:
     """Amplitudes of the largest waves by their number a turn."""
-    sizes = {k: 1e6 * fit.wave(k) for k in range(1, len(fit.cosine))}
+    sizes = {k: in_unit(fit.wave(k), "um") for k in range(1, len(fit.cosine))}
     largest = sorted(sizes, key=lambda k: -sizes[k])[:_WAVES_LISTED]
     return {str(k): sizes[k] for k in sorted(largest)}
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import binding, verdict
 from camwright.pipeline.checks.registry import without_sign_off
@@ -83,10 +84,10 @@ def _constrained(case: Case) -> Compared:
 def _record(trial: Trial) -> dict[str, Any]:
     rest, checks = trial.cycles[0].turn.torque_after, without_sign_off(trial.checks)
     return {
-        "pressure_angle_max_deg": float(np.degrees(trial.contour.pressure_angle_max().value)),
-        "lift_max_mm": 1e3 * trial.lift.highest.value,
+        "pressure_angle_max_deg": in_unit(trial.contour.pressure_angle_max().value, "deg"),
+        "lift_max_mm": in_unit(trial.lift.highest.value, "mm"),
         "normal_force_max_N": max(float(c.loads.normal_force.max()) for c in trial.cycles),
-        "p0_max_MPa": 1e-6 * max(float(np.max(c.contact.p0)) for c in trial.cycles),
+        "p0_max_MPa": in_unit(max(float(np.max(c.contact.p0)) for c in trial.cycles), "MPa"),
         "residual_std_Nm": None if rest is None else float(np.std(rest)),
         "residual_p2p_Nm": None if rest is None else float(np.ptp(rest)),
         "verdict": verdict(checks),

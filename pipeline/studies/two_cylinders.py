@@ -17,6 +17,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError, InputError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.gmsh_mesher import Index
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_patch import (
     STRESS_REACH,
@@ -186,8 +187,8 @@ def finite_elements(pair: TwoCylinders) -> FiniteElementContact:
     """
     if is_conforming(pair):
         raise ContactError(
-            f"half contact angle > {np.degrees(HALF_ANGLE_MAX):.0f} deg: the bodies are no "
-            "half-planes there; lower the load or enlarge the radii"
+            f"half contact angle > {shown(HALF_ANGLE_MAX, 'deg', 3)}: the bodies are no "
+            "half-planes there; reduce the load or increase the radii"
         )
     fine, error = _solved(pair, _FINE), 0.0
     if pair.line_load > 0:
@@ -208,8 +209,8 @@ def conforming(pair: TwoCylinders) -> ConformingContact:
     """
     if pair.radius_1 > 0 and pair.radius_2 > 0:
         raise ContactError(
-            "two convex bodies with a half contact angle beyond 15 deg: small strains do not "
-            "hold; lower the load or enlarge the radii"
+            f"two convex bodies with a half contact angle > {shown(HALF_ANGLE_MAX, 'deg', 3)}: "
+            "small strains do not hold; reduce the load or increase the radii"
         )
     hollow_first = pair.radius_1 < 0
     pin_body, hole_body = (pair.body_2, pair.body_1) if hollow_first else (pair.body_1, pair.body_2)

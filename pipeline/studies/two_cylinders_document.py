@@ -14,6 +14,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.pipeline.base import units
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
@@ -31,7 +32,6 @@ from camwright.pipeline.studies.two_cylinders import (
     patch_mesh,
 )
 
-_MM, _MPA = 1e3, 1e-6
 # Relative excess of another plane's shear from which on it is worth a line.
 _WORTH = 1e-3
 _OPTIONS = {"radius_1": "--r1", "radius_2": "--r2", "friction": "--friction"}
@@ -120,9 +120,9 @@ def solved(
     start = time.perf_counter()
     pair = asked.pair()
     document: dict[str, Any] = {
-        "line_load_N_per_mm": pair.line_load / 1e3,
-        "contact_modulus_MPa": _MPA * pair.contact_modulus,
-        "relative_radius_mm": _MM / pair.curvature,
+        "line_load_N_per_mm": in_unit(pair.line_load, "N/mm"),
+        "contact_modulus_MPa": in_unit(pair.contact_modulus, "MPa"),
+        "relative_radius_mm": in_unit(1.0 / pair.curvature, "mm"),
         "hertz": _figures(closed_form(pair)),
     }
     if is_conforming(pair):
@@ -136,7 +136,7 @@ def solved(
             _write_field(field, found, (pair.body_1.poisson, pair.body_2.poisson))
             document["field"] = str(field)
     if with_approach:
-        document["approach_mm"] = _MM * approach(pair, asked.depths())
+        document["approach_mm"] = in_unit(approach(pair, asked.depths()), "mm")
     document["seconds"] = time.perf_counter() - start
     return document
 
@@ -196,15 +196,15 @@ def _radius(text: str, option: str) -> float:
 
 def _figures(found: LineContact) -> dict[str, float]:
     record = {
-        "p0_MPa": _MPA * found.p0,
-        "half_width_mm": _MM * found.half_width,
-        "tau_max_MPa": _MPA * found.tau_max,
-        "tau_depth_mm": _MM * found.tau_depth,
-        "von_mises_MPa": _MPA * found.von_mises,
-        "von_mises_depth_mm": _MM * found.von_mises_depth,
+        "p0_MPa": in_unit(found.p0, "MPa"),
+        "half_width_mm": in_unit(found.half_width, "mm"),
+        "tau_max_MPa": in_unit(found.tau_max, "MPa"),
+        "tau_depth_mm": in_unit(found.tau_depth, "mm"),
+        "von_mises_MPa": in_unit(found.von_mises, "MPa"),
+        "von_mises_depth_mm": in_unit(found.von_mises_depth, "mm"),
     }
     if found.shear_any_plane > (1 + _WORTH) * found.tau_max:
-        record["shear_any_plane_MPa"] = _MPA * found.shear_any_plane
+        record["shear_any_plane_MPa"] = in_unit(found.shear_any_plane, "MPa")
     return record
 
 
@@ -212,7 +212,7 @@ def _finite_elements(found: FiniteElementContact) -> dict[str, Any]:
     return {
         **_figures(found.figures),
         "dofs": found.dofs,
-        "error_bar_percent": 100 * found.error_bar,
+        "error_bar_percent": in_unit(found.error_bar, "%"),
         "residual": found.residual,
     }
 
@@ -220,7 +220,7 @@ def _finite_elements(found: FiniteElementContact) -> dict[str, Any]:
 def _finite_body(pair: TwoCylinders) -> dict[str, float]:
     """In-plane shear, MPa, that a disc pressed along its diameter adds, by body."""
     return {
-        f"body_{number}": _MPA * float(hertz.disc_correction(pair.line_load, radius))
+        f"body_{number}": in_unit(float(hertz.disc_correction(pair.line_load, radius)), "MPa")
         for number, radius in ((1, pair.radius_1), (2, pair.radius_2))
         if 0 < radius < np.inf
     }
@@ -228,7 +228,7 @@ def _finite_body(pair: TwoCylinders) -> dict[str, float]:
 
 def _conforming(found: ConformingContact, pair: TwoCylinders) -> dict[str, Any]:
     def record(angle: float, p0: float) -> dict[str, float]:
-        return {"p0_MPa": _MPA * p0, "half_angle_deg": float(np.degrees(angle))}
+        return {"p0_MPa": in_unit(p0, "MPa"), "half_angle_deg": in_unit(angle, "deg")}
 
     persson = None
     if found.persson_angle is not None and found.persson_p0 is not None:
@@ -236,8 +236,8 @@ def _conforming(found: ConformingContact, pair: TwoCylinders) -> dict[str, Any]:
     friction = "; friction is left out" if pair.friction > 0 else ""
     return {
         "why": (
-            f"half contact angle beyond {np.degrees(HALF_ANGLE_MAX):.0f} deg: no Hertz contact "
-            f"any more, a pin in a hole without friction in its place{friction}"
+            f"half contact angle > {shown(HALF_ANGLE_MAX, 'deg', 3)}: no Hertz contact; "
+            f"solved as a pin in a hole without friction{friction}"
         ),
         "persson": persson,
         "numerical": {**record(found.angle, found.p0), "residual": found.residual},
@@ -268,12 +268,14 @@ def _placed(mesh: BodyMesh, size: float, *, upward: bool) -> BodyMesh:
 def _fields(of: Array, poisson: float, side: int) -> dict[str, Array]:
     """Stresses by name, MPa; `side` is the sense of the depth along y."""
     xx, yy, xy = of
-    return {
-        "stress_xx_MPa": _MPA * xx,
-        "stress_yy_MPa": _MPA * yy,
-        "stress_zz_MPa": _MPA * poisson * (xx + yy),
-        "stress_xy_MPa": side * _MPA * xy,
-        "von_mises_MPa": _MPA * plane_stress_measures.von_mises((xx, yy, xy), poisson),
-        "tau_max_MPa": _MPA * plane_stress_measures.shear_in_plane((xx, yy, xy)),
-        "tau_any_plane_MPa": _MPA * plane_stress_measures.shear_any_plane((xx, yy, xy), poisson),
+    in_si = {
+        "stress_xx": xx,
+        "stress_yy": yy,
+        "stress_zz": poisson * (xx + yy),
+        "stress_xy": side * xy,
+        "von_mises": plane_stress_measures.von_mises(of, poisson),
+        "tau_max": plane_stress_measures.shear_in_plane(of),
+        "tau_any_plane": plane_stress_measures.shear_any_plane(of, poisson),
     }
+    scale = units.factor("MPa")
+    return {units.column(name, "MPa"): values / scale for name, values in in_si.items()}

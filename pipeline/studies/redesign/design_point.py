@@ -14,6 +14,7 @@ import numpy as np
 
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.registry import without_sign_off
@@ -75,15 +76,15 @@ class Point:
             "ripple_before_Nm": self.ripple_before,
             "ripple_left_Nm": self.ripple_left,
             "torque_reduction": 1.0 - self.ripple_left / self.ripple_before,
-            "cam_radius_mm": 1e3 * self.cam_radius,
-            "mass_g": 1e3 * self.mass,
-            "prime_radius_mm": 1e3 * self.prime_radius,
+            "cam_radius_mm": in_unit(self.cam_radius, "mm"),
+            "mass_g": in_unit(self.mass, "g"),
+            "prime_radius_mm": in_unit(self.prime_radius, "mm"),
             "preload_N": self.preload,
-            "spring_rate_N_per_mm": 1e-3 * self.spring_rate,
-            "lift_max_mm": 1e3 * self.lift_max,
-            "pressure_angle_max_deg": float(np.degrees(self.pressure_angle_max)),
+            "spring_rate_N_per_mm": in_unit(self.spring_rate, "N/mm"),
+            "lift_max_mm": in_unit(self.lift_max, "mm"),
+            "pressure_angle_max_deg": in_unit(self.pressure_angle_max, "deg"),
             "normal_force_max_N": self.normal_force_max,
-            "p0_max_MPa": 1e-6 * self.p0_max if np.isfinite(self.p0_max) else None,
+            "p0_max_MPa": in_unit(self.p0_max, "MPa") if np.isfinite(self.p0_max) else None,
             "failing": list(self.failing),
             "open": list(self.open),
             "binding": list(self.binding),

@@ -12,6 +12,7 @@ from typing import Any, Literal
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import json_text, read_json, write_atomic
 from camwright.pipeline.base.progress import Progress
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.worker_processes import pool, workers_for
 from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.cards.substitution import Choice, variant
@@ -225,4 +226,4 @@ def _written(search: Search, kept: Sequence[Tried]) -> list[Record]:
 def _named(choice: Choice) -> Record:
     room = choice.cam_radius
     return {"roller": choice.roller, "spring": choice.spring, "bush": choice.bush,
-            "room_mm": None if room is None else 1e3 * room}  # fmt: skip
+            "room_mm": None if room is None else in_unit(room, "mm")}  # fmt: skip
