@@ -49,7 +49,7 @@ def run(
     if not (resume and _finished(out, design.sha256)):
         from camwright.pipeline.results.run_folder import set_aside
         from camwright.pipeline.run import run_case
-        from camwright.pipeline.studies.papers.valve_train import valve_record
+        from camwright.pipeline.studies.valve_train import valve_record
         from camwright.reports.sections import build
 
         old = set_aside(out, design) if replace else nullcontext()

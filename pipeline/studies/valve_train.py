@@ -19,7 +19,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.elastic_response import elastic_follower
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.results.trial import Trial
-from camwright.pipeline.studies.papers.valve_cam import (
+from camwright.pipeline.studies.valve_cam import (
     ElasticValve,
     ValveCam,
     follower_acceleration,
