@@ -31,8 +31,8 @@ def compare(
     from camwright.reports import smoother_page
 
     design = load_case_file(case)
-    found = list(compared(design, engine_torques(design)))
-    rows = [{"smoother": one.smoother, "words": one.words, **one.record} for one in found]
+    results = list(compared(design, engine_torques(design)))
+    rows = [{"smoother": one.smoother, "words": one.words, **one.record} for one in results]
     for row in rows:
         shown = [f"{row[n]:.4g} {u}" for n, u in _COMPARED if row.get(n) is not None]
         line = f"{row['smoother']} ({row['words']}): {', '.join(shown)}; {row['verdict']}"
@@ -40,7 +40,7 @@ def compare(
     if out is not None:
         lifts = {
             one.smoother if one.smoother == "constrained" else one.words: one.lift.values
-            for one in found
+            for one in results
             if one.lift is not None
         }
         page = smoother_page.write(out, f"{design.name}: smoothers compared", rows, lifts)

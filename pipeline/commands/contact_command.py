@@ -44,8 +44,8 @@ def contact(
     from camwright.pipeline.studies.two_cylinders_document import Asked, lines, solved
 
     use_cache(not no_cache)
-    asked = Asked(r1, r2, e1, e2, nu1, nu2, line_load, load, width, friction, depth1, depth2)
-    document = solved(asked, with_approach=approach, field=field)
+    options = Asked(r1, r2, e1, e2, nu1, nu2, line_load, load, width, friction, depth1, depth2)
+    document = solved(options, with_approach=approach, field=field)
     if as_json:
         show_json(document)
     else:

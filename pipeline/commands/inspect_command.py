@@ -39,12 +39,12 @@ def inspect(
     from camwright.pipeline.studies import cam_inspection
     from camwright.reports.inspection_pictures import draw
 
-    asked = None if tolerance is None else units.parse(tolerance, "um", "--tolerance")
-    if asked is not None and not asked > 0:
+    band_given = None if tolerance is None else units.parse(tolerance, "um", "--tolerance")
+    if band_given is not None and not band_given > 0:
         raise InputError("--tolerance", tolerance, "> 0 um")
     points = cam_inspection.read_measured(measured)
     case, contour = drawn_cam(folder)
-    band = case.workshop_order.tolerance if asked is None else asked
+    band = case.workshop_order.tolerance if band_given is None else band_given
     with progress_shown() as progress:
         part = cam_inspection.inspect_part(
             case, contour, points, keep_phase=keep_phase, jobs=jobs, progress=progress

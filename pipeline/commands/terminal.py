@@ -36,11 +36,11 @@ def show_json(document: object) -> None:
     print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - not to be wrapped
 
 
-def use_cache(wanted: bool) -> None:
+def use_cache(enabled: bool) -> None:
     """Switch off what is kept between runs, unless it is wanted."""
     from camwright.pipeline.base import disk_cache
 
-    if not wanted:
+    if not enabled:
         disk_cache.switch_off()
 
 

@@ -1,4 +1,4 @@
-"""Cam and follower as a contact pair: shapes, materials, gap."""
+"""Cam and follower in contact: contour, materials, relative radius, gap."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from camwright.pipeline.contact.follower_body import FollowerBody
 
 @dataclass(frozen=True, eq=False)
 class ContactPair:
-    """Cam and follower: contour, effective width of the line contact (m), bodies, materials."""
+    """Cam and follower: contour, width of the line contact (m), bore radius (m), materials."""
 
     contour: Contour
     width: float
@@ -32,18 +32,19 @@ class ContactPair:
 
     @property
     def contact_modulus(self) -> float:
+        """E*, Pa."""
         other = self.follower.material
         return hertz.contact_modulus(
             self.cam.modulus, self.cam.poisson, other.modulus, other.poisson
         )
 
     def relative_radius(self, theta: ArrayLike) -> Array:
-        """Relative radius of curvature (...), m; 1/R = 1/r_r + 1/r_c; a face is endlessly round.
+        """Relative radius of curvature R (...), m: 1/R = 1/r_r + 1/r_c; 1/r_r = 0 for a face.
 
         Raises
         ------
         ContactError
-            If the cam is so hollow that the follower does not fit.
+            If the concave radius of the contour is not larger than the roller radius.
         """
         curvature = self.contour.follower_curvature + self.contour.curvature(theta)
         if not (curvature > 0).all():
@@ -54,10 +55,10 @@ class ContactPair:
         return 1 / curvature
 
     def gap(self, theta: Array, xi: Array) -> Array:
-        """Distance (n, q) between contour and follower, along the normal, before loading.
+        """Distance (n, q), m, of contour and follower along the normal, unloaded.
 
-        theta (n,) rad; xi (n, q) m along the tangent of a contact frame, which runs clockwise,
-        against the contour's own.
+        theta (n,) rad; xi (n, q) m along the tangent of the contact frame, which is opposite to
+        that of the contour.
         """
         return self.contour.follower_gap(xi) - self.contour.surface_offset(theta, -xi)
 
@@ -65,5 +66,5 @@ class ContactPair:
 def elastic_body(
     mesh: BodyMesh, material: Elastic, held: str, springs: Springs | None = None
 ) -> ElasticBody:
-    """A body on its mesh; held nowhere but by its springs where `held` is empty."""
+    """Elastic body on a mesh; supported by springs alone where `held` is empty."""
     return ElasticBody(mesh, material.modulus, material.poisson, held or {}, springs)

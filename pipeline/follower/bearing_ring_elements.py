@@ -110,9 +110,9 @@ def ring_bending(ring: Ring, phases: int = 5, poisson: float = 0.3) -> RingBendi
     """
     count = 2 * (phases - 1) * -(-_PER_GAP // (2 * (phases - 1)))
     body = RingElements(ring, ring.balls * count, poisson)
-    found = [_pushed(body, ring, count, k * count // (2 * (phases - 1))) for k in range(phases)]
+    results = [_pushed(body, ring, count, k * count // (2 * (phases - 1))) for k in range(phases)]
     phase = np.linspace(0.0, 0.5 * FULL_TURN / ring.balls, phases)
-    return RingBending(phase, *(np.array(part) for part in zip(*found, strict=True)))
+    return RingBending(phase, *(np.array(part) for part in zip(*results, strict=True)))
 
 
 def _pushed(

@@ -87,14 +87,16 @@ def torque_reversals(theta: Array, torque: ArrayLike, drag: float = 0.0) -> tupl
     angle = finite("theta", theta)
     value = finite("torque", torque) + drag
     lively = np.flatnonzero(value != 0.0)  # a dwell at zero is one crossing, not many
-    found = []
+    reversals = []
     for here, after in zip(lively, np.roll(lively, -1), strict=True):
         if value[here] * value[after] >= 0.0:
             continue
         step = (angle[after] - angle[here]) % FULL_TURN
         slope = (value[after] - value[here]) / step
-        found.append(Reversal(float((angle[here] - value[here] / slope) % FULL_TURN), float(slope)))
-    return tuple(sorted(found))
+        reversals.append(
+            Reversal(float((angle[here] - value[here] / slope) % FULL_TURN), float(slope))
+        )
+    return tuple(sorted(reversals))
 
 
 _BALANCED = 1e-9
@@ -245,14 +247,14 @@ class Unbalance:
         return self.product * cam_speed**2
 
 
-def rotating_force(found: Unbalance, cam_speed: float, theta: Array) -> Array:
+def rotating_force(unbalance: Unbalance, cam_speed: float, theta: Array) -> Array:
     """Centrifugal force of an unbalance on the shaft, (2, n), N, in the frame of `ShaftLoads`.
 
     At the cam angle of the heavy side it points along the follower; from there it turns with
     the cam, in the sense of a positive torque.
     """
-    turned = finite("theta", theta) - found.angle
-    return found.force(cam_speed) * np.stack([np.cos(turned), np.sin(turned)])
+    turned = finite("theta", theta) - unbalance.angle
+    return unbalance.force(cam_speed) * np.stack([np.cos(turned), np.sin(turned)])
 
 
 def unbalance(
@@ -309,7 +311,11 @@ class CounterHole(NamedTuple):
 
 
 def counter_hole(
-    contour: Contour, found: Unbalance, bore_radius: float, wall: float, keyway_depth: float = 0.0
+    contour: Contour,
+    unbalance: Unbalance,
+    bore_radius: float,
+    wall: float,
+    keyway_depth: float = 0.0,
 ) -> CounterHole:
     """The smallest hole on the heavy side that takes the whole unbalance away.
 
@@ -327,17 +333,17 @@ def counter_hole(
     """
     if not 0.0 < wall < np.inf:
         raise InputError("cam.wall", wall, "> 0 m")
-    need = float(np.hypot(*found.moment))
-    if found.balanced:
+    need = float(np.hypot(*unbalance.moment))
+    if unbalance.balanced:
         raise GeometryError("the cam is balanced as it is")
-    direction, ring = _heavy_side(found), contour.polygon(1440)
+    direction, ring = _heavy_side(unbalance), contour.polygon(1440)
 
     def spare(place: float) -> float:
         """Wall left to the contour, less the wall asked for, hole's middle at `place`."""
         away = np.hypot(*(ring - (place * direction)[:, None])).min()
         return float(away - np.sqrt(need / (np.pi * place)) - wall)
 
-    places = np.linspace(bore_radius, _reach(found, ring), 400)
+    places = np.linspace(bore_radius, _reach(unbalance, ring), 400)
     fits = [place for place in places if spare(place) >= 0.0]
     if not fits:
         raise GeometryError("no counter-hole fits between bore and contour")
@@ -350,7 +356,11 @@ def counter_hole(
 
 
 def greatest_hole(
-    contour: Contour, found: Unbalance, bore_radius: float, wall: float, keyway_depth: float = 0.0
+    contour: Contour,
+    unbalance: Unbalance,
+    bore_radius: float,
+    wall: float,
+    keyway_depth: float = 0.0,
 ) -> CounterHole:
     """The hole on the heavy side that takes most of an unbalance away, where none takes all.
 
@@ -363,7 +373,7 @@ def greatest_hole(
     GeometryError
         If the walls leave no room for any hole.
     """
-    direction, ring = _heavy_side(found), contour.polygon(1440)
+    direction, ring = _heavy_side(unbalance), contour.polygon(1440)
 
     def radius(place: float) -> float:
         away = np.hypot(*(ring - (place * direction)[:, None])).min()
@@ -372,7 +382,7 @@ def greatest_hole(
     def taken(place: float) -> float:
         return max(radius(place), 0.0) ** 2 * place
 
-    places = np.linspace(bore_radius, _reach(found, ring), 400)
+    places = np.linspace(bore_radius, _reach(unbalance, ring), 400)
     best = int(np.argmax([taken(place) for place in places]))
     around = (places[max(best - 1, 0)], places[min(best + 1, places.size - 1)])
     place = float(minimize_scalar(lambda x: -taken(x), bounds=around, method="bounded").x)
@@ -381,11 +391,11 @@ def greatest_hole(
     return CounterHole(place * direction, radius(place))
 
 
-def _heavy_side(found: Unbalance) -> Array:
-    return np.array([np.cos(found.angle), np.sin(found.angle)])
+def _heavy_side(unbalance: Unbalance) -> Array:
+    return np.array([np.cos(unbalance.angle), np.sin(unbalance.angle)])
 
 
-def _reach(found: Unbalance, ring: Array) -> float:
+def _reach(unbalance: Unbalance, ring: Array) -> float:
     """Where the contour stands on the heavy side, m: beyond it the distance to it grows again."""
     bearing = np.arctan2(ring[1], ring[0])
-    return float(np.interp(found.angle, bearing, np.hypot(*ring), period=2.0 * np.pi))
+    return float(np.interp(unbalance.angle, bearing, np.hypot(*ring), period=2.0 * np.pi))

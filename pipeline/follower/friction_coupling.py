@@ -169,9 +169,9 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
     for rounds in range(_ROUNDS_MAX):
         if not at.size:
             return x, rounds
-        now, found = x[at], answer(x[at], at)
-        miss = now - found
-        open_ = np.abs(miss) > 0.01 * RESIDUAL * found
+        now, value = x[at], answer(x[at], at)
+        miss = now - value
+        open_ = np.abs(miss) > 0.01 * RESIDUAL * value
         low[at] = np.where(miss < 0.0, now, low[at])
         high[at] = np.where(miss > 0.0, now, high[at])
         bounded[at] |= miss > 0.0
@@ -180,8 +180,8 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
         within = (secant > low[at]) & (secant <= high[at])
         slow = np.abs(miss) > 0.5 * np.abs(missed[at])
         halved = slow & (bounded[at] | (rounds >= _CLIMB))
-        next_ = np.where(halved, 0.5 * (low[at] + high[at]), np.where(within, secant, found))
-        x[at] = np.where(open_, next_, found)
+        next_ = np.where(halved, 0.5 * (low[at] + high[at]), np.where(within, secant, value))
+        x[at] = np.where(open_, next_, value)
         before[at], missed[at] = now, miss
         at = at[open_]
     raise ContactError(f"friction: {at.size} positions not in balance after {_ROUNDS_MAX} rounds")
@@ -202,26 +202,30 @@ class _Bores:
         if self.state is not None:
             start = self.state[0][:, at], self.state[1][:, at]
         side, moment = push * self.way.side[at], push * self.way.arm[at]
-        found, rigid = settle(self.line, side, moment - side * self.reach[at], start)
+        pushes, rigid = settle(self.line, side, moment - side * self.reach[at], start)
         if self.state is None:
             count = self.reach.size
-            self.state = np.zeros((len(found), count)), np.zeros((2, count))
-        self.state[0][:, at], self.state[1][:, at] = found, rigid
-        rubbed = np.abs(found[: self.knots]).sum(axis=0), np.abs(found[self.knots :]).sum(axis=0)
-        size, given = (
+            self.state = np.zeros((len(pushes), count)), np.zeros((2, count))
+        self.state[0][:, at], self.state[1][:, at] = pushes, rigid
+        rubbed = np.abs(pushes[: self.knots]).sum(axis=0), np.abs(pushes[self.knots :]).sum(axis=0)
+        size, on_points = (
             push * self.way.lean[at],
             (self.points.rubbing_a[at], self.points.rubbing_b[at]),
         )
         a, b = (
             np.divide(load, size, out=share.copy(), where=size > 0.0)
-            for load, share in zip(rubbed, given, strict=True)
+            for load, share in zip(rubbed, on_points, strict=True)
         )
         return a, b
 
 
-def _residual(system: FollowerSystem, free: Loads, loads: Loads, found: GuideReactions) -> Array:
+def _residual(
+    system: FollowerSystem, free: Loads, loads: Loads, reactions: GuideReactions
+) -> Array:
     """Axial forces that do not cancel, over the push; 0 where the push is held at its bound."""
-    rubs = system.friction_a * found.rubbing_load_a + system.friction_b * found.rubbing_load_b
+    rubs = (
+        system.friction_a * reactions.rubbing_load_a + system.friction_b * reactions.rubbing_load_b
+    )
     miss = loads.axial_force - np.sign(loads.lift_slope) * rubs - free.axial_force
     bounded = share_left(loads.lift_slope, loads.jam_index) <= JAM_FLOOR
     push = np.where(bounded, 0.0, loads.axial_force)

@@ -223,11 +223,11 @@ def _best_length(
         return np.asarray(stored + (law * change).sum(axis=0) - fixed)
 
     first, last = slope(0.0), slope(1.0)
-    found = np.ones(load.shape[1])
+    length_best = np.ones(load.shape[1])
     far = np.flatnonzero(last > TOLERANCE * np.abs(first))
     if far.size:
-        found[far] = _zero(line, before[:, far], change[:, far], first[far], spread[far])
-    return found
+        length_best[far] = _zero(line, before[:, far], change[:, far], first[far], spread[far])
+    return length_best
 
 
 def _zero(line: BearingLine, before: Array, change: Array, first: Array, spread: Array) -> Array:

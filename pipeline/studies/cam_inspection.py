@@ -174,20 +174,20 @@ def _waves(fit: Inspection) -> dict[str, float]:
 
 def _figures_of(cycle: Table) -> Mapping[str, float | None]:
     """Extremes over all load cases, nominal and real alike."""
-    wanted: dict[str, tuple[str, Callable[[Any], Any]]] = {
+    measures: dict[str, tuple[str, Callable[[Any], Any]]] = {
         "normal_force_max_N": ("normal_force_N", np.max),
         "normal_force_min_N": ("normal_force_N", np.min),
         "p0_max_MPa": ("p0_fe_MPa", np.max),
         "von_mises_max_MPa": ("von_mises_MPa", np.max),
         "pressure_angle_max_deg": ("pressure_angle_deg", lambda v: np.abs(v).max()),
     }
-    found: dict[str, float | None] = {}
-    for name, (header, measure) in wanted.items():
+    figures: dict[str, float | None] = {}
+    for name, (header, measure) in measures.items():
         value = float(measure(cycle[header]))
-        found[name] = value if math.isfinite(value) else None
+        figures[name] = value if math.isfinite(value) else None
     if "torque_after_Nm" in cycle:
-        found["torque_after_std_Nm"] = float(np.std(cycle["torque_after_Nm"]))
-    return found
+        figures["torque_after_std_Nm"] = float(np.std(cycle["torque_after_Nm"]))
+    return figures
 
 
 def lines(record: Mapping[str, Any]) -> list[str]:

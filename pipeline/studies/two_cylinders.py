@@ -222,7 +222,7 @@ def conforming(pair: TwoCylinders) -> ConformingContact:
         stiffness = pin_body.plane_strain_modulus
         angle = persson_contact_angle(stiffness * clearance / pair.line_load)
         p0 = float(persson_pressure(angle)) * pair.line_load / radius
-    found = pin_in_hole(
+    numerical = pin_in_hole(
         pair.line_load,
         radius,
         clearance,
@@ -232,9 +232,9 @@ def conforming(pair: TwoCylinders) -> ConformingContact:
     return ConformingContact(
         persson_angle=angle,
         persson_p0=p0,
-        angle=found.contact_angle,
-        p0=found.peak_pressure,
-        residual=max(found.equilibrium, found.complementarity),
+        angle=numerical.contact_angle,
+        p0=numerical.peak_pressure,
+        residual=max(numerical.equilibrium, numerical.complementarity),
     )
 
 
@@ -367,8 +367,8 @@ def _highest(measure: Callable[[Array], Array], friction: float) -> tuple[float,
         near = hertz.subsurface_stress(place[0], abs(place[1]), friction)
         return -float(measure(near))
 
-    found = minimize(falling, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-13})
-    return -float(found.fun), abs(float(found.x[1]))
+    lowest = minimize(falling, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-13})
+    return -float(lowest.fun), abs(float(lowest.x[1]))
 
 
 def _elastic(body: Elastic) -> tuple[float, float]:

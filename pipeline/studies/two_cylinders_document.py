@@ -92,21 +92,21 @@ class Asked:
         if self.line_load is not None:
             if self.load is not None:
                 raise InputError("--load", self.load, "left out beside --line-load")
-            found = _quantity(self.line_load, "N/mm", "--line-load")
+            line_load = _quantity(self.line_load, "N/mm", "--line-load")
         else:
             if self.load is None or self.width is None:
                 raise InputError("--line-load", "missing", "given, or --load and --width")
             width = _quantity(self.width, "mm", "--width")
             if not width > 0:
                 raise InputError("--width", width, "> 0 m")
-            found = _quantity(self.load, "N", "--load") / width
-        if not found >= 0:
-            raise InputError("--line-load", found, ">= 0 N/m")
-        return found
+            line_load = _quantity(self.load, "N", "--load") / width
+        if not line_load >= 0:
+            raise InputError("--line-load", line_load, ">= 0 N/m")
+        return line_load
 
 
 def solved(
-    asked: Asked, *, with_approach: bool = False, field: Path | None = None
+    options: Asked, *, with_approach: bool = False, field: Path | None = None
 ) -> dict[str, Any]:
     """Everything the command says, in mm, MPa and N.
 
@@ -118,7 +118,7 @@ def solved(
         If the contact is beyond all theories here.
     """
     start = time.perf_counter()
-    pair = asked.pair()
+    pair = options.pair()
     document: dict[str, Any] = {
         "line_load_N_per_mm": in_unit(pair.line_load, "N/mm"),
         "contact_modulus_MPa": in_unit(pair.contact_modulus, "MPa"),
@@ -130,13 +130,13 @@ def solved(
             raise InputError("--field", str(field), "left out: the contact is no half-plane's")
         document |= {"fe": None, "conforming": _conforming(conforming(pair), pair)}
     else:
-        found = finite_elements(pair)
-        document |= {"fe": _finite_elements(found), "finite_body": _finite_body(pair)}
+        contact = finite_elements(pair)
+        document |= {"fe": _finite_elements(contact), "finite_body": _finite_body(pair)}
         if field is not None:
-            _write_field(field, found, (pair.body_1.poisson, pair.body_2.poisson))
+            _write_field(field, contact, (pair.body_1.poisson, pair.body_2.poisson))
             document["field"] = str(field)
     if with_approach:
-        document["approach_mm"] = in_unit(approach(pair, asked.depths()), "mm")
+        document["approach_mm"] = in_unit(approach(pair, options.depths()), "mm")
     document["seconds"] = time.perf_counter() - start
     return document
 
@@ -194,26 +194,26 @@ def _radius(text: str, option: str) -> float:
     return radius
 
 
-def _figures(found: LineContact) -> dict[str, float]:
+def _figures(contact: LineContact) -> dict[str, float]:
     record = {
-        "p0_MPa": in_unit(found.p0, "MPa"),
-        "half_width_mm": in_unit(found.half_width, "mm"),
-        "tau_max_MPa": in_unit(found.tau_max, "MPa"),
-        "tau_depth_mm": in_unit(found.tau_depth, "mm"),
-        "von_mises_MPa": in_unit(found.von_mises, "MPa"),
-        "von_mises_depth_mm": in_unit(found.von_mises_depth, "mm"),
+        "p0_MPa": in_unit(contact.p0, "MPa"),
+        "half_width_mm": in_unit(contact.half_width, "mm"),
+        "tau_max_MPa": in_unit(contact.tau_max, "MPa"),
+        "tau_depth_mm": in_unit(contact.tau_depth, "mm"),
+        "von_mises_MPa": in_unit(contact.von_mises, "MPa"),
+        "von_mises_depth_mm": in_unit(contact.von_mises_depth, "mm"),
     }
-    if found.shear_any_plane > (1 + _WORTH) * found.tau_max:
-        record["shear_any_plane_MPa"] = in_unit(found.shear_any_plane, "MPa")
+    if contact.shear_any_plane > (1 + _WORTH) * contact.tau_max:
+        record["shear_any_plane_MPa"] = in_unit(contact.shear_any_plane, "MPa")
     return record
 
 
-def _finite_elements(found: FiniteElementContact) -> dict[str, Any]:
+def _finite_elements(contact: FiniteElementContact) -> dict[str, Any]:
     return {
-        **_figures(found.figures),
-        "dofs": found.dofs,
-        "error_bar_percent": in_unit(found.error_bar, "%"),
-        "residual": found.residual,
+        **_figures(contact.figures),
+        "dofs": contact.dofs,
+        "error_bar_percent": in_unit(contact.error_bar, "%"),
+        "residual": contact.residual,
     }
 
 
@@ -226,13 +226,13 @@ def _finite_body(pair: TwoCylinders) -> dict[str, float]:
     }
 
 
-def _conforming(found: ConformingContact, pair: TwoCylinders) -> dict[str, Any]:
+def _conforming(contact: ConformingContact, pair: TwoCylinders) -> dict[str, Any]:
     def record(angle: float, p0: float) -> dict[str, float]:
         return {"p0_MPa": in_unit(p0, "MPa"), "half_angle_deg": in_unit(angle, "deg")}
 
     persson = None
-    if found.persson_angle is not None and found.persson_p0 is not None:
-        persson = record(found.persson_angle, found.persson_p0)
+    if contact.persson_angle is not None and contact.persson_p0 is not None:
+        persson = record(contact.persson_angle, contact.persson_p0)
     friction = "; friction is left out" if pair.friction > 0 else ""
     return {
         "why": (
@@ -240,19 +240,19 @@ def _conforming(found: ConformingContact, pair: TwoCylinders) -> dict[str, Any]:
             f"solved as a pin in a hole without friction{friction}"
         ),
         "persson": persson,
-        "numerical": {**record(found.angle, found.p0), "residual": found.residual},
+        "numerical": {**record(contact.angle, contact.p0), "residual": contact.residual},
     }
 
 
-def _write_field(path: Path, found: FiniteElementContact, poissons: tuple[float, float]) -> None:
+def _write_field(path: Path, contact: FiniteElementContact, poissons: tuple[float, float]) -> None:
     """Stress of both bodies around the contact as VTU: body 1 below y = 0, body 2 above."""
     from camwright.meshes.mesh_files import write_vtu
 
     meshes, fields = {}, {}
-    for number, (nu, side, of) in enumerate(zip(poissons, (-1, 1), found.stresses, strict=True)):
+    for number, (nu, side, of) in enumerate(zip(poissons, (-1, 1), contact.stresses, strict=True)):
         mesh, order = patch_mesh(nu)
         name = f"body_{number + 1}"
-        meshes[name] = _placed(mesh, found.half_width_hertz, upward=side > 0)
+        meshes[name] = _placed(mesh, contact.half_width_hertz, upward=side > 0)
         fields[name] = _fields(of[:, order], nu, side)
     write_vtu(path, meshes, fields)
 

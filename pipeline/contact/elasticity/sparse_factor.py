@@ -1,8 +1,7 @@
-"""Sparse symmetric positive definite matrices, factored once and solved for many loads.
+"""Factorisation of sparse symmetric positive definite matrices.
 
-SciPy's SuperLU does it everywhere; CHOLMOD, through cvxopt, or Pardiso, through pypardiso, where
-one of them is installed and not switched off by ``CAMWRIGHT_SOLVER=scipy``. The answers are the
-same to round-off.
+By CHOLMOD (package cvxopt) or Pardiso (pypardiso) where installed, else by SuperLU (SciPy);
+``CAMWRIGHT_SOLVER=scipy`` selects SuperLU. Solutions agree to round-off.
 """
 
 from __future__ import annotations
@@ -23,11 +22,11 @@ from camwright.geometry.errors import ContactError
 
 Index = NDArray[np.int64]
 
-_POSITIVE_DEFINITE = 2  # Pardiso's number for such a real matrix
+_POSITIVE_DEFINITE = 2  # matrix type of Pardiso: real symmetric positive definite
 
 
 def back_end() -> str:
-    """Which library factors: CHOLMOD or Pardiso where installed and not switched off, or SciPy."""
+    """Library of the factorisation: ``cholmod``, ``pardiso`` or ``scipy``."""
     if os.environ.get("CAMWRIGHT_SOLVER") != "scipy":
         for name, module in (("cholmod", "cvxopt.cholmod"), ("pardiso", "pypardiso")):
             with suppress(ImportError):
@@ -95,16 +94,15 @@ def _by_pardiso(matrix: sparse.sparray) -> Callable[[Array], Array]:
 
 
 class Condensed:
-    """A matrix condensed to some of its unknowns: loads act there and nowhere else.
+    """A matrix condensed to some of its unknowns, the only ones with loads.
 
-    The chosen unknowns are eliminated last, so that the end of the triangular factors is the
-    factor of the condensed matrix: loads on a few unknowns cost dense algebra of that few.
+    The chosen unknowns are eliminated last: the last rows of the triangular factors are the
+    factors of the condensed matrix, and each solution costs dense algebra of k unknowns.
 
     Parameters
     ----------
     matrix : sparse (n, n)   symmetric positive definite
-    pairs : array (2, m)     unknowns that share their neighbours, x and y of a node; unknowns
-                             without a partner stand in neither row. Orders the elimination
+    pairs : array (2, m)     x and y unknowns of each node with two, for the elimination order
     last : array (k,)        the chosen unknowns
     """
 
@@ -114,10 +112,10 @@ class Condensed:
         permuted = sparse.csc_matrix(matrix)[order][:, order].tocsc()
         factor = _symmetric_lu(permuted, "NATURAL")
         if not np.array_equal(factor.perm_r, factor.perm_c):
-            raise ContactError("the stiffness is not positive definite")
+            raise ContactError("stiffness matrix: not positive definite")
         self._order, self._factor = order, factor
         size, few = order.size, self._last.size
-        # SuperLU may still exchange columns that do not see each other: look where they went.
+        # SuperLU may exchange columns that are not coupled: restore their order.
         place = factor.perm_c[size - few :]
         shuffle = np.argsort(place)
         rows = np.sort(place)
@@ -129,20 +127,20 @@ class Condensed:
         """Values (k, m) of the chosen unknowns under loads (k, m) on them."""
         loads = np.asarray(right, dtype=float)[self._shuffle]
         half = solve_triangular(self._lower, loads, lower=True, unit_diagonal=True)
-        found = np.empty_like(loads)
-        found[self._shuffle] = solve_triangular(self._upper, half)
-        return found
+        solution = np.empty_like(loads)
+        solution[self._shuffle] = solve_triangular(self._upper, half)
+        return solution
 
     def solve(self, right: ArrayLike) -> Array:
-        """Values (n, m) of all unknowns under loads (n, m) anywhere."""
+        """Values (n, m) of all unknowns under loads (n, m)."""
         loads = np.asarray(right, dtype=float)
-        found = np.empty_like(loads)
-        found[self._order] = self._factor.solve(loads[self._order])
-        return found
+        solution = np.empty_like(loads)
+        solution[self._order] = self._factor.solve(loads[self._order])
+        return solution
 
 
 def _elimination_order(matrix: sparse.sparray, pairs: Index, last: Index) -> Index:
-    """Minimum degree on the nodes rather than on their components, the chosen ones last."""
+    """Elimination order (n,): minimum degree on the nodes, the chosen unknowns last."""
     size = matrix.shape[0]
     chosen = np.zeros(size, dtype=bool)
     chosen[last] = True

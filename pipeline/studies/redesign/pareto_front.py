@@ -16,15 +16,15 @@ def front(
     alike : float   share by which first figures may differ and still be one; the better stays
     gain : float    what the second figure must fall by for a point to be worth telling
     """
-    found: list[int] = []
+    chosen: list[int] = []
     for k in sorted(range(len(figures)), key=lambda k: (*figures[k], k)):
         size, left = figures[k]
-        if found and not left < figures[found[-1]][1] - gain:
+        if chosen and not left < figures[chosen[-1]][1] - gain:
             continue
-        if found and size <= figures[found[-1]][0] * (1.0 + alike):
-            found.pop()
-        found.append(k)
-    return found
+        if chosen and size <= figures[chosen[-1]][0] * (1.0 + alike):
+            chosen.pop()
+        chosen.append(k)
+    return chosen
 
 
 def thinned(places: Sequence[int], figures: Sequence[tuple[float, float]], most: int) -> list[int]:

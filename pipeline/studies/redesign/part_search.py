@@ -78,17 +78,17 @@ def _unbounded(
     points: list[Rough] = []
     ripples: dict[str, float] = {}
     for spring in sorted(least, key=lambda name: (least[name], name)):
-        found = yield Choice(roller, spring, bushes[0])
-        ripples[spring] = found.ripple
-        if found.feasible:
-            pairs.append(Pair(spring, bushes[0], max(found.ripple, least[spring])))
-            points.append(found)
+        point = yield Choice(roller, spring, bushes[0])
+        ripples[spring] = point.ripple
+        if point.feasible:
+            pairs.append(Pair(spring, bushes[0], max(point.ripple, least[spring])))
+            points.append(point)
     likeliest = min(ripples, key=lambda name: (ripples[name], name))
     for bush in bushes[1:]:
-        found = yield Choice(roller, likeliest, bush)
-        if found.feasible:
-            pairs.append(Pair(likeliest, bush, max(found.ripple, least[likeliest])))
-            points.append(found)
+        point = yield Choice(roller, likeliest, bush)
+        if point.feasible:
+            pairs.append(Pair(likeliest, bush, max(point.ripple, least[likeliest])))
+            points.append(point)
     return pairs, min(points, key=lambda point: point.ripple, default=None)
 
 
@@ -100,11 +100,11 @@ def _within(roller: str, pairs: Sequence[Pair], room: float) -> Generator[Choice
         if best is not None and pair.bound >= best.ripple:
             after.append(pair)
             continue
-        found = yield Choice(roller, pair.spring, pair.bush, room)
-        if found.feasible:
-            after.append(replace(pair, bound=max(found.ripple, pair.bound)))
-            if best is None or found.ripple < best.ripple:
-                best = found
+        point = yield Choice(roller, pair.spring, pair.bush, room)
+        if point.feasible:
+            after.append(replace(pair, bound=max(point.ripple, pair.bound)))
+            if best is None or point.ripple < best.ripple:
+                best = point
     return after, best
 
 
@@ -132,16 +132,16 @@ def branches(
     names = sorted(bushes, key=lambda name: (-bushes[name].pv, name))
     names = [AS_GIVEN, *names] if _bushes_known(case) else names
     least = _Least(case, problem, springs)
-    found: dict[str, Branch] = {}
+    running: dict[str, Branch] = {}
     for name, card in rollers.items():
         force = ripple_bounds.bearable_force(card, case)
         bound = least.by_spring(force)
         if bound:
-            found[name] = branch(name, bound, names)
+            running[name] = branch(name, bound, names)
         else:
             words = f"a roller that bears {force:.0f} N: too little for the reduction asked for"
             pruned.append(Pruned(name, words))
-    return found, pruned
+    return running, pruned
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,14 +159,14 @@ class _Least:
         bound = ripple_bounds.RippleBound(torque, problem.gear_ratio)
         relief = ripple_bounds.relief_of(problem.scenarios, problem.ratings.jump)
         allowed = 1.0 - case.limits[TORQUE_REDUCTION] + ripple_bounds.IN_HAND
-        preload, found = case.spring.preload, {}
+        preload, bounds = case.spring.preload, {}
         for name, (spring, travel) in self.springs.items():
             held = preload * travel + 0.5 * spring.rate * travel**2
             borne = ripple_bounds.bearable_energy(force, spring.rate, preload, relief)
             least = bound(min(held, borne))
             if least <= allowed:
-                found[name] = max(0.0, least - ripple_bounds.IN_HAND)
-        return found
+                bounds[name] = max(0.0, least - ripple_bounds.IN_HAND)
+        return bounds
 
 
 def _bushes_known(case: Case) -> bool:
@@ -174,6 +174,6 @@ def _bushes_known(case: Case) -> bool:
     return all(g.pressure_limit is not None and g.pv_limit is not None for g in guides)
 
 
-def _left_out(given: Iterable[str], kept: Iterable[str], why: str) -> list[Pruned]:
+def _left_out(parts: Iterable[str], kept: Iterable[str], why: str) -> list[Pruned]:
     known = set(kept)
-    return [Pruned(name, why) for name in given if name not in known]
+    return [Pruned(name, why) for name in parts if name not in known]

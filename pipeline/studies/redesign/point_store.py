@@ -61,10 +61,10 @@ def _read(path: Path) -> dict[str, Any] | None:
     if not path.is_file():
         return None
     try:
-        found = read_json(path)
+        record = read_json(path)
     except CamError:  # torn by a crash of the machine: solved anew
         return None
-    return found if isinstance(found, dict) and "feasible" in found else None
+    return record if isinstance(record, dict) and "feasible" in record else None
 
 
 @lru_cache(maxsize=1)

@@ -80,7 +80,7 @@ def redesign(
         raise InputError("--against", against, " or ".join(AGAINST))
     case, folder = load_case_file(case_file), case_file.resolve().parent
     if case.engine is None:
-        raise InputError("engine", "missing", "given: a redesign balances its torque")
+        raise InputError("engine", "missing", "present: a redesign balances its torque")
     search = Search(case, folder, catalogue_of(folder), out.absolute(), versions()["source"])
     problem = problem_of(case, engine_torques(case))
     running, pruned = branches(case, search.parts, problem, by_mass=against == "mass")
@@ -88,7 +88,7 @@ def redesign(
     with pool(workers_for(jobs, _BUSY)) as workers:
         progress.stage("search through the catalogue")
         tried = _searched(search, running, workers, progress)
-        given, points = _solved_whole(search, _chosen(tried, against), workers, progress)
+        present, points = _solved_whole(search, _chosen(tried, against), workers, progress)
     kept, refused = _split(points, against)
     document = {
         "schema": 1,
@@ -96,7 +96,7 @@ def redesign(
         "input_sha256": case.sha256,
         "version": search.version,
         "against": against,
-        "given": given,
+        "present": present,
         "points": _written(search, kept),
         "refused": [_named(choice) | {"why": _why(record)} for choice, record in refused],
         "pruned": [asdict(one) for one in pruned],
@@ -127,7 +127,7 @@ def _searched(
     search: Search, running: Mapping[str, Branch], workers: ProcessPoolExecutor, progress: Progress
 ) -> list[Tried]:
     """Every choice the branches asked for, with its rough point, in the order of the choices."""
-    found: list[Tried] = []
+    tried: list[Tried] = []
     refusals: list[InputError] = []
     waiting: dict[Any, tuple[Branch, Choice]] = {}
     expected = _OF_A_BRANCH * len(running)
@@ -143,7 +143,7 @@ def _searched(
                 task = search.task(search.text(choice), "rough")
             except InputError as error:
                 refusals.append(error)
-                found.append((choice, {"feasible": False, "why": str(error)}))
+                tried.append((choice, {"feasible": False, "why": str(error)}))
                 answer = Rough.impossible()
                 continue
             waiting[workers.submit(solved, task)] = (branch, choice)
@@ -152,16 +152,16 @@ def _searched(
     for branch in running.values():
         ask(branch, None)
     while waiting:
-        done, _ = wait(waiting, return_when=FIRST_COMPLETED)
-        for future in done:
+        completed, _ = wait(waiting, return_when=FIRST_COMPLETED)
+        for future in completed:
             branch, choice = waiting.pop(future)
             record = future.result()
-            found.append((choice, record))
-            progress.advance(len(found), max(expected, len(found) + len(waiting)))
+            tried.append((choice, record))
+            progress.advance(len(tried), max(expected, len(tried) + len(waiting)))
             ask(branch, Rough(**record) if "why" not in record else Rough.impossible())
-    if refusals and len(refusals) == len(found):
+    if refusals and len(refusals) == len(tried):
         raise refusals[0]  # nothing fits: it is the case, not the parts
-    return sorted(found, key=lambda pair: str(pair[0]))
+    return sorted(tried, key=lambda pair: str(pair[0]))
 
 
 def _chosen(tried: Sequence[Tried], against: str) -> list[Choice]:
@@ -209,7 +209,7 @@ def _written(search: Search, kept: Sequence[Tried]) -> list[Record]:
     """The points as case files, in place of those of an earlier search, and their records."""
     for old in search.out.glob("point_*.toml"):
         old.unlink()
-    found = []
+    records = []
     for number, (choice, record) in enumerate(kept, start=1):
         name, text = f"point_{number:02d}.toml", search.text(choice)
         head = (
@@ -219,8 +219,8 @@ def _written(search: Search, kept: Sequence[Tried]) -> list[Record]:
             f"cam radius {record['cam_radius_mm']:.4g} mm, {record['mass_g']:.4g} g.\n"
         )
         write_atomic(search.out / name, head + text)
-        found.append({"file": name} | _named(choice) | record)
-    return found
+        records.append({"file": name} | _named(choice) | record)
+    return records
 
 
 def _named(choice: Choice) -> Record:

@@ -54,10 +54,10 @@ class RippleBound:
                 Rows("most", -one, csr_array(level), elastic=False)]  # fmt: skip
         none, box = np.zeros(_COEFFICIENTS), np.full((2, _COEFFICIENTS), 10.0)
         box[0] *= -1.0
-        found = solved([norm], rows, np.diag(none), none, box, 1.0)
-        if found is None:
+        program = solved([norm], rows, np.diag(none), none, box, 1.0)
+        if program is None:
             raise ResultError("redesign: the bound on the ripple was not solved")
-        return found.ripple
+        return program.ripple
 
 
 def bearable_force(card: BearingCard, case: Case) -> float:
