@@ -1,4 +1,4 @@
-"""An elastic follower in time: contact lost and met again, landings integrated as impacts."""
+"""Elastic follower with loss of contact: flights and landings by time integration."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _TOLERANCE = 1e-11
 
 
 class Flight(NamedTuple):
-    """A loss of contact: cam angles of jump and landing, rad (may pass a turn), way and speed.
+    """A flight: cam angles of jump and landing, rad, may exceed a turn.
 
-    `height` is the largest gap between foot and cam, m; `landing_speed` that at which the gap
-    closes, m/s, >= 0.
+    `height`: maximum gap between foot and cam, m; `landing_speed`: closing speed of the gap, m/s,
+    >= 0.
     """
 
     jump: float
@@ -34,11 +34,10 @@ class Flight(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Bounce:
-    """Motion through jumps and landings from given start; arrays (steps,), SI.
+    """Motion with flights and landings from an initial state; arrays (steps,), SI.
 
-    theta is the cam angle and may pass a turn. `energy` is kinetic energy plus that of both
-    springs less the work of the cam; without damping it stands still. `dissipated` is what the
-    dampers took.
+    theta: cam angle, may exceed a turn; `energy`: kinetic energy plus that of both springs less the
+    work of the cam, constant without damping; `dissipated`: energy of the dampers.
     """
 
     theta: Array
@@ -56,7 +55,7 @@ class Bounce:
 
     @property
     def energy_error(self) -> float:
-        """Largest change of energy and losses over the greatest energy in it."""
+        """Range of energy plus losses over maximum energy."""
         balance = self.energy + self.dissipated
         return float(np.ptp(balance) / np.abs(self.energy).max())
 
@@ -68,10 +67,10 @@ def bounce(
     turns: float = 1.0,
     start: tuple[float, float] | None = None,
 ) -> Bounce:
-    """Motion of the follower over the cam angle, contact lost and met again by events.
+    """Motion of the follower over the cam angle with loss of contact.
 
-    In contact and in flight the motion is integrated with dense control to 1e-11; a phase ends
-    where the contact force falls to zero, or where the foot, its spring relaxed, meets the cam.
+    Phases in contact and in flight are integrated to a tolerance of 1e-11. A phase ends where the
+    contact force, or the gap between cam and the foot on its relaxed stem, decreases to zero.
 
     Parameters
     ----------
@@ -79,14 +78,14 @@ def bounce(
     cam_speed : float, or function of the angle   rad/s, > 0
     follower : ElasticFollower
     turns : float            of the cam
-    start : (x, v)           m, m/s at angle 0; the quasi-static state where none is given
+    start : (x, v)           m, m/s at angle 0; None: the quasi-static state
 
     Raises
     ------
     InputError
         If a speed is not positive.
     ContactError
-        If the follower hammers: more than 2000 phases.
+        If there are more than 2000 phases.
 
     References
     ----------
@@ -109,13 +108,14 @@ def bounce(
         angle, state = float(phase.theta[-1]), phase.state[:, -1].copy()
         if phase.last:
             return motion.record(phases, tuple(flights))
-        if touching:  # the foot, without mass, relaxes at once; its damper takes what was left
+        if touching:  # the massless stem relaxes at once; its damper dissipates the energy
             state[3] += 0.5 * follower.stiffness * (motion.foot(angle)[0] - state[0]) ** 2
         touching = not touching
-    raise ContactError(f"follower: more than {_EVENTS_MAX} losses of contact")
+    raise ContactError(f"follower: more than {_EVENTS_MAX} phases of contact and flight")
 
 
 def _law(cam_speed: float | PeriodicPolynomial) -> PeriodicPolynomial:
+    """Cam speed over the cam angle, rad/s, > 0."""
     if not isinstance(cam_speed, PeriodicPolynomial):
         cam_speed = PeriodicPolynomial(np.array([[float(cam_speed)]]))
     least = float(cam_speed(np.linspace(0.0, FULL_TURN, 1441)).min())
@@ -135,17 +135,19 @@ class _Phase(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Motion:
-    """State (x, v, work of the cam, losses, time) over the cam angle, and what moves it."""
+    """Equations of motion of the state (x, v, work of the cam, losses, time)."""
 
     lift: Lift
     speed: PeriodicPolynomial
     follower: ElasticFollower
 
     def foot(self, angle: float) -> tuple[float, float]:
+        """Lift, m, and its rate, m/s."""
         s, slope = self.lift.derivatives(angle, 1)
         return float(s), float(slope) * float(self.speed(angle))
 
     def force(self, angle: float, state: Array) -> float:
+        """Contact force, N."""
         s, u = self.foot(angle)
         f = self.follower
         return float(f.stiffness * (s - state[0]) + f.damping * (u - state[1]))
