@@ -1,10 +1,9 @@
-"""Comparison of smoothers on one case, by previews."""
+"""Comparison of the smoothers on one case by previews."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -22,6 +21,8 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import solve
 
+Record = dict[str, float | str | list[str] | None]
+
 _SMOOTHERS = (
     Smoother("none"),
     Smoother("moving_average", points=12, spacing=float(np.radians(5.0))),
@@ -36,16 +37,16 @@ _POSITIONS = 720
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """One way to draw the lift and what it leads to; lift None: there is no such cam."""
+    """A smoother with its parameter in words, lift and record; lift None: no such cam."""
 
     smoother: str
     words: str
     lift: Lift | None
-    record: Mapping[str, Any]
+    record: Record
 
 
 def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
-    """Every smoother in turn, the constrained synthesis last.
+    """Results of all smoothers, the constrained synthesis last.
 
     Raises
     ------
@@ -53,7 +54,7 @@ def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
         If the case has no engine.
     """
     if not torques:
-        raise InputError("engine", "missing", "given: smoothers work on its torque")
+        raise InputError("engine", "missing", "specified: smoothers act on its torque")
     case = case.with_positions(_POSITIONS)
     for smoother in _SMOOTHERS:
         words = smoother.width_in_words
@@ -81,7 +82,7 @@ def _constrained(case: Case) -> Compared:
     return Compared("constrained", words, trial.lift, _record(trial))
 
 
-def _record(trial: Trial) -> dict[str, Any]:
+def _record(trial: Trial) -> Record:
     rest, checks = trial.cycles[0].turn.torque_after, without_sign_off(trial.checks)
     return {
         "pressure_angle_max_deg": in_unit(trial.contour.pressure_angle_max().value, "deg"),

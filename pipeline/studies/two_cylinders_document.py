@@ -1,9 +1,9 @@
-"""What `camwright contact` computes and prints: two cylinders, from text to a document."""
+"""Command `camwright contact`: line contact of two cylinders, from options to a document."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,14 +32,16 @@ from camwright.pipeline.studies.two_cylinders import (
     patch_mesh,
 )
 
-# Relative excess of another plane's shear from which on it is worth a line.
+# Relative excess of the shear on another plane above which it is listed.
 _WORTH = 1e-3
+Document = dict[str, Any]
+
 _OPTIONS = {"radius_1": "--r1", "radius_2": "--r2", "friction": "--friction"}
 
 
 @dataclass(frozen=True)
-class Asked:
-    """The command's options as text; a bare number is in mm, MPa, N/mm or N."""
+class Options:
+    """Options of the command as text; numbers without unit in mm, MPa, N/mm or N."""
 
     r1: str
     r2: str
@@ -60,7 +62,7 @@ class Asked:
         Raises
         ------
         InputError
-            By the option's name.
+            Naming the option.
         """
         first = Elastic(_quantity(self.e1, "MPa", "--e1"), self.nu1)
         second = Elastic(
@@ -81,7 +83,7 @@ class Asked:
             raise InputError(option, error.value, error.limit) from None
 
     def depths(self) -> tuple[float | None, float | None]:
-        """Depths of the points whose approach is asked for, m."""
+        """Depths of the reference points of the approach, m; None: the centre."""
         first, second = (
             None if text is None else _quantity(text, "mm", name)
             for text, name in ((self.depth_1, "--depth1"), (self.depth_2, "--depth2"))
@@ -95,7 +97,7 @@ class Asked:
             line_load = _quantity(self.line_load, "N/mm", "--line-load")
         else:
             if self.load is None or self.width is None:
-                raise InputError("--line-load", "missing", "given, or --load and --width")
+                raise InputError("--line-load", "missing", "specified, or --load and --width")
             width = _quantity(self.width, "mm", "--width")
             if not width > 0:
                 raise InputError("--width", width, "> 0 m")
@@ -105,21 +107,19 @@ class Asked:
         return line_load
 
 
-def solved(
-    options: Asked, *, with_approach: bool = False, field: Path | None = None
-) -> dict[str, Any]:
-    """Everything the command says, in mm, MPa and N.
+def solved(options: Options, *, with_approach: bool = False, field: Path | None = None) -> Document:
+    """Results of the command, in mm, MPa and N.
 
     Raises
     ------
     InputError
         If an option is out of bounds.
     ContactError
-        If the contact is beyond all theories here.
+        If the contact is outside the validity of all models.
     """
     start = time.perf_counter()
     pair = options.pair()
-    document: dict[str, Any] = {
+    document: Document = {
         "line_load_N_per_mm": in_unit(pair.line_load, "N/mm"),
         "contact_modulus_MPa": in_unit(pair.contact_modulus, "MPa"),
         "relative_radius_mm": in_unit(1.0 / pair.curvature, "mm"),
@@ -127,7 +127,7 @@ def solved(
     }
     if is_conforming(pair):
         if field is not None:
-            raise InputError("--field", str(field), "left out: the contact is no half-plane's")
+            raise InputError("--field", str(field), "left out: the contact is conforming")
         document |= {"fe": None, "conforming": _conforming(conforming(pair), pair)}
     else:
         contact = finite_elements(pair)
@@ -141,8 +141,8 @@ def solved(
     return document
 
 
-def lines(document: Mapping[str, Any]) -> Iterator[str]:
-    """The document for people."""
+def lines(document: Document) -> Iterator[str]:
+    """Lines of text of a document."""
     fe, theory = document["fe"], document["hertz"]
     yield f"{'':18}{'Hertz':>14}{'' if fe is None else 'finite elements':>18}"
     for name, title in (
@@ -161,10 +161,10 @@ def lines(document: Mapping[str, Any]) -> Iterator[str]:
             f"residual {fe['residual']:.1e}; stresses of body 1"
         )
         for name, share in document["finite_body"].items():
-            yield f"{name.replace('_', ' ')} as a finite disc would add {share:.3g} MPa of shear"
+            yield f"{name.replace('_', ' ')} as a finite disc: {share:.3g} MPa more shear"
     else:
         yield document["conforming"]["why"]
-        for name, title in (("persson", "Persson, bodies alike"), ("numerical", "numerical")):
+        for name, title in (("persson", "Persson, equal materials"), ("numerical", "numerical")):
             found = document["conforming"][name]
             if found is not None:
                 yield (
@@ -177,7 +177,7 @@ def lines(document: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _quantity(text: str, unit: str, option: str) -> float:
-    """SI value of a number, with a unit or in `unit`."""
+    """SI value of a number with a unit, or in `unit`."""
     try:
         float(text)
     except ValueError:
@@ -190,7 +190,7 @@ def _radius(text: str, option: str) -> float:
         return float("inf")
     radius = _quantity(text, "mm", option)
     if radius == 0:
-        raise InputError(option, text, "other than 0; inf for a flat, negative for a hollow")
+        raise InputError(option, text, "other than 0; inf: flat, negative: concave")
     return radius
 
 
@@ -208,7 +208,7 @@ def _figures(contact: LineContact) -> dict[str, float]:
     return record
 
 
-def _finite_elements(contact: FiniteElementContact) -> dict[str, Any]:
+def _finite_elements(contact: FiniteElementContact) -> dict[str, float]:
     return {
         **_figures(contact.figures),
         "dofs": contact.dofs,
@@ -218,7 +218,7 @@ def _finite_elements(contact: FiniteElementContact) -> dict[str, Any]:
 
 
 def _finite_body(pair: TwoCylinders) -> dict[str, float]:
-    """In-plane shear, MPa, that a disc pressed along its diameter adds, by body."""
+    """Increase of the in-plane shear of a disc over the half-plane, MPa, by body."""
     return {
         f"body_{number}": in_unit(float(hertz.disc_correction(pair.line_load, radius)), "MPa")
         for number, radius in ((1, pair.radius_1), (2, pair.radius_2))
@@ -226,14 +226,14 @@ def _finite_body(pair: TwoCylinders) -> dict[str, float]:
     }
 
 
-def _conforming(contact: ConformingContact, pair: TwoCylinders) -> dict[str, Any]:
+def _conforming(contact: ConformingContact, pair: TwoCylinders) -> Document:
     def record(angle: float, p0: float) -> dict[str, float]:
         return {"p0_MPa": in_unit(p0, "MPa"), "half_angle_deg": in_unit(angle, "deg")}
 
     persson = None
     if contact.persson_angle is not None and contact.persson_p0 is not None:
         persson = record(contact.persson_angle, contact.persson_p0)
-    friction = "; friction is left out" if pair.friction > 0 else ""
+    friction = "; friction is neglected" if pair.friction > 0 else ""
     return {
         "why": (
             f"half contact angle > {shown(HALF_ANGLE_MAX, 'deg', 3)}: no Hertz contact; "
@@ -245,7 +245,7 @@ def _conforming(contact: ConformingContact, pair: TwoCylinders) -> dict[str, Any
 
 
 def _write_field(path: Path, contact: FiniteElementContact, poissons: tuple[float, float]) -> None:
-    """Stress of both bodies around the contact as VTU: body 1 below y = 0, body 2 above."""
+    """Write the stress of both bodies at the contact as VTU: body 1 below y = 0, body 2 above."""
     from camwright.meshes.mesh_files import write_vtu
 
     meshes, fields = {}, {}
@@ -258,7 +258,7 @@ def _write_field(path: Path, contact: FiniteElementContact, poissons: tuple[floa
 
 
 def _placed(mesh: BodyMesh, size: float, *, upward: bool) -> BodyMesh:
-    """The patch below y = 0 in its size; turned over, with the triangles' sense, for body 2."""
+    """Patch scaled by the half-width; for body 2 mirrored, with the sense of its triangles."""
     if not upward:
         return BodyMesh(mesh.points * size, mesh.triangles, {})
     points = mesh.points * np.array([[size], [-size]])
@@ -266,7 +266,7 @@ def _placed(mesh: BodyMesh, size: float, *, upward: bool) -> BodyMesh:
 
 
 def _fields(of: Array, poisson: float, side: int) -> dict[str, Array]:
-    """Stresses by name, MPa; `side` is the sense of the depth along y."""
+    """Stresses by name, MPa; `side`: sign of the depth along y."""
     xx, yy, xy = of
     in_si = {
         "stress_xx": xx,
