@@ -97,7 +97,7 @@ def main() -> None:
     signed, seconds = cpu(
         lambda: [certificate_point(pair, history, int(k), float(theta[k])) for k in worst]
     )
-    spread = max(spread, *(point.spread_percent / 100 for point in signed))
+    spread = max(spread, *(point.spread for point in signed))
     print(f"certificate, {ANGLES} angles x 3 meshes {seconds:7.2f} s")
     print(f"tier spread at {len(SAMPLED) + ANGLES} positions      {100 * spread:8.3f} %")
     print(f"remesh and solve / cycle tier    {np.mean(full) / per_position:8.0f} times")

@@ -1,6 +1,6 @@
-"""The command `camwright`: arguments in, exit code out. Nothing imports this module.
+"""Command line of `camwright`: parses arguments, runs a command, returns its exit code.
 
-Heavy modules are imported by the command that needs them, so that ``--version`` answers at once.
+Each command imports its heavy modules itself, so that ``--version`` is fast.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from camwright.pipeline.commands import (
 )
 from camwright.pipeline.commands.terminal import ERROR, INTERRUPTED, PASSED, say, stdout
 
-# The work is parallel by processes; set before numpy is imported, it also fixes the sums' order.
+# Parallel by processes; one thread also fixes the order of sums. Set before numpy is imported.
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 
 app = typer.Typer(
     name="camwright",
-    help="From engine torque to a balancing cam with a verdict.",
+    help="Design a torque-balancing cam from the engine torque and check it.",
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -49,14 +49,14 @@ for _command in (
 ):
     app.command()(_command)
 
-_GOES_ON = {
-    "run": "; the same command with --resume goes on",
-    "redesign": "; the same command goes on",
+_RESUMED_BY = {
+    "run": "; run the command again with --resume to resume",
+    "redesign": "; run the command again to resume",
 }
 
 
 def main() -> NoReturn:
-    """Entry point: every error becomes one line and an exit code."""
+    """Entry point: an error becomes one line and exit code 2."""
     arguments = [argument for argument in sys.argv[1:] if argument != "--debug"]
     signal.signal(signal.SIGTERM, _as_interrupt)
     try:
@@ -70,13 +70,15 @@ def main() -> NoReturn:
             raise
         say(_describe(error))
         code = ERROR
-    if code == INTERRUPTED:  # however the parser hands an interrupt on
-        say("interrupted" + _GOES_ON.get(arguments[0] if arguments else "", ""))
+    if code == INTERRUPTED:  # returned or raised by the parser
+        say("interrupted" + _RESUMED_BY.get(arguments[0] if arguments else "", ""))
     sys.exit(code if isinstance(code, int) else PASSED)
 
 
 def _describe(error: Exception) -> str:
-    usage = getattr(error, "format_message", None)  # the parser's own; its class has no fixed home
+    usage = getattr(
+        error, "format_message", None
+    )  # of the parser, whose class has no stable module
     if usage is not None:
         return _one_line(f"{usage()} (--help shows the usage)")
     if isinstance(error, CamError):
@@ -85,7 +87,7 @@ def _describe(error: Exception) -> str:
         place = f"{error.filename}: " if error.filename else ""
         return _one_line(f"{place}{error.strerror or error}")
     kind = type(error).__name__
-    return f"unexpected {kind}: {_one_line(str(error))} (--debug shows where)"
+    return f"unexpected {kind}: {_one_line(str(error))} (--debug shows the traceback)"
 
 
 def _one_line(text: str) -> str:
@@ -107,14 +109,14 @@ def _version(wanted: bool) -> None:
 @app.callback(invoke_without_command=True)
 def _root(
     context: typer.Context,
-    version: Annotated[  # noqa: ARG001 - the callback acts
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show and leave.")
+    version: Annotated[  # noqa: ARG001 - evaluated by its callback
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
     ] = False,
-    debug: Annotated[  # noqa: ARG001 - `main` acts
-        bool, typer.Option("--debug", help="Show where an unexpected error arose.")
+    debug: Annotated[  # noqa: ARG001 - evaluated by `main`
+        bool, typer.Option("--debug", help="Show the traceback of an unexpected error.")
     ] = False,
 ) -> None:
-    """From engine torque to a balancing cam with a verdict."""
+    """Design a torque-balancing cam from the engine torque and check it."""
     if context.invoked_subcommand is None:
         stdout.print(context.get_help(), markup=False)
 

@@ -37,7 +37,7 @@ def contact_error(solution: Solution) -> float | None:
     points = solution.certificate
     if not points:
         return None
-    return float(np.max([p.spread_percent + p.gci_percent for p in points])) / 100.0
+    return float(np.max([p.spread + p.gci for p in points]))
 
 
 def _share(one: Check, contact: float | None, guides: float | None) -> float | None:

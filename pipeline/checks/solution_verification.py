@@ -134,7 +134,7 @@ def _certified(
 )
 def certificate_spread(solution: Solution) -> Demand:
     """Difference of the turn's contact from that on the certificate's meshes, relative."""
-    return _certified(solution, lambda point: point.spread_percent / 100.0, SPREAD)
+    return _certified(solution, lambda point: point.spread, SPREAD)
 
 
 @check(
@@ -149,7 +149,7 @@ def certificate_spread(solution: Solution) -> Demand:
 def certificate_gci(solution: Solution) -> Demand:
     """Error bar of the certificate from three meshes, relative."""
     allowed = solution.machine.limits[MESH_UNCERTAINTY]
-    return _certified(solution, lambda point: point.gci_percent / 100.0, allowed)
+    return _certified(solution, lambda point: point.gci, allowed)
 
 
 def _mesh(

@@ -1,4 +1,4 @@
-"""The verdict of a run, or a preview of a case."""
+"""Command `check`: verdict of a run, or preview of a case."""
 
 from __future__ import annotations
 
@@ -13,26 +13,33 @@ from camwright.pipeline.commands.terminal import FAILED, PASSED, say, show, show
 
 def check(
     target: Annotated[Path, typer.Argument(metavar="DIR|CASE", help="Run folder or case file.")],
-    as_json: Annotated[bool, typer.Option("--json", help="The checks as JSON.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the checks as JSON.")] = False,
     junit: Annotated[
-        Path | None, typer.Option("--junit", metavar="FILE", help="Write JUnit XML for CI.")
+        Path | None, typer.Option("--junit", metavar="FILE", help="Write the checks as JUnit XML.")
     ] = None,
     baseline: Annotated[
-        Path | None, typer.Option("--baseline", metavar="DIR", help="Compare with an earlier run.")
+        Path | None,
+        typer.Option(
+            "--baseline", metavar="DIR", help="Compare with the checks of an earlier run."
+        ),
     ] = None,
     only: Annotated[
-        list[str] | None, typer.Option("--only", help='Ids or patterns such as "guide_*".')
+        list[str] | None, typer.Option("--only", help='Check ids or patterns such as "guide_*".')
     ] = None,
     fail_on: Annotated[
-        str, typer.Option("--fail-on", help="must, open (also not evaluated), any, never.")
+        str,
+        typer.Option(
+            "--fail-on", help="Failure criterion: must, open (also not evaluated), any, never."
+        ),
     ] = "must",
     verify_record: Annotated[
-        bool, typer.Option("--verify-record", help="Compare the files with signoff.json.")
+        bool,
+        typer.Option("--verify-record", help="Compare the files of the run with signoff.json."),
     ] = False,
 ) -> int:
-    """Verdict of a finished run, from its folder alone: exit 0 passed, 1 failed, 2 error.
+    """Print the verdict of a run, or of a preview of a case.
 
-    Of a case file: a preview by closed forms, which never passes.
+    Exit code 0: passed, 1: failed, 2: error. A preview is by closed forms and never passes.
     """
     from camwright.pipeline.results.check_report import failing, selected
     from camwright.pipeline.results.check_report import junit as junit_text
@@ -59,7 +66,7 @@ def check(
 
 
 def _comparable(folder: Path, only: Iterable[str]) -> list[dict[str, Any]]:
-    """Checks of an earlier run, those that a pattern names."""
+    """Checks of an earlier run that match a pattern."""
     from camwright.pipeline.results.check_report import fits
     from camwright.pipeline.results.run_reader import read_verdict
 
@@ -67,7 +74,7 @@ def _comparable(folder: Path, only: Iterable[str]) -> list[dict[str, Any]]:
 
 
 def _as_signed(folder: Path) -> bool:
-    """Whether the files are those that were signed off; names each that is not."""
+    """Whether the files of a run are those of its sign-off; prints each changed file."""
     from camwright.pipeline.results import signoff
 
     changed = signoff.changes(folder)

@@ -1,4 +1,4 @@
-"""Comparisons: smoothers, mechanisms, the papers' published figures."""
+"""Commands `compare`, `validate` and `compare-mechanisms`."""
 
 from __future__ import annotations
 
@@ -21,18 +21,21 @@ _COMPARED = (
 def compare(
     case: CaseArgument,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Write table, figure and page.")
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder for table, figure and page.")
     ] = None,
 ) -> int:
-    """Every smoother on the same case, by closed forms: ripple left, forces, verdict."""
+    """Compare the smoothers on a case by closed forms.
+
+    Prints residual torque, pressure angle, lift, normal force, contact pressure and verdict.
+    """
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.case.load_case_torque import engine_torques
     from camwright.pipeline.studies.smoother_comparison import compared
     from camwright.reports import smoother_page
 
     design = read_case(case)
-    found = list(compared(design, engine_torques(design)))
-    rows = [{"smoother": one.smoother, "words": one.words, **one.record} for one in found]
+    results = list(compared(design, engine_torques(design)))
+    rows = [{"smoother": one.smoother, "words": one.words, **one.record} for one in results]
     for row in rows:
         shown = [f"{row[n]:.4g} {u}" for n, u in _COMPARED if row.get(n) is not None]
         line = f"{row['smoother']} ({row['words']}): {', '.join(shown)}; {row['verdict']}"
@@ -40,7 +43,7 @@ def compare(
     if out is not None:
         lifts = {
             one.smoother if one.smoother == "constrained" else one.words: one.lift.values
-            for one in found
+            for one in results
             if one.lift is not None
         }
         page = smoother_page.write(out, f"{design.name}: smoothers compared", rows, lifts)
@@ -50,10 +53,13 @@ def compare(
 
 def validate(
     out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Where the page is to lie.")
+        Path, typer.Option("--out", metavar="DIR", help="Folder for page and record.")
     ] = Path(),
 ) -> int:
-    """Run the papers' studies again; write validation.html and validation.json."""
+    """Recompute the published values of the papers.
+
+    Writes validation.html and validation.json.
+    """
     from camwright.pipeline.base.files import json_text, write_atomic
     from camwright.pipeline.studies.papers import validate as studies
     from camwright.reports.validation_page import page
@@ -62,19 +68,22 @@ def validate(
     write_atomic(out / "validation.json", json_text(document) + "\n")
     write_atomic(out / "validation.html", page(document))
     counts = ", ".join(f"{name} {number}" for name, number in document["counts"].items())
-    stdout.print(f"{len(document['rows'])} published figures: {counts}", markup=False)
+    stdout.print(f"{len(document['rows'])} published values: {counts}", markup=False)
     stdout.print(f"page: {out / 'validation.html'}", markup=False)
     return PASSED
 
 
 def compare_mechanisms(
-    case: Annotated[Path, typer.Argument(metavar="CASE", help="Case of a comparison (TOML).")],
+    case: Annotated[Path, typer.Argument(metavar="CASE", help="Comparison case (TOML).")],
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Where the figures are to lie.")
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder for the figures.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="The figures as JSON.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
 ) -> int:
-    """Slider-crank against eccentric cam: friction by pair, slip, inertia, workspaces."""
+    """Compare a slider-crank with eccentric cams.
+
+    Friction loss by pair, slip, reduced inertia and workspaces.
+    """
     from camwright.pipeline.studies.papers.mechanism_comparison import compared, lines
     from camwright.reports import mechanism_figures
 

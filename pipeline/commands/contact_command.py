@@ -1,8 +1,7 @@
-"""One contact by itself: two cylinders, or a run's at one angle for another code."""
+"""Commands `contact` (two cylinders) and `deck` (contact of a run for another solver)."""
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Annotated
 
@@ -19,34 +18,45 @@ from camwright.pipeline.commands.terminal import (
 
 
 def contact(
-    r1: Annotated[str, typer.Option(help="Radius of body 1, mm; inf: flat, negative: hollow.")],
-    r2: Annotated[str, typer.Option(help="Radius of body 2, likewise.")],
+    r1: Annotated[str, typer.Option(help="Radius of body 1, mm; inf: flat, negative: concave.")],
+    r2: Annotated[str, typer.Option(help="Radius of body 2, mm.")],
     e1: Annotated[str, typer.Option(help="Young's modulus of body 1, MPa.")],
     nu1: Annotated[float, typer.Option(help="Poisson ratio of body 1.")],
-    e2: Annotated[str | None, typer.Option(help="Of body 2; that of body 1 by default.")] = None,
-    nu2: Annotated[float | None, typer.Option(help="Of body 2; likewise.")] = None,
-    line_load: Annotated[str | None, typer.Option(help="Load over width, N/mm.")] = None,
-    load: Annotated[str | None, typer.Option(help="Load, N, with --width.")] = None,
-    width: Annotated[str | None, typer.Option(help="Width of the contact, mm.")] = None,
-    friction: Annotated[float, typer.Option(help="Of full sliding, over the pressure.")] = 0.0,
-    approach: Annotated[bool, typer.Option("--approach", help="Of the centres as well.")] = False,
-    depth1: Annotated[str | None, typer.Option(help="Approach of this depth, mm.")] = None,
-    depth2: Annotated[str | None, typer.Option(help="Likewise, in body 2.")] = None,
-    field: Annotated[
-        Path | None, typer.Option(metavar="FILE.vtu", help="Write the stress of body 1.")
+    e2: Annotated[
+        str | None, typer.Option(help="Young's modulus of body 2, MPa; default: of body 1.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="The figures as JSON.")] = False,
+    nu2: Annotated[
+        float | None, typer.Option(help="Poisson ratio of body 2; default: of body 1.")
+    ] = None,
+    line_load: Annotated[str | None, typer.Option(help="Line load, N/mm.")] = None,
+    load: Annotated[str | None, typer.Option(help="Normal force, N; needs --width.")] = None,
+    width: Annotated[str | None, typer.Option(help="Width of the contact, mm.")] = None,
+    friction: Annotated[float, typer.Option(help="Friction coefficient of full sliding.")] = 0.0,
+    approach: Annotated[
+        bool, typer.Option("--approach", help="Compute the approach of the centres.")
+    ] = False,
+    depth1: Annotated[
+        str | None, typer.Option(help="Depth of the reference point in body 1, mm.")
+    ] = None,
+    depth2: Annotated[
+        str | None, typer.Option(help="Depth of the reference point in body 2, mm.")
+    ] = None,
+    field: Annotated[
+        Path | None, typer.Option(metavar="FILE.vtu", help="Write the stress of both bodies.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
     no_cache: NoCacheOption = False,
 ) -> int:
-    """Two cylinders in line contact: Hertz beside finite elements with an error bar.
+    """Solve the line contact of two cylinders.
 
-    Every quantity may carry a unit, such as "12.5 mm", "210 GPa", "80 kN/m".
+    By Hertz and by finite elements with an error bar. Quantities may have a unit, such as
+    "12.5 mm", "210 GPa", "80 kN/m".
     """
-    from camwright.pipeline.studies.two_cylinders_document import Asked, lines, solved
+    from camwright.pipeline.studies.two_cylinders_document import Options, lines, solved
 
     use_cache(not no_cache)
-    asked = Asked(r1, r2, e1, e2, nu1, nu2, line_load, load, width, friction, depth1, depth2)
-    document = solved(asked, with_approach=approach, field=field)
+    options = Options(r1, r2, e1, e2, nu1, nu2, line_load, load, width, friction, depth1, depth2)
+    document = solved(options, with_approach=approach, field=field)
     if as_json:
         show_json(document)
     else:
@@ -57,23 +67,30 @@ def contact(
 
 def deck(
     folder: DirArgument,
-    angle: Annotated[str, typer.Option(help="Cam angle, degrees unless it has a unit.")],
+    angle: Annotated[str, typer.Option(help="Cam angle, deg.")],
     load_case: Annotated[
-        str | None, typer.Option("--load-case", help="The first by default.")
+        str | None, typer.Option("--load-case", help="Name of the load case; default: the first.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="FILE.inp", help="Where the deck is to lie.")
+        Path | None, typer.Option("--out", metavar="FILE.inp", help="File of the deck.")
     ] = None,
 ) -> int:
-    """Write the contact at one angle as a CalculiX/Abaqus deck, to be solved by another code."""
+    """Write the contact at one cam angle as an input deck.
+
+    For CalculiX and Abaqus.
+    """
     from camwright.pipeline.base import units
     from camwright.pipeline.results import contact_deck as decks
 
     text = angle if any(c.isalpha() or c == "°" for c in angle) else f"{angle} deg"
     theta = units.parse(text, "deg", "--angle")
-    path = folder / "exports" / f"contact_{math.degrees(theta):07.3f}.inp" if out is None else out
+    path = (
+        folder / "exports" / f"contact_{units.in_unit(theta, 'deg'):07.3f}.inp"
+        if out is None
+        else out
+    )
     path.parent.mkdir(parents=True, exist_ok=True)
     solved = decks.deck(folder, theta, path, load_case)
-    p0 = solved.solution.p0 / 1e6
-    stdout.print(f"deck: {path} (peak pressure {p0:.5g} MPa)", markup=False)
+    p0 = units.shown(solved.solution.p0, "MPa", 5)
+    stdout.print(f"deck: {path} (peak pressure {p0})", markup=False)
     return PASSED

@@ -1,4 +1,4 @@
-"""A measured cam against its drawing."""
+"""Command `inspect`: a measured cam against its drawing."""
 
 from __future__ import annotations
 
@@ -25,32 +25,38 @@ def inspect(
     ],
     tolerance: Annotated[
         str | None,
-        typer.Option(help="Full width of the band of the form; that of the inspection sheet."),
+        typer.Option(help="Width of the tolerance zone, um; default: of the inspection sheet."),
     ] = None,
     keep_phase: Annotated[
-        bool, typer.Option("--keep-phase", help="Angles are the keyway's: run it turned.")
+        bool, typer.Option("--keep-phase", help="Keep the measured angle to the keyway in the run.")
     ] = False,
-    jobs: Annotated[int | None, typer.Option(help="Processes for the certificate.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="The record as JSON.")] = False,
+    jobs: Annotated[
+        int | None, typer.Option(help="Number of processes of the certificate.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
 ) -> int:
-    """Fit a measured cam to its drawing and judge the real part: exit 0 passed, 1 failed."""
+    """Check a measured cam against its drawing.
+
+    Fits the measured points to the contour, solves the measured cam and checks it. Exit code 0:
+    passed, 1: failed, 2: error.
+    """
     from camwright.pipeline.base import units
     from camwright.pipeline.results.run_folder import drawn_cam
     from camwright.pipeline.studies import cam_inspection
     from camwright.reports.inspection_pictures import draw
 
-    asked = None if tolerance is None else units.parse(tolerance, "um", "--tolerance")
-    if asked is not None and not asked > 0:
+    width = None if tolerance is None else units.parse(tolerance, "um", "--tolerance")
+    if width is not None and not width > 0:
         raise InputError("--tolerance", tolerance, "> 0 um")
     points = cam_inspection.read_measured(measured)
     case, contour = drawn_cam(folder)
-    band = case.workshop_order.tolerance if asked is None else asked
+    band = case.workshop_order.tolerance if width is None else width
     with progress_shown() as progress:
         part = cam_inspection.inspect_part(
             case, contour, points, keep_phase=keep_phase, jobs=jobs, progress=progress
         )
     record = cam_inspection.write_inspection(folder, part, band)
-    picture = draw(folder, 1e6 * band)
+    picture = draw(folder, units.in_unit(band, "um"))
     if as_json:
         show_json(record)
     else:

@@ -1,4 +1,4 @@
-"""The catalogues searched for a case: rollers, springs and bushes with the cam drawn for each."""
+"""Command `redesign`: search of the catalogues for rollers, springs and bushes of a case."""
 
 from __future__ import annotations
 
@@ -21,18 +21,21 @@ from camwright.pipeline.commands.terminal import (
 def redesign(
     case: CaseArgument,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Where the points are to lie.")
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder for the points.")
     ] = None,
     against: Annotated[
-        str, typer.Option("--against", help="What ripple is set against: size or mass.")
+        str, typer.Option("--against", help="Second objective besides torque ripple: size or mass.")
     ] = "size",
-    jobs: Annotated[int | None, typer.Option(help="Processes; all cores by default.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="The record as JSON.")] = False,
+    jobs: Annotated[
+        int | None, typer.Option(help="Number of processes; default: number of cores, at most 4.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
 ) -> int:
-    """Rollers, springs and bushes of the catalogues: the least ripple at every size of the cam.
+    """Search the catalogues for the parts of a case.
 
-    Exit 0: there is such a front, 1: no choice keeps all limits, 2: error. What is solved is
-    kept in DIR; the same command goes on where it was stopped.
+    Pareto front of torque ripple and size (or mass) over rollers, springs and bushes, with the cam
+    synthesised for each. Exit code 0: the front has points, 1: no feasible choice, 2: error.
+    Solved points are cached in DIR; run the command again to resume.
     """
     from camwright.pipeline.studies.redesign.redesign_study import RECORD
     from camwright.pipeline.studies.redesign.redesign_study import redesign as searched

@@ -1,4 +1,4 @@
-"""Run a case, report a run again, start a new case."""
+"""Commands `run`, `report` and `init`."""
 
 from __future__ import annotations
 
@@ -26,18 +26,20 @@ TEMPLATE_SUFFIX = ".toml"
 
 def run(
     case: CaseArgument,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the run is to lie.")],
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Run folder to write.")],
     positions: Annotated[
-        int | None, typer.Option(help="Positions per cam turn, instead of the case's.")
+        int | None, typer.Option(help="Positions per cam turn; default: of the case.")
     ] = None,
-    jobs: Annotated[int | None, typer.Option(help="Processes; all cores by default.")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on after an interruption.")] = False,
+    jobs: Annotated[
+        int | None, typer.Option(help="Number of processes; default: number of cores, at most 4.")
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Resume an interrupted run.")] = False,
     replace: Annotated[
-        bool, typer.Option("--replace", help="Write over an earlier run of a case of this name.")
+        bool, typer.Option("--replace", help="Replace an earlier run of a case of this name.")
     ] = False,
     no_cache: NoCacheOption = False,
 ) -> int:
-    """Run a case: torque, lift, contour, mesh, contact, checks, report."""
+    """Run a case and write its run folder."""
     from camwright.pipeline.case.case_file import read_case
 
     use_cache(not no_cache)
@@ -49,7 +51,7 @@ def run(
     if not (resume and _finished(out, design.sha256)):
         from camwright.pipeline.results.run_folder import set_aside
         from camwright.pipeline.run import run_case
-        from camwright.pipeline.studies.papers.valve_train import valve_record
+        from camwright.pipeline.studies.valve_train import valve_record
         from camwright.reports.sections import report
 
         old = set_aside(out, design) if replace else nullcontext()
@@ -71,7 +73,7 @@ def run(
 
 
 def _finished(out: Path, sha256: str) -> bool:
-    """Whether `out` already holds this run, by the same versions: nothing is left to resume."""
+    """Whether a folder holds the finished run of this case and these versions."""
     from camwright.pipeline.results.run_folder import versions
     from camwright.pipeline.results.run_reader import read_summary
 
@@ -86,11 +88,11 @@ def report(
     pdf: Annotated[bool, typer.Option("--pdf", help="Write 8_report.pdf as well.")] = False,
     only: Annotated[
         list[str] | None,
-        typer.Option("--only", metavar="PART", help="This part alone; may be given several times."),
+        typer.Option("--only", metavar="PART", help="Write this part only; may be repeated."),
     ] = None,
-    show: Annotated[bool, typer.Option("--open", help="Show the page when it is there.")] = False,
+    show: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
 ) -> int:
-    """Write the report of a finished run again; nothing is solved."""
+    """Write the report of a finished run; nothing is solved."""
     from camwright.reports import sections
     from camwright.reports.page import PAGE
 
@@ -100,31 +102,31 @@ def report(
         shown.stage("report")
         made = sections.report(folder, sections.chosen(names))
     for name, files in made.items():
-        stdout.print(f"{name}: {_told(files)}", markup=False)
+        stdout.print(f"{name}: {_listed(files)}", markup=False)
     if show:
-        _shown(folder / PAGE)
+        _open(folder / PAGE)
     return PASSED
 
 
-def _told(files: Sequence[Path]) -> str:
-    """The file of a part; of several, their count and folder."""
+def _listed(files: Sequence[Path]) -> str:
+    """File of a part; of several files their number and folder."""
     if len(files) == 1:
         return str(files[0])
-    return f"{len(files)} files in {files[0].parent}" if files else "nothing to show in this run"
+    return f"{len(files)} files in {files[0].parent}" if files else "no data in this run"
 
 
-def _shown(page: Path) -> None:
+def _open(page: Path) -> None:
     import webbrowser
 
     if not page.is_file():
-        raise ResultError(f"{page}: no such page; `camwright report` writes it")
+        raise ResultError(f"{page}: missing; `camwright report` writes it")
     webbrowser.open(page.resolve().as_uri())
 
 
 def init(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the new case.")],
 ) -> int:
-    """Write NAME.toml, a commented case file that runs."""
+    """Write NAME.toml, a commented case file."""
     from camwright.pipeline.case.template import template
 
     name = name.removesuffix(TEMPLATE_SUFFIX)
@@ -134,6 +136,6 @@ def init(
         with path.open("x", encoding="utf-8") as file:
             file.write(text)
     except FileExistsError:
-        raise ResultError(f"{path}: exists already and is left as it is") from None
+        raise ResultError(f"{path}: exists already, not overwritten") from None
     stdout.print(f"wrote {path}; next: camwright run {path} --out runs/{name}", markup=False)
     return PASSED

@@ -1,4 +1,4 @@
-"""What the commands share: exit codes, the two streams, progress, the verdict in words."""
+"""Shared by the commands: exit codes, output streams, progress, text of a verdict."""
 
 from __future__ import annotations
 
@@ -21,32 +21,30 @@ stderr = Console(stderr=True, highlight=False, soft_wrap=True)
 
 CaseArgument = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
 DirArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Run folder.")]
-NoCacheOption = Annotated[
-    bool, typer.Option("--no-cache", help="Neither read nor write what is kept between runs.")
-]
+NoCacheOption = Annotated[bool, typer.Option("--no-cache", help="Do not use the disk cache.")]
 
 
 def say(text: str) -> None:
-    """One line on the error stream."""
-    print(f"camwright: {text}", file=sys.stderr)  # noqa: T201 - rich would read markup in it
+    """Print a line on the error stream."""
+    print(f"camwright: {text}", file=sys.stderr)  # noqa: T201 - rich would parse markup
 
 
 def show_json(document: object) -> None:
-    """A document on the output stream, for machines."""
-    print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - not to be wrapped
+    """Print a document as JSON on the output stream."""
+    print(json.dumps(document, indent=2, ensure_ascii=False))  # noqa: T201 - rich would wrap it
 
 
-def use_cache(wanted: bool) -> None:
-    """Switch off what is kept between runs, unless it is wanted."""
+def use_cache(enabled: bool) -> None:
+    """Switch off the disk cache unless enabled."""
     from camwright.pipeline.base import disk_cache
 
-    if not wanted:
+    if not enabled:
         disk_cache.switch_off()
 
 
 @contextmanager
 def progress_shown() -> Iterator[Progress]:
-    """Bars on a terminal, plain lines where nobody watches; both on the error stream."""
+    """Progress bars on a terminal, plain lines elsewhere; on the error stream."""
     if stderr.is_terminal:
         with Bars(stderr) as bars:
             yield bars
@@ -55,7 +53,7 @@ def progress_shown() -> Iterator[Progress]:
 
 
 def show(document: dict[str, Any], folder: Path | None) -> None:
-    """Checks by utilisation, what else is to be known, then the verdict and the report's place."""
+    """Print checks by utilisation, remarks, verdict and path of the report."""
     from camwright.pipeline.results.check_report import (
         binding_lines,
         consistency_line,

@@ -1,10 +1,10 @@
-"""What a real body adds to the half-plane under a contact load.
+"""Correction of the half-plane field for the boundary and the supports of a real body.
 
-The field of a loaded body is the half-plane's field under the same pressure plus a correction
-that cancels the half-plane's tractions on the real boundary and its displacements where the
-body is held, by force or by springs. The correction is smooth right up to the contact (on a
-circle of radius R the tractions of a point force vanish there), so one coarse mesh, factored
-once, gives it for the contact at every angle.
+The field of a loaded body is that of the half-plane under the same pressure plus a correction,
+which cancels the tractions of the half-plane on the free boundary and its displacements at held
+boundaries and springs. The correction is smooth up to the contact (on a circle of radius R the
+tractions of a point force vanish there): one coarse mesh, factorised once, gives it for the
+contact at every cam angle.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import hashlib
 import sys
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,13 +32,13 @@ from camwright.pipeline.contact.hertz import subsurface_stress
 
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 _BLIND_SHARE = 0.05
-# Contacts worked on together: few enough to stay small.
+# Contacts solved together, limited by memory.
 _BATCH = 180
-# Up to so many contacts the body is not worth condensing.
+# Contacts up to which the full body is faster than its condensation.
 _FEW = 8
-# Surface nodes about a contact that its stress and bending are read from.
+# Surface nodes about a contact for the fit of its stress and bending.
 _NEIGHBOURS = 10
-# The modules whose text decides a correction: a change in one of them makes a new one.
+# Modules whose source enters the cache key.
 RECIPE = (sys.modules[__name__], elastic_body, sparse_factor, halfplane)
 
 
@@ -47,10 +46,9 @@ RECIPE = (sys.modules[__name__], elastic_body, sparse_factor, halfplane)
 class Correction:
     """Correction field of a body per unit line load, at `count` contact points.
 
-    along (count,) stress along the surface, Pa per N/m, the only one there as the surface is
-    free; bend (count,) second derivative of the outward displacement along the surface, 1/m per
-    N/m; along_by_depth (count,) how the stress changes into the body, Pa/m per N/m: without
-    shear a bent surface stretches the layers below it as a beam does.
+    along (count,) stress along the surface, Pa per N/m, the only component on a free surface;
+    bend (count,) second derivative of the outward displacement along the surface, 1/m per N/m;
+    along_by_depth (count,) its derivative by the depth, Pa/m per N/m, by beam bending.
     """
 
     along: Array
@@ -63,7 +61,7 @@ class Correction:
 
 @dataclass(frozen=True, eq=False)
 class LoadedBody:
-    """A body with a free surface that carries the contact, and other free boundaries."""
+    """A body, the free surface with the contact, and its other free boundaries."""
 
     body: ElasticBody
     surface: str
@@ -75,7 +73,7 @@ class LoadedBody:
         return np.hstack([mesh.facet_triples(n) for n in (self.surface, *self.also_free)])
 
     @cached_property
-    def _quadrature(self) -> tuple[Array, Array, Any]:
+    def _quadrature(self) -> tuple[Array, Array, sparse.csr_array]:
         """Points (2, q), outward normals times weights (2, q), shape values (nodes, q)."""
         triples = self._free_facets
         corners = self.body.mesh.points[:, triples]
@@ -84,14 +82,14 @@ class LoadedBody:
         slopes = np.stack([4 * s - 3, 4 * s - 1, 4 - 8 * s])
         points = np.einsum("ckf,kq->cfq", corners, shapes)
         tangents = np.einsum("ckf,kq->cfq", corners, slopes)
-        # The body lies on the left of a facet, so the outward normal is on its right.
+        # The body lies on the left of a facet: the outward normal points to its right.
         outward = np.stack([tangents[1], -tangents[0]]) * (_GAUSS_WEIGHTS / 2)
         facets, per_facet = triples.shape[1], s.size
         columns = np.arange(facets * per_facet).reshape(facets, per_facet)
         rows = np.broadcast_to(triples[:, :, None], (3, facets, per_facet))
         values = np.broadcast_to(shapes[:, None, :], rows.shape)
         columns = np.broadcast_to(columns, rows.shape)
-        entries: Any = (values.ravel(), (rows.ravel(), columns.ravel()))
+        entries = (values.ravel(), (rows.ravel(), columns.ravel()))
         shape = (self.body.mesh.points.shape[1], facets * per_facet)
         operator = sparse.coo_array(entries, shape=shape).tocsr()
         return points.reshape(2, -1), outward.reshape(2, -1), operator
@@ -105,29 +103,32 @@ class LoadedBody:
     def correction(self, contacts: Array, normals: Array) -> Correction:
         """Correction at contact points (2, count) with outward normals (2, count).
 
-        Kept between runs: a body of the same mesh, material and contacts is not solved again.
+        Cached on disk by mesh, supports, material and contacts.
         """
         kept = disk_cache.kept(
-            "body", self._asked(contacts, normals), lambda: self._found(contacts, normals), RECIPE
+            "body",
+            self._key(contacts, normals),
+            lambda: self._displacement_slopes(contacts, normals),
+            RECIPE,
         )
         modulus, bend = self._plane_strain_modulus, kept["bend"]
         return Correction(along=modulus * kept["slope"], bend=bend, along_by_depth=modulus * bend)
 
-    def _asked(self, contacts: Array, normals: Array) -> tuple[object, ...]:
-        """All that decides a correction; the mesh says contour, bore, keyway and hub."""
+    def _key(self, contacts: Array, normals: Array) -> tuple[object, ...]:
+        """Inputs of a correction for the cache key; the mesh holds contour, bore, keyway, hub."""
         body = self.body
         free = np.ascontiguousarray(self._free_facets, dtype="<i8")
         places = np.ascontiguousarray([contacts, normals], dtype="<f8")
         return (
             body.mesh.sha256,
             *(hashlib.sha256(v.tobytes()).hexdigest() for v in (free, body.held_dofs, places)),
-            *self._springs_asked,
+            *self._springs_key,
             (float(body.modulus), float(body.poisson)),
             back_end(),
         )
 
     @property
-    def _springs_asked(self) -> tuple[str, ...]:
+    def _springs_key(self) -> tuple[str, ...]:
         springs = self.body.springs
         if springs is None:
             return ()
@@ -136,63 +137,63 @@ class LoadedBody:
             for part in (springs.ways, springs.stiffness)
         )
 
-    def _found(self, contacts: Array, normals: Array) -> dict[str, Array]:
-        """Slope of the tangential, bend of the outward displacement (count,) at contacts."""
+    def _displacement_slopes(self, contacts: Array, normals: Array) -> dict[str, Array]:
+        """Slope of the tangential and bend of the outward displacement (count,) by name."""
         parts = []
         for start in range(0, contacts.shape[1], _BATCH):
             at, up = contacts[:, start : start + _BATCH], normals[:, start : start + _BATCH]
-            loads, held = self._cancelling(at, up)
+            loads, held = self._cancelling_loads(at, up)
             if contacts.shape[1] <= _FEW:
-                moved = self.body.displacement(loads, held)[:, self._seen]
+                displaced = self.body.displacement(loads, held)[:, self._condensed_nodes]
             else:
-                moved = self._condensed.displacement(loads[:, self._seen], held)
-            parts.append(self._at_contacts(moved, at, up))
+                displaced = self._condensed.displacement(loads[:, self._condensed_nodes], held)
+            parts.append(self._at_contacts(displaced, at, up))
         slope, bend = np.concatenate(parts, axis=1)
         return {"slope": slope, "bend": bend}
 
     @cached_property
-    def _seen(self) -> NDArray[np.int64]:
-        """Nodes that carry the cancelling loads, feel what holds the body or are looked at."""
+    def _condensed_nodes(self) -> NDArray[np.int64]:
+        """Nodes with loads of the correction, next to supports, or on the surface."""
         return np.union1d(np.unique(self._free_facets), self.body.beside_held)
 
     @cached_property
     def _condensed(self) -> CondensedBody:
-        return self.body.condensed(self._seen)
+        return self.body.condensed(self._condensed_nodes)
 
     @property
     def _plane_strain_modulus(self) -> float:
         return self.body.modulus / (1 - self.body.poisson**2)
 
-    def moved(self, contacts: Array, normals: Array) -> Array:
-        """Correction's displacement (2, nodes, count) of the whole body, m per N/m."""
-        return self.body.displacement(*self._cancelling(contacts, normals))
+    def correction_displacement(self, contacts: Array, normals: Array) -> Array:
+        """Displacement (2, nodes, count) of the correction in the whole body, m per N/m."""
+        return self.body.displacement(*self._cancelling_loads(contacts, normals))
 
     def fields(
         self, contacts: Array, normals: Array, line_load: Array, half_width: Array
     ) -> tuple[Array, Array]:
         """Displacement (2, nodes, count) m and stress (3, nodes, count) Pa under contacts.
 
-        contacts, normals (2, count); line_load (count,) N/m, half_width (count,) m, zero where
-        nothing touches. The half-plane part is that of a Hertz pressure, in closed form.
+        contacts (2, count) m, normals (2, count); line_load (count,) N/m, half_width (count,) m,
+        zero without contact. The half-plane part is that of a Hertz pressure in closed form.
         """
         points = self.body.mesh.points
-        moved, nodal = self.correction_fields(contacts, normals)
+        displaced, nodal = self.correction_fields(contacts, normals)
         near = hertz_stress(points, contacts, normals, half_width)
-        x, depth, tangents = _seen_from(points, contacts, normals)
-        # The logarithm of a point force stops where its pressure spreads out.
+        x, depth, tangents = _surface_coordinates(points, contacts, normals)
+        # Within the half-width the point force is replaced by its value at that depth.
         deep = np.where(np.hypot(x, depth) < half_width, half_width, depth)
         touching = line_load > 0
         sideways, down = self._unit_displacement(x, np.where(touching, deep, 1.0))
         settled = sideways * tangents[:, None, :] - down * normals[:, None, :]
         load = np.where(touching, line_load, 0.0)
-        return load * (moved + settled), load * (nodal + near)
+        return load * (displaced + settled), load * (nodal + near)
 
     def correction_fields(self, contacts: Array, normals: Array) -> tuple[Array, Array]:
-        """Correction's displacement (2, nodes, count) and stress (3, nodes, count) per N/m."""
-        moved = self.moved(contacts, normals)
-        nodal = np.zeros((3, *moved.shape[1:]))
-        nodal[:, self._everywhere.nodes] = self._everywhere(moved)
-        return moved, nodal
+        """Displacement (2, nodes, count), m, and stress (3, nodes, count), Pa, per N/m."""
+        displaced = self.correction_displacement(contacts, normals)
+        nodal = np.zeros((3, *displaced.shape[1:]))
+        nodal[:, self._everywhere.nodes] = self._everywhere(displaced)
+        return displaced, nodal
 
     @cached_property
     def _everywhere(self) -> StressRecovery:
@@ -202,15 +203,15 @@ class LoadedBody:
         unit = point_force_displacement(x, depth, self.body.poisson)
         return unit / self._plane_strain_modulus
 
-    def _cancelling(self, contacts: Array, normals: Array) -> tuple[Array, Array]:
-        """Nodal forces and displacements (2, nodes, count) that take the half-plane's away."""
+    def _cancelling_loads(self, contacts: Array, normals: Array) -> tuple[Array, Array]:
+        """Nodal forces and held displacements (2, nodes, count) that cancel the half-plane."""
         points, outward, operator = self._quadrature
         arm = points[:, :, None] - contacts[:, None, :]
         depth = -np.einsum("cqk,ck->qk", arm, normals)
         square = (arm**2).sum(axis=0)
         flux = np.einsum("cqk,cq->qk", arm, outward)
-        # Towards the contact the traction vanishes like its distance; nearer than this it is
-        # less than the round-off in the depth of a boundary that runs along the tangent.
+        # The traction vanishes linearly towards the contact; nearer than this it is below the
+        # round-off in the depth of the boundary.
         near = square < (_BLIND_SHARE * self._facet_length) ** 2
         intensity = np.where(near, 0.0, 2 / np.pi * depth * flux / np.where(near, 1, square) ** 2)
         traction = arm * intensity
@@ -221,27 +222,27 @@ class LoadedBody:
         return loads, -far
 
     def _half_plane_displacement(self, contacts: Array, normals: Array) -> Array:
-        """Displacement (2, nodes, count) of the half-plane field where the body is held."""
+        """Half-plane displacement (2, nodes, count) at held nodes and springs."""
         mesh, body = self.body.mesh, self.body
         nodes = body.held_nodes
         if body.springs is not None:
             nodes = np.union1d(nodes, np.flatnonzero(body.springs.ways.any(axis=(0, 1))))
-        x, depth, tangents = _seen_from(mesh.points[:, nodes], contacts, normals)
+        x, depth, tangents = _surface_coordinates(mesh.points[:, nodes], contacts, normals)
         along, into = self._unit_displacement(x, depth)
         field = np.zeros((2, mesh.points.shape[1], contacts.shape[1]))
         field[:, nodes] = along * tangents[:, None, :] - into * normals[:, None, :]
         return field
 
-    def _at_contacts(self, moved: Array, contacts: Array, normals: Array) -> Array:
-        """Slope of the tangential, bend of the outward displacement (2, count) at contacts.
+    def _at_contacts(self, displaced: Array, contacts: Array, normals: Array) -> Array:
+        """Slope of the tangential and bend of the outward displacement (2, count) at contacts.
 
-        moved (2, m, count) at the nodes seen. A cubic is fitted to the surface nodes
-        about each contact, with weights that fade out, so that nothing jumps when the contact
-        passes a node.
+        displaced (2, m, count) at the condensed nodes. A cubic is fitted to the surface nodes
+        about each contact, with weights that vanish at the outermost one: continuous when the
+        contact passes a node.
         """
         mesh = self.body.mesh
-        surface = np.searchsorted(self._seen, mesh.boundary_nodes(self.surface))
-        points = mesh.points[:, self._seen[surface]]
+        surface = np.searchsorted(self._condensed_nodes, mesh.boundary_nodes(self.surface))
+        points = mesh.points[:, self._condensed_nodes[surface]]
         distance = np.hypot(*(points[:, :, None] - contacts[:, None, :]))
         nearest = np.argpartition(distance, _NEIGHBOURS, axis=0)[: _NEIGHBOURS + 1]
         distance = np.take_along_axis(distance, nearest, axis=0)
@@ -252,7 +253,7 @@ class LoadedBody:
         weights = (1 - (distance / reach) ** 2) ** 2
         terms = np.stack([np.ones_like(x), x, x**2, x**3], axis=-1).transpose(1, 0, 2)
         inverse = np.linalg.pinv(terms * weights.T[:, :, None])
-        near = moved[:, surface[nearest], np.arange(contacts.shape[1])]
+        near = displaced[:, surface[nearest], np.arange(contacts.shape[1])]
         sideways = np.einsum("cmk,ck->km", near, tangents) * weights.T
         outward = np.einsum("cmk,ck->km", near, normals) * weights.T
         slope = np.einsum("km,km->k", inverse[:, 1], sideways) / reach
@@ -263,12 +264,12 @@ class LoadedBody:
 def hertz_stress(points: Array, contacts: Array, normals: Array, half_width: Array) -> Array:
     """Stress xx, yy, xy (3, m, count), 1/m, of a half-plane under Hertz pressures of 1 N/m.
 
-    At points (2, m); the surfaces lie at contacts (2, count) with outward normals (2, count);
-    half_width (count,) m, and where it is not positive there is no stress.
+    At points (2, m), m; surfaces at contacts (2, count), m, with outward normals (2, count);
+    half_width (count,), m; no stress where it is not positive.
     """
-    x, depth, tangents = _seen_from(points, contacts, normals)
+    x, depth, tangents = _surface_coordinates(points, contacts, normals)
     size = np.where(half_width > 0, half_width, np.inf)
-    # A hollow flank rises above the tangent: its points take the stress of the surface.
+    # A concave flank rises above the tangent: depth 0.
     near = subsurface_stress(x / size, np.maximum(depth, 0.0) / size) * (2 / (np.pi * size))
     along, into, shear = near
     t, n = tangents[:, None, :], normals[:, None, :]
@@ -281,8 +282,10 @@ def hertz_stress(points: Array, contacts: Array, normals: Array, half_width: Arr
     )
 
 
-def _seen_from(points: Array, contacts: Array, normals: Array) -> tuple[Array, Array, Array]:
-    """Places along (m, count) and below (m, count) the surfaces, m; tangents (2, count)."""
+def _surface_coordinates(
+    points: Array, contacts: Array, normals: Array
+) -> tuple[Array, Array, Array]:
+    """Coordinates along the surfaces and depths (m, count), m; tangents (2, count)."""
     arm = points[:, :, None] - contacts[:, None, :]
     tangents = np.stack([normals[1], -normals[0]])
     x = np.einsum("cmk,ck->mk", arm, tangents)

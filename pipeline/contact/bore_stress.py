@@ -1,16 +1,16 @@
-"""Stress at the bore and the keyway of the cam, at every angle of the turn.
+"""Stress at the bore and the keyway of the cam over the turn.
 
-The shaft fills the bore and is rigid: the bore does not move. Where the keyway opens into it,
-held and free surface meet at an edge and the exact stress has no bound; what a mesh shows there
-grows with refinement. Such places are counted as any other, and named.
+The shaft is rigid and fills the bore: the bore is held. At the edges of the keyway in the bore,
+held and free surface meet; the exact stress is singular there and that of a mesh grows with
+refinement. These places are included and marked.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.pipeline.contact.body_compliance import LoadedBody
@@ -23,11 +23,11 @@ _BATCH = 90
 
 @dataclass(frozen=True, eq=False)
 class BoreStress:
-    """Greatest von Mises stress (n,), Pa, on bore and keyway, and where.
+    """Maximum von Mises stress (n,), Pa, on bore and keyway, and its place.
 
-    x, y (n,) m in the cam's frame; at_edge (n,) 1 where the place is, to an element, an edge of
-    the keyway at the bore; away_from_edges (n,) Pa, the greatest elsewhere; excluded m, the
-    distance from an edge within which a place counts as at it, 0 without a keyway.
+    x, y (n,) m in the cam frame; at_edge (n,) 1 where the place is an edge of the keyway at the
+    bore, else 0; away_from_edges (n,) Pa, the maximum elsewhere; excluded m, the distance from an
+    edge up to which a place counts as at the edge, 0 without a keyway.
     """
 
     von_mises: Array
@@ -43,9 +43,9 @@ class BoreStress:
 
 
 def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Array) -> BoreStress:
-    """Stress under contacts at points (2, n) with outward normals (2, n), loads (n,) N/m.
+    """Stress of bore and keyway under contacts at points (2, n), m, with outward normals (2, n).
 
-    The contact acts as a line force: the bore lies many half-widths below it.
+    line_load (n,) N/m acts as a line force: the bore lies many half-widths below the contact.
     """
     nodes, by_edge, recovery, excluded = _holes(cam)
     rows = _rows(recovery, nodes)
@@ -53,7 +53,7 @@ def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Arr
     measured = np.empty((nodes.size, contacts.shape[1]))
     for start in range(0, contacts.shape[1], _BATCH):
         part = slice(start, start + _BATCH)
-        own = recovery(cam.moved(contacts[:, part], normals[:, part]))[:, rows]
+        own = recovery(cam.correction_displacement(contacts[:, part], normals[:, part]))[:, rows]
         far = _half_plane(points, contacts[:, part], normals[:, part])
         measured[:, part] = plane_stress_measures.von_mises(
             (own + far) * line_load[part], cam.body.poisson
@@ -70,8 +70,10 @@ def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Arr
     )
 
 
-def _holes(cam: LoadedBody) -> tuple[Any, Any, StressRecovery, float]:
-    """Nodes (m,) of bore and keyway, which lie by an edge, their recovery, and how near that is."""
+def _holes(
+    cam: LoadedBody,
+) -> tuple[NDArray[np.int64], NDArray[np.bool_], StressRecovery, float]:
+    """Nodes (m,) of bore and keyway, those at an edge (m,), stress recovery, edge distance in m."""
     mesh = cam.body.mesh
     bore = mesh.boundary_nodes("bore")
     nodes, by_edge, near = bore, np.zeros(bore.size, dtype=bool), 0.0
@@ -94,7 +96,7 @@ def _holes(cam: LoadedBody) -> tuple[Any, Any, StressRecovery, float]:
 
 
 def _half_plane(points: Array, contacts: Array, normals: Array) -> Array:
-    """Half-plane stress (3, m, k) at points (2, m) under unit forces, in the body's frame."""
+    """Half-plane stress (3, m, k) at points (2, m) under unit line forces, in the body frame."""
     arm = points[:, :, None] - contacts[:, None, :]
     t, n = np.stack([normals[1], -normals[0]]), normals
     x, depth = np.einsum("cmk,ck->mk", arm, t), -np.einsum("cmk,ck->mk", arm, n)
@@ -108,6 +110,6 @@ def _half_plane(points: Array, contacts: Array, normals: Array) -> Array:
     )
 
 
-def _rows(recovery: StressRecovery, nodes: Any) -> Any:
+def _rows(recovery: StressRecovery, nodes: NDArray[np.int64]) -> NDArray[np.intp]:
     order = np.argsort(recovery.nodes)
     return order[np.searchsorted(recovery.nodes, nodes, sorter=order)]

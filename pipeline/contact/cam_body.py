@@ -11,7 +11,7 @@ from camwright.pipeline.base.quantities import Angle, In, Length, Part
 
 @dataclass(frozen=True, kw_only=True)
 class Keyway(Part):
-    """A keyway in the bore; the angle is that of its middle, in the cam frame."""
+    """A keyway in the bore; angle of its centre line in the cam frame."""
 
     fillet: ClassVar[float] = 0.0  # its inner corners are meshed sharp
     table: ClassVar[str] = "cam.keyway"
@@ -23,9 +23,9 @@ class Keyway(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class BalanceHole(Part):
-    """Order for a hole through the cam that removes its unbalance.
+    """Request for a hole through the cam that removes its unbalance.
 
-    wall is the least steel between the hole and contour, bore or keyway.
+    wall: minimum thickness between the hole and contour, bore or keyway.
     """
 
     table: ClassVar[str] = "cam.counter_hole"
@@ -37,8 +37,8 @@ class BalanceHole(Part):
 class CamBody(Part):
     """The cam disc.
 
-    The prime radius is the least distance of the roller's centre from the cam axis; of a flat
-    face it is the base radius. The offset is that of the follower's axis from the cam's.
+    prime_radius: minimum distance of the roller centre from the cam axis, for a flat face the base
+    radius; offset: distance of the follower axis from the cam axis.
     """
 
     table: ClassVar[str] = "cam"
@@ -57,5 +57,5 @@ class CamBody(Part):
 
     @property
     def held_radius(self) -> float:
-        """Greatest radius of the held surface, m: bore and keyway."""
+        """Maximum radius of the held surface, m: bore and keyway."""
         return self.bore_radius + (0.0 if self.keyway is None else self.keyway.depth)

@@ -1,4 +1,4 @@
-"""The certificate: cam and follower in full at one angle, on three meshes."""
+"""Certificate: cam and follower by finite elements at one cam angle, on three meshes."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
 from camwright.meshes.body_mesh import BodyMesh, cam_mesh
 from camwright.meshes.element_size import Sizing
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair, elastic_body
@@ -17,19 +18,19 @@ from camwright.pipeline.contact.elasticity.mesh_convergence import converged
 from camwright.pipeline.contact.elasticity.surface_integrals import ContactFrame
 from camwright.pipeline.contact.full_contact import ContactSide, ContactSolution, solve_contact
 
-# A whole number of edges each time: the contact edge then falls on a knot of every mesh.
+# Whole numbers of edges: the edge of the contact is a knot of every mesh.
 REFINEMENT = 2.0
 EDGES = (4.0, 8.0, 16.0)
-# Equal elements this far from the contact, in half-widths, and their growth beyond. Finer ones
-# move the extrapolated figures by less than 2e-4 and cost half as much again.
+# Distance of equal elements from the contact, in half-widths, and growth beyond. Finer elements
+# change the extrapolated values by less than 2e-4 and take 1.5 times as long.
 _REACH, _GROWTH = 1.8, 0.2
-# Elements far from the contact on the cam: so many to its outline.
+# Elements along the contour at the size far from the contact.
 _FAR_ON_OUTLINE = 50
 
 
 @dataclass(frozen=True, eq=False)
 class SolvedPair:
-    """Meshes of both bodies in the cam's frame and their contact at one angle."""
+    """Meshes of both bodies in the cam frame and their contact at one cam angle (rad)."""
 
     theta: float
     frame: ContactFrame
@@ -43,7 +44,7 @@ class SolvedPair:
 def contact_meshes(
     pair: ContactPair, theta: float, half_width: float, edges: float
 ) -> tuple[BodyMesh, BodyMesh]:
-    """Cam and follower in the cam's frame, `edges` element edges across the half-width."""
+    """Meshes of cam and follower in the cam frame with `edges` element edges per half-width."""
     contact = pair.contour.points(theta)
 
     def sizing(far_size: float) -> Sizing:
@@ -65,16 +66,16 @@ def contact_meshes(
 def solve_pair(
     pair: ContactPair, theta: float, normal_force: float, edges: float = EDGES[1]
 ) -> SolvedPair:
-    """Cam and follower in full at the cam angle theta (rad) under a normal force (N).
+    """Cam and follower by finite elements at a cam angle theta (rad) under a normal force (N).
 
     Raises
     ------
     ContactError
-        If there is no load, or the solution fails.
+        If the load is not positive, or the solution fails.
     """
     load = normal_force / pair.width
     if not load > 0:
-        raise ContactError(f"no load at {np.degrees(theta):.3f} deg, nothing to certify")
+        raise ContactError(f"no load at {shown(theta, 'deg', 6)}: no contact to certify")
     half_width, _ = hertz.line_contact(load, pair.relative_radius(theta), pair.contact_modulus)
     other = pair.follower
     cam, facing = contact_meshes(pair, theta, float(half_width), edges)
@@ -86,7 +87,7 @@ def solve_pair(
     )
 
     def gap(xi: Array) -> Array:
-        return pair.gap(np.array([theta]), xi[None])[0]
+        return np.asarray(pair.gap(np.array([theta]), xi[None])[0])
 
     solution = solve_contact(sides, frame, gap, load, float(half_width))
     return SolvedPair(theta, frame, cam, facing, sides, float(half_width), solution)
@@ -95,7 +96,7 @@ def solve_pair(
 def certificate_point(
     pair: ContactPair, history: ContactHistory, index: int, theta: float
 ) -> CertificatePoint:
-    """Certificate at position `index` of a history, whose cam angle is theta (rad)."""
+    """Certificate at position `index` of a history, at the cam angle theta (rad)."""
     force = float(history.line_load[index]) * pair.width
     solutions = [solve_pair(pair, theta, force, edges).solution for edges in EDGES]
 

@@ -1,4 +1,4 @@
-"""Closed-form contact: Hertz at every angle."""
+"""Contact over the turn in closed form, by Hertz."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from camwright.pipeline.contact.tiers import Tier
 
 
 def closed_form_history(pair: ContactPair, theta: Array, normal_force: Array) -> ContactHistory:
-    """Contact at cam angles theta (n,) rad under normal forces (n,) N by Hertz alone."""
+    """Hertz contact at cam angles theta (n,) rad under normal forces (n,) N."""
     load = np.maximum(normal_force, 0.0) / pair.width
     radius = pair.relative_radius(theta)
     half_width, p0 = hertz.line_contact(load, radius, pair.contact_modulus)

@@ -1,6 +1,6 @@
-"""Two contacts with a known answer, solved again by the very code and libraries of a run.
+"""Benchmarks: two contacts with known solution, solved by the code and libraries of the run.
 
-Kept between runs under the versions of the libraries and the text of the modules that solve them.
+Cached on disk by the versions of the libraries and the source of the modules.
 """
 
 from __future__ import annotations
@@ -41,21 +41,21 @@ _RECIPE = (
 
 
 def benchmarks(roller_radius: float) -> dict[str, float]:
-    """Relative differences from the known answers.
+    """Relative differences from the known solutions.
 
     Parameters
     ----------
-    roller_radius : float    m, that of the case: its own Hertz contact, steel on a steel block
+    roller_radius : float    of the case, m: steel roller on a steel block by Hertz
 
     Returns
     -------
     dict    ``nafems_p0, nafems_half_width, hertz_p0, hertz_half_width``, and the residuals
             ``nafems_residual, hertz_residual``
     """
-    found = disk_cache.kept(
+    differences = disk_cache.kept(
         "benchmarks", float(roller_radius), lambda: _solved(roller_radius), _RECIPE
     )
-    return {name: float(value) for name, value in found.items()}
+    return {name: float(value) for name, value in differences.items()}
 
 
 def _solved(roller_radius: float) -> Mapping[str, Array]:
@@ -64,7 +64,7 @@ def _solved(roller_radius: float) -> Mapping[str, Array]:
     half_width, p0 = (
         float(value) for value in hertz.line_contact(_OWN_LOAD, roller_radius, modulus)
     )
-    # The smaller the contact beside the bodies, the nearer is the half-plane of Hertz.
+    # A block large against the contact approximates the half-plane of Hertz.
     own = disc_on_block(roller_radius, 4.0 * roller_radius, (STEEL, STEEL), _OWN_LOAD)
     return {
         "nafems_p0": np.asarray(nafems[0] / P0 - 1.0),
@@ -79,7 +79,7 @@ def _solved(roller_radius: float) -> Mapping[str, Array]:
 def disc_on_block(
     radius: float, side: float, moduli: tuple[float, float], line_load: float
 ) -> tuple[float, float, float]:
-    """p0 (Pa), half-width (m) and worst residual of a disc pressed on a block, plane strain.
+    """p0 (Pa), half-width (m) and largest residual of a disc on a block in plane strain.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def disc_on_block(
     top = np.argsort(np.hypot(disc.points[0, rim[2]], disc.points[1, rim[2]] - radius))[:4]
     held = BodyMesh(disc.points, disc.triangles, {"rim": rim, "top": rim[:, top]})
     lifted = held.transformed(0.0, (0.0, radius))
-    found = solve_contact(
+    contact = solve_contact(
         (
             ContactSide(ElasticBody(block, moduli[0], NU, "bottom"), "top"),
             ContactSide(ElasticBody(lifted, moduli[1], NU, "top"), "rim"),
@@ -108,5 +108,5 @@ def disc_on_block(
         line_load,
         half_width,
     )
-    residual = max(found.residual_equilibrium, found.residual_complementarity)
-    return found.p0, found.half_width, float(residual)
+    residual = max(contact.residual_equilibrium, contact.residual_complementarity)
+    return contact.p0, contact.half_width, float(residual)

@@ -1,4 +1,4 @@
-"""Contact at every angle of a turn, whichever way it was found."""
+"""Contact quantities over a cam turn, and the certificate at one cam angle."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class ContactHistory:
     """Contact quantities at n cam angles, SI; zero where the surfaces carry no load.
 
     line_load N/m; relative_radius m; p0_hertz, p0 Pa; half_width_hertz, half_width m; tau_max
-    (largest shear in the plane) and von_mises in the cam, Pa, with their depths, m;
-    tau_any_plane the largest shear on any plane, more than tau_max for nu below about 0.25;
-    residual_equilibrium, residual_complementarity, relative; pressure (n, k) Pa at the places
-    pressure_xi (n, k) m along the contact's tangent, straight lines between them. tier is None,
-    and every quantity NaN, where the contour is no body.
+    (maximum in-plane shear) and von_mises in the cam, Pa, with their depths, m; tau_any_plane, the
+    maximum shear on any plane, larger than tau_max for nu below about 0.25; residual_equilibrium,
+    residual_complementarity, relative; pressure (n, k) Pa at pressure_xi (n, k) m along the
+    tangent, piecewise linear. tier is None, and every quantity NaN, where the contour does not
+    bound a body.
     """
 
     line_load: Array
@@ -48,31 +48,31 @@ class ContactHistory:
 
     @property
     def arrays(self) -> dict[str, Array]:
-        """Its quantities by name."""
+        """The quantities by name."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "tier"}
 
     @property
     def unsolved(self) -> NDArray[np.bool_]:
-        """Where the surfaces are not locally flat (bool): wider than a tenth of the radius."""
+        """Where the contact is wider than a tenth of the relative radius (n,), bool: not solved."""
         return np.asarray(np.isnan(self.p0))
 
     @property
     def method(self) -> str:
-        """How it was solved, in words."""
+        """Method of the solution, in words."""
         if self.tier is None:
-            return "none: the contour is no body"
+            return "none: the contour does not bound a body"
         if self.tier is Tier.PREVIEW:
             return "closed form: Hertz line contact"
         count = int(self.unsolved.sum())
         note = (
-            f"; no answer at {count} angles, where the half-width is more than a tenth of the "
-            "relative radius and the surfaces are not locally flat"
+            f"; not solved at {count} angles, where the half-width exceeds a tenth of the relative "
+            "radius and the surfaces are not locally flat"
         )
         return TWO_SCALE + (note if count else "")
 
     @classmethod
     def unknown(cls, count: int) -> ContactHistory:
-        """NaN at every angle: the contact of a contour that is no body."""
+        """NaN at every angle: the contact of a contour that does not bound a body."""
         values = np.full(count, np.nan)
         names = [f.name for f in fields(cls) if f.name != "tier"]
         known = dict.fromkeys(names, values) | dict.fromkeys(
@@ -82,17 +82,17 @@ class ContactHistory:
 
     @property
     def p0_difference(self) -> Array:
-        """Finite elements over Hertz, less one; zero without load."""
+        """p0 by finite elements over p0 by Hertz, less one; zero without load."""
         idle = self.p0_hertz == 0
         return np.where(idle, 0.0, self.p0 / np.where(idle, 1.0, self.p0_hertz) - 1)
 
 
 @dataclass(frozen=True)
 class CertificatePoint:
-    """The full two-body solution at one angle on three meshes, beside the cycle's own.
+    """Both bodies by finite elements at one cam angle on three meshes, and the values of the cycle.
 
-    Convergence of p0 (Pa), half_width (m), tau_max and von_mises (Pa); edges across the
-    half-width and degrees of freedom of each mesh; residuals, the worst of the three.
+    theta rad; convergence of p0 (Pa), half_width (m), tau_max and von_mises (Pa); edges per
+    half-width and degrees of freedom of each mesh; residuals, the largest of the three.
     """
 
     theta: float
@@ -111,18 +111,18 @@ class CertificatePoint:
     residual_complementarity: float
 
     @property
-    def spread_percent(self) -> float:
-        """Largest difference between cycle and certificate of any signed figure, %; a NaN wins."""
+    def spread(self) -> float:
+        """Largest relative difference of cycle and certificate in any figure; NaN if one is."""
         pairs = (
             (self.p0, self.p0_cycle),
             (self.half_width, self.half_width_cycle),
             (self.tau_max, self.tau_max_cycle),
             (self.von_mises, self.von_mises_cycle),
         )
-        return 100 * float(np.max([abs(value / one.extrapolated - 1) for one, value in pairs]))
+        return float(np.max([abs(value / one.extrapolated - 1) for one, value in pairs]))
 
     @property
-    def gci_percent(self) -> float:
-        """Largest grid convergence index of the figures, %; a NaN wins."""
+    def gci(self) -> float:
+        """Largest grid convergence index of the figures, relative; NaN if one is."""
         figures = (self.p0, self.half_width, self.tau_max, self.von_mises)
-        return 100 * float(np.max([figure.gci for figure in figures]))
+        return float(np.max([figure.gci for figure in figures]))

@@ -1,4 +1,4 @@
-"""Cam and follower as a contact pair: shapes, materials, gap."""
+"""Cam and follower in contact: contour, materials, relative radius, gap."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import HoleLike, KeywayLike
 from camwright.geometry.errors import ContactError
 from camwright.meshes.body_mesh import BodyMesh
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, ElasticBody, Springs
 from camwright.pipeline.contact.follower_body import FollowerBody
@@ -19,7 +20,7 @@ from camwright.pipeline.contact.follower_body import FollowerBody
 
 @dataclass(frozen=True, eq=False)
 class ContactPair:
-    """Cam and follower: contour, effective width of the line contact (m), bodies, materials."""
+    """Cam and follower: contour, width of the line contact (m), bore radius (m), materials."""
 
     contour: Contour
     width: float
@@ -31,31 +32,33 @@ class ContactPair:
 
     @property
     def contact_modulus(self) -> float:
+        """E*, Pa."""
         other = self.follower.material
         return hertz.contact_modulus(
             self.cam.modulus, self.cam.poisson, other.modulus, other.poisson
         )
 
     def relative_radius(self, theta: ArrayLike) -> Array:
-        """Relative radius of curvature (...), m; 1/R = 1/r_r + 1/r_c; a face is endlessly round.
+        """Relative radius of curvature R (...), m: 1/R = 1/r_r + 1/r_c; 1/r_r = 0 for a face.
 
         Raises
         ------
         ContactError
-            If the cam is so hollow that the follower does not fit.
+            If the concave radius of the contour is not larger than the roller radius.
         """
         curvature = self.contour.follower_curvature + self.contour.curvature(theta)
         if not (curvature > 0).all():
-            worst = float(np.degrees(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))]))
+            worst = float(np.atleast_1d(theta)[np.argmin(np.atleast_1d(curvature))])
             name = self.follower.name
-            raise ContactError(f"the {name} does not fit the hollow of the cam at {worst:.3f} deg")
+            place = shown(worst, "deg", 6)
+            raise ContactError(f"the {name} does not fit the concave contour at {place}")
         return 1 / curvature
 
     def gap(self, theta: Array, xi: Array) -> Array:
-        """Distance (n, q) between contour and follower, along the normal, before loading.
+        """Distance (n, q), m, of contour and follower along the normal, unloaded.
 
-        theta (n,) rad; xi (n, q) m along the tangent of a contact frame, which runs clockwise,
-        against the contour's own.
+        theta (n,) rad; xi (n, q) m along the tangent of the contact frame, which is opposite to
+        that of the contour.
         """
         return self.contour.follower_gap(xi) - self.contour.surface_offset(theta, -xi)
 
@@ -63,5 +66,5 @@ class ContactPair:
 def elastic_body(
     mesh: BodyMesh, material: Elastic, held: str, springs: Springs | None = None
 ) -> ElasticBody:
-    """A body on its mesh; held nowhere but by its springs where `held` is empty."""
+    """Elastic body on a mesh; supported by springs alone where `held` is empty."""
     return ElasticBody(mesh, material.modulus, material.poisson, held or {}, springs)

@@ -1,10 +1,10 @@
-"""The contact patch: a finite-element template, computed once and used at every angle.
+"""Contact patch: finite-element template of a half-plane, solved once for all cam angles.
 
-A half-disc in units of the half-width, forty half-widths across, so that its compliance and
-stresses serve any size and load. Its arc moves as the half-plane does, which leaves nothing to
-truncate. What the real body adds (its own boundary, bore and support) is smooth and is put on
-by `body_compliance`. Normal pressures only: what the tangential stiffness of unlike
-materials (Dundurs' beta) would add is left out, here as in the certificate.
+A half-disc with a radius of forty half-widths, in units of the half-width: compliance and stresses
+hold for any size and load. Its arc has the displacement of the half-plane, so that there is no
+truncation error. The effect of boundary, bore and supports of the real body is smooth and is added
+by `body_compliance`. Frictionless: the coupling of unlike materials (Dundurs' beta) is neglected,
+as in the certificate.
 """
 
 from __future__ import annotations
@@ -48,9 +48,9 @@ _RADIUS = 40.0
 _WINDOW = 1.4
 STRESS_REACH = 1.6
 ELEMENTS_PER_HALF_WIDTH = 16
-# Across a contact, linear functions under an ellipse: as many as overshoot nowhere.
+# Piecewise-linear functions times the ellipse across a contact; more of them would overshoot.
 _ELLIPTIC = 17
-# The modules whose text decides a template: a change in one of them makes a new one.
+# Modules whose source enters the cache key.
 RECIPE = (
     *(sys.modules[__name__], body_mesh, gmsh_mesher, element_size, outline),
     *(elastic_body, sparse_factor, halfplane, pressure_distribution, surface_integrals),
@@ -59,13 +59,11 @@ RECIPE = (
 
 @dataclass(frozen=True, eq=False)
 class ContactPatch:
-    """Half-plane under unit linear pressures, by finite elements, for one Poisson ratio.
+    """Half-plane under unit linear pressures by finite elements, for one Poisson ratio.
 
-    Lengths in half-widths, stresses in pressures, displacements in pressure times half-width
-    over the plane-strain modulus E / (1 - nu^2).
-
-    knots (n + 2,), compliance (n, n) weighted settlement, points (2, m) along and depth,
-    stress (3, m, n), dofs.
+    Lengths over half-width, stresses over pressure, displacements over pressure times half-width
+    over plane-strain modulus E / (1 - nu^2): knots (n + 2,), compliance (n, n) weighted
+    settlement, points (2, m) along the surface and depth, stress (3, m, n), dofs.
     """
 
     poisson: float
@@ -81,10 +79,12 @@ class ContactPatch:
 
     @property
     def shapes(self) -> PressureShapes:
+        """Linear pressure shapes on the knots."""
         return PressureShapes(self.knots)
 
     @cached_property
     def peaks(self) -> PeakFinder:
+        """Maxima of stress fields on the points."""
         return PeakFinder(self.points)
 
 
@@ -92,7 +92,7 @@ class ContactPatch:
 def contact_patch(
     poisson: float, elements_per_half_width: int = ELEMENTS_PER_HALF_WIDTH
 ) -> ContactPatch:
-    """The template for a material, see `ContactPatch`; kept between runs."""
+    """Template of a Poisson ratio, see `ContactPatch`; cached on disk."""
     arrays = disk_cache.kept(
         "patch",
         (float(poisson), int(elements_per_half_width)),
@@ -106,7 +106,7 @@ def contact_patch(
 def patch_body(
     poisson: float, elements_per_half_width: int
 ) -> tuple[ElasticBody, ContactFrame, PressureShapes]:
-    """The half disc of a template, its contact frame and the pressures on it."""
+    """Half-disc of a template, its contact frame and pressure shapes."""
     size = 1 / elements_per_half_width
     mesh = half_disc_mesh(
         _RADIUS,
@@ -116,7 +116,7 @@ def patch_body(
     )
     body = ElasticBody(mesh, modulus=1 - poisson**2, poisson=poisson, held="arc")
     frame = ContactFrame(np.zeros(2), np.array([0.0, 1.0]))
-    # Knots at the ends and middles of facets, as in the certificate.
+    # Knots at ends and middles of facets, as in the certificate.
     count = round(2 * _WINDOW / size)
     return body, frame, PressureShapes(readonly(np.arange(-count, count + 1) * (size / 2)))
 
@@ -131,7 +131,7 @@ def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
     recovery = StressRecovery(body, elements_near(body, frame.origin, STRESS_REACH))
     points = mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]])
     nodal = recovery(displacement)
-    # Seen from above the depth axis is turned over, and with it the sign of the shear.
+    # Depth is counted into the body, opposite to y: the shear changes sign.
     nodal[2] *= -1
     return {
         "knots": shapes.knots,
@@ -143,25 +143,25 @@ def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
 
 
 def _far_displacement(points: Array, shapes: PressureShapes, poisson: float) -> Array:
-    """Half-plane displacement (2, nodes, n) far from each pressure shape."""
+    """Half-plane displacement (2, nodes, n) of each pressure shape, far from it."""
     xi, weights = shapes.quadrature()
     weighted = shapes.values(xi) * weights
     far = np.hypot(*points) > 0.9 * _RADIUS
     field = np.zeros((2, points.shape[1], shapes.centres.size))
     x, depth = points[0, far], -points[1, far]
-    moved = point_force_displacement(
+    displaced = point_force_displacement(
         x[:, None] - xi, np.broadcast_to(depth[:, None], (x.size, xi.size)), poisson
     )
-    field[:, far] = moved @ weighted.T * np.array([1.0, -1.0])[:, None, None]
+    field[:, far] = displaced @ weighted.T * np.array([1.0, -1.0])[:, None, None]
     return field
 
 
 @dataclass(frozen=True, eq=False)
 class PatchContacts:
-    """Contact at `count` positions, in the units of each position's Hertz solution.
+    """Contact at `count` positions, over the Hertz p0 and half-width of each position.
 
-    pressure (count, n) at the knots, with edges of an ellipse where the contact is one; p0,
-    half_width, centre (count,), residuals (count,).
+    pressure (count, n) at the knots, elliptic at the edges where the contact is one ellipse; p0,
+    half_width, centre (count,); residuals (count,).
     """
 
     pressure: Array
@@ -175,7 +175,7 @@ class PatchContacts:
 def solve_patches(
     patches: tuple[ContactPatch, ContactPatch], shares: tuple[float, float], gap: ArrayLike
 ) -> PatchContacts:
-    """Pressures at many positions at once.
+    """Contact of two patches at many positions at once.
 
     Parameters
     ----------
@@ -203,8 +203,8 @@ def solve_patches(
     outside = (solution.pressure[:, 0] > 0) | (solution.pressure[:, -1] > 0)
     if outside.any():
         raise ContactError(
-            f"at {int(outside.sum())} positions the contact is wider than {_WINDOW} Hertz "
-            "half-widths: the surfaces are not locally cylindrical there"
+            f"contact wider than {_WINDOW} Hertz half-widths at {int(outside.sum())} positions: "
+            "the surfaces are not locally cylindrical"
         )
     ellipses = fitted_ellipses(shapes, solution.pressure)
     elliptic = _elliptic_pressure(shapes, compliance, weighted_gap, ellipses)
@@ -220,22 +220,22 @@ def solve_patches(
 
 
 def _one_ellipse(shapes: PressureShapes, pressure: Array, ellipses: Ellipses) -> NDArray[np.bool_]:
-    """Where (count,) the knots that carry follow each other and end with the fitted ellipse."""
+    """Where (count,) the loaded knots are contiguous and end at the fitted ellipse, bool."""
     carrying = pressure > 0
     first, last = carrying.argmax(axis=1), carrying.shape[1] - 1 - carrying[:, ::-1].argmax(axis=1)
     low, high = (ellipses.centre + side * ellipses.half_width for side in (-1, 1))
     apart = np.maximum(np.abs(shapes.centres[first] - low), np.abs(shapes.centres[last] - high))
     step = float(np.diff(shapes.knots).max())
-    return (carrying.sum(axis=1) == last - first + 1) & (apart <= 2 * step)
+    return np.asarray((carrying.sum(axis=1) == last - first + 1) & (apart <= 2 * step))
 
 
 def _elliptic_pressure(
     shapes: PressureShapes, compliance: Array, weighted_gap: Array, ellipses: Ellipses
 ) -> Array:
-    """Pressures (count, n) of the contacts found, among those that end as their ellipses do.
+    """Pressures (count, n) at the knots as linear functions times the fitted ellipse.
 
-    Linear pressures overshoot by 9 % at their last knot. Here a few linear functions times the
-    ellipse, read at the knots, close the gap in the mean under the same force.
+    Linear pressures overshoot by 9 % at their last knot. The elliptic ones have zero gap in the
+    mean over each function, under the same force.
     """
     count, few = weighted_gap.shape[0], _ELLIPTIC
     at = (shapes.centres - ellipses.centre[:, None]) / ellipses.half_width[:, None]

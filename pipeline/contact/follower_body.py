@@ -1,4 +1,4 @@
-"""The body of the follower that touches the cam: a roller or the block of a flat face."""
+"""Body of the follower in contact with the cam: roller or block of a flat face."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from camwright.meshes.body_mesh import BodyMesh, face_mesh, roller_mesh
 from camwright.meshes.element_size import Sizing
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, Springs
 
-# What a body adds varies over its wall's thickness; fewer would smooth it away.
+# The correction field of a body varies over the thickness of its wall.
 EDGES_ACROSS_WALL = 4
-# Of a face: what bends it under a push beside the stem varies over its thickness.
+# The bending of a face under a force beside the stem varies over its thickness.
 _EDGES_ACROSS_FACE = 8
 _EDGES_ALONG_FACE = 60
 
 
 class FollowerBody(Protocol):
-    """What the contact asks of the second body.
+    """Second body of the contact.
 
-    `name` is that of the body in files, `surface` and `held` are those boundaries of its mesh
-    that touch the cam and that hold it, `free` others that carry nothing. Where `held` is empty
-    `springs` hold it.
+    `name` names the body in files; `surface` is the boundary of its mesh in contact with the cam,
+    `held` the held one, `free` are the unloaded ones. Where `held` is empty, `springs` support the
+    body.
     """
 
     @property
@@ -40,29 +40,29 @@ class FollowerBody(Protocol):
     def free(self) -> tuple[str, ...]: ...
     @property
     def far_size(self) -> float:
-        """Element size far from the contact of a certificate, m."""
+        """Element size far from the contact in a certificate, m."""
         ...
 
     def coarse_mesh(self) -> BodyMesh:
-        """Mesh in the body's own frame for the contact anywhere on it."""
+        """Mesh in the frame of the body, of uniform size."""
         ...
 
     def contacts(self, contour: Contour, theta: Array, /) -> tuple[Array, Array]:
-        """Contacts (2, n) and outward normals (2, n) on it, (2, 1) where all are alike."""
+        """Contact points (2, n), m, and outward normals (2, n); (2, 1) where all are equal."""
         ...
 
     def mesh_at(self, contour: Contour, theta: float, sizing: Sizing) -> BodyMesh:
-        """Mesh in the cam's frame, fine at the contact."""
+        """Mesh in the cam frame, refined at the contact."""
         ...
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> Springs | None:
-        """What holds it besides, on its mesh at a cam angle; no contour: in its own frame."""
+        """Spring supports on its mesh at a cam angle; contour None: in the frame of the body."""
         ...
 
 
 @dataclass(frozen=True)
 class RollerBody:
-    """A roller, held at its hub; radii in m."""
+    """A roller held at its hub; radii in m."""
 
     radius: float
     hub_radius: float
@@ -82,7 +82,7 @@ class RollerBody:
         return roller_mesh(self.radius, self.hub_radius, 0.5 * np.pi, size)
 
     def contacts(self, _contour: Contour, _theta: Array, /) -> tuple[Array, Array]:
-        """One place for all: a roller is round."""
+        """The top of the roller, for every cam angle."""
         return np.array([[0.0], [self.radius]]), np.array([[0.0], [1.0]])
 
     def mesh_at(self, contour: Contour, theta: float, sizing: Sizing) -> BodyMesh:
@@ -92,15 +92,15 @@ class RollerBody:
         return mesh.transformed(0.0, contact + self.radius * normal)
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> None:
-        """None: the hub holds it."""
+        """None: it is held at the hub."""
 
 
 @dataclass(frozen=True)
 class FaceBody:
-    """The block of a flat face, centred on the stem and held where the stem stands on its back.
+    """The block of a flat face, centred on the stem and held at the stem on its back.
 
-    Its frame has the middle of the face as origin and looks along y at the cam; x runs along v of
-    the cam's angle. width along the face in the plane of motion, thickness along the stem, m.
+    The frame has its origin in the middle of the face, y towards the cam and x along the face.
+    width along the face in the plane of motion, thickness along the stem, m.
     """
 
     width: float
@@ -125,7 +125,7 @@ class FaceBody:
         return face_mesh(self.width, self.thickness, self.stem_diameter, Sizing(far_size=size))
 
     def contacts(self, contour: Contour, theta: Array, /) -> tuple[Array, Array]:
-        """At s' - e along the face."""
+        """Contact at s' - e along the face."""
         along = contour.pitch.push_arm(theta)
         nothing, one = np.zeros_like(along), np.ones_like(along)
         return np.stack([along, nothing]), np.stack([nothing, one])
@@ -138,4 +138,4 @@ class FaceBody:
         return mesh.transformed(theta + 0.5 * np.pi, middle)
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> None:
-        """None: the stem holds it."""
+        """None: it is held at the stem."""

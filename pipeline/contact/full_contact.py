@@ -1,13 +1,13 @@
-"""Two bodies in contact by finite elements, nothing assumed but linear elasticity.
+"""Contact of two linear elastic bodies by finite elements.
 
-Second-order bodies, continuous linear pressure on the facets of one surface, integrals split at
-the knots and facets of both, the gap from the true shapes and not from the facets, the bodies
-condensed to a compliance of the pressures, complementarity solved exactly under the given load.
-Linear pressures find the contact and overshoot at its edge; within the contact found they are
-then multiplied by an ellipse, which ends as a contact pressure does.
+Quadratic elements; continuous piecewise-linear pressure on the facets of one surface; integrals
+split at the knots and facets of both; the gap of the exact contours; bodies condensed to the
+compliance of the pressures; complementarity under the prescribed load. Linear pressures give the
+extent of the contact and overshoot at its edge; within that extent they are then multiplied by an
+ellipse, the edge behaviour of a contact pressure.
 
-Frictionless: the surfaces may slide past each other, also where unlike materials would drag each
-other along (Dundurs' beta is not felt), and pressures act along the one normal of the frame.
+Frictionless, so that the coupling of unlike materials (Dundurs' beta) is neglected; pressures act
+along the normal of the frame.
 """
 
 from __future__ import annotations
@@ -45,14 +45,14 @@ from camwright.pipeline.contact.elasticity.surface_integrals import (
     normal_loads,
 )
 
-# Pressures are sought within this many half-widths of the centre.
+# Half-width of the window of the pressures, in Hertz half-widths.
 _WINDOW = 1.4
-# Stresses are recovered within this many half-widths of the contact.
+# Radius of stress recovery about the contact, in Hertz half-widths.
 _STRESS_REACH = 2.0
 _EQUILIBRIUM = 1e-8
-# The second moment of a pressure cut off wrongly is off in the second order alone.
+# The error of the second moment is of second order in that of the edges.
 _EDGE_UPDATES = 2
-# Overlap next to the contact over the opening at the window's end, by round-off and mesh.
+# Overlap beside the contact over the largest gap, by round-off and mesh.
 _OVERLAP = 1e-3
 
 
@@ -68,11 +68,10 @@ class ContactSide:
 class ContactSolution:
     """Contact of two bodies under a line load.
 
-    xi (k,) m and pressure (k,) Pa at the knots; p0, centre and half_width of the ellipse fitted
-    to it; tau_max, von_mises and their depths below the contact in body 1
-    (Pa, m); displacements (2, nodes) m of both bodies; equilibrium and complementarity
-    residuals, relative. Where the pressure could not be given elliptic edges, `linear_because`
-    says why; it is empty elsewhere.
+    xi (k,) m and pressure (k,) Pa at the knots; p0, centre and half_width of the fitted ellipse;
+    tau_max, von_mises and their depths in body 1 (Pa, m); displacements (2, nodes) m of both
+    bodies; residuals of equilibrium and complementarity, relative. `linear_because` is the reason
+    for a pressure without elliptic edges, empty for an elliptic one.
     """
 
     xi: Array
@@ -105,7 +104,7 @@ def solve_contact(
     pressure_on: int = 0,
     shapes: PressureShapes | None = None,
 ) -> ContactSolution:
-    """Contact pressures, stresses and displacements of two bodies.
+    """Pressure, stress and displacement of two bodies in contact.
 
     Parameters
     ----------
@@ -114,8 +113,8 @@ def solve_contact(
     gap : function xi -> array     distance of the undeformed surfaces along the normal, m
     line_load : float              N/m, > 0
     half_width : float             Hertz half-width that sets the window, m
-    pressure_on : int              the side whose surface nodes are the pressure knots
-    shapes : PressureShapes        knots of the caller's choice instead
+    pressure_on : int              index of the side whose surface nodes are the pressure knots
+    shapes : PressureShapes        pressure shapes to use instead
 
     Raises
     ------
@@ -134,9 +133,9 @@ def solve_contact(
         shapes = PressureShapes(knots_of(chosen.body.mesh, chosen.surface, frame, reach))
     seen = (_LoadedNodes.of(sides[0], frame, shapes), _LoadedNodes.of(sides[1], frame, shapes))
     linear = _pressed(seen, shapes, gap, line_load, np.abs(shapes.centres) < half_width)
-    found = linear.solution.pressure[0]
-    if not shapes.open_ends and (found[0] > 0 or found[-1] > 0):
-        raise ContactError("the contact is wider than the window it was sought in")
+    linear_pressure = linear.solution.pressure[0]
+    if not shapes.open_ends and (linear_pressure[0] > 0 or linear_pressure[-1] > 0):
+        raise ContactError("contact wider than the window of its pressure knots")
     pressed, linear_because = _with_elliptic_edges(linear, gap, line_load)
     seen, solution = pressed.seen, pressed.solution
     pressure = solution.pressure[0]
@@ -146,14 +145,14 @@ def solve_contact(
     if not equilibrium <= _EQUILIBRIUM:
         raise ContactError(f"equilibrium = {equilibrium:.1e}, must be <= {_EQUILIBRIUM:.0e}")
     ellipse = pressed.ellipse
-    width = float(ellipse.half_width[0])
-    peak = _peak_stress(sides[0].body, displacements[0], frame, width)
+    fitted = float(ellipse.half_width[0])
+    peak = _peak_stress(sides[0].body, displacements[0], frame, fitted)
     return ContactSolution(
         xi=shapes.centres,
         pressure=pressed.shapes.values(shapes.centres).T @ pressure,
         p0=float(ellipse.p0[0]),
         centre=float(ellipse.centre[0]),
-        half_width=width,
+        half_width=fitted,
         tau_max=peak[0],
         tau_depth=peak[1],
         von_mises=peak[2],
@@ -183,15 +182,17 @@ class _LoadedNodes:
         return cls(side, frame, side.body.condensed(nodes), loads[:, nodes])
 
     def under(self, shapes: EllipticShapes) -> _LoadedNodes:
-        """The same nodes under other pressures within those of before."""
+        """The same nodes under pressure shapes within the former window."""
         loads = normal_loads(self.side.body.mesh, self.side.surface, self.frame, shapes)
         return replace(self, loads=loads[:, self.body.nodes])
 
     @property
     def compliance(self) -> Array:
         """Weighted surface displacement (n, n) per pressure."""
-        found = np.tensordot(self.loads, self.body.displacement(self.loads), axes=([0, 1], [0, 1]))
-        return (found + found.T) / 2
+        weighted = np.tensordot(
+            self.loads, self.body.displacement(self.loads), axes=([0, 1], [0, 1])
+        )
+        return (weighted + weighted.T) / 2
 
     def displacement(self, pressure: Array) -> Array:
         """Displacement (2, nodes) of the whole body."""
@@ -200,7 +201,7 @@ class _LoadedNodes:
 
 @dataclass(frozen=True, eq=False)
 class _Pressed:
-    """Both bodies under the pressures found with some shapes."""
+    """Both bodies under the contact pressures of some shapes."""
 
     seen: tuple[_LoadedNodes, _LoadedNodes]
     shapes: PressureShapes | EllipticShapes
@@ -208,13 +209,14 @@ class _Pressed:
 
     @cached_property
     def ellipse(self) -> Ellipses:
+        """Ellipse fitted to the pressure."""
         return fitted_ellipses(self.shapes, self.solution.pressure)
 
     @property
     def edges(self) -> Array:
         """Ends (2,) of the fitted ellipse, m."""
         reach = self.ellipse.half_width[0]
-        return self.ellipse.centre[0] + np.array([-reach, reach])
+        return np.asarray(self.ellipse.centre[0] + np.array([-reach, reach]))
 
 
 def _pressed(
@@ -238,9 +240,9 @@ def _pressed(
 def _with_elliptic_edges(
     linear: _Pressed, gap: Callable[[Array], Array], line_load: float
 ) -> tuple[_Pressed, str]:
-    """The contact again with pressures that end as an ellipse; else as it was, and why.
+    """Contact with elliptic edges; the linear one and the reason where it has none.
 
-    On every second knot: as fine as the displacements can follow.
+    On every second knot, the resolution of the displacements.
     """
     shapes = linear.shapes
     if not isinstance(shapes, PressureShapes) or shapes.open_ends:
@@ -249,27 +251,27 @@ def _with_elliptic_edges(
     carrying = np.flatnonzero(linear.solution.pressure[0] > 0)
     ends = shapes.centres[carrying[[0, -1]]]
     if np.diff(carrying).max() > 1 or np.abs(ends - linear.edges).max() > 2 * step:
-        return linear, "the contact is no single ellipse"
-    found = linear
+        return linear, "the contact is not a single ellipse"
+    elliptic = linear
     for _ in range(_EDGE_UPDATES):
-        cut = EllipticShapes.within(shapes.knots[::2], found.edges)
+        cut = EllipticShapes.within(shapes.knots[::2], elliptic.edges)
         seen = (linear.seen[0].under(cut), linear.seen[1].under(cut))
-        found = _pressed(seen, cut, gap, line_load)
-    if not _overlap(linear, found, gap) <= _OVERLAP:
+        elliptic = _pressed(seen, cut, gap, line_load)
+    if not _overlap(linear, elliptic, gap) <= _OVERLAP:
         return linear, "the surfaces would overlap beside the ellipse"
-    return found, ""
+    return elliptic, ""
 
 
-def _overlap(linear: _Pressed, found: _Pressed, gap: Callable[[Array], Array]) -> float:
-    """Deepest overlap beside the contact over the widest gap, both weighed by linear shapes."""
-    shapes, pressure = linear.shapes, found.solution.pressure[0]
+def _overlap(linear: _Pressed, elliptic: _Pressed, gap: Callable[[Array], Array]) -> float:
+    """Maximum overlap beside the contact over the maximum gap, both weighted by linear shapes."""
+    shapes, pressure = linear.shapes, elliptic.solution.pressure[0]
     xi, weights = shapes.quadrature()
     apart = shapes.integrated(gap(xi), xi, weights)
-    for before, after in zip(linear.seen, found.seen, strict=True):
-        moved = before.body.displacement((after.loads @ pressure)[:, :, None])[:, :, 0]
-        apart += np.tensordot(before.loads, moved, axes=([0, 1], [0, 1]))
-    apart -= found.solution.approach[0] * shapes.integrals
-    low, high = found.edges
+    for before, after in zip(linear.seen, elliptic.seen, strict=True):
+        displaced = before.body.displacement((after.loads @ pressure)[:, :, None])[:, :, 0]
+        apart += np.tensordot(before.loads, displaced, axes=([0, 1], [0, 1]))
+    apart -= elliptic.solution.approach[0] * shapes.integrals
+    low, high = elliptic.edges
     beside = (shapes.knots[2:] <= low) | (shapes.knots[:-2] >= high)
     return float(-apart[beside].min() / apart.max())
 
@@ -277,7 +279,7 @@ def _overlap(linear: _Pressed, found: _Pressed, gap: Callable[[Array], Array]) -
 def _peak_stress(
     body: ElasticBody, displacement: Array, frame: ContactFrame, half_width: float
 ) -> tuple[float, float, float, float]:
-    """Largest in-plane shear and von Mises stress near the contact, and their depths."""
+    """Maximum in-plane shear, its depth, maximum von Mises stress, its depth; Pa, m."""
     recovery = StressRecovery(body, elements_near(body, frame.origin, _STRESS_REACH * half_width))
     nodal = recovery(displacement[:, :, None])
     points = body.mesh.points[:, recovery.nodes]

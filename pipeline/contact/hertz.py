@@ -1,27 +1,26 @@
-"""Hertz line contact in closed form: the yardstick at every angle.
+"""Hertz line contact and its subsurface stress in closed form.
 
-Coordinates of the subsurface field are those of the half-plane: `x` along the surface,
-`depth` into the solid, both in half-widths, stresses in peak pressures.
+Subsurface fields: `x` along the surface and `depth` into the solid over the half-width, stresses
+over the peak pressure.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from camwright.geometry.arrays import Array, finite, positive
+from camwright.geometry.arrays import Array, Values, finite, positive
 from camwright.geometry.errors import InputError
 from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_any_plane, von_mises
 
 # In-plane maximum shear under a frictionless line contact (Johnson 1985, sec. 4.2(a)),
-# the root of the axis field carried to more digits than are printed there.
+# with more digits than printed there.
 SHEAR_MAX = 0.300283106
 SHEAR_MAX_DEPTH = 0.786151366
-# The pressure over the contact, p/p0 at x/a, as far as straight lines can draw it.
+# Hertz pressure p/p0 at x/a, for piecewise-linear records.
 ELLIPSE_XI = np.cos(np.linspace(np.pi, 0.0, 65))
 ELLIPSE = np.sqrt(1 - ELLIPSE_XI**2)
 
@@ -83,8 +82,8 @@ def line_contact(
     return half_width, np.sqrt(peak_pressure_square(load, 1 / radius, stiffness))
 
 
-def peak_pressure_square(line_load: Any, curvature: Any, modulus: float) -> Any:
-    """p0^2 (...), Pa^2, at the curvature 1/R = 1/R1 + 1/R2, 1/m; linear in load and curvature."""
+def peak_pressure_square(line_load: Values, curvature: Values | float, modulus: float) -> Values:
+    """p0^2 (...), Pa^2, at the curvature 1/R = 1/R1 + 1/R2, 1/m."""
     return line_load * curvature * (modulus / np.pi)
 
 
@@ -102,8 +101,8 @@ def subsurface_stress(x: ArrayLike, depth: ArrayLike, friction: float = 0.0) -> 
 
     References
     ----------
-    McEwen (1949) as given by Johnson, Contact Mechanics (1985), eqs. 4.49 and 7.3; the shear
-    has the sign that equilibrium asks of a depth counted into the solid.
+    McEwen (1949), in Johnson, Contact Mechanics (1985), eqs. 4.49 and 7.3; sign of the shear for a
+    depth into the solid.
     """
     x, z = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(depth, dtype=float))
     a_term = 1 - x**2 + z**2
@@ -127,27 +126,27 @@ def subsurface_stress(x: ArrayLike, depth: ArrayLike, friction: float = 0.0) -> 
 
 @lru_cache(maxsize=32)
 def von_mises_peak(poisson: float) -> tuple[float, float]:
-    """Largest von Mises stress under a frictionless contact over p0, and its depth over a.
+    """Maximum von Mises stress under a frictionless contact over p0, and its depth over a.
 
-    Sought on the axis, from the surface down: for small nu the surface itself is the place.
+    The maximum on the axis; for small nu it is at the surface.
     """
 
     def falling(depth: float) -> float:
         return -float(von_mises(subsurface_stress(0.0, depth), poisson))
 
-    found = minimize_scalar(falling, bounds=(0.3, 2.0), method="bounded", options={"xatol": 1e-10})
-    # The field has two hills: one below, and one at the surface that wins for small nu.
-    if falling(0.0) <= found.fun:
+    lowest = minimize_scalar(falling, bounds=(0.3, 2.0), method="bounded", options={"xatol": 1e-10})
+    # Two local maxima: one below the surface, one at it, the larger for small nu.
+    if falling(0.0) <= lowest.fun:
         return -falling(0.0), 0.0
-    return -float(found.fun), float(found.x)
+    return -float(lowest.fun), float(lowest.x)
 
 
 def curved_surface_stress(x: ArrayLike, depth: ArrayLike) -> Array:
-    """First-order stress that the curvature of the loaded surface adds under a Hertz pressure.
+    """First-order stress of the curvature of the loaded surface under a Hertz pressure.
 
-    The half-plane puts all of the pressure on one straight line; on a convex body the outer
-    parts of it act lower. Multiply by p0 times half-width times the body's curvature (1/R,
-    convex positive). Pressures act along the common normal at the centre of the contact.
+    On a convex body the pressure beside the centre acts below the tangent of the half-plane.
+    Multiply by p0 times half-width times curvature of the body (1/R, convex positive). Pressures
+    act along the common normal at the centre of the contact.
 
     Parameters
     ----------
@@ -159,7 +158,7 @@ def curved_surface_stress(x: ArrayLike, depth: ArrayLike) -> Array:
 
     References
     ----------
-    Derived here: the half-plane field with every pressure element lowered by its ``xi^2/(2R)``,
+    Derived here: the half-plane field with each pressure element lowered by ``xi^2/(2R)``,
     to first order, with the complex potential ``pi (w - sqrt(w^2 - 1))``, ``w = x + i z``, of
     the Hertz pressure (Johnson, Contact Mechanics (1985), sec. 2.8 and 4.2).
     """
@@ -178,22 +177,22 @@ def curved_surface_stress(x: ArrayLike, depth: ArrayLike) -> Array:
 
 @lru_cache(maxsize=32)
 def shear_any_plane_peak(poisson: float) -> float:
-    """Largest shear on any plane under a frictionless contact over p0, on the axis."""
+    """Maximum shear on any plane under a frictionless contact over p0, on the axis."""
     depth = np.linspace(0.0, 2.0, 2001)
     return float(shear_any_plane(subsurface_stress(0.0, depth), poisson).max())
 
 
 def disc_correction(line_load: ArrayLike, radius: ArrayLike) -> Array:
-    """What a disc pressed along a diameter adds to the half-plane's largest in-plane shear (Pa).
+    """Increase of the maximum in-plane shear (...), Pa, of a disc over the half-plane.
 
-    To first order in half-width over radius. The far load and the free rim add
-    ``sigma_xx = P'/(pi R)`` along the surface and nothing along the load, and half of that is
-    shear; the curvature of the surface takes a quarter of it away again.
+    For a disc loaded along a diameter, to first order in half-width over radius. The far load and
+    the free rim add ``sigma_xx = P'/(pi R)`` along the surface and nothing along the load, half of
+    which is shear; the curvature of the surface reduces it by a quarter.
 
     Parameters
     ----------
     line_load : array (...)   P', N/m
-    radius : array (...)      of the disc itself, m, not the relative one
+    radius : array (...)      of the disc, m
 
     References
     ----------
@@ -203,4 +202,4 @@ def disc_correction(line_load: ArrayLike, radius: ArrayLike) -> Array:
     xx, zz, _ = curved_surface_stress(0.0, SHEAR_MAX_DEPTH)
     # p0 a = 2 P' / pi
     share = 1 / (2 * np.pi) + (xx - zz) / np.pi
-    return share * np.asarray(line_load, dtype=float) / np.asarray(radius, dtype=float)
+    return np.asarray(share * np.asarray(line_load, dtype=float) / np.asarray(radius, dtype=float))

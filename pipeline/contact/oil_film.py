@@ -1,4 +1,4 @@
-"""Oil film between roller and cam, and what part of it the roughness takes."""
+"""Oil film thickness between follower and cam; share of the load on asperities."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from camwright.geometry.arrays import Array, finite, freeze, positive
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In, Part
+from camwright.pipeline.base.units import shown
 
 UNVERIFIED = (
     "regression of Masjedi and Khonsari (2012) as recalled, not checked against the paper: verify"
 )
-_RANGE = {  # of the fit, to its order of magnitude: verify
+_RANGE = {  # of the regression, orders of magnitude: verify
     "load": (2e-5, 5e-4),
     "speed": (1e-12, 1e-10),
     "material": (2500.0, 7500.0),
@@ -27,9 +28,9 @@ _RANGE = {  # of the fit, to its order of magnitude: verify
 
 @dataclass(frozen=True, kw_only=True)
 class Lubricant(Part):
-    """Oil in the contact of cam and follower, at the temperature of the inlet.
+    """Oil in the contact of cam and follower at the inlet temperature.
 
-    film "mixed" adds the film of rough surfaces by a regression whose source is unverified.
+    film "mixed" adds the film of rough surfaces by a regression with unverified source.
     """
 
     table: ClassVar[str] = "lubricant"
@@ -42,10 +43,10 @@ class Lubricant(Part):
 
 @dataclass(frozen=True, eq=False)
 class LineFilm:
-    """What decides a film: groups of a line contact, arrays (...).
+    """Dimensionless groups of a lubricated line contact, arrays (...).
 
-    load W = P'/(E' R), speed U = eta u/(E' R), material G = alpha E', with E' = 2 E*, R and
-    the entrainment speed u, the mean of both surfaces' speeds through the contact; radius m.
+    load W = P'/(E' R), speed U = eta u/(E' R), material G = alpha E', with E' = 2 E*, relative
+    radius R (m) and entrainment speed u, the mean surface speed through the contact.
     """
 
     load: Array
@@ -87,12 +88,12 @@ class LineFilm:
 
 
 def entrainment_speed(rolling_speed: ArrayLike, slip: ArrayLike = 0.0) -> Array:
-    """Mean speed (...) of the surfaces through the contact, m/s, the roller's lagging by `slip`."""
+    """Mean surface speed (...) through the contact, m/s; the roller surface is slower by `slip`."""
     return np.abs(np.asarray(rolling_speed, dtype=float) - np.asarray(slip, dtype=float) / 2)
 
 
 def minimum_film(film: LineFilm) -> Array:
-    """Least film thickness (...) of smooth surfaces, m; NaN where there is no load.
+    """Minimum film thickness (...) of smooth surfaces, m; NaN without load.
 
     References
     ----------
@@ -106,7 +107,7 @@ def minimum_film(film: LineFilm) -> Array:
 
 
 def lambda_ratio(thickness: ArrayLike, roughness_1: float, roughness_2: float) -> Array:
-    """Film over the roughness of both surfaces (rms, m): above 3 full film, below 1 boundary.
+    """Film thickness ratio (...), film over combined rms roughness; > 3 full film, < 1 boundary.
 
     Raises
     ------
@@ -117,12 +118,12 @@ def lambda_ratio(thickness: ArrayLike, roughness_1: float, roughness_2: float) -
         float(positive("roughness", roughness_1, "m")),
         float(positive("roughness", roughness_2, "m")),
     )
-    return np.asarray(thickness, dtype=float) / both
+    return np.asarray(np.asarray(thickness, dtype=float) / both)
 
 
 @dataclass(frozen=True, eq=False)
 class MixedFilm:
-    """Central and least film (m) and load share of the asperities (0 to 1); see `source`."""
+    """Central and minimum film thickness (m), load share of the asperities (0 to 1)."""
 
     central: Array
     minimum: Array
@@ -139,19 +140,19 @@ class MixedFilm:
 
 
 def mixed_film(film: LineFilm, roughness: float, hardness: float, modulus: float) -> MixedFilm:
-    """Film of rough surfaces by a regression whose source is unverified; an option, no default.
+    """Film of rough surfaces by a regression with unverified source.
 
     Parameters
     ----------
     film : LineFilm
-    roughness : float   of both surfaces together (rms), m
+    roughness : float   combined rms roughness of both surfaces, m
     hardness : float    Vickers, Pa
     modulus : float     E*, Pa
 
     Raises
     ------
     InputError
-        If a group lies outside the range of the fit.
+        If a group is outside the range of the regression.
 
     References
     ----------
@@ -166,10 +167,9 @@ def mixed_film(film: LineFilm, roughness: float, hardness: float, modulus: float
 def mixed_film_where_it_holds(
     film: LineFilm, roughness: float, hardness: float, modulus: float
 ) -> tuple[MixedFilm, str]:
-    """`mixed_film` at each of many positions, NaN where it refuses; and the first refusal's words.
+    """`mixed_film` at many positions, NaN outside its range, and the first violated range in words.
 
-    Parameters, references as those of `mixed_film`; a position without load is not refused but
-    has no film either.
+    Parameters and references as of `mixed_film`. Positions without load are NaN.
     """
     loaded = film.load > 0
     at_work = LineFilm(film.load[loaded], film.speed[loaded], film.material, film.radius[loaded])
@@ -183,6 +183,7 @@ def mixed_film_where_it_holds(
 
 
 def _groups(film: LineFilm, roughness: float, hardness: float, modulus: float) -> dict[str, Array]:
+    """Groups of the regression by name, in the order of `_RANGE`."""
     shape = np.shape(film.load)
     return {
         "load": np.asarray(film.load),
@@ -196,19 +197,19 @@ def _groups(film: LineFilm, roughness: float, hardness: float, modulus: float) -
 def _refusals(
     film: LineFilm, roughness: float, hardness: float, modulus: float
 ) -> Iterator[tuple[NDArray[np.bool_], InputError]]:
-    """Where (...) a group or the answer lies outside the range of the fit, and the error."""
+    """Where (...) a group or the load share is out of range, bool, and the error."""
     for name, values in _groups(film, roughness, hardness, modulus).items():
         low, high = _RANGE[name]
         outside = ~((values >= low) & (values <= high))
         if outside.any():
             value = float(np.atleast_1d(values)[np.atleast_1d(outside)].flat[0])
             yield outside, InputError(f"mixed film, {name} group", value, f"in [{low:g}, {high:g}]")
-    with np.errstate(all="ignore"):  # refused above where it has no value
+    with np.errstate(all="ignore"):  # out of range already where it has no value
         share = _asperity_share(film, roughness, hardness, modulus)
     above = np.asarray(share > 1)
     if above.any():
-        value = 100 * float(share[above].max() if share.ndim else share)
-        yield above, InputError("mixed film, asperity load share", value, "<= 100 %")
+        largest = shown(float(share[above].max() if share.ndim else share), "%")
+        yield above, InputError("mixed film, asperity load share", largest, "<= 100 %")
 
 
 def _asperity_share(film: LineFilm, roughness: float, hardness: float, modulus: float) -> Array:

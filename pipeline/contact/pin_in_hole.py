@@ -1,11 +1,11 @@
-"""Conforming contact of a pin in a hole with clearance: closed form and complementarity.
+"""Conforming contact of a pin in a hole with clearance, by Persson and by complementarity.
 
-All lengths along the contact are angles from the line of action. Loads are per length, N/m;
-`clearance` is radial, hole less pin. A frictionless pressure p(phi) opens the gap
+Positions are angles phi from the line of action; loads are per length, N/m; `clearance` is radial,
+hole less pin. Under a frictionless pressure p(phi) the gap is
 
     gap(phi) = clearance (1 - cos phi) - approach cos phi + sum_n w_n p_n cos(n phi),
 
-where w_n is the radial compliance of both bodies in the n-th harmonic of the pressure.
+where w_n is the radial compliance of both bodies to the n-th harmonic of the pressure.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from scipy.optimize import brentq
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact.elasticity.active_set import solve
 from camwright.pipeline.contact.elasticity.radial_compliance import (
     Bush,
@@ -30,18 +31,18 @@ from camwright.pipeline.contact.elasticity.radial_compliance import (
 
 KNOTS = 96  # of the pressure on half the contact
 WINDOW_MAX = np.radians(120.0)
-_HARMONICS = 10  # per knot: the tail falls with the fifth power of the number
+_HARMONICS = 10  # per knot: the remainder decreases with the fifth power of the number
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
-_LEAST_ANGLE = np.radians(2.0)  # below, the contact is that of two cylinders to 1e-3
-_FILLED = (0.6, 0.9)  # share of the window that the contact should take up
+_LEAST_ANGLE = np.radians(2.0)  # below, two cylinders of Hertz to 1e-3
+_FILLED = (0.6, 0.9)  # share of the window in contact
 
 
 @dataclass(frozen=True, eq=False)
 class Conforming:
     """Pressure (knots,), Pa, at `angle` (knots,), rad, on one side of the line of action.
 
-    `contact_angle` is half the angle in touch, rad; `equilibrium` the miss of the load,
-    relative, `complementarity` that of the contact law (see `active_set`).
+    `contact_angle`: half the angle in contact, rad; `peak_pressure` Pa; `approach` m; relative
+    residuals of equilibrium and complementarity, see `active_set`.
     """
 
     angle: Array
@@ -57,7 +58,7 @@ class Conforming:
 
 
 def persson_clearance(contact_angle: ArrayLike) -> Array:
-    """E' dR / Q at half contact angles, rad, of bodies alike; negative beyond perfect fit.
+    """E' dR / Q (...) at half contact angles, rad, of equal materials; < 0 for a press fit.
 
     E' is E in plane stress and E/(1 - nu^2) in plane strain.
 
@@ -68,7 +69,7 @@ def persson_clearance(contact_angle: ArrayLike) -> Array:
     """
     b = np.tan(np.asarray(contact_angle, dtype=float) / 2.0)[..., None]
     S = np.sqrt(1.0 + b**2)
-    # t = b sin(u) takes the root out of the logarithm's ends
+    # t = b sin(u) removes the root singularities at the ends
     u = 0.25 * np.pi * (1.0 + _NODES)
     s, t = b * np.cos(u), b * np.sin(u)
     weight = 0.25 * np.pi * _WEIGHTS * b * np.cos(u)
@@ -80,7 +81,7 @@ def persson_clearance(contact_angle: ArrayLike) -> Array:
 
 
 def persson_pressure(contact_angle: ArrayLike, angle: ArrayLike = 0.0) -> Array:
-    """p R / Q at an angle from the line of action, 0 outside the contact; see above."""
+    """p R / Q (...) at angles from the line of action, rad; 0 outside the contact."""
     b = np.tan(np.asarray(contact_angle, dtype=float) / 2.0)
     y = np.tan(np.asarray(angle, dtype=float) / 2.0)
     S, s = np.sqrt(1.0 + b**2), np.sqrt(np.maximum(b**2 - y**2, 0.0))
@@ -94,7 +95,7 @@ def persson_contact_angle(clearance_number: float) -> float:
     Raises
     ------
     InputError
-        If the number is negative (a press fit), NaN or infinite.
+        If the number is negative (press fit), NaN or infinite.
     """
     if not 0.0 <= clearance_number < np.inf:
         raise InputError("clearance", clearance_number, ">= 0: a press fit cannot slide")
@@ -111,7 +112,7 @@ def persson_contact_angle(clearance_number: float) -> float:
 def pin_in_hole(
     load: float, radius: float, clearance: float, pin: Pin, bush: Bush, knots: int = KNOTS
 ) -> Conforming:
-    """Pressure between a pin and its hole by complementarity in the angle.
+    """Pressure between pin and hole by complementarity at angular knots.
 
     Parameters
     ----------
@@ -130,46 +131,46 @@ def pin_in_hole(
     InputError
         If a value is out of these bounds; a negative clearance is a press fit.
     ContactError
-        If the contact would reach round more than `WINDOW_MAX`.
+        If the half contact angle exceeds `WINDOW_MAX`.
 
     References
     ----------
-    The gap of Persson (1964); the solution of `active_set`.
+    Gap by Persson (1964); solution by `active_set`.
     """
     for name, value, unit in (("load", load, "N/m"), ("radius", radius, "m")):
         if not 0.0 < value < np.inf:
             raise InputError(f"pin_in_hole.{name}", value, f"> 0 {unit}")
     if not 0.0 <= clearance < np.inf:
         raise InputError("pin_in_hole.clearance", clearance, ">= 0 m: a press fit cannot slide")
-    unit_load = _softness(pin, bush) * load
+    unit_load = _mean_compliance(pin, bush) * load
     window = min(1.3 * persson_contact_angle(clearance / unit_load), WINDOW_MAX)
     for _ in range(12):
-        found = _in_window(window, clearance / unit_load, pin, bush, knots)
-        share = found.contact_angle / window
+        contact = _in_window(window, clearance / unit_load, pin, bush, knots)
+        share = contact.contact_angle / window
         if _FILLED[0] <= share <= _FILLED[1]:
             break
         if share > _FILLED[1] and window >= WINDOW_MAX:
             raise ContactError(
-                f"pin in hole: half contact angle {np.degrees(found.contact_angle):.0f} deg,"
-                f" must be < {np.degrees(WINDOW_MAX):.0f} deg"
+                f"pin in hole: half contact angle = {shown(contact.contact_angle, 'deg', 3)},"
+                f" must be < {shown(WINDOW_MAX, 'deg', 3)}"
             )
         window = min(window * (1.4 if share > _FILLED[1] else share / 0.75), WINDOW_MAX)
     return Conforming(
-        angle=found.angle,
-        pressure=found.pressure * load / radius,
-        contact_angle=found.contact_angle,
-        peak_pressure=found.peak_pressure * load / radius,
-        approach=found.approach * unit_load,
-        equilibrium=found.equilibrium,
-        complementarity=found.complementarity,
+        angle=contact.angle,
+        pressure=contact.pressure * load / radius,
+        contact_angle=contact.contact_angle,
+        peak_pressure=contact.peak_pressure * load / radius,
+        approach=contact.approach * unit_load,
+        equilibrium=contact.equilibrium,
+        complementarity=contact.complementarity,
     )
 
 
 def hat_coefficients(window: float, knots: int, count: int) -> Array:
-    """Integrals of the hats on [0, window] against cos(n phi), n = 0 .. count - 1; (knots, count).
+    """Integrals (knots, count) of hat functions on [0, window] times cos(n phi), n < count.
 
-    The hats stand at `knots` equal steps from 0; the first is half a hat, the pressure being
-    even, and the one at the window's end is left out.
+    Knots at equal steps from 0; the first is half a hat function, as the pressure is even; the last
+    knot carries no pressure.
     """
     step = window / knots
     n = np.arange(1, count)
@@ -181,43 +182,43 @@ def hat_coefficients(window: float, knots: int, count: int) -> Array:
     return coefficients
 
 
-def _softness(pin: Pin, bush: Bush) -> float:
-    """2/E' of bodies alike, the mean of both compliances else, 1/Pa."""
+def _mean_compliance(pin: Pin, bush: Bush) -> float:
+    """Mean of the compliances 1/E' of both bodies, 1/Pa."""
     return 0.5 * (1.0 / pin.plane_strain_modulus + 1.0 / bush.plane_strain_modulus)
 
 
 def _in_window(
     window: float, clearance_number: float, pin: Pin, bush: Bush, knots: int
 ) -> Conforming:
-    """The contact at unit load and radius, lengths in units of load times `_softness`."""
+    """Contact at unit load and radius; lengths over load times mean compliance."""
     count = int(_HARMONICS * knots / window) + 8
-    softness = _softness(pin, bush)
-    w = (pin_compliance(count, pin) + bush_compliance(count, bush)) / softness
+    mean_compliance = _mean_compliance(pin, bush)
+    w = (pin_compliance(count, pin) + bush_compliance(count, bush)) / mean_compliance
     a = hat_coefficients(window, knots, count)
     compliance = (2.0 / np.pi) * (a[:, 1:] * w[1:]) @ a[:, 1:].T
     compliance += w[0] / np.pi * np.outer(a[:, 0], a[:, 0])
     gap = clearance_number * (a[:, 0] - a[:, 1])
-    found = solve(compliance, gap[None], a[:, 1], np.array([0.5]))
+    solution = solve(compliance, gap[None], a[:, 1], np.array([0.5]))
     angle: Array = window / knots * np.arange(knots, dtype=np.float64)
-    pressure = found.pressure[0]
+    pressure = solution.pressure[0]
     return Conforming(
         angle=angle,
         pressure=pressure,
         contact_angle=_edge(angle, pressure, window),
         peak_pressure=_peak(angle, pressure),
-        approach=float(found.approach[0]),
-        equilibrium=float(found.equilibrium[0]),
-        complementarity=float(found.complementarity[0]),
+        approach=float(solution.approach[0]),
+        equilibrium=float(solution.equilibrium[0]),
+        complementarity=float(solution.complementarity[0]),
     )
 
 
 def _edge(angle: Array, pressure: Array, window: float) -> float:
-    """Where the pressure ends: its square is smooth there and passes through zero."""
+    """Half contact angle, rad: zero of the squared pressure, which is smooth at the edge."""
     touching = np.flatnonzero(pressure > 0.0)
     if len(touching) < 12:
         return float(angle[touching[-1]])
     last = int(touching[-1])
-    part = slice(last - 10, last - 1)  # the last knots wiggle
+    part = slice(last - 10, last - 1)  # the last knots oscillate
     fit = np.polynomial.Polynomial.fit(angle[part], pressure[part] ** 2, 2)
     roots = fit.roots()
     real = roots[np.abs(roots.imag) < 1e-12].real
@@ -226,7 +227,7 @@ def _edge(angle: Array, pressure: Array, window: float) -> float:
 
 
 def _peak(angle: Array, pressure: Array) -> float:
-    """Pressure on the line of action from an even quartic through the middle of the contact."""
+    """Pressure on the line of action, by an even quartic through the middle of the contact."""
     last = int(np.flatnonzero(pressure > 0.0)[-1])
     inner = slice(0, max(last // 2, 4))
     square = angle[inner] ** 2
@@ -235,27 +236,27 @@ def _peak(angle: Array, pressure: Array) -> float:
 
 @lru_cache(maxsize=16)
 def _peak_table(pin: Pin, bush: Bush) -> tuple[PchipInterpolator, PchipInterpolator, float]:
-    """Peak p R/Q and contact angle over log(1 + clearance number), and the largest number."""
+    """Peak p R/Q and contact angle over log(1 + clearance number); largest clearance number."""
     largest = float(persson_clearance(_LEAST_ANGLE)) / 2.0
     numbers = np.r_[0.0, np.geomspace(1e-2, largest, 28)]
-    softness = _softness(pin, bush)
-    found = [pin_in_hole(1.0, 1.0, c * softness, pin, bush, knots=48) for c in numbers]
+    mean_compliance = _mean_compliance(pin, bush)
+    contacts = [pin_in_hole(1.0, 1.0, c * mean_compliance, pin, bush, knots=48) for c in numbers]
     at = np.log1p(numbers)
-    peaks = PchipInterpolator(at, np.log([f.peak_pressure for f in found]))
-    angles = PchipInterpolator(at, np.log([f.contact_angle for f in found]))
+    peaks = PchipInterpolator(at, np.log([f.peak_pressure for f in contacts]))
+    angles = PchipInterpolator(at, np.log([f.contact_angle for f in contacts]))
     return peaks, angles, largest
 
 
 def peak_pressure(
     load: ArrayLike, radius: float, clearance: float, pin: Pin, bush: Bush
 ) -> tuple[Array, Array]:
-    """Peak pressure and half contact angle of many loads, from a table of exact solutions.
+    """Peak pressure and half contact angle of many loads, from a table of solutions.
 
-    Lightly loaded contacts (less than two degrees) are those of two nearly equal cylinders.
+    Half contact angles below two degrees are those of two cylinders of nearly equal radius.
 
     Parameters
     ----------
-    load : array (...)   Q >= 0, N/m; 0 gives 0
+    load : array (...)   Q, N/m, >= 0
     radius, clearance, pin, bush   as for `pin_in_hole`
 
     Returns
@@ -269,20 +270,20 @@ def peak_pressure(
 
     References
     ----------
-    `pin_in_hole`; Johnson, Contact Mechanics (1985), sec. 4.2(c) for the light loads.
+    `pin_in_hole`; Johnson, Contact Mechanics (1985), sec. 4.2(c) for low loads.
     """
     Q = finite("pin_in_hole.load", load)
     if (Q < 0.0).any():
         raise InputError("pin_in_hole.load", float(Q.min()), ">= 0 N/m")
     if not 0.0 <= clearance < np.inf:
         raise InputError("pin_in_hole.clearance", clearance, ">= 0 m: a press fit cannot slide")
-    softness = _softness(pin, bush)
+    mean_compliance = _mean_compliance(pin, bush)
     peaks, angles, largest = _peak_table(pin, bush)
-    number = np.divide(clearance, softness * Q, out=np.full_like(Q, np.inf), where=Q > 0.0)
+    number = np.divide(clearance, mean_compliance * Q, out=np.full_like(Q, np.inf), where=Q > 0.0)
     inside = np.log1p(np.minimum(number, largest))
     light = number > largest
     # 1/E* is twice the mean compliance, 1/R_rel = clearance/R^2
-    stretch = 8.0 * softness * radius**2 / (np.pi * max(clearance, np.finfo(float).tiny))
+    stretch = 8.0 * mean_compliance * radius**2 / (np.pi * max(clearance, np.finfo(float).tiny))
     half_width = np.sqrt(np.where(light, Q, 0.0) * stretch)
     hertz = np.divide(2.0 * Q, np.pi * half_width, out=np.zeros_like(Q), where=half_width > 0.0)
     peak = np.where(light, hertz, np.exp(peaks(inside)) * Q / radius)

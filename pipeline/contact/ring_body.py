@@ -1,7 +1,7 @@
-"""The outer ring of a bearing as the body that touches the cam: an annulus on its balls.
+"""Outer ring of a bearing in contact with the cam: annulus on balls.
 
-The ring bends over lengths of its thickness, the contact is a tenth of that: so the ring comes in
-as any body does, by what it adds to the half-plane. It is in plane strain like the contact.
+The ring bends over lengths of its thickness, ten times the contact: it enters the contact as any
+body, by its correction of the half-plane field, in plane strain.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from camwright.pipeline.contact.body_compliance import LoadedBody
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, ElasticBody, Springs
 from camwright.pipeline.contact.follower_body import EDGES_ACROSS_WALL, RollerBody
 
-# Of a ball's stiffness, against the ring's turning on its balls, which no load asks for.
+# Over the ball stiffness: supports against rotation of the ring on its balls.
 _HOLD = 1e-6
-# Points over a ball's footprint; its pressure is an ellipse, so each weighs as its sine squared.
+# Quadrature points over the footprint of a ball, under an elliptic pressure.
 _POINTS = 32
 
 
 @dataclass(frozen=True)
 class BallRing:
-    """An outer ring with the balls that carry it, seen from its contact.
+    """An outer ring and its loaded balls, at angles from the contact.
 
     Parameters
     ----------
-    thickness : float          under the groove, m, > 0
-    balls : tuple of float     angles of the carrying balls from the contact, rad
+    thickness : float          below the groove, m, > 0
+    balls : tuple of float     angles of the loaded balls from the contact, rad
     ball_stiffness : float     of each with its raceways, N/m, > 0
     footprint : float          half the length of a ball's contact along the groove, m, > 0
     """
@@ -48,14 +48,14 @@ class BallRing:
             if not 0.0 < getattr(self, name) < np.inf:
                 raise InputError(f"ring.{name}", getattr(self, name), "> 0")
         if not self.balls:
-            raise InputError("ring.balls", "none", "at least one that carries")
+            raise InputError("ring.balls", "none", "at least one loaded ball")
 
 
 @dataclass(frozen=True)
 class RingBody:
-    """The ring in contact with the cam, on its balls alone.
+    """Outer ring in contact with the cam, supported by its balls.
 
-    radius of its outside, m; width of the contact, m, over which the balls' stiffness is spread.
+    radius: outer radius, m; width of the contact, m, over which the ball stiffness is spread.
     """
 
     radius: float
@@ -69,7 +69,7 @@ class RingBody:
 
     @property
     def hub_radius(self) -> float:
-        """Of the ring's inside, m."""
+        """Inner radius, m."""
         return self.radius - self.ring.thickness
 
     @property
@@ -84,14 +84,14 @@ class RingBody:
         return self._annulus.coarse_mesh()
 
     def contacts(self, contour: Contour, theta: Array) -> tuple[Array, Array]:
-        """One place for all: the balls stand as they do, wherever on the cam it is."""
+        """The top of the ring, for every cam angle: the balls keep their place to the contact."""
         return self._annulus.contacts(contour, theta)
 
     def mesh_at(self, contour: Contour, theta: float, sizing: Sizing) -> BodyMesh:
         return self._annulus.mesh_at(contour, theta, sizing)
 
     def springs(self, mesh: BodyMesh, contour: Contour | None, theta: float) -> Springs:
-        """The balls, under its mesh at a cam angle; without a contour under its own mesh."""
+        """Balls as springs on its mesh at a cam angle; contour None: in the frame of the ring."""
         if contour is None:
             return ball_springs(mesh, np.zeros(2), 0.5 * np.pi, self.ring, self.width)
         normal = contour.normal(theta)
@@ -102,9 +102,9 @@ class RingBody:
 
 @lru_cache(maxsize=32)
 def unit_bend(body: RingBody) -> float:
-    """Curvature that the ring's outside takes on at its contact, 1/m per N/m, from a push there.
+    """Change of the outer curvature of the ring at its contact per line load, 1/m per N/m.
 
-    Positive where it flattens; found on the mesh of the cycle.
+    Positive where the ring flattens; by the mesh of the cycle.
     """
     mesh = body.coarse_mesh()
     material = body.material
@@ -118,11 +118,11 @@ def unit_bend(body: RingBody) -> float:
 def ball_springs(
     mesh: BodyMesh, centre: Array, facing: float, ring: BallRing, width: float
 ) -> Springs:
-    """The balls as springs on the ring's inside, pressed by its mean way over their footprints.
+    """Balls as springs on the mean inner displacement of the ring over their footprints.
 
     Parameters
     ----------
-    mesh : BodyMesh     the ring, its inside the circle "hub"
+    mesh : BodyMesh     of the ring, inner circle "hub"
     centre : (2,)       of the ring, m
     facing : float      direction from the centre to the contact, rad
     ring : BallRing
@@ -130,7 +130,7 @@ def ball_springs(
 
     Returns
     -------
-    Springs   the balls, then two weak ones along the inside against turning and drifting
+    Springs   the balls, then two weak tangential ones against rigid motion of the ring
     """
     stiffness = ring.ball_stiffness / width
     nearest = min(ring.balls, key=lambda angle: abs(np.cos(0.5 * angle) - 1.0))
@@ -147,9 +147,9 @@ def ball_springs(
 
 
 def _mean_way(mesh: BodyMesh, centre: Array, angle: float, half: float, inwards: bool) -> Array:
-    """Weights (2, nodes) of the mean way towards the centre, or along the circle, about an angle.
+    """Weights (2, nodes) of the mean inward or tangential displacement about an angle, rad.
 
-    The footprint is shorter than a facet, so the mean is taken at points of its own.
+    Quadrature over the footprint, which is shorter than a facet.
     """
     facets = mesh.facet_triples("hub")
     arm = mesh.points[:, facets] - np.reshape(centre, (2, 1, 1))
@@ -158,7 +158,7 @@ def _mean_way(mesh: BodyMesh, centre: Array, angle: float, half: float, inwards:
     at = angle + half / radius * np.cos(place)
     share = 2.0 / (_POINTS + 1) * np.sin(place) ** 2
     bearing = np.arctan2(arm[1], arm[0])
-    # A hole's facets run clockwise.
+    # Facets of a hole run clockwise.
     length = (bearing[0] - bearing[1]) % FULL_TURN
     behind = (bearing[0][:, None] - at) % FULL_TURN
     facet = np.argmin(behind / length[:, None], axis=0)

@@ -1,9 +1,9 @@
-"""What the material under the contour goes through as the load rolls over it, once a turn.
+"""Stress history of the material below the contour under the rolling load of one turn.
 
-A material point meets one pass a turn. The half-width is a thousandth of the contour, so load
-and curvature stand still during a pass: the pass is that of steady rolling, known once for all
-depths in units of peak pressure and half-width, and scaled at every place of the contour. The
-load is thereby swept without gaps, however few positions the contact was solved at.
+A material point has one load pass per turn. The half-width is a thousandth of the contour, so
+that load and curvature are constant during a pass: steady rolling, solved once for all depths in
+units of peak pressure and half-width, and scaled at every station of the contour. The stations
+are independent of the positions at which the contact was solved.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from camwright.pipeline.contact.elasticity import plane_stress_measures as stres
 
 _DEPTH_MAX = 3.0
 _DEPTHS = 61
-_BALL_STEPS = 2000
+_SPHERE_STEPS = 2000
 _BLOCK = 120
 STATIONS = 1440
-"""Places along the contour at which the map is drawn; 0.25 deg apart."""
+"""Stations of the map along the contour, 0.25 deg apart."""
 
 
 @dataclass(frozen=True)
 class FatigueLimits:
-    """Fully reversed limits of the material, Pa: in torsion t, in bending f."""
+    """Fully reversed fatigue limits of a material in torsion and bending, Pa."""
 
     torsion: float
     bending: float
@@ -41,28 +41,28 @@ class FatigueLimits:
             raise InputError("fatigue.torsion", self.torsion, "> 0 Pa")
         if not self.torsion * np.sqrt(3) / 2 < self.bending < 2 * self.torsion:
             raise InputError(
-                "fatigue.bending", self.bending, "above 0.87 and below 2 times the torsion limit"
+                "fatigue.bending", self.bending, "> 0.87 and < 2 times the torsion limit"
             )
 
     @property
     def crossland(self) -> float:
-        """Weight of the greatest hydrostatic stress beside the root of J2's amplitude."""
-        return max(3 * self.torsion / self.bending - np.sqrt(3), 0.0)
+        """Weight of the maximum hydrostatic stress in Crossland's criterion, 3 t/f - sqrt 3."""
+        return float(max(3 * self.torsion / self.bending - np.sqrt(3), 0.0))
 
     @property
     def dang_van(self) -> float:
-        """Weight of the hydrostatic stress beside the shear amplitude."""
+        """Weight of the hydrostatic stress in Dang Van's criterion, 3 (t/f - 1/2)."""
         return 3 * (self.torsion / self.bending - 0.5)
 
 
 @dataclass(frozen=True, eq=False)
 class RollingPass:
-    """One pass of steady rolling, arrays (k,) over the depths, in peak pressures.
+    """One pass of steady rolling, arrays (k,) over the depths; stresses over peak pressure.
 
-    depth in half-widths; von_mises and tau_max the greatest of the pass; shear_range of the
-    shear along the surface; shear_amplitude the radius of the smallest ball around the path of
-    the deviator, in the norm of root J2; hydrostatic_max; shear (k, q) and hydrostatic (k, q)
-    through the pass, shear the greatest on any plane, counted from the middle of the ball.
+    depth in half-widths; von_mises and tau_max, maxima of the pass; shear_range of the shear along
+    the surface; shear_amplitude, radius of the smallest sphere around the path of the deviator in
+    the norm of root J2; hydrostatic_max; through the pass shear (k, q), the maximum on any plane
+    from the centre of the sphere, hydrostatic (k, q) and stress xx, zz, xz (3, k, q).
     """
 
     depth: Array
@@ -79,30 +79,30 @@ class RollingPass:
         freeze(self, **{name: getattr(self, name) for name in self.__dataclass_fields__})
 
     def crossland(self, limits: FatigueLimits) -> Array:
-        """Root of J2's amplitude plus weighted greatest hydrostatic stress (k,)."""
+        """Crossland stress (k,): amplitude of root J2 plus weighted maximum hydrostatic stress."""
         return self.shear_amplitude + limits.crossland * self.hydrostatic_max
 
     def dang_van(self, limits: FatigueLimits) -> Array:
-        """Shear plus weighted hydrostatic stress, the greatest of the pass (k,).
+        """Dang Van stress (k,): maximum of shear plus weighted hydrostatic stress over the pass.
 
-        Compression gets no credit: below a contact it would make the criterion unsafe.
+        Compression counts as zero: below a contact the criterion would otherwise be unsafe.
 
         References
         ----------
         Dang Van (1993); the cap: Desimone, Bernasconi, Beretta, Wear 260 (2006) 567.
         """
         tension = np.maximum(self.hydrostatic, 0.0)
-        return (self.shear + limits.dang_van * tension).max(axis=1)
+        return np.asarray((self.shear + limits.dang_van * tension).max(axis=1))
 
 
 @lru_cache(maxsize=8)
 def rolling_pass(poisson: float, friction: float = 0.0) -> RollingPass:
-    """The pass of a Hertz pressure with `friction` times it along the surface.
+    """Pass of a Hertz pressure with a traction of `friction` times pressure.
 
     References
     ----------
     Johnson, Contact Mechanics (1985), secs. 4.2 and 9.2, for the stresses; Dang Van,
-    Griveau, Message (1989) for the smallest ball.
+    Griveau, Message (1989) for the smallest sphere.
     """
     depth = np.linspace(0.0, _DEPTH_MAX, _DEPTHS)
     near = np.linspace(-2.0, 2.0, 321)
@@ -112,9 +112,9 @@ def rolling_pass(poisson: float, friction: float = 0.0) -> RollingPass:
     xx, zz, xz = field
     yy = poisson * (xx + zz)
     hydrostatic = (xx + yy + zz) / 3
-    # Coordinates of the deviator in which root J2 is the distance from the origin.
+    # Deviator coordinates with root J2 as the distance from the origin.
     path = np.stack([(xx - zz) / 2, xz, np.sqrt(0.75) * (yy - hydrostatic)])
-    centre, radius = _smallest_ball(path)
+    centre, radius = _smallest_sphere(path)
     a, b, c = path - centre[:, :, None]
     in_plane, out = np.hypot(a, b), c / np.sqrt(0.75)
     high = np.maximum(in_plane - out / 2, out)
@@ -132,15 +132,15 @@ def rolling_pass(poisson: float, friction: float = 0.0) -> RollingPass:
     )
 
 
-def _smallest_ball(path: Array) -> tuple[Array, Array]:
-    """Centre (3, k) and radius (k,) of the smallest ball around k paths (3, k, q).
+def _smallest_sphere(path: Array) -> tuple[Array, Array]:
+    """Centre (3, k) and radius (k,) of the smallest sphere around k paths (3, k, q).
 
-    The centre walks towards the farthest point by ever smaller steps; after n of them the
-    radius is within 1/n of the least (Badoiu and Clarkson 2003).
+    Steps of decreasing length towards the farthest point; after n steps the radius is within 1/n of
+    the minimum (Badoiu and Clarkson 2003).
     """
     centre = path.mean(axis=2)
     rows = np.arange(path.shape[1])
-    for step in range(1, _BALL_STEPS):
+    for step in range(1, _SPHERE_STEPS):
         distance = ((path - centre[:, :, None]) ** 2).sum(axis=0)
         farthest = path[:, rows, distance.argmax(axis=1)]
         centre = centre + (farthest - centre) / (step + 1)
@@ -149,10 +149,10 @@ def _smallest_ball(path: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Envelope:
-    """Greatest stresses of one turn in a band under the contour, Pa, (n, k).
+    """Maximum stresses of one turn in a layer below the contour, Pa, (n, k).
 
-    theta (n,) rad and arc (n,) m place the stations; depth (n, k) m below the surface. crossland
-    and dang_van are None without fatigue limits.
+    Stations at theta (n,) rad and arc length arc (n,) m; depth (n, k) m below the surface.
+    crossland and dang_van are None without fatigue limits.
     """
 
     theta: Array
@@ -165,17 +165,17 @@ class Envelope:
     dang_van: Array | None = None
 
     def __post_init__(self) -> None:
-        given = {n: getattr(self, n) for n in self.__dataclass_fields__}
-        freeze(self, **{n: values for n, values in given.items() if values is not None})
+        maps = {n: getattr(self, n) for n in self.__dataclass_fields__}
+        freeze(self, **{n: values for n, values in maps.items() if values is not None})
 
     @classmethod
     def unknown(cls) -> Envelope:
-        """NaN at one station: of a contour that is no body."""
+        """NaN at one station: for a contour that does not bound a body."""
         nan = np.full((1, 1), np.nan)
         return cls(nan[0], nan[0], nan, nan, nan, nan, nan, nan)
 
     def worst(self, name: str) -> tuple[float, float, float]:
-        """Greatest value of a map, Pa, and its place: theta rad, depth m."""
+        """Maximum of a map, Pa, and its place: theta rad, depth m."""
         values = getattr(self, name)
         station, level = np.unravel_index(int(np.argmax(values)), values.shape)
         return (
@@ -196,23 +196,23 @@ def swept(
     limits: FatigueLimits | None = None,
     body_stress: ArrayLike | None = None,
 ) -> Envelope:
-    """The map of one turn.
+    """Maximum stresses below the contour over one turn.
 
     Parameters
     ----------
     pair : ContactPair
-    theta : array (m,)              rad, where the contact was solved, growing within one turn
-    contact : ContactHistory        there; it gives how far finite elements are from Hertz
-    stations : array (n,)           rad, where the map is drawn
-    line_load : array (n,)          N/m there
+    theta : array (m,)              cam angles of the contact, rad, increasing within one turn
+    contact : ContactHistory        at theta; its ratios of finite elements to Hertz scale the map
+    stations : array (n,)           cam angles of the map, rad
+    line_load : array (n,)          at the stations, N/m
     friction : float                traction over pressure
-    limits : FatigueLimits          for Crossland's and Dang Van's values
-    body_stress : array (3, m)      Pa, what the real body adds to the half-plane at `theta`
+    limits : FatigueLimits          of the criteria of Crossland and Dang Van
+    body_stress : array (3, m)      correction of the half-plane at theta, Pa
 
     Raises
     ------
     ContactError
-        If the roller does not fit the contour at a station.
+        If the concave radius at a station is not larger than the roller radius.
     """
     at, load = finite("stations", stations), np.maximum(finite("line_load", line_load), 0.0)
     turn = finite("theta", theta)
@@ -222,11 +222,11 @@ def swept(
     unit = rolling_pass(pair.cam.poisson, friction)
     extra = np.zeros((3, at.size))
     if body_stress is not None:
-        given = np.asarray(body_stress, dtype=float)
-        extra = np.stack([np.interp(at, turn, part, period=FULL_TURN) for part in given])
+        added = np.asarray(body_stress, dtype=float)
+        extra = np.stack([np.interp(at, turn, part, period=FULL_TURN) for part in added])
     mises, shear = _with_body(unit, p0, extra, pair.cam.poisson)
     scale = p0[:, None]
-    pulled = (1 + pair.cam.poisson) / 3 * (extra[0] + extra[1])
+    body_hydrostatic = (1 + pair.cam.poisson) / 3 * (extra[0] + extra[1])
     return Envelope(
         theta=at,
         arc=arc_length(pair, at),
@@ -234,28 +234,28 @@ def swept(
         von_mises=mises,
         tau_max=shear,
         shear_range=scale * unit.shear_range,
-        crossland=None if limits is None else _crossland(unit, p0, pulled, limits),
-        dang_van=None if limits is None else _dang_van(unit, p0, pulled, limits),
+        crossland=None if limits is None else _crossland(unit, p0, body_hydrostatic, limits),
+        dang_van=None if limits is None else _dang_van(unit, p0, body_hydrostatic, limits),
     )
 
 
 def arc_length(pair: ContactPair, theta: Array) -> Array:
-    """Length (n,) along the contour from angle 0, m."""
+    """Arc length (n,) along the contour from angle 0, m."""
     dense = np.linspace(0, FULL_TURN, 20001)
     speed = np.abs(pair.contour.speed(dense))
     steps = np.diff(dense) * (speed[1:] + speed[:-1]) / 2
-    return np.interp(theta, dense, np.concatenate([[0.0], np.cumsum(steps)]))
+    return np.asarray(np.interp(theta, dense, np.concatenate([[0.0], np.cumsum(steps)])))
 
 
-def _between(at: Array, theta: Array, found: Array, closed_form: Array) -> Array:
-    """Finite elements over closed form at `at`; 1 where the contact was open."""
+def _between(at: Array, theta: Array, finite_elements: Array, closed_form: Array) -> Array:
+    """Finite elements over closed form at `at`; 1 at cam angles without contact."""
     loaded = closed_form > 0
-    ratio = np.where(loaded, found / np.where(loaded, closed_form, 1.0), 1.0)
+    ratio = np.where(loaded, finite_elements / np.where(loaded, closed_form, 1.0), 1.0)
     return np.interp(at, theta, ratio, period=FULL_TURN)
 
 
 def _with_body(unit: RollingPass, p0: Array, extra: Array, poisson: float) -> tuple[Array, Array]:
-    """Greatest von Mises stress and in-plane shear (n, k) of the pass plus the body's stress."""
+    """Maximum von Mises stress and in-plane shear (n, k) of the pass plus body stress."""
     mises, shear = np.empty((2, p0.size, unit.depth.size))
     if not extra.any():
         return p0[:, None] * unit.von_mises, p0[:, None] * unit.tau_max
@@ -269,30 +269,36 @@ def _with_body(unit: RollingPass, p0: Array, extra: Array, poisson: float) -> tu
     return mises, shear
 
 
-def _crossland(unit: RollingPass, p0: Array, pulled: Array, limits: FatigueLimits) -> Array:
-    """Crossland's value (n, k) with the body's hydrostatic stress `pulled` (n,) added."""
-    greatest = p0[:, None] * unit.hydrostatic.max(axis=1) + pulled[:, None]
-    return p0[:, None] * unit.shear_amplitude + limits.crossland * np.maximum(greatest, 0.0)
+def _crossland(
+    unit: RollingPass, p0: Array, body_hydrostatic: Array, limits: FatigueLimits
+) -> Array:
+    """Crossland stress (n, k) with the hydrostatic stress (n,) of the body added."""
+    greatest = p0[:, None] * unit.hydrostatic.max(axis=1) + body_hydrostatic[:, None]
+    return np.asarray(
+        p0[:, None] * unit.shear_amplitude + limits.crossland * np.maximum(greatest, 0.0)
+    )
 
 
-def _dang_van(unit: RollingPass, p0: Array, pulled: Array, limits: FatigueLimits) -> Array:
-    """Dang Van's value (n, k) likewise; compression gets no credit."""
-    if not pulled.any():
+def _dang_van(
+    unit: RollingPass, p0: Array, body_hydrostatic: Array, limits: FatigueLimits
+) -> Array:
+    """Dang Van stress (n, k) likewise; compression counts as zero."""
+    if not body_hydrostatic.any():
         return p0[:, None] * unit.dang_van(limits)
-    found = np.empty((p0.size, unit.depth.size))
+    values = np.empty((p0.size, unit.depth.size))
     for start in range(0, p0.size, _BLOCK):
         part = slice(start, start + _BLOCK)
         scale = p0[part, None, None]
-        tension = np.maximum(scale * unit.hydrostatic + pulled[part, None, None], 0.0)
-        found[part] = (scale * unit.shear + limits.dang_van * tension).max(axis=2)
-    return found
+        tension = np.maximum(scale * unit.hydrostatic + body_hydrostatic[part, None, None], 0.0)
+        values[part] = (scale * unit.shear + limits.dang_van * tension).max(axis=2)
+    return values
 
 
 def required_strength(envelope: Envelope, depth: ArrayLike) -> Array:
-    """Shear strength (k,), Pa, that all places of the contour ask for at depths (k,) m.
+    """Required shear strength (k,), Pa, at depths (k,) m.
 
-    The greatest in-plane shear of the turn at that depth, over all stations: the least k(z) a
-    hardened case must have.
+    Maximum in-plane shear of the turn over all stations: the lower bound of the strength
+    k(z) of a hardened case.
     """
     at = np.asarray(depth, dtype=float)
     needed = np.zeros(at.shape)

@@ -1,8 +1,8 @@
-"""The contact patch under tractions along its surface: stress by finite elements.
+"""Contact patch under tangential tractions, by finite elements.
 
-The same half disc as the pressure's template, with linear traction shapes on the same knots and
-the half-plane's motion under them on its arc. Pressure and traction of bodies of one material
-do not disturb each other, so the two templates are simply added.
+The half-disc of `contact_patch` with linear traction shapes on the same knots and the displacement
+of the half-plane on its arc. For equal materials pressure and traction are uncoupled: the stresses
+of both templates are added.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.pipeline.base import disk_cache
@@ -29,16 +29,16 @@ from camwright.pipeline.contact.elasticity.surface_integrals import normal_loads
 from camwright.pipeline.contact.traction import rolling_traction
 
 _SHARES = 21
-# Traction draws the peak towards the surface, where the stress bends sharply.
+# With traction the maximum is near the surface, where the stress varies strongly.
 _PEAK_REACH = 0.25
 
 
 @dataclass(frozen=True, eq=False)
 class TangentialPatch:
-    """Half-plane under unit linear tractions along +x, for one Poisson ratio.
+    """Half-plane under unit linear tractions along +x by finite elements, for one Poisson ratio.
 
-    points (2, m) along and depth, in half-widths; stress (3, m, n) over the traction, with
-    `points` and the knots those of `ContactPatch`.
+    points (2, m) along the surface and depth, in half-widths; stress (3, m, n) over the traction;
+    points and knots are those of `ContactPatch`.
     """
 
     poisson: float
@@ -50,13 +50,13 @@ class TangentialPatch:
 
     @cached_property
     def peaks(self) -> PeakFinder:
-        """Finder of peaks in stress with a share of traction."""
+        """Maxima of stress fields with traction on the points."""
         return PeakFinder(self.points, _PEAK_REACH)
 
 
 @lru_cache(maxsize=8)
 def tangential_patch(poisson: float, elements_per_half_width: int = 16) -> TangentialPatch:
-    """The template for a material, kept between runs."""
+    """Template of a Poisson ratio; cached on disk."""
     arrays = disk_cache.kept(
         "traction",
         (float(poisson), int(elements_per_half_width)),
@@ -67,7 +67,7 @@ def tangential_patch(poisson: float, elements_per_half_width: int = 16) -> Tange
 
 
 def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Array, Array]:
-    """What Carter's traction makes of the largest in-plane shear and von Mises stress.
+    """Increase of maximum in-plane shear and von Mises stress by the traction of Carter.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def rolling_increase(poisson: float, friction: float, ratio: Array) -> tuple[Arr
 
     Returns
     -------
-    shear, mises : array (...)   over the values without traction
+    shear, mises : array (...)   maxima over those without traction
     """
     shares, shear, mises = _increase(float(poisson), float(friction))
     return np.interp(ratio, shares, shear), np.interp(ratio, shares, mises)
@@ -104,17 +104,19 @@ def _computed(poisson: float, elements_per_half_width: int) -> dict[str, Array]:
     held = _arc_displacement(body.mesh.points, body.mesh.boundary_nodes("arc"), shapes, poisson)
     recovery = StressRecovery(body, elements_near(body, frame.origin, contact_patch.STRESS_REACH))
     nodal = recovery(body.displacement(loads, held))
-    # As in the pressure's template: the depth axis is turned over, and with it the shear.
+    # Depth is counted into the body, opposite to y: the shear changes sign.
     nodal[2] *= -1
     points = body.mesh.points[:, recovery.nodes] * np.array([[1.0], [-1.0]])
     return {"points": points, "stress": nodal}
 
 
-def _arc_displacement(points: Array, arc: Any, shapes: PressureShapes, poisson: float) -> Array:
+def _arc_displacement(
+    points: Array, arc: NDArray[np.int64], shapes: PressureShapes, poisson: float
+) -> Array:
     """Half-plane displacement (2, nodes, n) of the arc under each traction shape.
 
-    The field of a force depends on the angle from its line alone, whichever way the surface
-    runs: the normal force's field, turned by a quarter, is that of a tangential one.
+    The displacement of a point force depends on the angle from its line of action alone: that of
+    a tangential force is the field of the normal force turned by 90 deg.
     """
     xi, weights = shapes.quadrature()
     x, depth = points[0, arc], -points[1, arc]

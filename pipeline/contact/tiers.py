@@ -1,4 +1,4 @@
-"""Tiers of a solution, by what they cost."""
+"""Tiers of a solution, by cost."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class Tier(IntEnum):
-    """Depth of a solution: a preview is by closed forms, a sign-off by finite elements."""
+    """Tier of a solution: preview by closed forms, sign-off by finite elements."""
 
     PREVIEW = 1
     FINITE_ELEMENTS = 2

@@ -1,9 +1,8 @@
-"""Tangential side of a line contact: what it must transmit, where it sticks, how far it creeps.
+"""Tangential line contact: stick zone, traction, creepage, slip of a driven roller.
 
-Similar materials: pressure and traction do not disturb each other. `ratio` is the tangential
-force over friction coefficient times normal force, `x` is in half-widths and grows in the
-direction in which the material leaves the contact, tractions are over friction coefficient
-times peak pressure.
+Equal materials: pressure and traction are uncoupled. `ratio` is the tangential force over friction
+coefficient times normal force; `x` is in half-widths, from the leading to the trailing edge;
+tractions are over friction coefficient times peak pressure.
 """
 
 from __future__ import annotations
@@ -18,16 +17,16 @@ from camwright.geometry.errors import InputError
 
 _TURNS_MAX = 50
 _SETTLED = 1e-9
-# |x| within which half of a Hertz load lies, in half-widths, to round-off; its pressure over p0.
+# |x| over half-width that encloses half of a Hertz load, and the pressure there over p0.
 _HALF_LOAD = 0.403972753299517
 _HALF_LOAD_PRESSURE = np.sqrt(1 - _HALF_LOAD**2)
 
 
 def stick_half_width(ratio: ArrayLike) -> Array:
-    """Half-width of the stick zone over that of the contact; 1 without, 0 at full traction.
+    """Half-width of the stick zone over that of the contact: 1 at no, 0 at full traction.
 
-    The same for a static contact (Cattaneo, Mindlin: in the middle) and a rolling one (Carter:
-    at the leading edge).
+    Equal for static contact (Cattaneo, Mindlin: in the middle) and rolling contact (Carter: at the
+    leading edge).
 
     References
     ----------
@@ -37,7 +36,7 @@ def stick_half_width(ratio: ArrayLike) -> Array:
 
 
 def static_traction(x: ArrayLike, ratio: float) -> Array:
-    """Traction (...) of a contact loaded first along its normal, then along its surface.
+    """Traction (...) of static contact under normal, then increasing tangential force.
 
     References
     ----------
@@ -61,14 +60,14 @@ def _sheared(x: ArrayLike, stick: float, centre: float) -> Array:
     at = np.asarray(x, dtype=float)
     full = np.sqrt(np.maximum(1 - at**2, 0.0))
     if stick == 0:
-        return full
-    return full - stick * np.sqrt(np.maximum(1 - ((at - centre) / stick) ** 2, 0.0))
+        return np.asarray(full)
+    return np.asarray(full - stick * np.sqrt(np.maximum(1 - ((at - centre) / stick) ** 2, 0.0)))
 
 
 def creepage(
     ratio: ArrayLike, friction: float, half_width: ArrayLike, relative_radius: ArrayLike
 ) -> Array:
-    """Creep speed over rolling speed of steady rolling, short of full slip.
+    """Creep speed over rolling speed (...) of steady rolling below full slip.
 
     Parameters
     ----------
@@ -89,10 +88,10 @@ def creepage(
 def free_rolling_creepage(
     moduli: tuple[float, float], poissons: tuple[float, float], peak_pressure: float
 ) -> float:
-    """Creepage of two rollers of unlike materials that roll without force, friction vanishing.
+    """Creepage of free rolling of two materials, in the limit of zero friction.
 
-    The surface of the softer body stretches less (or more) under the pressure; slip changes
-    its sign where half the load is inside, so that its tractions balance.
+    The surfaces stretch differently under the pressure; slip changes sign where half of the load is
+    enclosed, so that the tractions balance.
 
     References
     ----------
@@ -103,16 +102,16 @@ def free_rolling_creepage(
 
 
 def ring_inertia(radius: float, hub_radius: float, width: float, density: float) -> float:
-    """Moment of inertia of a solid ring about its axis, kg m2: the most an outer ring can have."""
+    """Moment of inertia of a solid ring about its axis, kg m2: upper bound of an outer ring."""
     return 0.5 * np.pi * density * width * (radius**4 - hub_radius**4)
 
 
 @dataclass(frozen=True)
 class Drag:
-    """What keeps the roller from turning and what may turn it.
+    """Inertia and drag of a roller, and its friction on the cam.
 
-    inertia kg m2; torque N m, load-free drag of bearing and seals; bearing_friction times
-    normal force times pin_radius (m) comes on top; friction of roller on cam, > 0.
+    inertia kg m2; torque N m, load-free drag of bearing and seals; bearing_friction times normal
+    force times pin_radius (m), load-dependent drag; friction of roller on cam, > 0.
     """
 
     inertia: float
@@ -137,12 +136,11 @@ class Drag:
 class RollingContact:
     """Roller driven by the cam over one turn, arrays (n,).
 
-    demand N, tangential force that rolling without slip asks for; force N, the one the contact
-    gives, at most friction times normal force; slip m/s, by which the roller's surface lags
-    behind rolling; creepage, micro-slip over rolling speed while it holds, slip over rolling
-    speed while it skids; skidding, 1 or 0; utilisation, |demand| over friction times normal
-    force, infinite where the contact is open and the roller must be turned; loss J, of sliding
-    and creeping in one turn.
+    demand N, tangential force of rolling without slip; force N, transmitted tangential force, at
+    most friction times normal force; slip m/s, rolling speed less surface speed of the roller;
+    creepage, micro-slip over rolling speed while sticking, slip over rolling speed while sliding;
+    skidding, 1 or 0; utilisation, |demand| over friction times normal force, infinite without
+    contact force; loss J, of slip and creep in one turn.
     """
 
     demand: Array
@@ -169,17 +167,17 @@ def rolling_contact(
     radius: float,
     period: float,
 ) -> RollingContact:
-    """Rolling, creeping and skidding of the roller over one turn, repeated for ever.
+    """Periodic rolling, creep and skidding of the roller over one turn.
 
-    Without slip at first; where that takes more than friction gives, the contact slips with the
-    force it has until the roller has caught up. One implicit step per position (Moreau): the
-    impulse that would restore rolling, cut off at the friction's.
+    Where the demand exceeds friction times normal force the contact slips under that force until
+    the roller has regained the rolling speed. One implicit step per position (Moreau): the impulse
+    that restores rolling, limited by friction.
 
     Parameters
     ----------
     normal_force : array (n,)      N, at positions equally spaced in time
     spin : array (n,)              rad/s of rolling without slip
-    rolling_speed : array (n,)     m/s, at which the surfaces pass through the contact
+    rolling_speed : array (n,)     surface speed through the contact, m/s
     half_width, relative_radius : array (n,)   m
     drag : Drag
     radius : float                 of the roller, m
@@ -205,57 +203,57 @@ def rolling_contact(
     speed = np.abs(finite("rolling_speed", rolling_speed))
     step = period / force.size
     resisting = drag.bearing_torque(force)
-    demand, given, turning = _steps(rolling, limit, resisting, drag.inertia, radius, step)
+    demand, tangential, turning = _steps(rolling, limit, resisting, drag.inertia, radius, step)
     slip = radius * (rolling - turning)
     sliding = np.abs(slip) > _SETTLED * radius * np.abs(rolling).max(initial=1e-300)
-    share = np.divide(np.abs(given), limit, out=np.zeros_like(limit), where=limit > 0)
+    share = np.divide(np.abs(tangential), limit, out=np.zeros_like(limit), where=limit > 0)
     creep = creepage(np.clip(share, 0, 1), drag.friction, half_width, relative_radius)
     gross = np.divide(np.abs(slip), speed, out=np.zeros_like(slip), where=speed > 0)
     creep = np.where(sliding & (limit > 0), gross, np.where(limit > 0, creep, 0.0))
     idle = np.where(np.abs(demand) > 0, np.inf, 0.0)
     return RollingContact(
         demand=demand,
-        force=given,
+        force=tangential,
         slip=np.where(sliding, slip, 0.0),
         creepage=creep,
         skidding=(sliding & (limit > 0)).astype(float),
         utilisation=np.divide(np.abs(demand), limit, out=idle, where=limit > 0),
-        loss=float(np.sum(np.abs(given) * creep * speed) * step),
+        loss=float(np.sum(np.abs(tangential) * creep * speed) * step),
     )
 
 
 def _steps(
     rolling: Array, limit: Array, resisting: Array, inertia: float, radius: float, step: float
 ) -> tuple[Array, Array, Array]:
-    """Demand and force (n,) N and spin (n,) rad/s, turn after turn until one repeats itself."""
+    """Demand and force (n,) N and spin (n,) rad/s of the periodic turn."""
     count = rolling.size
     change = rolling - np.roll(rolling, 1)
     sense = np.sign(rolling)
     demand = (inertia * change / step + sense * resisting) / radius
-    given, turning = np.zeros(count), np.array(rolling)
+    tangential, turning = np.zeros(count), np.array(rolling)
     omega = float(rolling[-1])
     scale = max(float(np.abs(rolling).max()), 1e-300)
     for _ in range(_TURNS_MAX):
         start = omega
         for k in range(count):
             target, drag = float(rolling[k]), float(resisting[k])
-            wanted = (inertia * (target - omega) / step + float(sense[k]) * drag) / radius
-            given[k] = np.clip(wanted, -limit[k], limit[k])
-            if abs(wanted) <= limit[k]:
+            needed = (inertia * (target - omega) / step + float(sense[k]) * drag) / radius
+            tangential[k] = np.clip(needed, -limit[k], limit[k])
+            if abs(needed) <= limit[k]:
                 omega = target
             elif inertia == 0:
                 omega = 0.0
             else:
-                driven = omega + float(given[k]) * radius * step / inertia
+                driven = omega + float(tangential[k]) * radius * step / inertia
                 omega = _braked(driven, drag * step / inertia)
             turning[k] = omega
         if abs(omega - start) <= _SETTLED * scale:
             break
-    return demand, given, turning
+    return demand, tangential, turning
 
 
 def _braked(omega: float, loss: float) -> float:
-    """Spin after a drag that stops a roller but never turns it back."""
+    """Spin after a loss by drag, which cannot reverse it, rad/s."""
     return float(np.sign(omega) * max(abs(omega) - loss, 0.0))
 
 

@@ -1,7 +1,4 @@
-"""Two-scale contact: finite-element patch at every angle, corrections of the real bodies.
-
-The middle tier of cost between the closed form and the certificate's full two-body solution.
-"""
+"""Two-scale contact over the turn: finite-element patch with corrections of the real bodies."""
 
 from __future__ import annotations
 
@@ -21,24 +18,22 @@ from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.follower_body import EDGES_ACROSS_WALL
 from camwright.pipeline.contact.tiers import Tier
 
-# Beyond this ratio of half-width to relative radius the flat patch is off by more than 0.5 %.
+# Half-width over relative radius beyond which the error of the flat patch exceeds 0.5 %.
 FLAT_LIMIT = 0.1
-
-
-# Finer changes the largest shear by less than 1e-4.
+# Elements along the contour; more change the maximum shear by less than 1e-4.
 _GRID_OF_CYCLE_MESH = 120
 
 
 @dataclass(frozen=True, eq=False)
 class CycleBodies:
-    """Cam and follower on coarse meshes, factored once, for the contact at every angle."""
+    """Cam and follower on coarse meshes, factorised once for all cam angles."""
 
     cam: LoadedBody
     follower: LoadedBody
 
     @classmethod
     def meshed(cls, pair: ContactPair) -> CycleBodies:
-        """Bodies of a pair; the element size follows the outline and the thinnest wall."""
+        """Bodies of a pair; the element size follows from the contour and the minimum wall."""
         outline = float(pair.contour.perimeter())
         depth = 0.0 if pair.keyway is None else pair.keyway.depth
         wall = float(pair.contour.radius_min().value) - pair.bore_radius - depth
@@ -62,12 +57,12 @@ class CycleBodies:
 def two_scale_history(
     pair: ContactPair, bodies: CycleBodies, theta: Array, normal_force: Array
 ) -> ContactHistory:
-    """Contact at the cam angles theta (n,) rad under normal forces (n,) N.
+    """Contact at cam angles theta (n,) rad under normal forces (n,) N.
 
-    Two scales: pressures and near stresses from the finite-element patch, with the gap of the
-    true contour; stress and bending of the real bodies from their correction fields. Where the
-    contact is wider than a tenth of the relative radius the flat patch has no answer, and what
-    it would have found is not a number there; Hertz stands beside it all the same.
+    Pressure and stress from the finite-element patch with the gap of the exact contour; stress and
+    bending of the real bodies from their correction fields. Where the half-width exceeds a tenth of
+    the relative radius the flat patch is not valid: its quantities are NaN, those of Hertz are
+    not.
 
     Raises
     ------
@@ -126,7 +121,7 @@ def _loaded_positions(
     unit_xi, _ = patches[0].shapes.quadrature()
     xi = half_width[:, None] * unit_xi
     bend = load * (other.bend + cam.bend)
-    # A surface that bulges under its load leaves less of a gap at the middle than beside it.
+    # The outward curvature of the corrections reduces the gap beside the centre.
     gap = pair.gap(theta, xi) - 0.5 * bend[:, None] * xi**2
     contacts = solve_patches(
         patches, (shares[0], shares[1]), gap * (2 * radius / half_width**2)[:, None]
@@ -160,15 +155,15 @@ def stress_on_patch(
     p0: Array,
     pressure: Array,
 ) -> Array:
-    """Stress (3, m, n), Pa, in the cam at the patch's m points for n positions.
+    """Stress (3, m, n), Pa, in the cam at the m points of the patch at n positions.
 
-    Components along the tangent of the contact frame and into the depth; the unit of length of
-    the points is the position's Hertz half-width. From the pressures (n, k), Pa, at the knots,
-    and what the real body adds.
+    Components along the tangent of the contact frame and into the depth; points in Hertz
+    half-widths of the position. From the pressures (n, k), Pa, at the knots and the correction of
+    the real body.
     """
     patch = contact_patch(pair.cam.poisson)
     total = np.tensordot(patch.stress, pressure, axes=(2, 1))
-    # Below a free curved surface the stress along it and the stress into it change so.
+    # First-order change of the stress with the depth below a free curved surface.
     curvature, depth = pair.contour.curvature(theta), patch.points[1][:, None] * half_width
     total[0] += load * (cam.along + depth * (cam.along_by_depth + 2 * curvature * cam.along))
     total[1] -= load * depth * curvature * cam.along

@@ -1,4 +1,4 @@
-"""A bearing's outer ring that rolls on a cam, carried by its balls alone; and the roller's pin."""
+"""Outer ring of a bearing that rolls on the cam on its balls; bending of the roller pin."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Ring:
 
     Parameters
     ----------
-    radius : float            of the middle line, m, > 0
+    radius : float            mean radius, m, > 0
     thickness, width : float  m, > 0; the thickness below half the radius
     modulus : float           E, Pa, > 0
     balls : int               >= 3
@@ -45,9 +45,9 @@ class Ring:
         return self.modulus * self.width * self.thickness**3 / 12.0
 
     def stress_inside(self, moment: Array, hoop: Array) -> Array:
-        """Stress along the ring at its inside, Pa, of a section's moment, N m, and pull, N.
+        """Circumferential stress at the inner radius, Pa, of moment, N m, and hoop force, N.
 
-        The moment stretches the inside; of a curved bar it stretches it more than the outside.
+        A positive moment puts the inner radius in tension.
 
         References
         ----------
@@ -61,12 +61,12 @@ class Ring:
 
 @dataclass(frozen=True, eq=False)
 class RingBending:
-    """Per newton of the cam's push, at ball positions `phase` (n,), rad, from the push.
+    """Bending of a ring per newton of contact force, at ball positions `phase` (n,), rad, from it.
 
-    `ball_load` (n, balls) as shares of the push, >= 0, the first ball at the phase, the others
-    on from it; `moment_max`, `moment_min` (n,) in the ring, m, positive where the inside is
-    stretched; `stress_max`, `stress_min` (n,) along the ring at its inside, Pa/N;
-    `compliance` (n,) under the push, m/N.
+    `ball_load` (n, balls) over contact force, >= 0, first ball at the phase, the others in order;
+    `moment_max`, `moment_min` (n,) in the ring, m, positive with tension at the inner radius;
+    `stress_max`, `stress_min` (n,) circumferential at the inner radius, Pa/N; `compliance` (n,)
+    at the contact force, m/N.
     """
 
     phase: Array
@@ -82,29 +82,29 @@ class RingBending:
 
     @property
     def stress_amplitude(self) -> float:
-        """Half of what a point of the groove swings through, Pa/N.
+        """Stress amplitude of a point of the groove, Pa/N.
 
-        Each point of the ring passes under the push and over the balls; the swing is taken over
-        all places and ball positions.
+        Each point of the ring passes the contact force and the balls: half the range over all
+        places and ball positions.
         """
         return 0.5 * float(self.stress_max.max() - self.stress_min.min())
 
     @property
     def stress_mean(self) -> float:
-        """Middle of what a point of the groove swings through, Pa/N, tension positive."""
+        """Mean stress of a point of the groove, Pa/N, tension positive."""
         return 0.5 * float(self.stress_max.max() + self.stress_min.min())
 
     def carrying(self, position: int) -> tuple[float, ...]:
-        """Angles from the push of the balls that carry at one of the ball positions, rad."""
+        """Angles of the loaded balls from the contact force, rad, at one of the ball positions."""
         loads = self.ball_load[position]
         angles = self.phase[position] + FULL_TURN * np.arange(loads.size) / loads.size
         return tuple(float(angle) for angle in angles[loads > 0.0])
 
 
 def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
-    """Amplitude about no mean stress that tires as much, Pa; infinite where the mean breaks it.
+    """Equivalent fully reversed amplitude, Pa; infinite where the mean exceeds the strength.
 
-    A mean that presses is not counted in favour.
+    A compressive mean stress counts as zero.
 
     References
     ----------
@@ -116,10 +116,10 @@ def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
 
 
 def ball_stiffness(force: float, diameter: float, modulus: float, poisson: float) -> float:
-    """Of a ball between two raceways under a force, secant, N/m; an estimate.
+    """Secant stiffness of a ball between two raceways under a force, N/m; an estimate.
 
-    Each contact as that of a ball on a flat, d = (9 F^2/(16 E*^2 R))^(1/3), stiffened by the
-    grooves' osculation by the usual 1.3 (recalled, verify); the ring's bending hardly asks.
+    Each contact as ball on flat, d = (9 F^2/(16 E*^2 R))^(1/3), times a factor 1.3 for the
+    osculation of the grooves (recalled, verify); the bending of the ring is insensitive to it.
 
     References
     ----------
@@ -130,27 +130,27 @@ def ball_stiffness(force: float, diameter: float, modulus: float, poisson: float
             raise InputError(f"ball.{name}", value, "> 0")
     contact = modulus / (2.0 * (1.0 - poisson**2))
     way = (9.0 * force**2 / (16.0 * contact**2 * 0.5 * diameter)) ** (1.0 / 3.0)
-    return 1.3 * force / (2.0 * way)
+    return float(1.3 * force / (2.0 * way))
 
 
 def pin_bending_stress(
     force: float, diameter: float, width: float, span: float, overhung: bool = False
 ) -> float:
-    """Greatest bending stress of the roller's pin, Pa, the load spread over the bearing's width.
+    """Maximum bending stress of the roller pin, Pa, under a load uniform over the bearing width.
 
     Parameters
     ----------
     force : float      N, >= 0
     diameter : float   of the pin, m, > 0
     width : float      of the bearing, m, > 0
-    span : float       between the supports' middles (straddled) or from the support's face to
-                       the middle of the bearing (overhung), m, > 0
+    span : float       between the middles of the supports (straddled) or from the face of the
+                       support to the middle of the bearing (overhung), m, > 0
     overhung : bool
 
     Raises
     ------
     InputError
-        If a value is out of these bounds, or a straddling support lies inside the bearing.
+        If a value is out of these bounds, or a straddled span is below the bearing width.
     """
     for name, value in (("diameter", diameter), ("width", width), ("span", span)):
         if not 0.0 < value < np.inf:

@@ -1,13 +1,12 @@
-"""A bearing's outer ring on its balls by plane finite elements: no beam is assumed.
+"""Outer ring of a bearing on its balls by plane finite elements.
 
-The balls are springs that only push, the cam pushes at one place. No gaps: everything grows with
-the load, so one unit load tells all.
+The balls are unilateral springs without clearance, the contact force acts at one section: the
+solution is proportional to the force.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,30 +19,30 @@ from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import ContactError
 from camwright.pipeline.follower.bearing_ring import Ring, RingBending
 
-_PER_GAP = 24  # elements between two balls; a multiple of all that `phases` asks for
+_PER_GAP = 24  # elements between two balls, at least
 _LAYERS = 2
-_HOLD = 1e-6  # of the balls' stiffness, against the ring's turning on them, which costs nothing
-_SIMPSON = np.array([1.0, 4.0, 2.0, 4.0, 1.0]) / 12.0  # mean over the nodes of two layers
+_HOLD = 1e-6  # over the ball stiffness: support against rotation of the ring
+_SIMPSON = np.array([1.0, 4.0, 2.0, 4.0, 1.0]) / 12.0  # weights of the mean over two layers
 
 
 class RingElements:
-    """Ring of quadratic quadrilaterals in plane stress, its sections at equal angles.
+    """Ring of quadratic quadrilaterals in plane stress with sections at equal angles.
 
-    A section's radial and tangential way are means over its thickness, and forces act on the
-    whole section likewise: the dent of a ball belongs to `ball_stiffness`.
+    Displacements of a section are means over its thickness, and forces act on the section
+    likewise: local indentation is part of `ball_stiffness`.
 
     Parameters
     ----------
     ring : Ring
-    sections : int    each of two elements over the thickness
+    sections : int    with two elements over the thickness
     poisson : float
 
     Attributes
     ----------
     stiffness : (d, d)       sparse, N/m
-    radial, along : (n, d)   a section's mean way outwards and along the ring, of the motion (d,)
-    moment : (n, d)          bending moment in a section, positive where the inside is stretched
-    hoop : (n, d)            pull along the ring in a section
+    radial, along : (n, d)   mean radial and tangential displacement of a section
+    moment : (n, d)          bending moment, positive with tension at the inner radius
+    hoop : (n, d)            hoop force, tension positive
     """
 
     def __init__(self, ring: Ring, sections: int, poisson: float = 0.3) -> None:
@@ -78,31 +77,32 @@ class RingElements:
 
 
 def _second(basis: Basis) -> Array:
-    """0 for the dofs of motion in x, 1 for those in y."""
+    """Component of each degree of freedom: 0 for x, 1 for y."""
     way = np.zeros(basis.N)
     way[basis.get_dofs(elements=True).all(["u^2"])] = 1.0
     return way
 
 
-def _assembled(local: Array, dofs: NDArray[np.intp], size: int) -> Any:
-    """Matrix (size, size) of the local ones (m, d, d) of some elements, dofs (m, d)."""
+def _assembled(local: Array, dofs: NDArray[np.intp], size: int) -> csr_array:
+    """Matrix (size, size) assembled from element matrices (m, d, d) with dofs (m, d)."""
     rows = np.broadcast_to(dofs[:, :, None], local.shape).ravel()
     columns = np.broadcast_to(dofs[:, None, :], local.shape).ravel()
     return coo_array((local.ravel(), (rows, columns)), (size, size)).tocsr()
 
 
-def _row(dofs: NDArray[np.intp], values: Array, size: int) -> Any:
+def _row(dofs: NDArray[np.intp], values: Array, size: int) -> coo_array:
+    """Row vector (1, size) of values at dofs."""
     return coo_array((values.ravel(), (np.zeros(dofs.size, int), dofs.ravel())), (1, size))
 
 
 @lru_cache(maxsize=16)
 def ring_bending(ring: Ring, phases: int = 5, poisson: float = 0.3) -> RingBending:
-    """Ring under a unit push at ball positions from right below it to midway between two.
+    """Ring under a unit contact force at ball positions from below it to midway between balls.
 
     Raises
     ------
     ContactError
-        If the balls that carry cannot be found.
+        If the set of loaded balls does not converge.
 
     References
     ----------
@@ -111,15 +111,15 @@ def ring_bending(ring: Ring, phases: int = 5, poisson: float = 0.3) -> RingBendi
     """
     count = 2 * (phases - 1) * -(-_PER_GAP // (2 * (phases - 1)))
     body = RingElements(ring, ring.balls * count, poisson)
-    found = [_pushed(body, ring, count, k * count // (2 * (phases - 1))) for k in range(phases)]
+    results = [_pushed(body, ring, count, k * count // (2 * (phases - 1))) for k in range(phases)]
     phase = np.linspace(0.0, 0.5 * FULL_TURN / ring.balls, phases)
-    return RingBending(phase, *(np.array(part) for part in zip(*found, strict=True)))
+    return RingBending(phase, *(np.array(part) for part in zip(*results, strict=True)))
 
 
 def _pushed(
     body: RingElements, ring: Ring, count: int, shift: int
 ) -> tuple[Array, float, float, float, float, float]:
-    """What `RingBending` holds of one ball position; the push is on section 0, inwards."""
+    """Values of `RingBending` at one ball position; inward unit force on section 0."""
     sections = body.radial.shape[0]
     at = (shift + count * np.arange(ring.balls)) % sections
     carrying = np.cos(FULL_TURN * at / sections) > 0.0
@@ -139,7 +139,7 @@ def _pushed(
             most, least = float(stress.max()), float(stress.min())
             return share, float(moment.max()), float(moment.min()), most, least, float(-way[0])
         carrying = squeezed
-    raise ContactError("ring: the balls that carry were not found")
+    raise ContactError("ring: set of loaded balls not converged")
 
 
 def annulus(radius: float, thickness: float, sections: int) -> MeshQuad2:
@@ -156,7 +156,7 @@ def annulus(radius: float, thickness: float, sections: int) -> MeshQuad2:
         for row in sections * np.arange(_LAYERS)
     ]
     flat = MeshQuad2.from_mesh(MeshQuad(points, np.concatenate(quads, axis=1)))
-    # Middles of edges along the ring lie on the chord: lift them to the arc.
+    # Midside nodes along the ring lie on the chord: move them to the arc.
     step = FULL_TURN / sections
     half = np.abs(np.arctan2(flat.doflocs[1], flat.doflocs[0]) / step * 2.0)
     between = np.round(half) % 2 == 1

@@ -1,4 +1,4 @@
-"""What the cam hands on: key, gear and camshaft bearings; and its unbalance."""
+"""Loads of key, gear and camshaft bearings; unbalance of the cam and its counter-hole."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from camwright.pipeline.base.quantities import Angle, Count, Force, In, Length, 
 
 
 class KeyStress(NamedTuple):
-    """Pressure on the key's flank and shear in its section, Pa, signed like the torque."""
+    """Flank pressure and shear stress of the key, Pa, signed like the torque."""
 
     pressure: Array
     shear: Array
@@ -28,7 +28,7 @@ class KeyStress(NamedTuple):
 def key_stress(
     torque: ArrayLike, shaft_diameter: float, key_width: float, key_height: float, length: float
 ) -> KeyStress:
-    """p = 4 T/(d h l) and tau = 2 T/(d b l) of a parallel key, half of it in the hub.
+    """p = 4 T/(d h l) and tau = 2 T/(d b l) of a parallel key, half of its height in the hub.
 
     Parameters
     ----------
@@ -64,16 +64,16 @@ class Reversal(NamedTuple):
 
 
 def torque_reversals(theta: Array, torque: ArrayLike, drag: float = 0.0) -> tuple[Reversal, ...]:
-    """Where the torque through gear and key changes its sign over a turn.
+    """Reversals of the torque through gear and key over a turn.
 
-    At each of them the teeth and the key cross their backlash and meet on the other flank;
-    the steeper the torque, the harder.
+    At each reversal teeth and key cross their backlash; the impact increases with the slope of
+    the torque.
 
     Parameters
     ----------
-    theta : array (n,)     rising cam angles of one turn, rad
+    theta : array (n,)     increasing cam angles of one turn, rad
     torque : array (n,)    N m
-    drag : float           steady torque that holds the flanks together, N m
+    drag : float           constant torque that keeps the flanks in contact, N m
 
     Raises
     ------
@@ -86,26 +86,28 @@ def torque_reversals(theta: Array, torque: ArrayLike, drag: float = 0.0) -> tupl
     """
     angle = finite("theta", theta)
     value = finite("torque", torque) + drag
-    lively = np.flatnonzero(value != 0.0)  # a dwell at zero is one crossing, not many
-    found = []
+    lively = np.flatnonzero(value != 0.0)  # a dwell at zero is one reversal
+    reversals = []
     for here, after in zip(lively, np.roll(lively, -1), strict=True):
         if value[here] * value[after] >= 0.0:
             continue
         step = (angle[after] - angle[here]) % FULL_TURN
         slope = (value[after] - value[here]) / step
-        found.append(Reversal(float((angle[here] - value[here] / slope) % FULL_TURN), float(slope)))
-    return tuple(sorted(found))
+        reversals.append(
+            Reversal(float((angle[here] - value[here] / slope) % FULL_TURN), float(slope))
+        )
+    return tuple(sorted(reversals))
 
 
 _BALANCED = 1e-9
-"""Of the area's power 3/2: a first moment that is round-off."""
+"""First moment over the area to the power 3/2, up to which the cam is balanced."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CamshaftGear(Part):
-    """The spur gear on the camshaft; its limits are those of its material for endless life.
+    """Spur gear on the camshaft, 20 deg full depth; the pinion is on the crankshaft.
 
-    The teeth are of 20 deg full depth; the pinion is on the crank.
+    bending_limit and contact_limit: endurance limits.
     """
 
     table: ClassVar[str] = "camshaft.gear"
@@ -122,12 +124,12 @@ class CamshaftGear(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Camshaft(Part):
-    """The cam's shaft: positions from its first bearing, and the gear that drives it.
+    """Camshaft: positions from its first bearing, driving gear, two ball bearings.
 
-    A negative position or one beyond the spacing is overhung. The gears mesh at mesh_angle, seen
-    from the axis, from the follower's axis counter-clockwise; gear_radius is the pitch radius and
-    pressure_angle that of the teeth. The notch factors are those of the keyway under the cam, as
-    an end mill cuts it; the rating is the dynamic one, C, of each of its two ball bearings.
+    A negative position or one beyond the spacing is overhung. mesh_angle: direction of the gear
+    mesh from the follower axis, counter-clockwise; gear_radius: pitch radius; pressure_angle: of
+    the teeth; notch factors: of the end-milled keyway at the cam; bearing_rating: dynamic rating C
+    of each bearing.
     """
 
     table: ClassVar[str] = "camshaft"
@@ -150,10 +152,9 @@ class Camshaft(Part):
 
 @dataclass(frozen=True, eq=False)
 class ShaftLoads:
-    """Forces in the frame of the engine, x along the follower outwards; arrays (2, n), N.
+    """Forces on the camshaft in the engine frame, x along the follower outwards; (2, n), N.
 
-    `cam` and `gear` act on the shaft, `bearing_1` and `bearing_2` are what the bearings push
-    back with.
+    `cam` and `gear` loads, reactions `bearing_1` and `bearing_2`.
     """
 
     cam: Array
@@ -166,12 +167,12 @@ class ShaftLoads:
 
     @property
     def load_1(self) -> Array:
-        """Of the first bearing, (n,), N, >= 0."""
+        """Load of the first bearing (n,), N, >= 0."""
         return np.asarray(np.hypot(*self.bearing_1))
 
     @property
     def load_2(self) -> Array:
-        """Of the second bearing, (n,), N, >= 0."""
+        """Load of the second bearing (n,), N, >= 0."""
         return np.asarray(np.hypot(*self.bearing_2))
 
 
@@ -182,11 +183,10 @@ def shaft_loads(
     shaft: Camshaft,
     unbalance_force: ArrayLike = 0.0,
 ) -> ShaftLoads:
-    """Loads of the camshaft's bearings from the cam's contact and the gear.
+    """Bearing loads of the camshaft from contact force and gear force.
 
-    The roller presses the cam with -F_a along the follower; F_t pushes the stem to one side and
-    the cam to the other. The gear gives the cam torque with its tangential force and presses
-    the wheels apart.
+    The follower exerts -F_a along its axis and -F_t across it on the cam. The tangential gear force
+    supplies the cam torque; the radial gear force separates the gears.
 
     Parameters
     ----------
@@ -215,7 +215,7 @@ def shaft_loads(
 
 @dataclass(frozen=True, eq=False)
 class Unbalance:
-    """First moment of the cam's area about the axis (2,), m3, and what comes of it."""
+    """Unbalance of the cam: area, m2, first moment (2,), m3, mass, kg, `product` m e, kg m."""
 
     area: float
     moment: Array
@@ -227,32 +227,32 @@ class Unbalance:
 
     @property
     def angle(self) -> float:
-        """Of the heavy side, cam frame, rad."""
+        """Direction of the centre of mass in the cam frame, rad."""
         return float(np.arctan2(self.moment[1], self.moment[0]))
 
     @property
     def eccentricity(self) -> float:
-        """Of the centre of mass, m."""
+        """Distance of the centre of mass from the cam axis, m."""
         return float(np.hypot(*self.moment)) / self.area
 
     @property
     def balanced(self) -> bool:
-        """Whether the first moment is round-off, as that of a tripled cam."""
+        """Whether the first moment is round-off, such as by symmetry."""
         return bool(np.hypot(*self.moment) <= _BALANCED * self.area**1.5)
 
     def force(self, cam_speed: float) -> float:
-        """m e w^2, N."""
+        """Centrifugal force m e w^2, N."""
         return self.product * cam_speed**2
 
 
-def rotating_force(found: Unbalance, cam_speed: float, theta: Array) -> Array:
-    """Centrifugal force of an unbalance on the shaft, (2, n), N, in the frame of `ShaftLoads`.
+def rotating_force(unbalance: Unbalance, cam_speed: float, theta: Array) -> Array:
+    """Centrifugal force of an unbalance on the shaft (2, n), N, in the frame of `ShaftLoads`.
 
-    At the cam angle of the heavy side it points along the follower; from there it turns with
-    the cam, in the sense of a positive torque.
+    It points along the follower at the cam angle of the centre of mass and rotates with the
+    cam.
     """
-    turned = finite("theta", theta) - found.angle
-    return found.force(cam_speed) * np.stack([np.cos(turned), np.sin(turned)])
+    turned = finite("theta", theta) - unbalance.angle
+    return unbalance.force(cam_speed) * np.stack([np.cos(turned), np.sin(turned)])
 
 
 def unbalance(
@@ -262,11 +262,10 @@ def unbalance(
     width: float,
     density: float,
 ) -> Unbalance:
-    """Mass and unbalance of the cam with its bore and keyway, holes left out.
+    """Mass and unbalance of the cam with bore and keyway, without holes.
 
-    The contour's area and centroid are line integrals on its own curve; bore and keyway are
-    taken off in closed form. The keyway is a rectangle from the bore's circle outwards, its
-    floor `depth` beyond the bore.
+    Area and centroid of the contour by line integrals; bore and keyway subtracted in closed form.
+    The keyway is a rectangle with its floor `depth` beyond the bore radius.
 
     Parameters
     ----------
@@ -293,32 +292,34 @@ def unbalance(
 
 
 def _keyway_moment(bore: float, width: float, depth: float) -> tuple[float, float]:
-    """Area of a keyway outside the bore, m2, and its first moment about the axis, m3."""
+    """Area of a keyway outside the bore, m2, and its first moment about the cam axis, m3."""
     half, floor = 0.5 * width, bore + depth
     chord = np.sqrt(bore**2 - half**2)
     under_arc = half * chord + bore**2 * np.arcsin(half / bore)
-    # Along the width the cut reaches from sqrt(bore^2 - y^2) to the floor.
+    # Across the width the keyway extends from sqrt(bore^2 - y^2) to the floor.
     return width * floor - under_arc, width * floor**2 / 2.0 - (bore**2 * half - half**3 / 3.0)
 
 
 class CounterHole(NamedTuple):
-    """A round hole through the cam: its middle (2,), m, and radius, m."""
+    """A round hole through the cam: centre (2,), m, and radius, m."""
 
     centre: Array
     radius: float
 
 
 def counter_hole(
-    contour: Contour, found: Unbalance, bore_radius: float, wall: float, keyway_depth: float = 0.0
+    contour: Contour,
+    unbalance: Unbalance,
+    bore_radius: float,
+    wall: float,
+    keyway_depth: float = 0.0,
 ) -> CounterHole:
-    """The smallest hole on the heavy side that takes the whole unbalance away.
-
-    It stands as far out as the wall to the contour allows.
+    """Smallest hole that removes the unbalance, as far out as the wall to the contour permits.
 
     Parameters
     ----------
-    wall : float           least steel between the hole and contour or bore, m, > 0
-    keyway_depth : float   added to the bore's wall, m
+    wall : float           minimum thickness between hole and contour or bore, m, > 0
+    keyway_depth : float   added to the bore radius, m
 
     Raises
     ------
@@ -327,21 +328,21 @@ def counter_hole(
     """
     if not 0.0 < wall < np.inf:
         raise InputError("cam.wall", wall, "> 0 m")
-    need = float(np.hypot(*found.moment))
-    if found.balanced:
-        raise GeometryError("the cam is balanced as it is")
-    direction, ring = _heavy_side(found), contour.polygon(1440)
+    need = float(np.hypot(*unbalance.moment))
+    if unbalance.balanced:
+        raise GeometryError("counter-hole: the cam has no unbalance")
+    direction, ring = _heavy_side(unbalance), contour.polygon(1440)
 
     def spare(place: float) -> float:
-        """Wall left to the contour, less the wall asked for, hole's middle at `place`."""
+        """Wall to the contour less the required one, m, at a hole centre `place`, m."""
         away = np.hypot(*(ring - (place * direction)[:, None])).min()
         return float(away - np.sqrt(need / (np.pi * place)) - wall)
 
-    places = np.linspace(bore_radius, _reach(found, ring), 400)
+    places = np.linspace(bore_radius, _reach(unbalance, ring), 400)
     fits = [place for place in places if spare(place) >= 0.0]
     if not fits:
         raise GeometryError("no counter-hole fits between bore and contour")
-    # spare() falls to zero beyond the outermost place that fits
+    # spare() decreases to zero beyond the outermost feasible place
     outermost = float(brentq(spare, fits[-1], places[-1]))
     radius = float(np.sqrt(need / (np.pi * outermost)))
     if outermost - radius - wall < bore_radius + keyway_depth:
@@ -350,9 +351,13 @@ def counter_hole(
 
 
 def greatest_hole(
-    contour: Contour, found: Unbalance, bore_radius: float, wall: float, keyway_depth: float = 0.0
+    contour: Contour,
+    unbalance: Unbalance,
+    bore_radius: float,
+    wall: float,
+    keyway_depth: float = 0.0,
 ) -> CounterHole:
-    """The hole on the heavy side that takes most of an unbalance away, where none takes all.
+    """Hole that removes most of an unbalance where none removes all.
 
     Parameters
     ----------
@@ -361,9 +366,9 @@ def greatest_hole(
     Raises
     ------
     GeometryError
-        If the walls leave no room for any hole.
+        If no hole fits within the walls.
     """
-    direction, ring = _heavy_side(found), contour.polygon(1440)
+    direction, ring = _heavy_side(unbalance), contour.polygon(1440)
 
     def radius(place: float) -> float:
         away = np.hypot(*(ring - (place * direction)[:, None])).min()
@@ -372,7 +377,7 @@ def greatest_hole(
     def taken(place: float) -> float:
         return max(radius(place), 0.0) ** 2 * place
 
-    places = np.linspace(bore_radius, _reach(found, ring), 400)
+    places = np.linspace(bore_radius, _reach(unbalance, ring), 400)
     best = int(np.argmax([taken(place) for place in places]))
     around = (places[max(best - 1, 0)], places[min(best + 1, places.size - 1)])
     place = float(minimize_scalar(lambda x: -taken(x), bounds=around, method="bounded").x)
@@ -381,11 +386,12 @@ def greatest_hole(
     return CounterHole(place * direction, radius(place))
 
 
-def _heavy_side(found: Unbalance) -> Array:
-    return np.array([np.cos(found.angle), np.sin(found.angle)])
+def _heavy_side(unbalance: Unbalance) -> Array:
+    """Unit vector (2,) towards the centre of mass."""
+    return np.array([np.cos(unbalance.angle), np.sin(unbalance.angle)])
 
 
-def _reach(found: Unbalance, ring: Array) -> float:
-    """Where the contour stands on the heavy side, m: beyond it the distance to it grows again."""
+def _reach(unbalance: Unbalance, ring: Array) -> float:
+    """Radius of the contour in the direction of the unbalance, m."""
     bearing = np.arctan2(ring[1], ring[0])
-    return float(np.interp(found.angle, bearing, np.hypot(*ring), period=2.0 * np.pi))
+    return float(np.interp(unbalance.angle, bearing, np.hypot(*ring), period=2.0 * np.pi))

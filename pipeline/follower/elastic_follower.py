@@ -1,31 +1,30 @@
-"""A follower on an elastic stem: its periodic response, and the speed at which it jumps.
+"""Follower with elastic stem: periodic response, and cam speed of the loss of contact.
 
-The cam moves the foot by s; a spring K with a damper c carries the mass m, whose way is x, and
-the preloaded spring k presses it down:
+The cam displaces the foot by s; the mass m with displacement x rests on the stem, spring K and
+damper c, under the follower spring k with preload P:
 
     m x'' + c_k x' + k x + P = N,    N = K (s - x) + c (s' - x'),    N >= 0.
 
-Time derivatives; the loose foot has no mass. The mass sits P/K below the cam at rest.
+Derivatives by time; the foot has no mass. At rest the mass is displaced by -P/(K + k).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
 
-STEADY = 1e-12  # a speed that varies by less, of itself, is constant
+STEADY = 1e-12  # relative variation up to which a speed is constant
 
 
 @dataclass(frozen=True)
 class ElasticFollower:
-    """One mass on an elastic stem, pressed down by a spring.
+    """Mass on an elastic stem under a preloaded spring.
 
     Parameters
     ----------
@@ -56,7 +55,7 @@ class ElasticFollower:
     def with_damping_ratio(
         cls, mass: float, stiffness: float, spring_rate: float, preload: float, ratio: float
     ) -> ElasticFollower:
-        """The stem's damper given as a share of critical."""
+        """With the damping of the stem as a share of critical damping."""
         critical = 2.0 * np.sqrt(mass * (stiffness + spring_rate))
         return cls(mass, stiffness, spring_rate, preload, ratio * float(critical))
 
@@ -68,7 +67,7 @@ class ElasticFollower:
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Periodic motion of the mass at `theta` (n,); x in m, by time, and the contact force, N."""
+    """Periodic motion of the mass at `theta` (n,), rad: m, m/s, m/s2; contact force, N."""
 
     theta: Array
     position: Array
@@ -81,12 +80,12 @@ class Response:
 
     @property
     def lost(self) -> bool:
-        """Whether the cam would have to pull somewhere."""
+        """Whether the contact force is negative at some angle: loss of contact."""
         return bool((self.contact_force < 0.0).any())
 
 
 def quasi_static(lift: ArrayLike, follower: ElasticFollower) -> Array:
-    """x where inertia and damping do nothing, (K s - P)/(K + k), m.
+    """Displacement without inertia and damping, (K s - P)/(K + k), m.
 
     References
     ----------
@@ -98,7 +97,7 @@ def quasi_static(lift: ArrayLike, follower: ElasticFollower) -> Array:
 
 
 def harmonic_response(lift: Array, cam_speed: float, follower: ElasticFollower) -> Response:
-    """Periodic response at constant speed by harmonic balance, the contact never lost.
+    """Periodic response at constant speed by harmonic balance, with bilateral contact.
 
     Parameters
     ----------
@@ -108,24 +107,24 @@ def harmonic_response(lift: Array, cam_speed: float, follower: ElasticFollower) 
     Raises
     ------
     InputError
-        If an undamped follower is driven at resonance, or a value is not finite.
+        If an undamped follower is at resonance, or a value is not finite.
     """
     s = finite("lift", lift)
     n, f = s.size, follower
     w = 1j * float(finite("cam_speed", cam_speed)) * np.fft.rfftfreq(n, 1.0 / n)
     if n % 2 == 0:
-        w[-1] = 0.0  # the highest harmonic has no sign, hence no derivative
+        w[-1] = 0.0  # the derivative of the highest harmonic is not defined
     total = f.stiffness + f.spring_rate
     dynamic = total + (f.damping + f.guide_damping) * w + f.mass * w**2
     if np.abs(dynamic).min() <= 1e-12 * total:
         raise InputError("cam_speed", cam_speed, "off the resonance of an undamped follower")
     foot = np.fft.rfft(s)
-    # Of the stem's shortening s - x, which a stiff stem would lose in the difference.
+    # Solved for the compression s - x: the difference would lose digits on a stiff stem.
     drive = (f.mass * w**2 + f.guide_damping * w + f.spring_rate) * foot
     drive[0] += n * f.preload
     short = drive / dynamic
 
-    def back(spectrum: Any) -> Array:
+    def back(spectrum: NDArray[np.complex128]) -> Array:
         return np.fft.irfft(spectrum, n)
 
     return Response(
@@ -138,11 +137,11 @@ def harmonic_response(lift: Array, cam_speed: float, follower: ElasticFollower) 
 
 
 def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollower) -> Response:
-    """Periodic response where the speed varies over the turn: trigonometric collocation.
+    """Periodic response at varying speed, by trigonometric collocation.
 
     Parameters
     ----------
-    lift : array (n,)        s at equal angles of one turn from 0, m; n odd serves best
+    lift : array (n,)        s at equal angles of one turn from 0, m; n odd preferred
     cam_speed : array (n,)   at the same angles, rad/s, > 0
 
     Raises
@@ -174,7 +173,7 @@ def collocation_response(lift: Array, cam_speed: Array, follower: ElasticFollowe
 
 
 def periodic_response(lift: Array, cam_speed: Array, follower: ElasticFollower) -> Response:
-    """Periodic response at speeds (n,), rad/s: harmonic balance where they are all the same."""
+    """Periodic response at speeds (n,), rad/s; by harmonic balance where they are equal."""
     speed = finite("cam_speed", cam_speed)
     if is_steady(speed):
         return harmonic_response(lift, float(speed[0]), follower)
@@ -182,12 +181,12 @@ def periodic_response(lift: Array, cam_speed: Array, follower: ElasticFollower) 
 
 
 def is_steady(cam_speed: Array) -> bool:
-    """Whether a speed at the angles of a turn is constant but for round-off."""
+    """Whether a speed over the turn is constant to round-off."""
     return bool(np.ptp(cam_speed) <= STEADY * np.abs(cam_speed).max())
 
 
 def _differentiation(n: int) -> Array:
-    """Matrix (n, n) that differentiates a trigonometric interpolant at equal angles, 1/rad.
+    """Differentiation matrix (n, n) of the trigonometric interpolant at equal angles, 1/rad.
 
     References
     ----------
@@ -199,16 +198,16 @@ def _differentiation(n: int) -> Array:
     slope = np.tan(half) if n % 2 == 0 else np.sin(half)
     matrix = 0.5 * (-1.0) ** (k[:, None] - k) / slope
     np.fill_diagonal(matrix, 0.0)
-    return matrix
+    return np.asarray(matrix)
 
 
 def elastic_jump_speed(
     lift: Array, follower: ElasticFollower, speed_max: float, steps: int = 160
 ) -> float:
-    """Least cam speed up to `speed_max` at which the contact force falls to zero, rad/s.
+    """Minimum cam speed up to `speed_max` with zero minimum contact force, rad/s.
 
-    Infinite where it never does; speeds are searched in equal steps, so that resonances narrower
-    than one may be passed by.
+    Infinite without one. Speeds are searched in equal steps: resonances narrower than a step may
+    be missed.
     """
 
     def least(speed: float) -> float:

@@ -1,4 +1,4 @@
-"""A flat-faced follower: the face that slides on the cam."""
+"""Flat-faced follower: geometry, contact body, sliding on the cam."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from camwright.pipeline.follower.stem_beam import Stem
 
 @dataclass(frozen=True, kw_only=True)
 class FlatFace(Part):
-    """The flat face of a follower, square to the stem, centred on it and held by it.
+    """Flat face of a follower, perpendicular to the stem and centred on it.
 
-    width is its length in the plane of motion, depth that along the line of contact, thickness
-    that of the block along the stem; friction is that of the face sliding on the cam.
+    width: length in the plane of motion; depth: length along the line of contact; thickness: of the
+    block along the stem; friction: of the face on the cam.
     """
 
     table: ClassVar[str] = "follower.face"
@@ -43,12 +43,12 @@ class FlatFace(Part):
 
     @property
     def line_width(self) -> float:
-        """Width of the line contact it can carry, m."""
+        """Maximum width of the line contact, m."""
         return self.depth
 
     @property
     def side_friction(self) -> float:
-        """Coefficient of the friction that drags the stem sideways; 0 where none is given."""
+        """Friction coefficient of the side force on the stem; 0 where the case has none."""
         return self.friction or 0.0
 
     @property
@@ -63,29 +63,29 @@ class FlatFace(Part):
 
     @property
     def held_depth(self) -> None:
-        """None: the stem holds the block."""
+        """None: the block is held at the stem."""
         return None
 
     @property
     def body_model(self) -> str:
-        """Nothing to say: it is modelled as drawn."""
+        """Empty: the block is modelled without simplification."""
         return ""
 
     def contour(self, lift: Lift, cam: CamBody) -> Contour:
-        """Cam contour under the face, which must be wide enough; see `FollowerKind`."""
+        """Cam contour under the face; see `FollowerKind`."""
         contour = FlatFaceContour(FacePath(lift, cam.prime_radius, cam.offset))
         contour.require_face(self.width)
         return contour
 
     def body(self, width: float, stem: Stem, preload: float) -> FaceBody:  # noqa: ARG002
-        """The block of the face on its stem; see `FollowerKind`."""
+        """Block of the face on its stem; see `FollowerKind`."""
         elastic = Elastic(self.material.E, self.material.nu)
         return FaceBody(self.width, self.thickness, stem.diameter, elastic)
 
     def motion(
         self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
     ) -> SurfaceMotion:
-        """Full sliding; see `FollowerKind`."""
+        """Sliding of the face; see `FollowerKind`."""
         motion = face_motion(contour.pitch, speed, theta)
         return SurfaceMotion(
             motion.entrainment,

@@ -1,4 +1,4 @@
-"""Motion of a flat face on its cam, and what its sliding costs."""
+"""Sliding of a flat face on the cam: speeds, pv value, friction loss."""
 
 from __future__ import annotations
 
@@ -12,16 +12,15 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.follower_path import FollowerPath
 
-_MEAN_SHARE = pi / 4.0  # mean over greatest pressure of Hertz's ellipse
+_MEAN_SHARE = pi / 4.0  # mean over peak pressure of Hertz
 
 
 @dataclass(frozen=True, eq=False)
 class FaceMotion:
-    """Where (n,) m and how fast (n,) m/s the surfaces pass under a face.
+    """Contact place (n,) m and surface speeds (n,) m/s under a face.
 
-    place, of the contact from the stem's axis; sliding, of the cam's surface along the face;
-    entrainment, the mean of both surfaces' speeds through the contact, which itself runs along
-    the face at w s''.
+    place: of the contact from the stem axis; sliding: speed of the cam surface along the face;
+    entrainment: mean surface speed through the contact, which moves along the face at w s''.
     """
 
     place: Array
@@ -33,11 +32,11 @@ class FaceMotion:
 
 
 def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> FaceMotion:
-    """Sliding w (r + s) and entrainment w |(r + s)/2 + s''| of a face.
+    """Sliding speed w (r + s) and entrainment speed w |(r + s)/2 + s''| of a face.
 
     Parameters
     ----------
-    path : FollowerPath  of a flat face, its height is r + s
+    path : FollowerPath  of a flat face, with height r + s
     cam_speed : float    w, rad/s
     theta : array (n,)   rad
 
@@ -58,10 +57,10 @@ def face_motion(path: FollowerPath, cam_speed: float, theta: ArrayLike) -> FaceM
 
 @dataclass(frozen=True, eq=False)
 class FaceSliding:
-    """A face that slides over one turn, arrays (n,) at equal angles.
+    """Sliding of a face over one turn, arrays (n,) at equal angles.
 
-    place of the contact on the face m; speed m/s; pv, mean contact pressure times speed, Pa m/s;
-    power W and loss J per turn of its friction, zero where none is given.
+    place of the contact on the face, m; speed, m/s; pv, mean contact pressure times speed, Pa m/s;
+    friction power, W, and loss per turn, J, zero without a friction coefficient.
     """
 
     place: Array

@@ -1,9 +1,10 @@
-"""An elastic follower in time: contact lost and met again, landings integrated as impacts."""
+"""Elastic follower with loss of contact: flights and landings by time integration."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -19,10 +20,10 @@ _TOLERANCE = 1e-11
 
 
 class Flight(NamedTuple):
-    """A loss of contact: cam angles of jump and landing, rad (may pass a turn), way and speed.
+    """A flight: cam angles of jump and landing, rad, may exceed a turn.
 
-    `height` is the largest gap between foot and cam, m; `landing_speed` that at which the gap
-    closes, m/s, >= 0.
+    `height`: maximum gap between foot and cam, m; `landing_speed`: closing speed of the gap, m/s,
+    >= 0.
     """
 
     jump: float
@@ -33,11 +34,10 @@ class Flight(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Bounce:
-    """Motion through jumps and landings from given start; arrays (steps,), SI.
+    """Motion with flights and landings from an initial state; arrays (steps,), SI.
 
-    theta is the cam angle and may pass a turn. `energy` is kinetic energy plus that of both
-    springs less the work of the cam; without damping it stands still. `dissipated` is what the
-    dampers took.
+    theta: cam angle, may exceed a turn; `energy`: kinetic energy plus that of both springs less the
+    work of the cam, constant without damping; `dissipated`: energy of the dampers.
     """
 
     theta: Array
@@ -55,7 +55,7 @@ class Bounce:
 
     @property
     def energy_error(self) -> float:
-        """Largest change of energy and losses over the greatest energy in it."""
+        """Range of energy plus losses over maximum energy."""
         balance = self.energy + self.dissipated
         return float(np.ptp(balance) / np.abs(self.energy).max())
 
@@ -67,10 +67,10 @@ def bounce(
     turns: float = 1.0,
     start: tuple[float, float] | None = None,
 ) -> Bounce:
-    """Motion of the follower over the cam angle, contact lost and met again by events.
+    """Motion of the follower over the cam angle with loss of contact.
 
-    In contact and in flight the motion is integrated with dense control to 1e-11; a phase ends
-    where the contact force falls to zero, or where the foot, its spring relaxed, meets the cam.
+    Phases in contact and in flight are integrated to a tolerance of 1e-11. A phase ends where the
+    contact force, or the gap between cam and the foot on its relaxed stem, decreases to zero.
 
     Parameters
     ----------
@@ -78,14 +78,14 @@ def bounce(
     cam_speed : float, or function of the angle   rad/s, > 0
     follower : ElasticFollower
     turns : float            of the cam
-    start : (x, v)           m, m/s at angle 0; the quasi-static state where none is given
+    start : (x, v)           m, m/s at angle 0; None: the quasi-static state
 
     Raises
     ------
     InputError
         If a speed is not positive.
     ContactError
-        If the follower hammers: more than 2000 phases.
+        If there are more than 2000 phases.
 
     References
     ----------
@@ -99,22 +99,23 @@ def bounce(
         start = (float(quasi_static(s, follower)), u)
     state = np.array([*start, 0.0, 0.0, 0.0])
     touching = motion.force(0.0, state) >= 0.0
-    angle, pieces, flights = 0.0, [], []
+    angle, phases, flights = 0.0, [], []
     for _ in range(_EVENTS_MAX):
-        found = motion.phase(angle, end, state, touching)
-        pieces.append((found.t, found.y, np.full(found.t.size, touching)))
+        phase = motion.phase(angle, end, state, touching)
+        phases.append(phase)
         if not touching:
-            flights.append(motion.flight(found))
-        angle, state = float(found.t[-1]), found.y[:, -1].copy()
-        if found.status == 0:
-            return motion.record(pieces, tuple(flights))
-        if touching:  # the foot, without mass, relaxes at once; its damper takes what was left
+            flights.append(motion.flight(phase))
+        angle, state = float(phase.theta[-1]), phase.state[:, -1].copy()
+        if phase.last:
+            return motion.record(phases, tuple(flights))
+        if touching:  # the massless stem relaxes at once; its damper dissipates the energy
             state[3] += 0.5 * follower.stiffness * (motion.foot(angle)[0] - state[0]) ** 2
         touching = not touching
-    raise ContactError(f"follower: more than {_EVENTS_MAX} losses of contact")
+    raise ContactError(f"follower: more than {_EVENTS_MAX} phases of contact and flight")
 
 
 def _law(cam_speed: float | PeriodicPolynomial) -> PeriodicPolynomial:
+    """Cam speed over the cam angle, rad/s, > 0."""
     if not isinstance(cam_speed, PeriodicPolynomial):
         cam_speed = PeriodicPolynomial(np.array([[float(cam_speed)]]))
     least = float(cam_speed(np.linspace(0.0, FULL_TURN, 1441)).min())
@@ -123,25 +124,36 @@ def _law(cam_speed: float | PeriodicPolynomial) -> PeriodicPolynomial:
     return cam_speed
 
 
+class _Phase(NamedTuple):
+    """Cam angles (k,), rad, and states (5, k) in contact or in flight; whether it is the last."""
+
+    theta: Array
+    state: Array
+    touching: bool
+    last: bool
+
+
 @dataclass(frozen=True, eq=False)
 class _Motion:
-    """State (x, v, work of the cam, losses, time) over the cam angle, and what moves it."""
+    """Equations of motion of the state (x, v, work of the cam, losses, time)."""
 
     lift: Lift
     speed: PeriodicPolynomial
     follower: ElasticFollower
 
     def foot(self, angle: float) -> tuple[float, float]:
+        """Lift, m, and its rate, m/s."""
         s, slope = self.lift.derivatives(angle, 1)
         return float(s), float(slope) * float(self.speed(angle))
 
     def force(self, angle: float, state: Array) -> float:
+        """Contact force, N."""
         s, u = self.foot(angle)
         f = self.follower
         return float(f.stiffness * (s - state[0]) + f.damping * (u - state[1]))
 
-    def phase(self, angle: float, end: float, state: Array, touching: bool) -> Any:
-        """One phase, to its end or the last angle."""
+    def phase(self, angle: float, end: float, state: Array, touching: bool) -> _Phase:
+        """One phase, to the change of contact or the last angle."""
         f = self.follower
 
         def rates(at: float, y: Array) -> list[float]:
@@ -155,35 +167,30 @@ class _Motion:
             ) / f.mass
             return [pace * y[1], pace * acceleration, pace * push * u, pace * lost, pace]
 
-        def over(at: float, y: Array) -> float:
-            return self.force(at, y) if touching else self.foot(at)[0] - y[0]
-
-        over.terminal = True  # type: ignore[attr-defined]
-        over.direction = -1.0 if touching else 1.0  # type: ignore[attr-defined]
         stem = np.sqrt(f.stiffness / f.mass)
-        return solve_ivp(
+        solution = solve_ivp(
             rates,
             (angle, end),
             state,
             method="DOP853",
-            events=over,
+            events=_ContactChange(self, touching),
             rtol=_TOLERANCE,
             atol=[1e-14, 1e-14 * stem, 1e-12, 1e-12, 1e-12],
             max_step=min(0.02 * FULL_TURN, end),
         )
+        return _Phase(solution.t, solution.y, touching, last=solution.status == 0)
 
-    def flight(self, found: Any) -> Flight:
-        gaps = [x - self.foot(t)[0] for t, x in zip(found.t, found.y[0], strict=True)]
-        closing = self.foot(found.t[-1])[1] - found.y[1, -1]
-        return Flight(
-            float(found.t[0]), float(found.t[-1]), float(max(gaps)), float(max(closing, 0.0))
-        )
+    def flight(self, phase: _Phase) -> Flight:
+        theta = phase.theta
+        gaps = [x - self.foot(t)[0] for t, x in zip(theta, phase.state[0], strict=True)]
+        closing = self.foot(theta[-1])[1] - phase.state[1, -1]
+        return Flight(float(theta[0]), float(theta[-1]), float(max(gaps)), float(max(closing, 0.0)))
 
-    def record(self, pieces: list[Any], flights: tuple[Flight, ...]) -> Bounce:
+    def record(self, phases: Sequence[_Phase], flights: tuple[Flight, ...]) -> Bounce:
         f = self.follower
-        theta = np.concatenate([t for t, _, _ in pieces])
-        x, v, work, lost, time = np.concatenate([y for _, y, _ in pieces], axis=1)
-        touching = np.concatenate([on for _, _, on in pieces])
+        theta = np.concatenate([phase.theta for phase in phases])
+        x, v, work, lost, time = np.concatenate([phase.state for phase in phases], axis=1)
+        touching = np.concatenate([np.full(phase.theta.size, phase.touching) for phase in phases])
         s, slope = self.lift.derivatives(theta, 1)
         squeeze = np.where(touching, s - x, 0.0)
         approach = np.where(touching, slope * self.speed(theta) - v, 0.0)
@@ -198,3 +205,24 @@ class _Motion:
             dissipated=lost,
             flights=flights,
         )
+
+
+@dataclass(frozen=True, eq=False)
+class _ContactChange:
+    """Event that ends a phase: the contact force or the gap between foot and cam falls to zero.
+
+    `terminal` and `direction` are read by `solve_ivp`.
+    """
+
+    motion: _Motion
+    touching: bool
+    terminal: bool = True
+
+    @property
+    def direction(self) -> float:
+        return -1.0 if self.touching else 1.0
+
+    def __call__(self, angle: float, state: Array) -> float:
+        if self.touching:
+            return self.motion.force(angle, state)
+        return self.motion.foot(angle)[0] - float(state[0])

@@ -1,27 +1,27 @@
-"""Forces on a translating follower whose guides rub."""
+"""Forces on a translating follower with friction in its guides."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.geometry.follower_path import FollowerPath
 from camwright.pipeline.follower.spring import Spring
 
-REST = 1e-9  # of the stroke per radian: what a spline leaves of the slope of a dwell
-JAM_FLOOR = 0.01  # least share of the cam's push that friction is let to leave over
+REST = 1e-9  # slope over stroke, 1/rad, up to which a spline is in a dwell
+JAM_FLOOR = 0.01  # lower bound of 1 - jam index in the forces
 
 
 @dataclass(frozen=True, eq=False)
 class Rubbing:
-    """Load that rubs in guides A and B over the lean of the push, at cam angles; each (n,).
+    """Rubbing load of guides A and B over axial force and side-load factor, at cam angles; (n,).
 
-    The load sums the pushes of both sides of a bore, so that friction is its mu-fold.
+    The rubbing load is the sum of the normal forces on both sides of a bore; friction is mu times
+    the rubbing load.
     """
 
     theta: Array
@@ -32,18 +32,18 @@ class Rubbing:
         freeze(self, theta=self.theta, a=self.a, b=self.b)
 
     def at(self, theta: Array) -> tuple[Array, Array]:
-        """The same at other angles, straight lines between."""
+        """Values at other cam angles by linear interpolation."""
         a, b = (np.interp(theta, self.theta, share, period=FULL_TURN) for share in (self.a, self.b))
         return np.asarray(a), np.asarray(b)
 
 
 @dataclass(frozen=True, eq=False)
 class Push:
-    """How the cam pushes on the stem, per unit of the push's axial part; arrays (n,).
+    """Load of the cam on the stem per unit of axial force; arrays (n,).
 
-    side : force across the stem, signed like the pressure angle
-    arm : way of the push's line from the stem's axis, m; it turns the stem the other way
-    spacing : between the guides, m
+    side : side force, signed like the pressure angle
+    arm : distance of the axial force from the stem axis, m; its couple is opposite to `side`
+    spacing : of the guides, m
     """
 
     side: Array
@@ -52,37 +52,37 @@ class Push:
 
     @classmethod
     def of(cls, pitch: FollowerPath, system: FollowerSystem, theta: Array) -> Push:
-        """Through a roller's centre, or on a face beside the axis and dragged by its friction."""
+        """Through the roller centre, or on a face beside the axis with its friction."""
         side = np.tan(pitch.pressure_angle(theta)) + system.face_friction
         return cls(side, pitch.push_arm(theta), system.guide_spacing)
 
     @property
-    def lean(self) -> Array:
-        """What presses the stem aside: side force and couple over the guides' spacing, >= 0."""
+    def side_factor(self) -> Array:
+        """Side-load factor: |F_t|/F_a + |M|/(F_a b), >= 0."""
         return np.asarray(np.abs(self.side) + np.abs(self.arm) / self.spacing)
 
     def on_points(self, factor_a: Array, factor_b: Array) -> tuple[Array, Array]:
-        """Reactions of point supports that answer a side force with these factors of it."""
+        """Reactions of point supports over the axial force, from factors of the side force."""
         tilt = self.arm / self.spacing
         return self.side * factor_a - tilt, self.side * factor_b - tilt
 
 
 @dataclass(frozen=True)
 class FollowerSystem:
-    """Spring, mass and rubbing guides of a follower.
+    """Spring, mass and guide friction of a follower.
 
     Parameters
     ----------
     mass : float                    moving mass, kg, >= 0
-    spring : Spring                 its force over the lift
-    guide_spacing : float           b, between the centres of guides A and B, m, > 0
-    overhang_at_max_lift : float    a, roller centre to centre of A at the largest lift, m, >= 0
+    spring : Spring                 spring force over the lift
+    guide_spacing : float           b, between the middles of guides A and B, m, > 0
+    overhang_at_max_lift : float    a, roller centre to middle of A at maximum lift, m, >= 0
     friction_a, friction_b : float  Coulomb coefficients, >= 0
-    gravity_along_axis : float      the part of g that presses the follower on the cam, m/s2
+    gravity_along_axis : float      component of g towards the cam, m/s2
     viscous_damping : float         c3 of the guides, N s/m, >= 0
     face_friction : float           of a flat face sliding on the cam, >= 0; 0: a roller
-    rubbing : Rubbing               of guides of finite length, see `guided_loads`; None: of guides
-                                    that support the stem at a point
+    rubbing : Rubbing               of guides of finite length, see `guided_loads`; None: of
+                                    point supports
 
     Raises
     ------
@@ -125,17 +125,19 @@ class FollowerSystem:
         factor_a, factor_b = self.guide_factors(overhang)
         return self.friction_a * factor_a + self.friction_b * factor_b
 
-    def rubs(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:
-        """What guides A and B rub with over the push's lean, as given or on points."""
+    def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:
+        """Rubbing load of guides A and B over axial force and side-load factor."""
         if self.rubbing is None:
             return self.rubbing_on_points(push, overhang)
         return self.rubbing.at(theta)
 
     def rubbing_on_points(self, push: Push, overhang: Array) -> tuple[Array, Array]:
-        """What guides A and B that support the stem at points rub with, over the push's lean."""
+        """Rubbing load of point supports A and B over axial force and side-load factor."""
         factors = self.guide_factors(overhang)
         on_a, on_b = (
-            np.divide(np.abs(load), push.lean, out=factor.copy(), where=push.lean > 0.0)
+            np.divide(
+                np.abs(load), push.side_factor, out=factor.copy(), where=push.side_factor > 0.0
+            )
             for load, factor in zip(push.on_points(*factors), factors, strict=True)
         )
         return on_a, on_b
@@ -143,17 +145,17 @@ class FollowerSystem:
 
 @dataclass(frozen=True, eq=False)
 class Loads:
-    """Everything that acts on the follower at each cam angle; arrays (n,), SI.
+    """Forces on the follower at each cam angle; arrays (n,), SI.
 
-    `tangential_force` is the side force on the stem, signed like the pressure angle;
-    `end_moment` turns the stem from its axis towards it, N m: the push of a face beside the axis.
-    The reactions are those of point supports and carry the sign of the side force although A
-    pushes against it and B with it. The friction forces are magnitudes and oppose `velocity`;
-    `viscous_force` is signed like it and opposes it too. `rubbing_*` is the load that rubs over
-    the lean of the push, for a roller |tan alpha|, and `jam_index` the guides' friction over the
-    axial push; where the follower moves outward it must stay below 1, elsewhere it tells of a cam
-    that is turned backwards. `jam_index_statics` is that of point supports. `sliding_torque` is
-    what of the cam's torque drags the cam along a face.
+    `tangential_force`: side force on the stem, signed like the pressure angle; `end_moment`: couple
+    of the axial force of a face beside the stem axis, N m, positive towards the side force.
+    `reaction_*`: reactions of point supports, both with the sign of the side force, although A acts
+    against it and B with it. `friction_force_*`: magnitudes, opposite to `velocity`;
+    `viscous_force`: signed like `velocity`, opposite to it. `rubbing_*`: rubbing load over axial
+    force and side-load factor, which for a roller is |tan alpha|. `jam_index`: friction of the
+    guides over axial force; limit 1 where the follower moves outward, elsewhere that of a reversed
+    cam. `jam_index_statics`: that of point supports. `sliding_torque`: cam torque of the friction
+    of a face.
     """
 
     theta: Array
@@ -187,17 +189,17 @@ class Loads:
 
     @property
     def rubbing(self) -> Rubbing:
-        """What the guides rub with over the lean of the push, over the turn."""
+        """Rubbing load of the guides over axial force and side-load factor, over the turn."""
         return Rubbing(self.theta, self.rubbing_a, self.rubbing_b)
 
     @property
     def separated(self) -> NDArray[np.bool_]:
-        """Where nothing presses the follower on the cam (bool): its forces there are zero."""
+        """Where the follower has no contact with the cam (n,), bool; the forces are zero."""
         return np.asarray(self.normal_force <= 0.0)
 
     @property
     def jammed(self) -> NDArray[np.bool_]:
-        """Where the follower moves outward and no finite force could push it (bool)."""
+        """Where the follower moves outward and jams at any force (n,), bool."""
         return np.asarray((self.jam_index >= 1.0) & (self.lift_slope > 0.0))
 
     @property
@@ -207,38 +209,38 @@ class Loads:
 
     @property
     def friction_loss(self) -> float:
-        """Heat of both guides, and of a face, over one cam turn, J."""
+        """Friction loss of both guides and of a face over one cam turn, J."""
         rubbing = self.friction_force * np.abs(self.lift_slope) + self.sliding_torque
         return turn_integral(self.theta, rubbing + self.viscous_force * self.lift_slope)
 
     @property
     def cam_work(self) -> float:
-        """Work the cam gives to the follower over one turn, J; the friction loss, nothing else."""
+        """Work of the cam on the follower over one turn, J; equal to the friction loss."""
         return turn_integral(self.theta, self.cam_torque)
 
 
 def turn_integral(theta: Array, values: Array) -> float:
     """Integral of a periodic quantity over one turn, by the trapezoidal rule.
 
-    Spectrally accurate for smooth values on uniform angles.
+    Spectrally accurate for smooth values at equal angles.
 
     Raises
     ------
     InputError
-        If the angles do not rise strictly within one turn.
+        If the angles do not increase strictly within one turn.
     """
     steps = np.diff(theta, append=theta[0] + FULL_TURN)
     if not (steps > 0.0).all():
-        raise InputError("theta", float(theta[np.argmin(steps)]), "rising within one turn")
+        raise InputError("theta", float(theta[np.argmin(steps)]), "increasing within one turn")
     return float(np.sum(0.5 * (steps + np.roll(steps, 1)) * values))
 
 
 def jump_speed(
     pitch: FollowerPath, system: FollowerSystem, theta: ArrayLike
 ) -> tuple[float, float]:
-    """Least constant cam speed at which the follower leaves the cam, and where it does.
+    """Minimum constant cam speed with loss of contact, and its cam angle.
 
-    sqrt((P + k s + m g) / (-m s'')), least over the angles with s'' < 0.
+    Minimum of sqrt((P + k s + m g) / (-m s'')) over the angles with s'' < 0.
 
     Parameters
     ----------
@@ -248,7 +250,7 @@ def jump_speed(
 
     Returns
     -------
-    speed : float   rad/s; infinite where nothing would throw the follower off
+    speed : float   rad/s; infinite without loss of contact
     theta : float   rad; NaN in that case
 
     References
@@ -268,14 +270,14 @@ def jump_speed(
     return float(np.sqrt(square[first])), float(theta[first])
 
 
-def share_left(lift_slope: Any, jam_index: Any) -> Any:
-    """Share of the cam's axial push that friction leaves over: above 1 on the way back."""
-    share = 1.0 - np.sign(np.real(lift_slope)) * jam_index
-    return np.where(np.real(share) < JAM_FLOOR, JAM_FLOOR, share)  # NaN stays
+def share_left(lift_slope: Array, jam_index: Array) -> Array:
+    """Axial force without friction over axial force, >= `JAM_FLOOR`; above 1 on the return."""
+    share = 1.0 - np.sign(lift_slope) * jam_index
+    return np.where(share < JAM_FLOOR, JAM_FLOOR, share)  # NaN stays
 
 
-def levers(overhang: Any, guide_spacing: float) -> tuple[Any, Any]:
-    """|A|/F_t = (a+b)/b and |B|/F_t = a/b of a stem on two point supports.
+def levers(overhang: Values, guide_spacing: float) -> tuple[Values, Values]:
+    """|A|/F_t = (a+b)/b and |B|/F_t = a/b (...) of a stem on two point supports.
 
     References
     ----------
@@ -292,23 +294,22 @@ def follower_loads(
     theta: ArrayLike,
     cam_acceleration: ArrayLike = 0.0,
 ) -> Loads:
-    r"""Forces on the follower, guide friction included, at given cam angles.
+    r"""Forces on the follower at cam angles, with implicit guide friction.
 
-    The cam's push has the axial part F_a and the side part F_t = F_a tan(alpha). The side part
-    loads the guides, which answer with c |F_t| of friction against the motion; F_a must overcome
-    it on the way out and is spared it on the way back:
+    The contact force has the axial component F_a and the side force F_t = F_a tan(alpha). The side
+    force loads the guides, whose friction c |F_t| opposes the motion: it increases F_a on the
+    outward stroke and reduces it on the return:
 
         F_a = F + sign(v) c |F_t|    hence    F_a = F / (1 - sign(v) c |tan(alpha)|)
 
-    with F = P + k s + m (a + g) + c3 v. A flat face is pushed along the stem, at s' - e off its
-    axis, and dragged along itself by mu F_a, always the way the cam's surface goes: on the guides
-    the side force mu F_a and the couple (s' - e) F_a act, and mu F_a (r + s) is a torque the cam
-    has to pay. With an offset the side force and the motion have
-    independent signs; in a dwell friction is taken as zero. F <= 0 means that the follower has
-    left the cam: every cam and guide force is then zero, and the spring and inertia forces tell
-    of the motion the cam asks for. Close to jamming the denominator is held at `JAM_FLOOR`, so
-    that the forces stay finite and `jam_index` alone tells of the jam. Small terms left out: the
-    couple of the friction forces about the stem's axis, rolling friction.
+    with F = P + k s + m (a + g) + c3 v. On a flat face F_a acts along the stem at s' - e from its
+    axis, and mu F_a along the face in the direction of the cam surface: the guides carry the side
+    force mu F_a and the couple (s' - e) F_a, and the cam torque includes mu F_a (r + s). With an
+    offset, side force and motion have independent signs; in a dwell friction is zero. F <= 0: loss
+    of contact; all cam and guide forces are zero, spring and inertia force are those of the
+    prescribed lift. The denominator is bounded below by `JAM_FLOOR`: close to jamming the forces
+    stay finite, and `jam_index` alone indicates the jam. Neglected: the couple of the friction
+    forces about the stem axis, rolling friction.
 
     Parameters
     ----------
@@ -349,12 +350,12 @@ def follower_loads(
     overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
     push = Push.of(pitch, system, theta)
     on_points = push.on_points(*system.guide_factors(overhang))
-    rubbing_a, rubbing_b = system.rubs(push, overhang, theta)
-    jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.lean
+    rubbing_a, rubbing_b = system.rubbing_factors(push, overhang, theta)
+    jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.side_factor
     axial_force = np.maximum(demand, 0.0) / share_left(slope, jam_index)
-    leaning = axial_force * push.lean
-    friction_a = system.friction_a * rubbing_a * leaning
-    friction_b = system.friction_b * rubbing_b * leaning
+    side_load = axial_force * push.side_factor
+    friction_a = system.friction_a * rubbing_a * side_load
+    friction_b = system.friction_b * rubbing_b * side_load
     sliding = system.face_friction * axial_force * pitch.height(theta)
     friction_power = (friction_a + friction_b) * np.abs(slope) + viscous_force * slope + sliding
     return Loads(
@@ -388,7 +389,7 @@ def follower_loads(
 
 
 def _forward(cam_speed: ArrayLike, theta: Array) -> Array:
-    """Cam speed at each angle, refused where the cam turns backwards."""
+    """Cam speed at each angle, rad/s, >= 0."""
     speed = np.broadcast_to(finite("cam_speed", cam_speed), theta.shape)
     if (speed < 0.0).any():
         raise InputError("cam_speed", float(speed.min()), ">= 0 rad/s")

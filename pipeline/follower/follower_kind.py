@@ -1,4 +1,4 @@
-"""Kinds of follower behind one protocol: roller, flat face, later an oscillating arm."""
+"""Protocol of the kinds of follower: roller and flat face."""
 
 from __future__ import annotations
 
@@ -21,10 +21,9 @@ from camwright.pipeline.follower.stem_beam import Stem
 class SurfaceMotion:
     """Motion of the surfaces through the contact, arrays (n,), SI.
 
-    entrainment, m/s; traction_share, traction over friction times normal force, None without a
-    friction coefficient; traction_demand, traction of rolling without slip over normal force, NaN
-    where the contact is open, None where nothing rolls; rolling, with creep and slip; sliding, of
-    a face.
+    entrainment: speed, m/s; traction_share: traction over friction times normal force, None without
+    a friction coefficient; traction_demand: traction of rolling without slip over normal force, NaN
+    without contact, None without rolling; rolling: with creep and slip; sliding: of a face.
     """
 
     entrainment: Array
@@ -35,10 +34,11 @@ class SurfaceMotion:
 
 
 class FollowerKind(Protocol):
-    """Duties of the part that touches the cam.
+    """Part of the follower in contact with the cam.
 
-    `word` names it in files and texts, `table` in the case file; `line_width` is the width of the
-    line contact it can carry, m; `friction` that of sliding on the cam; `roughness` its rms, m.
+    `word`: its name in files and texts; `table`: in the case file; `line_width`: maximum width of
+    the line contact, m; `friction`: coefficient of sliding on the cam; `roughness`: rms, m;
+    `crowned`: whether its surface is crowned.
     """
 
     @property
@@ -58,46 +58,46 @@ class FollowerKind(Protocol):
 
     @property
     def side_friction(self) -> float:
-        """Coefficient of the friction that drags the follower sideways; 0 for a roller."""
+        """Friction coefficient of the side force on the stem; 0 for a roller."""
         ...
 
     @property
     def contact_radius(self) -> float | None:
-        """Radius of its surface, m; None for a flat one."""
+        """Radius of the surface, m; None for a flat one."""
         ...
 
     @property
     def extent(self) -> float:
-        """Distance that it reaches from its reference point towards guide A, m."""
+        """Extent from its reference point towards guide A, m."""
         ...
 
     @property
     def held_depth(self) -> float | None:
-        """Material between contact surface and held surface, m; None where it is held afar."""
+        """Distance of contact surface and held surface, m; None for a flat face."""
         ...
 
     @property
     def body_model(self) -> str:
-        """How its body is modelled, in words; "" where there is nothing to say."""
+        """Simplifications of its body model, in words; "" without any."""
         ...
 
     def contour(self, lift: Lift, cam: CamBody) -> Contour:
-        """Cam contour that moves it by a lift.
+        """Cam contour of a lift.
 
         Raises
         ------
         InputError
-            If there is no such cam; of a face also where the contact would run off it.
+            If there is no such cam, or the contact leaves the width of a face.
         """
         ...
 
     def body(self, width: float, stem: Stem, preload: float) -> FollowerBody:
-        """Its body in the contact.
+        """Body of the contact.
 
         Parameters
         ----------
         width : float      of the line contact, m
-        stem : Stem        that holds it
+        stem : Stem        of the follower
         preload : float    of the spring, N
         """
         ...
@@ -105,7 +105,7 @@ class FollowerKind(Protocol):
     def motion(
         self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
     ) -> SurfaceMotion:
-        """Motion of its surface on the cam.
+        """Motion of the surfaces in the contact.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Friction of guides of finite length, which feeds on the contact force that it raises."""
+"""Coupling of contact force and friction in guides of finite length."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ from camwright.pipeline.follower.guide_reactions import (
 )
 from camwright.pipeline.follower.stem_beam import Stem
 
-RESIDUAL = 1e-10  # of the axial equilibrium, over the cam's push
-_ROUNDS_MAX = 100  # bisection alone ends the widest bracket, F to F/JAM_FLOOR, in 40
-_CLIMB = 40  # rounds in which a place without an upper bound yet may go up slowly
+RESIDUAL = 1e-10  # of the axial equilibrium, over the axial force
+_ROUNDS_MAX = 100  # bisection alone converges in 40 from the bracket F to F/JAM_FLOOR
+_CLIMB = 40  # rounds without bisection at positions that have no upper bound yet
 
-# Values at some of the positions, which are numbered by the second argument.
+# Values of a fixed-point map at positions, numbered by the second argument.
 Answer = Callable[[Array, NDArray[np.intp]], Array]
 
 
 @dataclass(frozen=True, eq=False)
 class Guided:
-    """Loads in balance with the guides that bear them, at the same positions.
+    """Loads in equilibrium with the guide reactions, at the same positions.
 
-    residual (n,): the miss of the axial equilibrium, with friction of the loads the guides
-    answered in the end, over the push; rounds: solutions of the guides it took.
+    residual (n,): of the axial equilibrium over the axial force; rounds: number of solutions of the
+    guides.
     """
 
     loads: Loads
@@ -65,30 +65,29 @@ def guided_loads(
     theta: ArrayLike,
     knots: int = KNOTS,
 ) -> Guided:
-    r"""Forces on a follower whose guides have length and play, friction implicit at every angle.
+    r"""Forces on a follower in guides with length and clearance, with implicit friction.
 
-    The side force F_a tan(alpha), or the couple of a push beside the axis, leans the stem on the
-    mouths of its guides, which rub with mu_A R_A + mu_B R_B, R the pushes of both sides of a bore
-    by `guide_reactions`; and the push F_a has to overcome that friction:
+    Side force F_a tan(alpha) and couple of an axial force beside the stem axis load the edges of
+    the guides, with friction mu_A R_A + mu_B R_B, where R is the rubbing load of `guide_reactions`.
+    The axial force F_a balances this friction:
 
         F_a = F / (1 - sign(v) c(F_a) l),    c = (mu_A R_A + mu_B R_B) / (F_a l),
 
-    with the lean l of `Push`, for a roller |tan(alpha)|.
+    with the side-load factor l of `Push`, for a roller |tan(alpha)|.
 
-    With play c depends on the load, so that the equation is solved for F_a, at all angles at
-    once. On the way out F_a lies between F and F/`JAM_FLOOR`, on the way back between 0 and F,
-    and both sides are continuous: a solution exists whatever the friction. On the way out the
-    search goes up from F: where guides that bite harder under more load know several answers,
-    the least push that moves the follower is the one. While the jam index is below
-    1 - `JAM_FLOOR` it is a balance of forces; at jamming it is the bound of the forces, and
-    `jam_index` tells of it as with `follower_loads`.
+    With clearance c depends on the load: the equation is solved for F_a at all angles at once. On
+    the outward stroke F_a lies between F and F/`JAM_FLOOR`, on the return between 0 and F; both
+    sides are continuous, so that a solution exists for any friction. On the outward stroke the
+    search increases from F: of several solutions it takes the smallest. Below a jam index of
+    1 - `JAM_FLOOR` the forces are in equilibrium; above it they are bounded, and `jam_index`
+    indicates the jam as in `follower_loads`.
 
     Parameters
     ----------
     pitch : FollowerPath
-    system : FollowerSystem   its `rubbing` is not used
+    system : FollowerSystem   without its `rubbing`
     stem : Stem
-    guides : GuidePair        its friction is not used, that of the system is
+    guides : GuidePair        without its friction, which is that of the system
     cam_speed : float or array (n,)   rad/s, >= 0
     theta : array (n,)        cam angles, rad
     knots : int               per guide
@@ -96,9 +95,9 @@ def guided_loads(
     Raises
     ------
     InputError
-        As `follower_loads` and `guide_reactions` raise it.
+        As of `follower_loads` and `guide_reactions`.
     ContactError
-        If a balance is missed by more than 1e-10 of the push.
+        If the residual of an axial equilibrium exceeds 1e-10 of the axial force.
     """
     theta = finite("theta", theta)
     points = follower_loads(pitch, replace(system, rubbing=None), cam_speed, theta)
@@ -111,7 +110,7 @@ def guided_loads(
 
     def answer(push: Array, at: NDArray[np.intp]) -> Array:
         a, b = bores.factors(push, at)
-        jam = (system.friction_a * a + system.friction_b * b) * way.lean[at]
+        jam = (system.friction_a * a + system.friction_b * b) * way.side_factor[at]
         return np.asarray(free.axial_force[at] / share_left(slope[at], jam))
 
     force, outward = free.axial_force, slope > 0.0
@@ -133,21 +132,21 @@ def guided_loads(
     residual = _residual(system, free, loads, reactions)
     if not residual.max(initial=0.0) <= RESIDUAL:
         raise ContactError(
-            f"friction: residual = {residual.max():.3g}, must be <= {RESIDUAL:g} of the push"
+            f"friction: residual = {residual.max():.3g}, must be <= {RESIDUAL:g} of the axial force"
         )
     return Guided(loads, reactions, residual, rounds + 2)
 
 
 def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Array, int]:
-    """Values x that are their own answer, x = f(x), each of its own function within a bracket.
+    """Fixed points x = f(x) of continuous functions, each within a bracket.
 
-    f(low) >= low and f(high) <= high, f continuous: the secant through the two last values where
-    it stays in the bracket. Where it does not halve the miss the middle of the bracket is taken,
-    once a place with f(x) < x bounds it; until then the way is up, by the secant or to f(x).
+    With f(low) >= low and f(high) <= high: secant steps within the bracket. Where a step does not
+    halve the residual, bisection, once a value with f(x) < x bounds the bracket from above; until
+    then steps increase x, by the secant or to f(x).
 
     Parameters
     ----------
-    answer : function of x (k,) and the places (k,) of these among all   gives f(x), (k,)
+    answer : function   f of values (k,) and their positions (k,) in the arrays
     low, high : array (n,)
     start : array (n,)
 
@@ -159,7 +158,7 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
     Raises
     ------
     ContactError
-        If 100 rounds do not do.
+        If 100 rounds do not converge.
     """
     x, low, high = np.clip(start, low, high), low.copy(), high.copy()
     before, missed = np.full_like(x, np.nan), np.full_like(x, np.inf)
@@ -169,9 +168,9 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
     for rounds in range(_ROUNDS_MAX):
         if not at.size:
             return x, rounds
-        now, found = x[at], answer(x[at], at)
-        miss = now - found
-        open_ = np.abs(miss) > 0.01 * RESIDUAL * found
+        now, value = x[at], answer(x[at], at)
+        miss = now - value
+        open_ = np.abs(miss) > 0.01 * RESIDUAL * value
         low[at] = np.where(miss < 0.0, now, low[at])
         high[at] = np.where(miss > 0.0, now, high[at])
         bounded[at] |= miss > 0.0
@@ -180,15 +179,15 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
         within = (secant > low[at]) & (secant <= high[at])
         slow = np.abs(miss) > 0.5 * np.abs(missed[at])
         halved = slow & (bounded[at] | (rounds >= _CLIMB))
-        next_ = np.where(halved, 0.5 * (low[at] + high[at]), np.where(within, secant, found))
-        x[at] = np.where(open_, next_, found)
+        next_ = np.where(halved, 0.5 * (low[at] + high[at]), np.where(within, secant, value))
+        x[at] = np.where(open_, next_, value)
         before[at], missed[at] = now, miss
         at = at[open_]
-    raise ContactError(f"friction: {at.size} positions not in balance after {_ROUNDS_MAX} rounds")
+    raise ContactError(f"friction: {at.size} positions not converged in {_ROUNDS_MAX} rounds")
 
 
 class _Bores:
-    """Guides that are solved again and again at the same positions, each time from the last."""
+    """Guides at fixed positions, each solution started from the previous one."""
 
     def __init__(self, stem: Stem, guides: GuidePair, knots: int, points: Loads, way: Push) -> None:
         self.line, _, half_a = bearing_line(stem, guides, knots)
@@ -197,31 +196,35 @@ class _Bores:
         self.state: tuple[Array, Array] | None = None
 
     def factors(self, push: Array, at: NDArray[np.intp]) -> tuple[Array, Array]:
-        """Rubbing load over the lean (k,) of axial pushes; that of points where there is none."""
+        """Rubbing load over axial force and side-load factor (k,); unloaded: of point supports."""
         start = None
         if self.state is not None:
             start = self.state[0][:, at], self.state[1][:, at]
         side, moment = push * self.way.side[at], push * self.way.arm[at]
-        found, rigid = settle(self.line, side, moment - side * self.reach[at], start)
+        pushes, rigid = settle(self.line, side, moment - side * self.reach[at], start)
         if self.state is None:
             count = self.reach.size
-            self.state = np.zeros((len(found), count)), np.zeros((2, count))
-        self.state[0][:, at], self.state[1][:, at] = found, rigid
-        rubbed = np.abs(found[: self.knots]).sum(axis=0), np.abs(found[self.knots :]).sum(axis=0)
-        size, given = (
-            push * self.way.lean[at],
+            self.state = np.zeros((len(pushes), count)), np.zeros((2, count))
+        self.state[0][:, at], self.state[1][:, at] = pushes, rigid
+        rubbed = np.abs(pushes[: self.knots]).sum(axis=0), np.abs(pushes[self.knots :]).sum(axis=0)
+        size, on_points = (
+            push * self.way.side_factor[at],
             (self.points.rubbing_a[at], self.points.rubbing_b[at]),
         )
         a, b = (
             np.divide(load, size, out=share.copy(), where=size > 0.0)
-            for load, share in zip(rubbed, given, strict=True)
+            for load, share in zip(rubbed, on_points, strict=True)
         )
         return a, b
 
 
-def _residual(system: FollowerSystem, free: Loads, loads: Loads, found: GuideReactions) -> Array:
-    """Axial forces that do not cancel, over the push; 0 where the push is held at its bound."""
-    rubs = system.friction_a * found.rubbing_load_a + system.friction_b * found.rubbing_load_b
+def _residual(
+    system: FollowerSystem, free: Loads, loads: Loads, reactions: GuideReactions
+) -> Array:
+    """Residual (n,) of the axial equilibrium over the axial force; 0 where that is bounded."""
+    rubs = (
+        system.friction_a * reactions.rubbing_load_a + system.friction_b * reactions.rubbing_load_b
+    )
     miss = loads.axial_force - np.sign(loads.lift_slope) * rubs - free.axial_force
     bounded = share_left(loads.lift_slope, loads.jam_index) <= JAM_FLOOR
     push = np.where(bounded, 0.0, loads.axial_force)

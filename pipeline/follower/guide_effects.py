@@ -1,4 +1,4 @@
-"""Why guides of finite length answer otherwise than point supports: their length, their play."""
+"""Effects of guide length and clearance on reactions and contact force."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from camwright.pipeline.follower.stem_beam import Stem
 
 @dataclass(frozen=True, eq=False)
 class Share:
-    """A quantity on point supports, what length alone adds to it, and what play adds to that.
+    """A quantity on point supports, its change by guide length and its change by clearance.
 
-    The three sum to the quantity with the guides as they are; arrays (n,).
+    Their sum is the quantity with length and clearance; arrays (n,).
     """
 
     points: Array
@@ -36,15 +36,16 @@ class Share:
 
     @classmethod
     def between(cls, points: Array, tight: Array, full: Array) -> Share:
-        """From the quantity on points, with length and no play, with length and play."""
+        """From the quantity on point supports, with length alone, and with length and clearance."""
         return cls(points, tight - points, full - tight)
 
 
 @dataclass(frozen=True, eq=False)
 class GuideShares:
-    """Reaction of guide A under the side force of the turn (N), and the contact force (N).
+    """Shares of the reaction of guide A (N) and of the contact force (N).
 
-    Of guide B length and play change as much: the difference of the two is the side force.
+    Length and clearance change the reaction of guide B by the same amount: the difference of both
+    reactions is the side force.
     """
 
     reaction_a: Share
@@ -70,15 +71,15 @@ def guide_shares(
     loads: Loads,
     reactions: GuideReactions,
 ) -> GuideShares:
-    """The same turn with guides of no play, and on point supports.
+    """Shares of guide length and clearance in the loads of a turn.
 
-    Without play the guides answer in proportion to the load, so that one solution gives the
-    rubbing load per lean of the push, and with it the contact force, at once.
+    Without clearance the reactions are proportional to the load: one solution gives the rubbing
+    load per axial force, and with it the contact force.
 
     Parameters
     ----------
     cam_speed : float   rad/s, of the turn
-    loads, reactions    of the turn with the guides as they are, see `guided_loads`
+    loads, reactions    of the turn with length and clearance, see `guided_loads`
     """
     pair = replace(guides, a=replace(guides.a, clearance=0.0), b=replace(guides.b, clearance=0.0))
     tight = guide_reactions(
@@ -91,12 +92,12 @@ def guide_shares(
     )
     points = replace(system, rubbing=None)
     on_points = follower_loads(pitch, points, cam_speed, loads.theta)
-    leaning = loads.axial_force * Push.of(pitch, points, loads.theta).lean
-    loaded = leaning > 0.0
+    side_load = loads.axial_force * Push.of(pitch, points, loads.theta).side_factor
+    loaded = side_load > 0.0
     rubbing = Rubbing(
         loads.theta,
-        np.divide(tight.rubbing_load_a, leaning, out=on_points.rubbing_a.copy(), where=loaded),
-        np.divide(tight.rubbing_load_b, leaning, out=on_points.rubbing_b.copy(), where=loaded),
+        np.divide(tight.rubbing_load_a, side_load, out=on_points.rubbing_a.copy(), where=loaded),
+        np.divide(tight.rubbing_load_b, side_load, out=on_points.rubbing_b.copy(), where=loaded),
     )
     on_tight = follower_loads(pitch, replace(points, rubbing=rubbing), cam_speed, loads.theta)
     return GuideShares(

@@ -1,4 +1,4 @@
-"""Friction of the guides between bounds: force, jamming, heat, temperature, PV."""
+"""Guide friction within its bounds: contact force, jam index, heat, temperature."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
 from camwright.pipeline.follower.guide_reactions import WALL_SHARE, GuidePair
 
-# Nylon: Mott, Machine Elements in Mechanical Design, table 16-1 (0.105 MPa m/s dry) and the
-# graded limits of a bush maker, of which the dry one is the lower.
+# pv limits of nylon by lubrication, Pa m/s, of a manufacturer of bushes. Dry: 0.105 MPa m/s in
+# Mott, Machine Elements in Mechanical Design, table 16-1.
 NYLON_PV = {
     "dry": 0.083e6,
     "greased_once": 0.17e6,
@@ -25,9 +25,9 @@ NYLON_PV = {
 
 @dataclass(frozen=True)
 class FrictionRange:
-    """Coulomb coefficients of guides A and B: nominal, least and greatest.
+    """Friction coefficients of guides A and B: nominal, minimum and maximum.
 
-    bounded says whether a greatest coefficient of both guides is known.
+    bounded: whether the upper bounds of both guides are known.
 
     Raises
     ------
@@ -50,7 +50,7 @@ class FrictionRange:
 
     @classmethod
     def of(cls, guides: GuidePair, tolerance: float) -> FrictionRange:
-        """From the bounds of the guides; the tolerance (a share) where a guide has none."""
+        """From the bounds of the guides; a relative tolerance where a guide has none."""
         both = (guides.a, guides.b)
         low = [
             g.friction * (1.0 - tolerance) if g.friction_min is None else g.friction_min
@@ -68,12 +68,12 @@ class FrictionRange:
         )
 
     def factors(self, side: int) -> tuple[float, float]:
-        """Least and greatest coefficient of a guide (0: A, 1: B) over the nominal one."""
+        """Minimum and maximum coefficient of a guide (0: A, 1: B) over the nominal one."""
         nominal = self.nominal[side] or 1.0
         return self.least[side] / nominal, self.greatest[side] / nominal
 
     def scaled(self, factor_a: float, factor_b: float) -> FrictionRange:
-        """The nominal coefficients times a factor each; the bounds widened to hold them."""
+        """Nominal coefficients times a factor each, bounds extended to include them."""
         a, b = self.nominal[0] * factor_a, self.nominal[1] * factor_b
         return replace(
             self,
@@ -85,7 +85,7 @@ class FrictionRange:
 
 @dataclass(frozen=True, eq=False)
 class FrictionBounds:
-    """Loads at the least, nominal and greatest friction of both guides."""
+    """Loads at minimum, nominal and maximum friction of both guides."""
 
     least: Loads
     nominal: Loads
@@ -93,27 +93,27 @@ class FrictionBounds:
 
     @property
     def normal_force_min(self) -> Array:
-        """Least contact force at each angle over the bounds, N.
+        """Minimum contact force (n,) over the friction bounds, N.
 
-        The force grows with friction on the way out and falls on the way back, so that the
-        bounds hold its extremes.
+        Friction increases the force on the outward stroke and reduces it on the return: the
+        extremes are at the bounds.
         """
         return np.minimum(self.least.normal_force, self.greatest.normal_force)
 
     @property
     def normal_force_max(self) -> Array:
-        """Greatest contact force at each angle over the bounds, N."""
+        """Maximum contact force (n,) over the friction bounds, N."""
         return np.maximum(self.least.normal_force, self.greatest.normal_force)
 
     @property
     def jam_index_max(self) -> Array:
-        """At the greatest friction, where the follower moves outward; 0 elsewhere."""
+        """Jam index (n,) at maximum friction where the follower moves outward; 0 elsewhere."""
         worst = self.greatest
         return np.where(worst.lift_slope > 0.0, worst.jam_index, 0.0)
 
     @property
     def jam_margin(self) -> float:
-        """Factor by which friction may still grow before the guides lock; infinite without it."""
+        """Factor of friction up to jamming; infinite without friction."""
         worst = float(self.jam_index_max.max(initial=0.0))
         return 1.0 / worst if worst > 0.0 else np.inf
 
@@ -121,11 +121,11 @@ class FrictionBounds:
 def friction_bounds(
     solved: Callable[[FollowerSystem], Loads], system: FollowerSystem, friction: FrictionRange
 ) -> FrictionBounds:
-    """Loads at the least, nominal and greatest friction of guides A and B.
+    """Loads at minimum, nominal and maximum friction of guides A and B.
 
     Parameters
     ----------
-    solved : function    the loads of a system, such as `follower_loads` or `guided_loads` give
+    solved : function    loads of a system, such as by `follower_loads` or `guided_loads`
     """
 
     def loads(both: tuple[float, float]) -> Loads:
@@ -136,9 +136,9 @@ def friction_bounds(
 
 @dataclass(frozen=True, eq=False)
 class GuideHeat:
-    """Heat of one guide: W at each angle (n,); its mean, and the temperature it leads to, K.
+    """Friction power of one guide (n,), W, and bush temperature, K.
 
-    The temperature is NaN where no thermal resistance is known.
+    The temperature is NaN without a thermal resistance.
     """
 
     power: Array
@@ -149,7 +149,7 @@ class GuideHeat:
 
     @property
     def mean_power(self) -> float:
-        """Over the turn, W."""
+        """Mean friction power over the turn, W."""
         return float(np.mean(self.power))
 
 
@@ -160,14 +160,14 @@ def guide_heat(
     resistance: float | None,
     ambient: float,
 ) -> GuideHeat:
-    """Heat of the pushes of both sides of the bore, at equal angles, and the bush's temperature.
+    """Friction power at equal cam angles, and temperature of the bush.
 
     Parameters
     ----------
-    rubbing_load : array (n,)   N, >= 0; sums both sides of the bore, see `GuideReactions`
+    rubbing_load : array (n,)   N, >= 0; see `GuideReactions`
     velocity : array (n,)       m/s
     friction : float            mu, >= 0
-    resistance : float          from the rubbing surface to the ambient, K/W; None: not known
+    resistance : float          thermal, from rubbing surface to ambient, K/W; None: unknown
     ambient : float             K
 
     Raises
@@ -186,10 +186,10 @@ def guide_heat(
 
 
 def bush_resistance(bore: float, length: float, conductivity: float) -> float:
-    """Heat resistance of a bush's wall to a housing at ambient temperature, K/W.
+    """Thermal resistance of the wall of a bush to a housing at ambient temperature, K/W.
 
-    ln(D_o/D)/(2 pi lambda l). An estimate: what flows off through the stem lowers, what the
-    housing keeps raises the temperature.
+    ln(D_o/D)/(2 pi lambda l). An estimate: heat flow through the stem lowers, heating of the
+    housing raises the temperature.
 
     Raises
     ------

@@ -14,26 +14,27 @@ from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import ContactError, InputError
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.guide_contact import BearingLine, settle
 from camwright.pipeline.follower.stem_beam import Stem, end_flexibility, stem_compliance
 
-KNOTS = 25  # per guide; odd, so that the middle of the guide is one of them
+KNOTS = 25  # per guide; odd: the middle of the guide is a knot
 RESIDUAL_LIMIT = 1e-9
-_NO_LOAD = 1e-290  # N: the slope a spline leaves in a dwell; so near to zero digits are lost
-WALL_SHARE = 0.25  # wall of a plain bushing over its bore, where the drawing gives none
+_NO_LOAD = 1e-290  # N, of a dwell: smaller ones are denormal
+WALL_SHARE = 0.25  # wall of a plain bush over its bore, assumed
 
 
 def _no_press_fit(field: str, clearance: float) -> None:
     if clearance < 0.0:
-        raise InputError(field, f"{1e3 * clearance:g} mm", ">= 0 mm: a press fit cannot slide")
+        raise InputError(field, shown(clearance, "mm"), ">= 0 mm: a press fit cannot slide")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Guide(Part):
-    """A bore the stem slides in; its limits hold for dry running unless the source says more.
+    """Guide of the stem; its limits hold for dry running unless the source states otherwise.
 
-    clearance is bore less stem, across the diameter; friction Coulomb's coefficient, with its
-    bounds where they are known; stiffness that of the whole bush, else of its wall's elasticity.
+    clearance: diametral; friction: Coulomb coefficient, with bounds where known; stiffness: of the
+    whole bush, None: from the elasticity of its wall.
 
     Raises
     ------
@@ -69,7 +70,7 @@ class Guide(Part):
 
     @cached_property
     def foundation_modulus(self) -> float:
-        """Force per length and deflection of the bush, N/m2; see `bush_foundation_modulus`."""
+        """Force per length and deflection of the guide, N/m2; see `bush_foundation_modulus`."""
         if self.stiffness is not None:
             return self.stiffness / self.length
         bore, card = self.diameter, self.material
@@ -83,7 +84,7 @@ class Guide(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class GuidePair(Part):
-    """Guide A next to the cam and guide B beyond it; the spacing is from middle to middle."""
+    """Guide A next to the cam and guide B beyond; spacing from middle to middle."""
 
     table: ClassVar[str] = "guides"
 
@@ -96,7 +97,7 @@ class GuidePair(Part):
         super().__post_init__()
         least = 0.5 * (self.a.length + self.b.length)
         if not least < self.spacing:
-            limit = f"> {least:.6g} m, half of both lengths"
+            limit = f"> {least:.6g} m, half the sum of both lengths"
             raise InputError("guides.spacing", f"{self.spacing:.6g} m", limit)
 
     @property
@@ -107,18 +108,17 @@ class GuidePair(Part):
 
 @dataclass(frozen=True, eq=False)
 class GuideReactions:
-    """What the guides carry at each position; arrays (n,) unless said otherwise, SI.
+    """Reactions and pressures of the guides at each position; arrays (n,) unless stated, SI.
 
-    Guide A pushes against the side force F_t and guide B with it; both reactions are signed
-    like the statics A = F_t (a+b)/b, B = F_t a/b of point supports. The moments are couples of
-    the guides on the stem about their own middles: what finite length adds to the statics.
-    `slope_*` is the tilt of the stem at the middle of a guide, `roller_deflection` the way of
-    the roller with F_t, both from the guides' common axis. `line_pressure_*` (knots, n), N/m,
-    are the guides' pushes on the stem, positive against F_t, at `knots_*` (m from the middle of
-    the guide, growing away from the roller). `rubbing_load_*` adds the pushes of both sides of
-    the bore, where a reaction takes their difference: friction follows it. The residuals are
-    those of force, of moment about the roller, each over the load, and of the contact law at the
-    worst knot, over the largest deflection.
+    Guide A acts against the side force F_t and guide B with it; both reactions are signed like
+    A = F_t (a+b)/b, B = F_t a/b of point supports, `statics_*`. `moment_*`: couples of the guides
+    on the stem about their middles, an effect of finite length. `slope_*`: slope of the stem at the
+    middle of a guide; `roller_deflection`: displacement of the roller along F_t; both from the
+    common axis of the guides. `line_pressure_*` (knots, n), N/m: line pressure on the stem,
+    positive against F_t, at `knots_*` (m from the middle of the guide, away from the roller).
+    `rubbing_load_*`: sum of the normal forces on both sides of the bore, where the reaction is
+    their difference; friction is proportional to it. Residuals of force and of moment about the
+    roller, over the load, and maximum residual of the contact law over maximum deflection.
     """
 
     tangential_force: Array
@@ -149,22 +149,22 @@ class GuideReactions:
 
     @cached_property
     def line_pressure_max_a(self) -> Array:
-        """Largest push per length in guide A, N/m, >= 0."""
+        """Maximum line pressure in guide A (n,), N/m, >= 0."""
         return np.asarray(np.abs(self.line_pressure_a).max(axis=0))
 
     @cached_property
     def line_pressure_max_b(self) -> Array:
-        """Largest push per length in guide B, N/m, >= 0."""
+        """Maximum line pressure in guide B (n,), N/m, >= 0."""
         return np.asarray(np.abs(self.line_pressure_b).max(axis=0))
 
     @property
     def pressure_max_a(self) -> Array:
-        """Largest projected pressure in guide A, Pa, >= 0: line pressure over stem diameter."""
+        """Maximum projected pressure in guide A (n,), Pa: line pressure over stem diameter."""
         return self.line_pressure_max_a / self.stem_diameter
 
     @property
     def pressure_max_b(self) -> Array:
-        """Largest projected pressure in guide B, Pa, >= 0: line pressure over stem diameter."""
+        """Maximum projected pressure in guide B (n,), Pa: line pressure over stem diameter."""
         return self.line_pressure_max_b / self.stem_diameter
 
 
@@ -173,15 +173,15 @@ def bush_foundation_modulus(
 ) -> float:
     """Force per length and deflection of a bush in a rigid housing, N/m2.
 
-    The wall is a thin layer that cannot spread: it answers the radial approach d cos(phi) with
-    the pressure E_c d cos(phi)/t, E_c = E (1-nu)/((1+nu)(1-2nu)). Over the loaded half of the
-    bore this adds up to (pi/4) E_c D/t a unit of d.
+    The wall is a thin bonded layer: a radial approach d cos(phi) gives the pressure
+    E_c d cos(phi)/t with E_c = E (1-nu)/((1+nu)(1-2nu)). Its resultant over the loaded half of the
+    bore is (pi/4) E_c D/t per unit of d.
 
     Parameters
     ----------
     bore, wall : float       D and t, m, > 0
     elastic_modulus : float  E, Pa, > 0
-    poisson_ratio : float    nu, 0 <= nu <= 0.49; a wall that keeps its volume would be rigid
+    poisson_ratio : float    nu, 0 <= nu <= 0.49; an incompressible wall would be rigid
 
     Raises
     ------
@@ -215,12 +215,12 @@ class _Carried(NamedTuple):
     couple_b: Array
 
     def force_residual(self, force: Array, moment: Array, spacing: float) -> Array:
-        """What the reactions miss the side force by, over the load."""
+        """Residual of the forces over the load (n,)."""
         miss = self.reaction_a - self.reaction_b - force
         return _relative(miss, np.abs(force) + np.abs(moment) / spacing)
 
     def moment_residual(self, force: Array, moment: Array, reach: Array, spacing: float) -> Array:
-        """What all moments about the roller miss the end moment by, over the load."""
+        """Residual of the moments about the roller over the load (n,)."""
         far = reach + spacing
         turned = self.couple_a + self.couple_b + self.reaction_a * reach - self.reaction_b * far
         return _relative(turned - moment, np.abs(force) * far + np.abs(moment))
@@ -235,14 +235,13 @@ def guide_reactions(
     knots: int = KNOTS,
     start: tuple[Array, Array] | None = None,
 ) -> GuideReactions:
-    """Reactions, pressures and tilts of the guides on the elastic stem, at every position.
+    """Reactions, pressures and slopes of the guides on the elastic stem at every position.
 
-    The guides stay while the stem slides through them, so the part of the stem between the
-    outer mouth of A and the far end of B is one beam for all positions; the overhang brings its
-    force and moment to the mouth and is added to the deflection. Each guide is a foundation
-    that only pushes, from either side of the bore, once half the clearance is used up. Its
-    integrals are taken at Lobatto knots, mouths included, that are nodes of the beam, where
-    Hermite elements are exact. The stem's far end beyond B carries nothing.
+    The guides are fixed and the stem slides: the stem between the outer edge of A and the far edge
+    of B is one beam for all positions; the overhang transfers force and moment to the edge of A and
+    adds to the deflection. Each guide is a unilateral elastic foundation on both sides of the bore
+    beyond half the clearance, integrated at Lobatto knots, which are nodes of the beam. The stem
+    beyond B is unloaded.
 
     Parameters
     ----------
@@ -250,10 +249,10 @@ def guide_reactions(
     overhang : array (n,)            a, roller centre to the middle of A, m
     stem : Stem
     guides : GuidePair
-    end_moment : array (n,)          on the roller end, N m, positive when it turns the stem from
-                                     its axis (roller to B) towards F_t
+    end_moment : array (n,)          on the roller end, N m, positive from the stem axis
+                                     (roller to B) towards F_t
     knots : int                      per guide, odd, >= 3
-    start : push, rigid              where `settle` starts, of like loads at the same positions
+    start : push, rigid              initial guess of `settle`, of similar loads
 
     Returns
     -------
@@ -262,8 +261,8 @@ def guide_reactions(
     Raises
     ------
     InputError
-        If the roller would enter guide A, the stem would leave guide B or is thicker than a
-        bore, or a value is NaN.
+        If the roller enters guide A, the stem leaves guide B or is thicker than a bore, or a value
+        is not finite.
     ContactError
         If equilibrium or the contact law is not met to 1e-9.
     """
@@ -313,12 +312,12 @@ def guide_reactions(
 
 
 def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> None:
-    """Refuse a stem that does not fit its guides at overhangs (n,), m.
+    """Check that the stem fits its guides at overhangs (n,), m.
 
     Raises
     ------
     InputError
-        If the roller would enter guide A, the stem would leave guide B or is thicker than a bore.
+        If the roller enters guide A, the stem leaves guide B or is thicker than a bore.
     """
     if knots < 3 or knots % 2 == 0:
         raise InputError("knots", knots, "odd and >= 3")
@@ -339,7 +338,7 @@ def require_fit(stem: Stem, guides: GuidePair, overhang: Array, knots: int) -> N
 
 @lru_cache(maxsize=8)
 def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine, Array, float]:
-    """Beam and foundation in one, from the mouth of A; slope compliance; half length of A."""
+    """Beam and foundation from the edge of A; slopes under unit forces, rad/N; half length of A."""
     unit, weight = lobatto(knots)
     half_a, half_b = 0.5 * guides.a.length, 0.5 * guides.b.length
     positions = np.r_[half_a * (1.0 + unit), half_a + guides.spacing + half_b * unit]
@@ -356,7 +355,7 @@ def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine
 
 
 def lobatto(count: int) -> tuple[Array, Array]:
-    """Knots and weights of the Lobatto rule on [-1, 1]: the ends are knots.
+    """Knots and weights (count,) of Gauss-Lobatto quadrature on [-1, 1].
 
     References
     ----------
@@ -369,12 +368,18 @@ def lobatto(count: int) -> tuple[Array, Array]:
 
 
 def _relative(error: Array, scale: Array) -> Array:
-    """|error| / scale, 0 where there is no load."""
+    """|error| / scale, 0 without load."""
     return np.divide(np.abs(error), scale, out=np.zeros_like(scale), where=scale > _NO_LOAD)
 
 
 def _certify(result: GuideReactions) -> None:
-    """Refuse a solution that is not in equilibrium or breaks the contact law."""
+    """Check equilibrium and contact law.
+
+    Raises
+    ------
+    ContactError
+        If a residual exceeds 1e-9.
+    """
     for name in ("force_residual", "moment_residual", "complementarity_residual"):
         worst = float(np.max(getattr(result, name), initial=0.0))
         if not worst <= RESIDUAL_LIMIT:

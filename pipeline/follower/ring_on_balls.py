@@ -1,4 +1,4 @@
-"""The outer ring of a bearing that is itself the roller: its bending, its contact body."""
+"""Outer ring of a bearing as roller: bending on its balls, contact body."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from camwright.pipeline.follower.bearing_ring import Ring, RingBending, ball_sti
 from camwright.pipeline.follower.bearing_ring_elements import ring_bending
 from camwright.pipeline.follower.roller_parts import Bearing, OuterRing
 
-# Half length of a ball's contact along the groove over its diameter: recalled of point contacts
-# in close grooves. Half or twice as much moves p0 by 0.1 %.
+# Half the length of the contact of a ball along the groove over its diameter, recalled for point
+# contacts in conforming grooves. A factor of 2 changes p0 by 0.1 %.
 _FOOTPRINT = 0.05
-# The roller's surface is the ring's where their radii agree to this, m.
+# Tolerance of equal radii of roller and ring, m.
 _SAME_RADIUS = 1e-6
 
 
 @dataclass(frozen=True)
 class RingOnBalls:
-    """An outer ring on its balls: bending per newton of load, and body of the contact."""
+    """Outer ring on its balls: bending per newton, contact body over and between balls."""
 
     ring: Ring
     bending: RingBending
@@ -31,10 +31,10 @@ class RingOnBalls:
     between_balls: RingBody
 
     def midway(self, line_load: Array, relative_radius: Array) -> Array:
-        """Relative change of p0 from a contact over a ball to one between two balls, (n,).
+        """Relative change (n,) of p0 from a contact over a ball to one between two balls.
 
-        p0 is proportional to the root of the relative curvature, which the ring's bending
-        reduces; the cam's own bending is of second order and neglected.
+        p0 is proportional to the root of the relative curvature, which the bending of the ring
+        reduces; the bending of the cam is of second order and neglected.
 
         Parameters
         ----------
@@ -51,12 +51,12 @@ class RingOnBalls:
 
 
 def solid_reason(radius: float, bearing: Bearing) -> str:
-    """Reason why a roller of a radius (m) is modelled as solid; "" for a ring on its balls."""
+    """Reason for the model of a solid roller of a radius (m); "" for a ring on its balls."""
     ring = bearing.ring
     if ring is None:
-        return "no ring and balls of the bearing are given"
+        return "ring and balls of the bearing are not specified"
     if abs(0.5 * ring.outer_diameter - radius) > _SAME_RADIUS:
-        return "the roller is not the bearing's outer ring itself"
+        return "the roller is not the outer ring of the bearing"
     return ""
 
 
@@ -64,10 +64,10 @@ def solid_reason(radius: float, bearing: Bearing) -> str:
 def ring_on_balls(
     ring: OuterRing, steel: Elastic, radius: float, roller_width: float, width: float, load: float
 ) -> RingOnBalls:
-    """The outer ring under a contact of a width (m).
+    """Outer ring under a line contact.
 
-    The stiffness of the balls is that under the load (N): four times the load makes them 1.6
-    times as stiff and moves p0 over a ball by 0.4 % at most.
+    Balls have their secant stiffness at the load: four times the load increases it by a factor 1.6
+    and changes p0 over a ball by at most 0.4 %.
 
     Parameters
     ----------

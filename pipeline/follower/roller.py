@@ -1,4 +1,4 @@
-"""A roller follower: geometry, contact body, rolling on the cam."""
+"""Roller follower: geometry, contact body, rolling on the cam."""
 
 from __future__ import annotations
 
@@ -26,14 +26,15 @@ from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motio
 from camwright.pipeline.follower.roller_parts import Bearing, Pin
 from camwright.pipeline.follower.stem_beam import Stem
 
-_NO_SLIP = 1e6  # friction coefficient of a roller whose friction is not given
+_NO_SLIP = 1e6  # friction coefficient of rolling without slip
 
 
 @dataclass(frozen=True, kw_only=True)
 class Roller(Part):
-    """The roller on the follower; the hub radius is that of its pin or inner ring.
+    """Roller of the follower.
 
-    friction is that of the roller sliding on the cam; roughness the rms one.
+    hub_radius: of its pin or inner ring; friction: coefficient of sliding on the cam; roughness:
+    rms.
     """
 
     table: ClassVar[str] = "roller"
@@ -53,32 +54,32 @@ class Roller(Part):
 
     @property
     def line_width(self) -> float:
-        """Width of the line contact it can carry, m: chamfers left out."""
+        """Maximum width of the line contact, m: without the chamfers."""
         return self.width - 2.0 * self.chamfer
 
     @property
     def side_friction(self) -> float:
-        """Zero: a roller does not drag the stem sideways."""
+        """Zero: a roller has no friction force on the stem."""
         return 0.0
 
     @property
     def contact_radius(self) -> float:
-        """Radius of its surface, m."""
+        """Radius of the surface, m."""
         return self.radius
 
     @property
     def extent(self) -> float:
-        """Distance from its centre towards guide A, m."""
+        """Extent from its centre towards guide A, m."""
         return self.radius
 
     @property
     def held_depth(self) -> float:
-        """Material between its surface and its hub, m."""
+        """Distance of surface and hub, m."""
         return self.radius - self.hub_radius
 
     @property
     def solid_reason(self) -> str:
-        """Reason why it is modelled as solid on its hub; "" for a ring on its balls."""
+        """Reason for the model of a solid roller on its hub; "" for a ring on its balls."""
         return solid_reason(self.radius, self.bearing)
 
     @property
@@ -91,14 +92,14 @@ class Roller(Part):
 
     @property
     def rotor_inertia(self) -> float:
-        """Moment of inertia of the part that rolls, kg m2: the given one, or that of the ring."""
+        """Moment of inertia of the rolling part, kg m2: of the case, else of the solid ring."""
         if self.inertia is not None:
             return self.inertia
         return ring_inertia(self.radius, self.hub_radius, self.width, self.material.density)
 
     @property
     def pin_stress_per_newton(self) -> float | None:
-        """Bending stress of the pin under a newton of contact force, Pa; None without a pin."""
+        """Bending stress of the pin per newton of contact force, Pa/N; None without a pin."""
         pin = self.pin
         if pin is None:
             return None
@@ -110,9 +111,9 @@ class Roller(Part):
         return RollerContour(PitchCurve(lift, cam.prime_radius, cam.offset), self.radius)
 
     def ring(self, width: float, preload: float) -> RingOnBalls | None:
-        """Its bearing's outer ring on balls; None where it is solid: `solid_reason`.
+        """Outer ring of the bearing on balls; None for a solid roller, see `solid_reason`.
 
-        The balls have their stiffness under the static rating; without one, under the preload (N).
+        Balls have their stiffness at the static rating, without one at the preload (N).
         """
         ring = self.bearing.ring
         if ring is None or self.solid_reason:
@@ -122,7 +123,7 @@ class Roller(Part):
         return ring_on_balls(ring, steel, self.radius, self.width, width, load)
 
     def body(self, width: float, stem: Stem, preload: float) -> FollowerBody:  # noqa: ARG002
-        """The roller on its hub, or its bearing's outer ring on balls; see `FollowerKind`."""
+        """Roller on its hub, or outer ring of the bearing on balls; see `FollowerKind`."""
         ring = self.ring(width, preload)
         if ring is not None:
             return ring.body
@@ -131,7 +132,7 @@ class Roller(Part):
     def motion(
         self, contour: Contour, contact: ContactHistory, force: Array, theta: Array, speed: float
     ) -> SurfaceMotion:
-        """Rolling with creep; without friction given, rolling without slip. See `FollowerKind`."""
+        """Rolling with creep; without a friction coefficient without slip. See `FollowerKind`."""
         motion = roller_motion(contour.require_roller().pitch, self.radius, speed, theta)
         driven = self._driven(motion, contact, force, speed)
         loaded = force > 0
@@ -149,6 +150,7 @@ class Roller(Part):
     def _driven(
         self, motion: RollerMotion, contact: ContactHistory, force: Array, speed: float
     ) -> RollingContact:
+        """Rolling contact under inertia and bearing drag."""
         bearing = self.bearing
         return rolling_contact(
             force,

@@ -1,28 +1,27 @@
-"""Motion of the roller and the load its bearing carries."""
+"""Motion of the roller, traction demand, rating life of its bearing."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, Values, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import PitchCurve, magnitude
 
 BALL_LIFE_EXPONENT = 3.0  # ISO 281: 3 for ball bearings, 10/3 for roller bearings
-HOUR = 3600.0
+_RATED_REVOLUTIONS = 1e6  # of the dynamic rating, ISO 281
 
 
 @dataclass(frozen=True, eq=False)
 class RollerMotion:
-    """Motion of a roller that does not slip; arrays (n,), SI.
+    """Motion of a roller without slip; arrays (n,), SI.
 
-    `spin` and `spin_acceleration` are those of the outer ring against the follower, rad/s and
-    rad/s2; `pitch_speed` that of the roller centre along the pitch curve, `rolling_speed` that
-    of both surfaces through the contact (the entrainment speed), m/s.
+    `spin` and `spin_acceleration`: of the outer ring relative to the follower, rad/s and rad/s2;
+    `pitch_speed`: of the roller centre along the pitch curve, m/s; `rolling_speed`: of both
+    surfaces through the contact, the entrainment speed, m/s.
     """
 
     theta: Array
@@ -36,18 +35,18 @@ class RollerMotion:
 
     @property
     def spin_mean(self) -> float:
-        """Mean of |spin| over the angles given, rad/s."""
+        """Mean of |spin|, rad/s."""
         return float(np.mean(np.abs(self.spin)))
 
     @property
     def spin_max(self) -> float:
-        """Largest |spin|, rad/s."""
+        """Maximum of |spin|, rad/s."""
         return float(np.max(np.abs(self.spin)))
 
 
 @dataclass(frozen=True)
 class RatingLife:
-    """Basic rating life: P_m in N, L10 in revolutions of the bearing and in seconds."""
+    """Basic rating life: P_m, N; L10 in revolutions of the bearing and in seconds."""
 
     mean_load: float
     revolutions: float
@@ -61,12 +60,11 @@ def roller_motion(
     theta: ArrayLike,
     cam_acceleration: float = 0.0,
 ) -> RollerMotion:
-    """Spin and rolling speed of a roller that does not slip.
+    """Spin and rolling speed of a roller without slip.
 
-    Seen from the cam the roller centre runs along the pitch curve at w |P'| and the roller turns
-    at w |P'|/r; the cam itself turns back at w, which leaves w (|P'| - r)/r against the follower.
-    The surfaces pass through the contact at the speed of the contact point along the contour,
-    w |P'| (1 - r kappa).
+    In the cam frame the roller centre moves along the pitch curve at w |P'| and the roller turns at
+    w |P'|/r; relative to the follower it turns at w (|P'| - r)/r. The surface speed through the
+    contact is that of the contact point along the contour, w |P'| (1 - r kappa).
 
     Parameters
     ----------
@@ -108,28 +106,27 @@ def roller_motion(
     )
 
 
-def rolling_share(pitch_speed: Any, roller_radius: float) -> Any:
-    """Spin of the roller against the follower over the cam's, from |dP/dtheta|, m/rad."""
+def rolling_share(pitch_speed: Values, roller_radius: float) -> Values:
+    """Spin of the roller relative to the follower over cam speed, of |dP/dtheta|, m/rad."""
     return pitch_speed / roller_radius - 1.0
 
 
-def wear(normal_force: Any, spin: Any, exponent: float = BALL_LIFE_EXPONENT) -> Any:
-    """N^p |n| at each place of the turn: its mean decides the rating life; ISO 281:2007, 6.2."""
+def wear(normal_force: Values, spin: Values, exponent: float = BALL_LIFE_EXPONENT) -> Values:
+    """N^p |n|, proportional to fatigue damage per time; ISO 281:2007, 6.2."""
     return normal_force**exponent * magnitude(spin)
 
 
 def equivalent_load(
     normal_force: ArrayLike, spin: ArrayLike, exponent: float = BALL_LIFE_EXPONENT
 ) -> float:
-    """P_m, the constant load of equal life, at positions equally spaced in time, N.
+    """Constant load of equal rating life P_m, N, over positions equally spaced in time.
 
-    Each position weighs as many revolutions as the roller makes there:
     P_m = (sum N^p |n| / sum |n|)^(1/p).
 
     Raises
     ------
     InputError
-        If a force is negative, the shapes differ, or the roller stands still throughout.
+        If a force is negative, the shapes differ, or every spin is zero.
 
     References
     ----------
@@ -147,7 +144,7 @@ def equivalent_load(
     if largest == 0.0:
         return 0.0
     share = wear(force / largest, turns, exponent).mean() / turns.mean()
-    return largest * float(share) ** (1.0 / exponent)
+    return float(largest * float(share) ** (1.0 / exponent))
 
 
 def rating_life(
@@ -156,7 +153,7 @@ def rating_life(
     dynamic_rating: float,
     exponent: float = BALL_LIFE_EXPONENT,
 ) -> RatingLife:
-    """Life that nine bearings of ten reach under the load of the cycle.
+    """Rating life L10 of the bearing under the load of the cycle.
 
     Parameters
     ----------
@@ -167,7 +164,7 @@ def rating_life(
 
     Returns
     -------
-    RatingLife   infinite where nothing loads the bearing
+    RatingLife   infinite without load
 
     Raises
     ------
@@ -182,12 +179,14 @@ def rating_life(
         raise InputError("roller.bearing.C", dynamic_rating, "> 0 N")
     mean_load = equivalent_load(normal_force, spin, exponent)
     spin_mean = float(np.mean(np.abs(spin)))
-    revolutions = 1e6 * (dynamic_rating / mean_load) ** exponent if mean_load > 0.0 else np.inf
+    revolutions = np.inf
+    if mean_load > 0.0:
+        revolutions = _RATED_REVOLUTIONS * (dynamic_rating / mean_load) ** exponent
     return RatingLife(mean_load, revolutions, revolutions * FULL_TURN / spin_mean)
 
 
 def static_safety(normal_force: ArrayLike, static_rating: float) -> float:
-    """s0 = C0 / N_max; infinite where nothing loads the bearing.
+    """Static safety factor s0 = C0 / N_max; infinite without load.
 
     Raises
     ------
@@ -196,7 +195,7 @@ def static_safety(normal_force: ArrayLike, static_rating: float) -> float:
 
     References
     ----------
-    ISO 76:2006; makers ask 0.5 to 2 of ball bearings in quiet running, 1.5 with shocks.
+    ISO 76:2006; manufacturers require 0.5 to 2 for ball bearings, 1.5 under shocks.
     """
     if not 0.0 < static_rating < np.inf:
         raise InputError("roller.bearing.C0", static_rating, "> 0 N")
@@ -211,16 +210,16 @@ def traction_demand(
     radius: float,
     bearing_torque: float = 0.0,
 ) -> Array:
-    """Friction coefficient the contact needs to turn the roller without slip.
+    """Traction coefficient (n,) of rolling without slip, |I a + T_b| / (r N).
 
-    |I a + T_b| / (r N); infinite where the roller carries nothing yet must be turned.
+    Infinite where the demand is not zero and the contact has no load.
 
     Parameters
     ----------
     normal_force, spin_acceleration : array (n,)   N; rad/s2
     inertia : float                                of the outer ring, kg m2, >= 0
     radius : float                                 of the roller, m, > 0
-    bearing_torque : float                         drag of the bearing, N m
+    bearing_torque : float                         bearing drag, N m
 
     Raises
     ------

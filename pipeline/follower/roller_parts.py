@@ -1,4 +1,4 @@
-"""Parts of a roller: its bearing, the bearing's outer ring, its pin."""
+"""Parts of a roller: bearing, outer ring of the bearing, pin."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from camwright.pipeline.base.quantities import Count, Force, In, Length, Part, P
 
 @dataclass(frozen=True, kw_only=True)
 class OuterRing(Part):
-    """A bearing's outer ring that is itself the roller: carried by its balls alone.
+    """Outer ring of a bearing as roller, supported by its balls.
 
-    The thickness is that under the groove, the pitch diameter that of the balls' centres, their
-    number that of one row; the strengths are those of the ring's steel.
+    thickness: below the groove; pitch_diameter: of the ball centres; balls: number per row;
+    strengths: of the ring steel.
     """
 
     table: ClassVar[str] = "roller.bearing.ring"
@@ -42,7 +42,7 @@ class OuterRing(Part):
 
     @property
     def ball_diameter(self) -> float:
-        """Space of the balls between ring and pitch circle, m."""
+        """Ball diameter from ring and pitch circle, m."""
         return self.outer_diameter - 2.0 * self.thickness - self.pitch_diameter
 
     def _refuse(self, name: str, value: float, limit: str) -> None:
@@ -51,7 +51,7 @@ class OuterRing(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Bearing(Part):
-    """The roller's bearing as its maker rates it; viscosity of its oil at running temperature."""
+    """Bearing of the roller with the ratings of its manufacturer; oil viscosity in operation."""
 
     table: ClassVar[str] = "roller.bearing"
 
@@ -70,7 +70,7 @@ class Bearing(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Pin(Part):
-    """The pin that carries the roller: held on both sides, or on one (span to its face)."""
+    """Pin of the roller: straddled, span between supports; overhung, span from its support."""
 
     table: ClassVar[str] = "roller.pin"
 

@@ -1,4 +1,4 @@
-"""Strength of the camshaft at the cam's key, and of the teeth of the gear that drives it."""
+"""Fatigue safety of the camshaft at the key of the cam; stresses of its gear teeth."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FIBRES = 72
 
 @dataclass(frozen=True)
 class Section:
-    """A section of the shaft with its notch.
+    """Notched section of the shaft.
 
     Parameters
     ----------
@@ -42,10 +42,7 @@ class Section:
 
 
 def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: float) -> Array:
-    """Moment (2, n), N m, at a place (m from the first bearing), in the directions of the forces.
-
-    Of all forces on one side of the section, each times its distance from it.
-    """
+    """Bending moment (2, n), N m, at a place (m from the first bearing), by force component."""
     acting = (
         (0.0, loads.bearing_1),
         (shaft.bearing_spacing, loads.bearing_2),
@@ -56,21 +53,21 @@ def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: float) -> Array:
 
 
 def fatigue_safety(theta: ArrayLike, moment: Array, torque: ArrayLike, section: Section) -> float:
-    """Factor on all stresses up to endless life of a shaft that turns under the loads of a turn.
+    """Fatigue safety factor of a rotating shaft under the loads of a turn.
 
-    The loads stand in the frame of the engine, the fibres turn with the shaft: of each fibre
-    the bending and the torsion of one turn give an amplitude and a mean.
+    Loads are in the engine frame, fibres rotate with the shaft: bending and torsion of each fibre
+    over one turn give an amplitude and a mean.
 
     Parameters
     ----------
     theta : array (n,)     angles of the shaft over one turn, rad
-    moment : array (2, n)  N m, in the frame of the engine
+    moment : array (2, n)  N m, in the engine frame
     torque : array (n,)    N m
     section : Section
 
     Returns
     -------
-    float    of the worst fibre; infinite without a load, NaN where a load is not known
+    float    minimum over the fibres; infinite without load, NaN with an unknown load
 
     References
     ----------
@@ -96,17 +93,17 @@ def fatigue_safety(theta: ArrayLike, moment: Array, torque: ArrayLike, section: 
 
 
 def tooth_root_stress(force: ArrayLike, width: float, module: float, teeth: int) -> Array:
-    """Bending stress at the root of a spur tooth of 20 deg full depth, Pa: F/(b m pi y).
+    """Root bending stress (...) of a spur tooth, 20 deg full depth, Pa: F/(b m pi y).
 
     Parameters
     ----------
     force : array (...)    on the pitch circle, application factor included, N, >= 0
     width, module : float  m, > 0
-    teeth : int            of the wheel, >= 10
+    teeth : int            of the gear, >= 10
 
     References
     ----------
-    Lewis (1892): y = 0.154 - 0.912/z for 20 deg full depth; load at the tip of one tooth.
+    Lewis (1892): y = 0.154 - 0.912/z for 20 deg full depth; load at the tip of a single tooth.
     """
     if teeth < 10:
         raise InputError("camshaft.gear.teeth", teeth, ">= 10")
@@ -122,12 +119,12 @@ def tooth_contact_stress(
     pressure_angle: float,
     contact_modulus: float,
 ) -> Array:
-    """Hertz's pressure of two spur teeth at the pitch point, Pa.
+    """Hertz pressure (...) of two spur teeth at the pitch point, Pa.
 
     Parameters
     ----------
     force : array (...)       on the pitch circle, application factor included, N, >= 0
-    pinion_diameter : float   pitch diameter of the smaller wheel, m
+    pinion_diameter : float   pitch diameter of the smaller gear, m
     ratio : float             teeth of the larger over those of the smaller, >= 1
     pressure_angle : float    rad
     contact_modulus : float   E*, Pa
@@ -140,4 +137,4 @@ def tooth_contact_stress(
     zone = 2.0 / (np.cos(pressure_angle) ** 2 * np.tan(pressure_angle))
     elastic = contact_modulus / np.pi
     line = np.asarray(force, dtype=float) * (ratio + 1.0) / (width * pinion_diameter * ratio)
-    return np.sqrt(zone * elastic * line)
+    return np.asarray(np.sqrt(zone * elastic * line))

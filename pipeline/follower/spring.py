@@ -1,4 +1,4 @@
-"""The helical compression spring: rate, stress, fatigue, space, buckling, surge."""
+"""Helical compression spring: force, stress, fatigue, solid length, buckling, surge."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from camwright.geometry.energy import spring_deflection
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In, Length, Part, Preload, Pressure, Rate
 
-DEAD_COILS = 2.0  # squared and ground ends
-SHEAR_STRENGTH_SHARE = 0.67  # S_su over R_m
+DEAD_COILS = 2.0  # of squared and ground ends
+SHEAR_STRENGTH_SHARE = 0.67  # shear over tensile strength, S_su / R_m
 ZIMMERLI = {"plain": (241e6, 379e6), "peened": (398e6, 534e6)}  # S_sa, S_sm by treatment, Pa
-BUCKLING = 2.63  # free length over mean diameter and end factor, steel
+_STRENGTH_DIAMETER = 0.001  # m, of strength_at_1mm
+BUCKLING = 2.63  # stability limit of free length times end factor over mean diameter, steel
 
 WireModulus = Annotated[float, In("GPa", above=0, at_most=1e5)]
 WireDensity = Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
@@ -26,17 +27,17 @@ Treatment = Literal["plain", "peened"]
 
 @dataclass(frozen=True, kw_only=True)
 class HelicalSpring(Part):
-    """A cylindrical compression spring of round wire, ends squared and ground.
+    """Cylindrical compression spring of round wire with squared and ground ends.
 
-    mean_diameter D over wire_diameter d from 3 to 20; coils are the active ones; end_factor 1
-    pivoted at both ends, 0.707 pivoted and fixed, 0.5 flat. The wire has the tensile strength
-    R_m = strength_at_1mm (d / 1 mm)^-strength_exponent. name is that of a catalogue.
+    mean_diameter D over wire_diameter d from 3 to 20; coils: active; end_factor: 1 pivoted at both
+    ends, 0.707 pivoted and fixed, 0.5 flat; tensile strength of the wire
+    R_m = strength_at_1mm (d / 1 mm)^-strength_exponent; name: of a catalogue.
 
     Raises
     ------
     InputError
-        If a value is out of its bounds. A spring that goes solid under its load is no such
-        error: see `solid_clearance`.
+        If a value is out of its bounds. The solid length under load is a check, see
+        `solid_clearance`.
     """
 
     table: ClassVar[str] = "spring.design"
@@ -58,7 +59,7 @@ class HelicalSpring(Part):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not 3.0 <= self.mean_diameter / self.wire_diameter <= 20.0:
-            limit = "3 to 20 wire diameters, which can be coiled"
+            limit = "3 to 20 wire diameters: the range of coiling"
             raise InputError("spring.design.mean_diameter", self.mean_diameter, limit)
         if not self.solid_length < self.free_length:
             limit = f"> {self.solid_length:g} m, the solid length"
@@ -66,28 +67,31 @@ class HelicalSpring(Part):
 
     @property
     def tensile_strength(self) -> float:
-        """R_m of the wire, Pa."""
-        return float(self.strength_at_1mm * (self.wire_diameter / 1e-3) ** -self.strength_exponent)
+        """Tensile strength R_m of the wire, Pa."""
+        return float(
+            self.strength_at_1mm
+            * (self.wire_diameter / _STRENGTH_DIAMETER) ** -self.strength_exponent
+        )
 
     @property
     def index(self) -> float:
-        """C = D/d."""
+        """Spring index C = D/d."""
         return self.mean_diameter / self.wire_diameter
 
     @property
     def rate(self) -> float:
-        """k = G d^4 / (8 D^3 n), N/m."""
+        """Rate k = G d^4 / (8 D^3 n), N/m."""
         bend = self.shear_modulus * self.wire_diameter**4
         return bend / (8.0 * self.mean_diameter**3 * self.coils)
 
     @property
     def active_mass(self) -> float:
-        """Mass of the coils that move, kg."""
+        """Mass of the active coils, kg."""
         return self._mass(self.coils)
 
     @property
     def mass(self) -> float:
-        """Mass with the ends, kg."""
+        """Mass with the end coils, kg."""
         return self._mass(self.coils + DEAD_COILS)
 
     def _mass(self, coils: float) -> float:
@@ -101,34 +105,34 @@ class HelicalSpring(Part):
 
     @property
     def wahl_factor(self) -> float:
-        """(4C - 1)/(4C - 4) + 0.615/C: curvature and direct shear."""
+        """Wahl factor (4C - 1)/(4C - 4) + 0.615/C for curvature and direct shear."""
         C = self.index
         return (4.0 * C - 1.0) / (4.0 * C - 4.0) + 0.615 / C
 
     @property
     def surge_frequency(self) -> float:
-        """First natural frequency between flat ends, sqrt(k/m)/2, Hz."""
+        """First natural frequency between fixed ends, sqrt(k/m)/2, Hz."""
         return 0.5 * float(np.sqrt(self.rate / self.active_mass))
 
     def stress(self, force: ArrayLike) -> Array:
-        """Greatest shear stress of the wire, Wahl's factor included, Pa."""
+        """Maximum shear stress (...) of the wire with Wahl factor, Pa."""
         plain = 8.0 * self.mean_diameter / (np.pi * self.wire_diameter**3)
         return self.wahl_factor * plain * finite("spring.force", force)
 
     def deflection(self, force: float) -> float:
-        """From the free length, m."""
+        """Deflection from the free length, m."""
         return force / self.rate
 
     def solid_clearance(self, preload: float, travel: float) -> float:
-        """Way left to the solid length at full lift, over the largest deflection.
+        """Clearance to the solid length at full lift over the maximum deflection.
 
-        Negative: the spring goes solid.
+        Negative: the spring is solid.
         """
         deflection = self.deflection(preload) + travel
         return (self.free_length - self.solid_length - deflection) / deflection
 
     def static_use(self, force: float) -> float:
-        """Shear stress over 0.56 R_m.
+        """Static utilisation: shear stress over 0.56 R_m.
 
         References
         ----------
@@ -138,18 +142,18 @@ class HelicalSpring(Part):
         return float(self.stress(force)) / strength
 
     def fatigue_safety(self, force_min: float, force_max: float) -> float:
-        """Factor on the alternating stress at the given mean: Goodman through Zimmerli's point.
+        """Fatigue safety factor by the Goodman line through the point of Zimmerli.
 
-        The line goes from the shear strength 0.67 R_m on the axis of mean stress through the
-        amplitude Zimmerli found for infinite life. Infinite without a load, 0 for a wire weaker
-        than Zimmerli's mean stress.
+        The line passes the shear strength 0.67 R_m on the axis of mean stress and the amplitude and
+        mean of Zimmerli for infinite life. Infinite without load, 0 for a shear strength below the
+        mean stress of Zimmerli.
 
         References
         ----------
         Shigley's Mechanical Engineering Design, ch. 10: Zimmerli's data, torsional Goodman.
         """
         if not 0.0 <= force_min <= force_max:
-            raise InputError("spring.force", force_min, "0 <= least <= greatest, N")
+            raise InputError("spring.force", force_min, "0 <= minimum <= maximum, N")
         low, high = float(self.stress(force_min)), float(self.stress(force_max))
         amplitude, mean = 0.5 * (high - low), 0.5 * (high + low)
         shear_strength = SHEAR_STRENGTH_SHARE * self.tensile_strength
@@ -162,7 +166,7 @@ class HelicalSpring(Part):
 
     @property
     def buckling_use(self) -> float:
-        """Free length over that at which the spring stays straight at any deflection.
+        """Free length over the limit of stability against buckling at any deflection.
 
         References
         ----------
@@ -173,10 +177,9 @@ class HelicalSpring(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Spring(Part):
-    """The spring that stores the engine's excess energy: linear, preloaded at zero lift.
+    """Linear spring of the follower, preloaded at zero lift.
 
-    The tolerances are shares of the nominal; travel_max is the greatest lift it allows, and
-    design the spring as wound.
+    Tolerances are relative; travel_max: maximum lift; design: geometry of the wound spring.
     """
 
     table: ClassVar[str] = "spring"
@@ -198,31 +201,31 @@ class Spring(Part):
         return self.rate + 0.0 * lift
 
     def energy(self, lift: float) -> float:
-        """Energy P s + k s^2 / 2 stored beyond that of the preload, J."""
+        """Energy P s + k s^2 / 2 at a lift, m, beyond that at zero lift, J."""
         return self.preload * lift + 0.5 * self.rate * lift**2
 
     def lift_for(self, energy: ArrayLike) -> Array:
-        """Lift (...), m, at which the spring stores an energy (...), J, beyond the preload's."""
+        """Lift (...), m, at an energy (...), J, beyond that at zero lift."""
         return spring_deflection(energy, self.rate, self.preload)
 
 
 def surge_harmonics(
     lift_values: Array, cam_speed: float, frequency: float, share: float = 0.01
 ) -> tuple[int, float, float]:
-    """Highest strong harmonic of the lift, and the margins of a spring's surge.
+    """Highest significant harmonic of the lift acceleration, and its margin against surge.
 
     Parameters
     ----------
     lift_values : array (n,)   at equal angles, m
     cam_speed : float          rad/s, > 0
     frequency : float          first natural frequency of the spring, Hz
-    share : float              of the largest harmonic of the acceleration that counts as strong
+    share : float              share of the largest harmonic above which one is significant
 
     Returns
     -------
-    strongest : int       the highest strong harmonic
-    ratio : float         frequency over that of the cam's turning
-    margin : float        frequency over that of the highest strong harmonic
+    highest : int         order of the highest significant harmonic
+    ratio : float         natural frequency over rotational frequency of the cam
+    margin : float        natural frequency over that of the highest significant harmonic
     """
     harmonics = np.abs(np.fft.rfft(finite("lift", lift_values)))
     order = np.arange(harmonics.size)
@@ -241,12 +244,12 @@ def surge_force(
     damping: float = 0.01,
     modes: int = 8,
 ) -> Array:
-    """Force that the spring's own vibration adds at its fixed end, (n,), N.
+    """Dynamic force of the surge of the spring at its fixed end, (n,), N.
 
-    One end follows the lift, the other stands still; between them the coils move as
-    s (1 - x) + sum q_j sin(j pi x), each mode driven by -2/(j pi) of the acceleration. Modes
-    beyond the last are too quick to swing: they follow the acceleration, and their sum is known.
-    Without damping a harmonic w meets k (phi / sin(phi) - 1), phi = pi w / w_1, so.
+    One end follows the lift, the other is fixed; the coils move as
+    s (1 - x) + sum q_j sin(j pi x), each mode driven by -2/(j pi) of the acceleration. Higher modes
+    respond quasi-statically, with a sum in closed form. Without damping the response to a harmonic
+    w is k (phi / sin(phi) - 1), phi = pi w / w_1.
 
     Parameters
     ----------
@@ -254,7 +257,7 @@ def surge_force(
     cam_speed : float          rad/s
     rate : float               k, N/m
     frequency : float          of the first mode, Hz
-    damping : float            of each mode, of critical
+    damping : float            damping ratio of each mode
     modes : int
 
     References

@@ -1,14 +1,15 @@
-"""The follower's stem as a beam of Hermite finite elements."""
+"""Stem of the follower as a beam of Hermite finite elements."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from skfem import Basis, BilinearForm, ElementLineHermite, MeshLine
+from skfem.assembly.form.form import FormExtraParams
+from skfem.element import DiscreteField
 from skfem.helpers import dd, ddot
 
 from camwright.geometry.arrays import Array, readonly
@@ -17,16 +18,16 @@ from camwright.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Stem:
-    """A round bar that slides in the guides.
+    """Round bar in the guides.
 
     Parameters
     ----------
     diameter : float          m, > 0
     elastic_modulus : float   E, Pa, > 0
-    poisson_ratio : float     used by the shear flexibility alone, 0 to 0.5
-    shear : bool              Timoshenko's beam; else Euler and Bernoulli's
+    poisson_ratio : float     of the shear flexibility, 0 to 0.5
+    shear : bool              Timoshenko beam; else Euler-Bernoulli beam
     bore : float              diameter of a hole along the bar, m; 0 for a solid one
-    length : float            from the roller's centre to the far end, m; infinite: long enough
+    length : float            from the roller centre to the far end, m; infinite: not checked
     """
 
     diameter: float
@@ -54,11 +55,11 @@ class Stem:
 
     @property
     def shear_flexibility(self) -> float:
-        """1/(kappa G A), 1/N; 0 for a beam that does not shear.
+        """1/(kappa G A), 1/N; 0 for an Euler-Bernoulli beam.
 
         References
         ----------
-        Cowper, J. Appl. Mech. 33 (1966) 335: the kappa of a round section, solid or hollow.
+        Cowper, J. Appl. Mech. 33 (1966) 335: kappa of solid and hollow round sections.
         """
         if not self.shear:
             return 0.0
@@ -72,15 +73,17 @@ class Stem:
         return float(1.0 / (kappa * modulus * area))
 
 
-@BilinearForm
-def bending(u: Any, v: Any, _: Any) -> Any:
-    """Virtual work of unit bending stiffness, the integral of u'' v''."""
-    return ddot(dd(u), dd(v))
+def _bending_work(u: DiscreteField, v: DiscreteField, _: FormExtraParams) -> Array:
+    return np.asarray(ddot(dd(u), dd(v)))
+
+
+bending = BilinearForm(_bending_work)
+"""Virtual work of unit bending stiffness, the integral of u'' v''."""
 
 
 @lru_cache(maxsize=1)
 def _unit_flexibility() -> Array:
-    """Deflection and slope at the end of a clamped unit element under unit force and moment."""
+    """Deflection and slope (2, 2) of a cantilever of unit length and stiffness at unit loads."""
     basis = Basis(MeshLine(np.array([0.0, 1.0])), ElementLineHermite())
     end = [int(dofs[1]) for dofs in basis.nodal_dofs]
     stiffness = bending.assemble(basis).toarray()[np.ix_(end, end)]
@@ -88,10 +91,10 @@ def _unit_flexibility() -> Array:
 
 
 def end_flexibility(length: ArrayLike, stem: Stem) -> Array:
-    """Deflection and slope at the free end of a cantilever under a force and a moment there.
+    """Deflection and slope at the free end of a cantilever under unit end force and moment.
 
-    One Hermite element is exact for end loads. The element is formed at unit length and scaled,
-    because its power basis loses digits on an element that is short against its coordinates.
+    One Hermite element is exact for end loads. It is formed at unit length and scaled: its power
+    basis loses digits on an element short against its coordinates.
 
     Parameters
     ----------
@@ -109,16 +112,15 @@ def end_flexibility(length: ArrayLike, stem: Stem) -> Array:
 
 
 def stem_compliance(nodes: Array, stem: Stem) -> tuple[Array, Array]:
-    """Deflection and slope at each node under a unit force at each node; clamped at the first.
+    """Deflection and slope at each node under a unit force at each node, clamped at the first node.
 
-    The elements form a chain that is clamped at one end, so that the nodal unknowns are
-    condensed one element at a time: an element bends under the loads beyond it, and what lies
-    beyond follows its end as a rigid body. This solves the assembled system to round-off, where
-    a factorisation would lose (span/element)^4 of it on the short elements at a guide's mouth.
+    The elements form a chain clamped at one end: each element bends under the loads beyond it, and
+    the part beyond follows its end as a rigid body. Exact to round-off, where a factorisation would
+    lose (span/element)^4 on the short elements at the edge of a guide.
 
     Parameters
     ----------
-    nodes : array (n,)   positions along the stem, rising, m
+    nodes : array (n,)   increasing positions along the stem, m
     stem : Stem
 
     Returns
@@ -128,11 +130,11 @@ def stem_compliance(nodes: Array, stem: Stem) -> tuple[Array, Array]:
     Raises
     ------
     InputError
-        If the nodes do not rise.
+        If the nodes do not increase.
     """
     length = np.diff(nodes)
     if not (length > 0.0).all():
-        raise InputError("stem.nodes", float(length.min()), "rising steps, > 0 m")
+        raise InputError("stem.nodes", float(length.min()), "increasing steps, > 0 m")
     flexibility = end_flexibility(length, stem)
     arm = nodes - nodes[1:, None]
     beyond = (np.arange(len(nodes)) > np.arange(len(length))[:, None]).astype(float)

@@ -244,8 +244,8 @@ def certificate_record(point: CertificatePoint) -> dict[str, Any]:
         "p0_hertz_MPa": _MPA * point.p0_hertz,
         "edges_across_half_width": list(point.edges),
         "dofs": list(point.dofs),
-        "spread_percent": point.spread_percent,
-        "gci_percent": point.gci_percent,
+        "spread_percent": 100 * point.spread,
+        "gci_percent": 100 * point.gci,
         "residual_equilibrium": point.residual_equilibrium,
         "residual_complementarity": point.residual_complementarity,
     }

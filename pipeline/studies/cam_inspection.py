@@ -1,4 +1,4 @@
-"""A measured cam: fitted to its drawing, run through the cycle, judged as the real part."""
+"""Inspection of a measured cam: fit to the drawing, cycle and checks of the real contour."""
 
 from __future__ import annotations
 
@@ -16,14 +16,18 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.measured_contour import Inspection, inspected, real_contour
+from camwright.pipeline.base import units
 from camwright.pipeline.base.files import json_text, write_atomic
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import Column, Table, read_table, table
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.run_records import cycle_columns
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.solver import solve
+
+Record = dict[str, Any]
 
 FOLDER = "inspection"
 BYTES_MAX = 64 << 20
@@ -40,7 +44,7 @@ _DEVIATION = (
 
 @dataclass(frozen=True, eq=False)
 class RealPart:
-    """What a measurement says of a part: its fit, its contour and the trial on it."""
+    """A measured cam: fit to the nominal contour, real contour, trial on it."""
 
     fit: Inspection
     contour: Contour
@@ -50,14 +54,14 @@ class RealPart:
 def read_measured(path: Path) -> Array:
     """Measured surface points, (2, n), m, from a CSV file with a header.
 
-    Columns, in millimetres and degrees about the cam axis: ``measured_x_mm, measured_y_mm`` (the
-    filled inspection sheet), or ``x_mm, y_mm``, or ``polar_angle_deg, measured_radius_mm``, or
-    ``angle_deg, radius_mm``. Rows whose measured cells are empty are left out.
+    Columns, in mm and deg about the cam axis: ``measured_x_mm, measured_y_mm`` (the completed
+    inspection sheet), or ``x_mm, y_mm``, or ``polar_angle_deg, measured_radius_mm``, or
+    ``angle_deg, radius_mm``. Rows with empty measured cells are skipped.
 
     Raises
     ------
     InputError
-        If the file is missing, too large, lacks the columns or holds what is not a number.
+        If the file is missing, too large, without these columns or with a value that is no number.
     """
     try:
         if path.stat().st_size > BYTES_MAX:
@@ -70,14 +74,15 @@ def read_measured(path: Path) -> Array:
         if names.issuperset(pair):
             first, second = (np.array(column) for column in _numbers(rows, pair))
             if pair in _PLACES:
-                return np.stack([first, second]) * 1e-3
+                return np.stack([first, second]) * units.factor("mm")
             turned = np.radians(first)
-            return np.stack([np.cos(turned), np.sin(turned)]) * second * 1e-3
+            return np.stack([np.cos(turned), np.sin(turned)]) * second * units.factor("mm")
     known = " or ".join(", ".join(pair) for pair in (*_PLACES, *_POLAR))
     raise InputError("measured", f"columns {', '.join(sorted(map(str, names)))[:200]}", known)
 
 
 def _numbers(rows: list[dict[str, str]], pair: tuple[str, str]) -> tuple[list[float], list[float]]:
+    """Values of two columns, without rows of empty cells."""
     columns: tuple[list[float], list[float]] = ([], [])
     for line, row in enumerate(rows, start=2):
         cells = [(row[name] or "").strip() for name in pair]
@@ -103,29 +108,29 @@ def inspect_part(
     jobs: int | None = None,
     progress: Progress = SILENT,
 ) -> RealPart:
-    """Fit a measured contour, solve it, and check the real part.
+    """Fit a measured contour to the nominal one, solve and check it.
 
     Parameters
     ----------
     measured : array (2, n)   surface points, m
-    keep_phase : bool         the angles of the measurement are those of the keyway
-    jobs : int                processes for the certificate; None: the processors, at most 4
+    keep_phase : bool         measured angles are relative to the keyway
+    jobs : int                processes of the certificate; None: number of cores, at most 4
 
     Raises
     ------
     InputError, GeometryError
-        If the measurement is not of this cam.
+        If the measured points are not of this cam.
     """
     progress.stage("fit")
     fit = inspected(contour, measured)
     real = real_contour(contour, fit, keep_phase=keep_phase)
     certify = case.solver.certificate_positions
     trial = solve(case, real, certify=certify, jobs=jobs, progress=progress)
-    return RealPart(fit, real, replace(trial, why="the measured contour"))
+    return RealPart(fit, real, replace(trial, why="measured contour"))
 
 
-def write_inspection(run: Path, part: RealPart, tolerance: float) -> dict[str, Any]:
-    """Write ``inspection/`` of a run: deviations, cycle, checks, and a record of them.
+def write_inspection(run: Path, part: RealPart, tolerance: float) -> Record:
+    """Write ``inspection/`` of a run folder: deviations, cycle, checks and record.
 
     Returns
     -------
@@ -145,13 +150,13 @@ def write_inspection(run: Path, part: RealPart, tolerance: float) -> dict[str, A
     records = [check.as_record() for check in part.trial.checks]
     write_atomic(folder / "checks.json", json_text(records) + "\n")
     record = {
-        "phase_deg": float(np.degrees(fit.phase)),
-        "size_um": 1e6 * fit.size,
-        "deviation_min_um": 1e6 * float(fit.deviation.min()),
-        "deviation_max_um": 1e6 * float(fit.deviation.max()),
-        "scatter_rms_um": 1e6 * fit.scatter,
+        "phase_deg": in_unit(fit.phase, "deg"),
+        "size_um": in_unit(fit.size, "um"),
+        "deviation_min_um": in_unit(float(fit.deviation.min()), "um"),
+        "deviation_max_um": in_unit(float(fit.deviation.max()), "um"),
+        "scatter_rms_um": in_unit(fit.scatter, "um"),
         "points": int(fit.theta.size),
-        "tolerance_um": 1e6 * tolerance,
+        "tolerance_um": in_unit(tolerance, "um"),
         "within_tolerance": bool(np.abs(fit.deviation).max() <= 0.5 * tolerance),
         "waves_um": _waves(fit),
         "nominal": _figures_of(run_reader.read_run(run).final.cycle),
@@ -164,45 +169,45 @@ def write_inspection(run: Path, part: RealPart, tolerance: float) -> dict[str, A
 
 
 def _waves(fit: Inspection) -> dict[str, float]:
-    """Amplitudes of the largest waves by their number a turn."""
-    sizes = {k: 1e6 * fit.wave(k) for k in range(1, len(fit.cosine))}
+    """Amplitudes of the largest waves, um, by number per turn."""
+    sizes = {k: in_unit(fit.wave(k), "um") for k in range(1, len(fit.cosine))}
     largest = sorted(sizes, key=lambda k: -sizes[k])[:_WAVES_LISTED]
     return {str(k): sizes[k] for k in sorted(largest)}
 
 
 def _figures_of(cycle: Table) -> Mapping[str, float | None]:
-    """Extremes over all load cases, nominal and real alike."""
-    wanted: dict[str, tuple[str, Callable[[Any], Any]]] = {
+    """Extremes over all load cases of a cycle, by name with unit."""
+    measures: dict[str, tuple[str, Callable[[Array], float]]] = {
         "normal_force_max_N": ("normal_force_N", np.max),
         "normal_force_min_N": ("normal_force_N", np.min),
         "p0_max_MPa": ("p0_fe_MPa", np.max),
         "von_mises_max_MPa": ("von_mises_MPa", np.max),
         "pressure_angle_max_deg": ("pressure_angle_deg", lambda v: np.abs(v).max()),
     }
-    found: dict[str, float | None] = {}
-    for name, (header, measure) in wanted.items():
-        value = float(measure(cycle[header]))
-        found[name] = value if math.isfinite(value) else None
+    figures: dict[str, float | None] = {}
+    for name, (header, measure) in measures.items():
+        value = float(measure(np.asarray(cycle[header], dtype=float)))
+        figures[name] = value if math.isfinite(value) else None
     if "torque_after_Nm" in cycle:
-        found["torque_after_std_Nm"] = float(np.std(cycle["torque_after_Nm"]))
-    return found
+        figures["torque_after_std_Nm"] = float(np.std(cycle["torque_after_Nm"]))
+    return figures
 
 
-def lines(record: Mapping[str, Any]) -> list[str]:
-    """The record in words."""
+def lines(record: Record) -> list[str]:
+    """Lines of text of a record."""
     side = "within" if record["within_tolerance"] else "outside"
     text = [
         f"phase {record['phase_deg']:.4f} deg, size {record['size_um']:+.2f} um",
         f"deviation {record['deviation_min_um']:+.2f} to {record['deviation_max_um']:+.2f} um, "
-        f"{side} the band of {record['tolerance_um']:g} um; scatter "
+        f"{side} the tolerance zone of {record['tolerance_um']:g} um; scatter "
         f"{record['scatter_rms_um']:.2g} um rms",
-        "waves a turn: " + ", ".join(f"{k}: {v:.2f} um" for k, v in record["waves_um"].items()),
+        "waves per turn: " + ", ".join(f"{k}: {v:.2f} um" for k, v in record["waves_um"].items()),
     ]
     for name, drawn in record["nominal"].items():
         real = record["measured"].get(name)
         if drawn is not None and real is not None:
-            text.append(f"{name}: {drawn:.5g} by the drawing, {real:.5g} on the part")
-    text.append(f"verdict on the part: {record['verdict']}")
+            text.append(f"{name}: {drawn:.5g} nominal, {real:.5g} measured")
+    text.append(f"verdict on the measured cam: {record['verdict']}")
     if record["binding"]:
         text.append(f"binding: {', '.join(record['binding'])}")
     return text

@@ -1,15 +1,15 @@
-"""Comparison of smoothers on one case, by previews."""
+"""Comparison of the smoothers on one case by previews."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import binding, verdict
 from camwright.pipeline.checks.registry import without_sign_off
@@ -20,6 +20,8 @@ from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import solve
+
+Record = dict[str, float | str | list[str] | None]
 
 _SMOOTHERS = (
     Smoother("none"),
@@ -35,16 +37,16 @@ _POSITIONS = 720
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """One way to draw the lift and what it leads to; lift None: there is no such cam."""
+    """A smoother with its parameter in words, lift and record; lift None: no such cam."""
 
     smoother: str
     words: str
     lift: Lift | None
-    record: Mapping[str, Any]
+    record: Record
 
 
 def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
-    """Every smoother in turn, the constrained synthesis last.
+    """Results of all smoothers, the constrained synthesis last.
 
     Raises
     ------
@@ -52,7 +54,7 @@ def compared(case: Case, torques: Mapping[str, Torque]) -> Iterator[Compared]:
         If the case has no engine.
     """
     if not torques:
-        raise InputError("engine", "missing", "given: smoothers work on its torque")
+        raise InputError("engine", "missing", "specified: smoothers act on its torque")
     case = case.with_positions(_POSITIONS)
     for smoother in _SMOOTHERS:
         words = smoother.width_in_words
@@ -80,13 +82,13 @@ def _constrained(case: Case) -> Compared:
     return Compared("constrained", words, trial.lift, _record(trial))
 
 
-def _record(trial: Trial) -> dict[str, Any]:
+def _record(trial: Trial) -> Record:
     rest, checks = trial.cycles[0].turn.torque_after, without_sign_off(trial.checks)
     return {
-        "pressure_angle_max_deg": float(np.degrees(trial.contour.pressure_angle_max().value)),
-        "lift_max_mm": 1e3 * trial.lift.highest.value,
+        "pressure_angle_max_deg": in_unit(trial.contour.pressure_angle_max().value, "deg"),
+        "lift_max_mm": in_unit(trial.lift.highest.value, "mm"),
         "normal_force_max_N": max(float(c.loads.normal_force.max()) for c in trial.cycles),
-        "p0_max_MPa": 1e-6 * max(float(np.max(c.contact.p0)) for c in trial.cycles),
+        "p0_max_MPa": in_unit(max(float(np.max(c.contact.p0)) for c in trial.cycles), "MPa"),
         "residual_std_Nm": None if rest is None else float(np.std(rest)),
         "residual_p2p_Nm": None if rest is None else float(np.ptp(rest)),
         "verdict": verdict(checks),

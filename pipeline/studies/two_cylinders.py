@@ -1,7 +1,7 @@
-"""Two cylinders in line contact: Hertz in closed form beside finite elements with an error bar.
+"""Line contact of two cylinders: Hertz, finite elements with an error bar, pin in hole.
 
-Bodies are locally half-planes with the gap of the true circles; what a finite disc would add is
-stated beside. A pin in a hole that it nearly fills is handed to its own theory.
+Bodies are half-planes with the gap of the circles. Conforming contacts, a pin in a hole of nearly
+its radius, are solved by `pin_in_hole`.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError, InputError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.gmsh_mesher import Index
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_patch import (
     STRESS_REACH,
@@ -37,20 +38,20 @@ from camwright.pipeline.contact.pin_in_hole import (
 from camwright.pipeline.contact.tangential_patch import tangential_patch
 
 HALF_ANGLE_MAX = np.radians(15.0)
-"""Half contact angle beyond which a contact is no longer Hertz's."""
+"""Half contact angle up to which the theory of Hertz is valid, rad."""
 
 _FINE, _COARSE = 16, 8
-# Relative error of flat bodies over the square of half-width over the smaller radius. Measured
-# against the full contact of two discs up to 15 deg: 0.12 for p0 and half-width, 0.31 for the
-# shear beyond a disc's own first-order term; Persson's pin in a hole, 0.25 for p0 at its worst.
+# Relative error of half-planes over the square of half-width over smaller radius. Compared with the
+# full contact of two discs up to 15 deg: 0.12 for p0 and half-width, 0.31 for the shear after the
+# first-order term of a disc; with Persson's pin in a hole: at most 0.25 for p0.
 _FLATNESS = 0.35
 
 
 @dataclass(frozen=True)
 class TwoCylinders:
-    """Radii (m; infinite: flat, negative: hollow), materials, line load (N/m), friction.
+    """Radii (m; infinite: flat, negative: concave), materials, line load (N/m), friction.
 
-    Body 1 is the one whose stresses are given; `friction` times the pressure slides on it.
+    Stresses are those of body 1, with a traction of `friction` times pressure.
     """
 
     radius_1: float
@@ -64,7 +65,7 @@ class TwoCylinders:
         for name in ("radius_1", "radius_2"):
             radius = getattr(self, name)
             if np.isnan(radius) or radius == 0:
-                raise InputError(name, radius, "a length other than 0, or inf for a flat")
+                raise InputError(name, radius, "a length other than 0, or inf for a flat body")
         if not self.curvature > 0:
             raise InputError(
                 "radius_2",
@@ -89,19 +90,19 @@ class TwoCylinders:
 
     @property
     def smaller_radius(self) -> float:
-        """The radius that the half-width must stay small against, m."""
+        """Smaller of both radii, m."""
         return min(abs(self.radius_1), abs(self.radius_2))
 
     def gap(self, xi: Array) -> Array:
-        """Distance (...) of the undeformed surfaces at xi (...) m along the tangent."""
+        """Distance (...), m, of the undeformed surfaces at xi (...), m, along the tangent."""
         return _circle(self.radius_1, xi) + _circle(self.radius_2, xi)
 
 
 @dataclass(frozen=True)
 class LineContact:
-    """Figures of a line contact, SI; stresses in body 1.
+    """Results of a line contact, SI; stresses in body 1.
 
-    tau_max is the largest shear in the plane; shear_any_plane that in any, where it is larger.
+    tau_max: maximum in-plane shear; shear_any_plane: maximum shear on any plane.
     """
 
     p0: float
@@ -115,10 +116,10 @@ class LineContact:
 
 @dataclass(frozen=True, eq=False)
 class FiniteElementContact:
-    """The same by finite elements, with its error bar (relative), size and residual.
+    """Results by finite elements, with relative error bar, degrees of freedom and residual.
 
-    stresses (3, m) Pa of body 1 and 2 at the points of each one's finer template, along the
-    surface and into the depth; half_width_hertz (m) is the unit of length there.
+    stresses (3, m) Pa of bodies 1 and 2 at the points of their finer templates, components along
+    the surface and into the depth; half_width_hertz (m): unit of length of the templates.
     """
 
     figures: LineContact
@@ -131,10 +132,10 @@ class FiniteElementContact:
 
 @dataclass(frozen=True)
 class ConformingContact:
-    """A pin in a hole: half contact angle (rad) and peak pressure (Pa).
+    """Pin in a hole: half contact angle (rad) and peak pressure (Pa).
 
-    By Persson's closed form for bodies alike (None for others), and by complementarity in the
-    angle with its residual.
+    By Persson's closed form for equal materials, else None, and by complementarity with its
+    residual.
     """
 
     persson_angle: float | None
@@ -145,7 +146,7 @@ class ConformingContact:
 
 
 def closed_form(pair: TwoCylinders) -> LineContact:
-    """Hertz, with McEwen's stresses where it slides."""
+    """Hertz contact, with McEwen's stresses under sliding friction."""
     half_width, p0 = (
         float(v)
         for v in hertz.line_contact(pair.line_load, 1 / pair.curvature, pair.contact_modulus)
@@ -171,23 +172,23 @@ def closed_form(pair: TwoCylinders) -> LineContact:
 
 
 def is_conforming(pair: TwoCylinders) -> bool:
-    """Whether the half contact angle by Hertz is beyond `HALF_ANGLE_MAX`."""
+    """Whether the half contact angle by Hertz exceeds `HALF_ANGLE_MAX`."""
     half_width = closed_form(pair).half_width
     return bool(half_width > np.sin(HALF_ANGLE_MAX) * pair.smaller_radius)
 
 
 def finite_elements(pair: TwoCylinders) -> FiniteElementContact:
-    """The contact by finite elements; the coarser template gives the error bar.
+    """Contact by finite elements; error bar by a coarser template.
 
     Raises
     ------
     ContactError
-        If the half contact angle is beyond `HALF_ANGLE_MAX`: the bodies are not locally flat.
+        If the half contact angle exceeds `HALF_ANGLE_MAX`.
     """
     if is_conforming(pair):
         raise ContactError(
-            f"half contact angle > {np.degrees(HALF_ANGLE_MAX):.0f} deg: the bodies are no "
-            "half-planes there; lower the load or enlarge the radii"
+            f"half contact angle > {shown(HALF_ANGLE_MAX, 'deg', 3)}: the bodies are no "
+            "half-planes there; reduce the load or increase the radii"
         )
     fine, error = _solved(pair, _FINE), 0.0
     if pair.line_load > 0:
@@ -199,17 +200,17 @@ def finite_elements(pair: TwoCylinders) -> FiniteElementContact:
 
 
 def conforming(pair: TwoCylinders) -> ConformingContact:
-    """A pin in a hole beyond what Hertz can say, without friction.
+    """Frictionless pin in a hole beyond the validity of Hertz.
 
     Raises
     ------
     ContactError
-        If neither body is hollow, or the hole is closed round the pin.
+        If neither body is concave, or the half contact angle is too large.
     """
     if pair.radius_1 > 0 and pair.radius_2 > 0:
         raise ContactError(
-            "two convex bodies with a half contact angle beyond 15 deg: small strains do not "
-            "hold; lower the load or enlarge the radii"
+            f"two convex bodies with a half contact angle > {shown(HALF_ANGLE_MAX, 'deg', 3)}: "
+            "small strains do not hold; reduce the load or increase the radii"
         )
     hollow_first = pair.radius_1 < 0
     pin_body, hole_body = (pair.body_2, pair.body_1) if hollow_first else (pair.body_1, pair.body_2)
@@ -221,7 +222,7 @@ def conforming(pair: TwoCylinders) -> ConformingContact:
         stiffness = pin_body.plane_strain_modulus
         angle = persson_contact_angle(stiffness * clearance / pair.line_load)
         p0 = float(persson_pressure(angle)) * pair.line_load / radius
-    found = pin_in_hole(
+    numerical = pin_in_hole(
         pair.line_load,
         radius,
         clearance,
@@ -231,22 +232,22 @@ def conforming(pair: TwoCylinders) -> ConformingContact:
     return ConformingContact(
         persson_angle=angle,
         persson_p0=p0,
-        angle=found.contact_angle,
-        p0=found.peak_pressure,
-        residual=max(found.equilibrium, found.complementarity),
+        angle=numerical.contact_angle,
+        p0=numerical.peak_pressure,
+        residual=max(numerical.equilibrium, numerical.complementarity),
     )
 
 
 def approach(pair: TwoCylinders, depths: tuple[float | None, float | None]) -> float:
     """Approach of two points far from the contact, m.
 
-    Of the centres of discs, or of points at given depths (m, much larger than the half-width)
-    under the contact: in two dimensions it has no value of its own.
+    Of the centres of discs, or of points at depths (m, much larger than the half-width) below the
+    contact: in plane strain the approach depends on the reference points.
 
     Raises
     ------
     InputError
-        If a flat or hollow body comes without a depth.
+        If the depth of a flat or concave body is missing.
 
     References
     ----------
@@ -269,9 +270,7 @@ def approach(pair: TwoCylinders, depths: tuple[float | None, float | None]) -> f
         elif 0 < radius < np.inf:
             total += unit * (2 * np.log(4 * radius / half_width) - 1)
         else:
-            raise InputError(
-                f"depth_{number}", "missing", "given for the approach of a flat or hollow body"
-            )
+            raise InputError(f"depth_{number}", "missing", "specified for a flat or concave body")
     return float(total)
 
 
@@ -294,7 +293,7 @@ def _solved(pair: TwoCylinders, elements: int) -> FiniteElementContact:
         sliding = tangential_patch(nu, elements)
         field = field + pair.friction * (sliding.stress @ contacts.pressure[0])
         peaks = sliding.peaks
-        # What drags one body forward drags the other back.
+        # The traction on body 2 is opposite.
         dragged = tangential_patch(pair.body_2.poisson, elements)
         other = other - pair.friction * (dragged.stress @ contacts.pressure[0])
     shear, shear_at = peaks(plane_stress_measures.shear_in_plane(field)[:, None])
@@ -314,7 +313,7 @@ def _solved(pair: TwoCylinders, elements: int) -> FiniteElementContact:
 
 
 def _beyond(field: Array, poisson: float) -> float:
-    """Largest shear on any plane where it is not the one in the plane, else 0."""
+    """Maximum shear on any plane where it exceeds the in-plane shear, else 0."""
     anywhere = plane_stress_measures.shear_any_plane(field, poisson)
     k = int(anywhere.argmax())
     return (
@@ -325,13 +324,13 @@ def _beyond(field: Array, poisson: float) -> float:
 
 
 def patch_mesh(poisson: float) -> tuple[BodyMesh, Index]:
-    """Mesh of the finer template where its stress is known, and which of its points each node is.
+    """Mesh of the finer template in the range of its stresses, and point number of each node.
 
-    Lengths in half-widths; the surface is y = 0, the body below it.
+    Lengths in half-widths; the surface is y = 0, the body below.
     """
     body, frame, _ = patch_body(poisson, _FINE)
     triangles = body.mesh.triangles[:, elements_near(body, frame.origin, STRESS_REACH)]
-    nodes = np.unique(triangles)  # corners still before middles
+    nodes = np.unique(triangles)  # corners before middles
     points = body.mesh.points[:, nodes]
     template = contact_patch(poisson, _FINE).points * np.array([[1.0], [-1.0]])
     _, order = cKDTree(template.T).query(points.T)
@@ -343,20 +342,20 @@ def _pressures(
 ) -> PatchContacts:
     share = pair.contact_modulus / pair.body_1.plane_strain_modulus
     xi, _ = patches[0].shapes.quadrature()
-    # In units of a^2 / (2 R); written so that no load is too small for it.
+    # In units of a^2 / (2 R); no underflow at small loads.
     gap = pair.gap(half_width * xi) * (2 / pair.curvature / half_width) / half_width
     return solve_patches(patches, (share, 1 - share), gap[None])
 
 
 def _circle(radius: float, xi: Array) -> Array:
-    """Distance (...) of a circle from its tangent; negative for a hollow, zero for a flat."""
+    """Distance (...), m, of a circle from its tangent; negative: concave, zero: flat."""
     if np.isinf(radius):
         return np.zeros_like(xi)
     return xi * (xi / radius) / (1 + np.sqrt(1 - (xi / radius) ** 2))
 
 
 def _highest(measure: Callable[[Array], Array], friction: float) -> tuple[float, float]:
-    """Largest value over p0 of a measure under a sliding Hertz contact, and its depth over a."""
+    """Maximum of a stress measure under a sliding Hertz contact over p0, and its depth over a."""
     x, depth = np.meshgrid(np.linspace(-1.5, 1.5, 121), np.linspace(0, 1.5, 61))
     values = measure(hertz.subsurface_stress(x, depth, friction))
     k = int(np.argmax(values))
@@ -366,8 +365,8 @@ def _highest(measure: Callable[[Array], Array], friction: float) -> tuple[float,
         near = hertz.subsurface_stress(place[0], abs(place[1]), friction)
         return -float(measure(near))
 
-    found = minimize(falling, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-13})
-    return -float(found.fun), abs(float(found.x[1]))
+    lowest = minimize(falling, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-13})
+    return -float(lowest.fun), abs(float(lowest.x[1]))
 
 
 def _elastic(body: Elastic) -> tuple[float, float]:

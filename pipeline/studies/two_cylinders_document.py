@@ -1,9 +1,9 @@
-"""What `camwright contact` computes and prints: two cylinders, from text to a document."""
+"""Command `camwright contact`: line contact of two cylinders, from options to a document."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.pipeline.base import units
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
@@ -31,15 +32,16 @@ from camwright.pipeline.studies.two_cylinders import (
     patch_mesh,
 )
 
-_MM, _MPA = 1e3, 1e-6
-# Relative excess of another plane's shear from which on it is worth a line.
+# Relative excess of the shear on another plane above which it is listed.
 _WORTH = 1e-3
+Document = dict[str, Any]
+
 _OPTIONS = {"radius_1": "--r1", "radius_2": "--r2", "friction": "--friction"}
 
 
 @dataclass(frozen=True)
-class Asked:
-    """The command's options as text; a bare number is in mm, MPa, N/mm or N."""
+class Options:
+    """Options of the command as text; numbers without unit in mm, MPa, N/mm or N."""
 
     r1: str
     r2: str
@@ -60,7 +62,7 @@ class Asked:
         Raises
         ------
         InputError
-            By the option's name.
+            Naming the option.
         """
         first = Elastic(_quantity(self.e1, "MPa", "--e1"), self.nu1)
         second = Elastic(
@@ -81,7 +83,7 @@ class Asked:
             raise InputError(option, error.value, error.limit) from None
 
     def depths(self) -> tuple[float | None, float | None]:
-        """Depths of the points whose approach is asked for, m."""
+        """Depths of the reference points of the approach, m; None: the centre."""
         first, second = (
             None if text is None else _quantity(text, "mm", name)
             for text, name in ((self.depth_1, "--depth1"), (self.depth_2, "--depth2"))
@@ -92,57 +94,55 @@ class Asked:
         if self.line_load is not None:
             if self.load is not None:
                 raise InputError("--load", self.load, "left out beside --line-load")
-            found = _quantity(self.line_load, "N/mm", "--line-load")
+            line_load = _quantity(self.line_load, "N/mm", "--line-load")
         else:
             if self.load is None or self.width is None:
-                raise InputError("--line-load", "missing", "given, or --load and --width")
+                raise InputError("--line-load", "missing", "specified, or --load and --width")
             width = _quantity(self.width, "mm", "--width")
             if not width > 0:
                 raise InputError("--width", width, "> 0 m")
-            found = _quantity(self.load, "N", "--load") / width
-        if not found >= 0:
-            raise InputError("--line-load", found, ">= 0 N/m")
-        return found
+            line_load = _quantity(self.load, "N", "--load") / width
+        if not line_load >= 0:
+            raise InputError("--line-load", line_load, ">= 0 N/m")
+        return line_load
 
 
-def solved(
-    asked: Asked, *, with_approach: bool = False, field: Path | None = None
-) -> dict[str, Any]:
-    """Everything the command says, in mm, MPa and N.
+def solved(options: Options, *, with_approach: bool = False, field: Path | None = None) -> Document:
+    """Results of the command, in mm, MPa and N.
 
     Raises
     ------
     InputError
         If an option is out of bounds.
     ContactError
-        If the contact is beyond all theories here.
+        If the contact is outside the validity of all models.
     """
     start = time.perf_counter()
-    pair = asked.pair()
-    document: dict[str, Any] = {
-        "line_load_N_per_mm": pair.line_load / 1e3,
-        "contact_modulus_MPa": _MPA * pair.contact_modulus,
-        "relative_radius_mm": _MM / pair.curvature,
+    pair = options.pair()
+    document: Document = {
+        "line_load_N_per_mm": in_unit(pair.line_load, "N/mm"),
+        "contact_modulus_MPa": in_unit(pair.contact_modulus, "MPa"),
+        "relative_radius_mm": in_unit(1.0 / pair.curvature, "mm"),
         "hertz": _figures(closed_form(pair)),
     }
     if is_conforming(pair):
         if field is not None:
-            raise InputError("--field", str(field), "left out: the contact is no half-plane's")
+            raise InputError("--field", str(field), "left out: the contact is conforming")
         document |= {"fe": None, "conforming": _conforming(conforming(pair), pair)}
     else:
-        found = finite_elements(pair)
-        document |= {"fe": _finite_elements(found), "finite_body": _finite_body(pair)}
+        contact = finite_elements(pair)
+        document |= {"fe": _finite_elements(contact), "finite_body": _finite_body(pair)}
         if field is not None:
-            _write_field(field, found, (pair.body_1.poisson, pair.body_2.poisson))
+            _write_field(field, contact, (pair.body_1.poisson, pair.body_2.poisson))
             document["field"] = str(field)
     if with_approach:
-        document["approach_mm"] = _MM * approach(pair, asked.depths())
+        document["approach_mm"] = in_unit(approach(pair, options.depths()), "mm")
     document["seconds"] = time.perf_counter() - start
     return document
 
 
-def lines(document: Mapping[str, Any]) -> Iterator[str]:
-    """The document for people."""
+def lines(document: Document) -> Iterator[str]:
+    """Lines of text of a document."""
     fe, theory = document["fe"], document["hertz"]
     yield f"{'':18}{'Hertz':>14}{'' if fe is None else 'finite elements':>18}"
     for name, title in (
@@ -161,10 +161,10 @@ def lines(document: Mapping[str, Any]) -> Iterator[str]:
             f"residual {fe['residual']:.1e}; stresses of body 1"
         )
         for name, share in document["finite_body"].items():
-            yield f"{name.replace('_', ' ')} as a finite disc would add {share:.3g} MPa of shear"
+            yield f"{name.replace('_', ' ')} as a finite disc: {share:.3g} MPa more shear"
     else:
         yield document["conforming"]["why"]
-        for name, title in (("persson", "Persson, bodies alike"), ("numerical", "numerical")):
+        for name, title in (("persson", "Persson, equal materials"), ("numerical", "numerical")):
             found = document["conforming"][name]
             if found is not None:
                 yield (
@@ -177,7 +177,7 @@ def lines(document: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _quantity(text: str, unit: str, option: str) -> float:
-    """SI value of a number, with a unit or in `unit`."""
+    """SI value of a number with a unit, or in `unit`."""
     try:
         float(text)
     except ValueError:
@@ -190,75 +190,75 @@ def _radius(text: str, option: str) -> float:
         return float("inf")
     radius = _quantity(text, "mm", option)
     if radius == 0:
-        raise InputError(option, text, "other than 0; inf for a flat, negative for a hollow")
+        raise InputError(option, text, "other than 0; inf: flat, negative: concave")
     return radius
 
 
-def _figures(found: LineContact) -> dict[str, float]:
+def _figures(contact: LineContact) -> dict[str, float]:
     record = {
-        "p0_MPa": _MPA * found.p0,
-        "half_width_mm": _MM * found.half_width,
-        "tau_max_MPa": _MPA * found.tau_max,
-        "tau_depth_mm": _MM * found.tau_depth,
-        "von_mises_MPa": _MPA * found.von_mises,
-        "von_mises_depth_mm": _MM * found.von_mises_depth,
+        "p0_MPa": in_unit(contact.p0, "MPa"),
+        "half_width_mm": in_unit(contact.half_width, "mm"),
+        "tau_max_MPa": in_unit(contact.tau_max, "MPa"),
+        "tau_depth_mm": in_unit(contact.tau_depth, "mm"),
+        "von_mises_MPa": in_unit(contact.von_mises, "MPa"),
+        "von_mises_depth_mm": in_unit(contact.von_mises_depth, "mm"),
     }
-    if found.shear_any_plane > (1 + _WORTH) * found.tau_max:
-        record["shear_any_plane_MPa"] = _MPA * found.shear_any_plane
+    if contact.shear_any_plane > (1 + _WORTH) * contact.tau_max:
+        record["shear_any_plane_MPa"] = in_unit(contact.shear_any_plane, "MPa")
     return record
 
 
-def _finite_elements(found: FiniteElementContact) -> dict[str, Any]:
+def _finite_elements(contact: FiniteElementContact) -> dict[str, float]:
     return {
-        **_figures(found.figures),
-        "dofs": found.dofs,
-        "error_bar_percent": 100 * found.error_bar,
-        "residual": found.residual,
+        **_figures(contact.figures),
+        "dofs": contact.dofs,
+        "error_bar_percent": in_unit(contact.error_bar, "%"),
+        "residual": contact.residual,
     }
 
 
 def _finite_body(pair: TwoCylinders) -> dict[str, float]:
-    """In-plane shear, MPa, that a disc pressed along its diameter adds, by body."""
+    """Increase of the in-plane shear of a disc over the half-plane, MPa, by body."""
     return {
-        f"body_{number}": _MPA * float(hertz.disc_correction(pair.line_load, radius))
+        f"body_{number}": in_unit(float(hertz.disc_correction(pair.line_load, radius)), "MPa")
         for number, radius in ((1, pair.radius_1), (2, pair.radius_2))
         if 0 < radius < np.inf
     }
 
 
-def _conforming(found: ConformingContact, pair: TwoCylinders) -> dict[str, Any]:
+def _conforming(contact: ConformingContact, pair: TwoCylinders) -> Document:
     def record(angle: float, p0: float) -> dict[str, float]:
-        return {"p0_MPa": _MPA * p0, "half_angle_deg": float(np.degrees(angle))}
+        return {"p0_MPa": in_unit(p0, "MPa"), "half_angle_deg": in_unit(angle, "deg")}
 
     persson = None
-    if found.persson_angle is not None and found.persson_p0 is not None:
-        persson = record(found.persson_angle, found.persson_p0)
-    friction = "; friction is left out" if pair.friction > 0 else ""
+    if contact.persson_angle is not None and contact.persson_p0 is not None:
+        persson = record(contact.persson_angle, contact.persson_p0)
+    friction = "; friction is neglected" if pair.friction > 0 else ""
     return {
         "why": (
-            f"half contact angle beyond {np.degrees(HALF_ANGLE_MAX):.0f} deg: no Hertz contact "
-            f"any more, a pin in a hole without friction in its place{friction}"
+            f"half contact angle > {shown(HALF_ANGLE_MAX, 'deg', 3)}: no Hertz contact; "
+            f"solved as a pin in a hole without friction{friction}"
         ),
         "persson": persson,
-        "numerical": {**record(found.angle, found.p0), "residual": found.residual},
+        "numerical": {**record(contact.angle, contact.p0), "residual": contact.residual},
     }
 
 
-def _write_field(path: Path, found: FiniteElementContact, poissons: tuple[float, float]) -> None:
-    """Stress of both bodies around the contact as VTU: body 1 below y = 0, body 2 above."""
+def _write_field(path: Path, contact: FiniteElementContact, poissons: tuple[float, float]) -> None:
+    """Write the stress of both bodies at the contact as VTU: body 1 below y = 0, body 2 above."""
     from camwright.meshes.mesh_files import write_vtu
 
     meshes, fields = {}, {}
-    for number, (nu, side, of) in enumerate(zip(poissons, (-1, 1), found.stresses, strict=True)):
+    for number, (nu, side, of) in enumerate(zip(poissons, (-1, 1), contact.stresses, strict=True)):
         mesh, order = patch_mesh(nu)
         name = f"body_{number + 1}"
-        meshes[name] = _placed(mesh, found.half_width_hertz, upward=side > 0)
+        meshes[name] = _placed(mesh, contact.half_width_hertz, upward=side > 0)
         fields[name] = _fields(of[:, order], nu, side)
     write_vtu(path, meshes, fields)
 
 
 def _placed(mesh: BodyMesh, size: float, *, upward: bool) -> BodyMesh:
-    """The patch below y = 0 in its size; turned over, with the triangles' sense, for body 2."""
+    """Patch scaled by the half-width; for body 2 mirrored, with the sense of its triangles."""
     if not upward:
         return BodyMesh(mesh.points * size, mesh.triangles, {})
     points = mesh.points * np.array([[size], [-size]])
@@ -266,14 +266,16 @@ def _placed(mesh: BodyMesh, size: float, *, upward: bool) -> BodyMesh:
 
 
 def _fields(of: Array, poisson: float, side: int) -> dict[str, Array]:
-    """Stresses by name, MPa; `side` is the sense of the depth along y."""
+    """Stresses by name, MPa; `side`: sign of the depth along y."""
     xx, yy, xy = of
-    return {
-        "stress_xx_MPa": _MPA * xx,
-        "stress_yy_MPa": _MPA * yy,
-        "stress_zz_MPa": _MPA * poisson * (xx + yy),
-        "stress_xy_MPa": side * _MPA * xy,
-        "von_mises_MPa": _MPA * plane_stress_measures.von_mises((xx, yy, xy), poisson),
-        "tau_max_MPa": _MPA * plane_stress_measures.shear_in_plane((xx, yy, xy)),
-        "tau_any_plane_MPa": _MPA * plane_stress_measures.shear_any_plane((xx, yy, xy), poisson),
+    in_si = {
+        "stress_xx": xx,
+        "stress_yy": yy,
+        "stress_zz": poisson * (xx + yy),
+        "stress_xy": side * xy,
+        "von_mises": plane_stress_measures.von_mises(of, poisson),
+        "tau_max": plane_stress_measures.shear_in_plane(of),
+        "tau_any_plane": plane_stress_measures.shear_any_plane(of, poisson),
     }
+    scale = units.factor("MPa")
+    return {units.column(name, "MPa"): values / scale for name, values in in_si.items()}

@@ -110,7 +110,7 @@ def test_the_method_says_how_the_roller_is_taken(run):
     assert record["contact_method"].endswith(roller.body_model)
     plain = replace(roller, bearing=replace(roller.bearing, ring=None))
     assert plain.body_model == (
-        "roller solid on its hub: no ring and balls of the bearing are given"
+        "roller solid on its hub: ring and balls of the bearing are not specified"
     )
 
 

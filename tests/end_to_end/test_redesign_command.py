@@ -124,7 +124,7 @@ def test_page_and_record(done):
     made = page.write(out, document | {"case": "<b>"})
     text = made.read_text(encoding="utf-8")
     assert "&lt;b&gt;" in text and "<b>" not in text
-    assert ROLLER in text and "too little for the reduction" in text
+    assert ROLLER in text and "too low for the required torque reduction" in text
     assert (out / "redesign.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -117,7 +117,7 @@ def test_a_part_nobody_knows_brings_the_list(run: Path) -> None:
 def test_open_shows_the_page(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shown: list[str] = []
     monkeypatch.setattr(webbrowser, "open", shown.append)
-    with pytest.raises(ResultError, match="no such page"):
+    with pytest.raises(ResultError, match="missing"):
         report(run, "--only", "figures", "--open")
     assert shown == []
     report(run, "--open")

@@ -184,7 +184,7 @@ def tripled(*, notch=None):
 
 def test_balanced_cam_needs_no_hole():
     contour, found = tripled()
-    with pytest.raises(GeometryError, match="balanced as it is"):
+    with pytest.raises(GeometryError, match="no unbalance"):
         counter_hole(contour, found, 8.5e-3, 1e-3)
 
 

@@ -156,7 +156,7 @@ def test_bad_arguments(
     [
         (ContactError("no convergence at\n12 deg"), "no convergence at 12 deg"),
         (OSError(errno.ENOSPC, "No space left on device", "a.vtu"), "a.vtu: No space left"),
-        (ZeroDivisionError("x"), "unexpected ZeroDivisionError: x (--debug shows where)"),
+        (ZeroDivisionError("x"), "unexpected ZeroDivisionError: x (--debug shows the traceback)"),
         (MemoryError(), "unexpected MemoryError"),
     ],
 )

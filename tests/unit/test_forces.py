@@ -225,7 +225,7 @@ def test_turn_integral_on_uneven_angles():
     rng = np.random.default_rng(5)
     theta = np.sort(rng.uniform(0.0, 2 * np.pi, 4000))
     assert turn_integral(theta, np.sin(theta) ** 2) == pytest.approx(np.pi, rel=1e-4)
-    with pytest.raises(InputError, match="rising"):
+    with pytest.raises(InputError, match="increasing"):
         turn_integral(theta[::-1], theta)
 
 

@@ -110,6 +110,12 @@ def test_reports_read_results_and_draw_nothing_else() -> None:
     assert sorted(other) == []
 
 
+def test_the_comparison_commands_alone_import_the_papers() -> None:
+    papers = "pipeline.studies.papers"
+    others = {(n, t) for n, t, _ in imports() if package(t) == papers and package(n) != papers}
+    assert {name for name, _ in others} == {"pipeline.commands.comparison_commands"}
+
+
 def test_no_circle_of_modules() -> None:
     left = {name: set() for name in modules()}
     for name, target, _ in imports():

@@ -64,11 +64,11 @@ def test_without_a_ring_the_roller_stays_solid():
     plain = parse_case(template("plain"))
     assert isinstance(pair_of(plain, a_contour()).follower, RollerBody)
     assert ring_of(plain) is None
-    assert "no ring and balls of the bearing are given" in plain.roller.body_model
+    assert "ring and balls of the bearing are not specified" in plain.roller.body_model
     tyre = case(outer_diameter='"26 mm"', thickness='"1 mm"')
     assert isinstance(pair_of(tyre, a_contour()).follower, RollerBody)
     assert ring_of(tyre) is None
-    assert "not the bearing's outer ring itself" in tyre.roller.solid_reason
+    assert "not the outer ring of the bearing" in tyre.roller.solid_reason
     assert "roller solid on its hub" in tyre.roller.body_model
 
 

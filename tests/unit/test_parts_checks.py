@@ -331,7 +331,7 @@ def test_ring_of_a_card():
     named = template("ring").replace(bearing, '[roller.bearing]\ncard = "maker_1_625_2RS"\n#')
     open_ring = part_strength.roller_ring_fatigue(harmonic(parse_case(named)))
     assert open_ring.status == "not_evaluated"
-    assert "not the bearing's outer ring itself" in open_ring.note
+    assert "not the outer ring of the bearing" in open_ring.note
     small = named.replace('radius = "16 mm"', 'radius = "8 mm"', 1).replace(
         'hub_radius = "8 mm"', 'hub_radius = "4.2 mm"', 1
     )

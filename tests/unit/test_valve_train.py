@@ -12,7 +12,7 @@ from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import turns_of
 from camwright.pipeline.solver import solve
-from camwright.pipeline.studies.papers.valve_train import (
+from camwright.pipeline.studies.valve_train import (
     machine_motion,
     valve_cam,
     valve_record,

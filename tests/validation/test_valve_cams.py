@@ -13,7 +13,7 @@ from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 from camwright.pipeline.follower.spring import Spring
-from camwright.pipeline.studies.papers.valve_cam import (
+from camwright.pipeline.studies.valve_cam import (
     ElasticValve,
     ValveCam,
     follower_acceleration,

@@ -163,10 +163,10 @@ def test_a_body_already_known_is_not_solved_again(change, tmp_path, monkeypatch)
     again = theta + 1e-9 if change == "grid" else theta
     load = 1100.0 if change == "load" else force
     solved = []
-    original = LoadedBody._found
+    original = LoadedBody._displacement_slopes
     monkeypatch.setattr(
         LoadedBody,
-        "_found",
+        "_displacement_slopes",
         lambda body, *at: (solved.append(body.surface), original(body, *at))[1],
     )
     second = history(of, again, load)

@@ -163,7 +163,7 @@ def test_edges_are_elliptic_where_the_contact_is_one_ellipse_only():
         sides, UP, lambda xi: 4 * depth * ((xi / a) ** 2 - 0.49) ** 2, 0.2 * load, a
     )
     assert found.pressure[np.abs(found.xi).argmin()] == 0
-    assert found.linear_because == "the contact is no single ellipse"
+    assert found.linear_because == "the contact is not a single ellipse"
 
 
 def test_turning_the_whole_set_up_changes_nothing():

@@ -58,7 +58,7 @@ def solved_anew(loads, pair=PAIR):
 def test_forces_along_the_stem_cancel(system, offset):
     """The guides solved anew under the side force found rub with what the push has too much.
 
-    1e-10 of the push is asked; both solutions meet their equations to round-off.
+    1e-10 of the axial force is the limit; both solutions meet their equations to round-off.
     """
     loads = guided(system, pitch=PitchCurve(PITCH.lift, 0.05, offset)).loads
     bearing = solved_anew(loads)
@@ -232,7 +232,7 @@ def test_balance_of_functions_with_a_known_answer():
 
 def test_no_balance_raises(monkeypatch):
     monkeypatch.setattr(friction_coupling, "_ROUNDS_MAX", 1)
-    with pytest.raises(ContactError, match="not in balance"):
+    with pytest.raises(ContactError, match="not converged"):
         guided(ROUGH)
 
 

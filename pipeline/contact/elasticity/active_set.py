@@ -1,12 +1,12 @@
-"""Frictionless contact as a small complementarity problem under a given force.
+"""Frictionless contact under a prescribed force as a linear complementarity problem.
 
-Find pressures p and the approach d of
+Pressures p and approach d satisfy
 
     gap = C p + g - d m >= 0,   p >= 0,   p . gap = 0,   m . p = F,
 
 where C is the pressure compliance (symmetric, positive definite on pressures of zero
-resultant), g the weighted initial gap and m the integrals of the pressure shapes. There is no
-penalty and no constant to choose. Problems of one size are solved together.
+resultant), g the weighted initial gap and m the integrals of the pressure shapes. No penalty
+parameter enters. Problems of one size are solved together.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.errors import ContactError
 
 _SWEEPS = 60
-# Below this share of the largest pressure (or of its gap) a sign is round-off.
+# Relative magnitude of pressure or gap below which its sign is round-off.
 _ROUND_OFF = 1e-11
 _COMPLEMENTARITY = 1e-9
 
@@ -52,7 +52,7 @@ def solve(
     force: ArrayLike,
     guess: ArrayLike | None = None,
 ) -> Complementarity:
-    """Pressures under given forces, by primal-dual active sets.
+    """Contact pressures under prescribed forces, by primal-dual active sets.
 
     Parameters
     ----------
@@ -60,8 +60,8 @@ def solve(
     gap : array (count, n)              weighted initial gap
     shape_integrals : array (count, n) or (n,)
     force : array (count,)              > 0
-    guess : array (n,) of bool          pressures that may act, to begin with; the answer does
-                                        not depend on it
+    guess : array (n,) of bool          initial active set; the solution does not depend on
+                                        it
 
     Raises
     ------
@@ -70,15 +70,15 @@ def solve(
 
     References
     ----------
-    Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2003) 865 (the primal-dual active set);
-    a set met twice hands the problem to the primal method, which cannot cycle.
+    Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2003) 865 (primal-dual active set). A
+    problem whose active set recurs is solved by the primal method, which cannot cycle.
     """
     g = np.atleast_2d(np.asarray(gap, dtype=float))
     count, size = g.shape
     C = np.broadcast_to(np.asarray(compliance, dtype=float), (count, size, size))
     m = np.broadcast_to(np.asarray(shape_integrals, dtype=float), (count, size))
     F = np.broadcast_to(np.asarray(force, dtype=float), (count,))
-    # Each problem in units of its own: pressures about 1, gaps about 1.
+    # Each problem is scaled to pressures and gaps of order 1.
     pressure_scale = F / m.sum(axis=1)
     gap_scale = np.abs(np.einsum("kii->ki", C)).max(axis=1) * pressure_scale
     C = C * (pressure_scale / gap_scale)[:, None, None]
@@ -87,11 +87,11 @@ def solve(
 
     start = np.ones(size, dtype=bool) if guess is None else np.asarray(guess, dtype=bool)
     p, d = _batched(C, g, weight, start)
-    moved = np.einsum("kij,kj->ki", C, p)
-    residual_gap = moved + g - d[:, None] * weight
+    settlement = np.einsum("kij,kj->ki", C, p)
+    residual_gap = settlement + g - d[:, None] * weight
     largest = np.maximum(p.max(axis=1), 1e-300)
-    # Where all knots touch there is no gap, only round-off of what cancels in it.
-    gap_largest = np.maximum(np.abs(residual_gap), 1e-3 * np.abs(moved)).max(axis=1)
+    # With all knots in contact the gap is the round-off of the terms that cancel in it.
+    gap_largest = np.maximum(np.abs(residual_gap), 1e-3 * np.abs(settlement)).max(axis=1)
     gap_largest = np.maximum(gap_largest, 1e-300)
     violation = np.max(
         [
@@ -115,7 +115,7 @@ def solve(
 
 
 def _batched(C: Array, g: Array, m: Array, start: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """Active-set sweeps over all problems at once; stragglers go to the primal method."""
+    """Active-set sweeps over all problems at once; those that do not settle by `_primal`."""
     count, size = g.shape
     pressures, approaches = np.zeros((count, size)), np.zeros(count)
     open_cases = np.arange(count)
@@ -173,7 +173,7 @@ def _equality_solution(
 
 
 def _primal(C: Array, g: Array, m: Array) -> tuple[Array, float]:
-    """The same problem by the primal active-set method: the energy falls, so no set recurs."""
+    """One problem by the primal active-set method; the energy decreases, so no set recurs."""
     p = np.full(g.size, 1 / m.sum())
     active = np.ones(g.size, dtype=bool)
     for _ in range(20 * g.size):
@@ -193,4 +193,4 @@ def _primal(C: Array, g: Array, m: Array) -> tuple[Array, float]:
         if gaps[worst] >= -_ROUND_OFF * max(np.abs(gaps).max(), 1e-300):
             return p, float(d)
         active[worst] = True
-    raise ContactError("the contact pressures did not settle")
+    raise ContactError("contact pressures: active set not converged")

@@ -1,11 +1,10 @@
-"""An elastic body in plane strain: assembled and factored once, solved for many loads."""
+"""Elastic body in plane strain: stiffness assembled and factorised once for many loads."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +18,7 @@ from camwright.pipeline.contact.elasticity.sparse_factor import Condensed, facto
 
 
 def lame_parameters(modulus: float, poisson: float) -> tuple[float, float]:
-    """First Lame parameter and shear modulus (Pa); plane strain needs no others."""
+    """First Lame parameter and shear modulus, Pa, of plane strain."""
     shear = modulus / (2 * (1 + poisson))
     return modulus * poisson / ((1 + poisson) * (1 - 2 * poisson)), shear
 
@@ -33,12 +32,13 @@ class Elastic:
 
     @property
     def plane_strain_modulus(self) -> float:
+        """E / (1 - nu^2), Pa."""
         return self.modulus / (1 - self.poisson**2)
 
 
 @dataclass(frozen=True, eq=False)
 class Springs:
-    """Springs between a body and the ground, each along a weighted mean of displacements.
+    """Springs between body and ground, each on a weighted mean of nodal displacements.
 
     ways (m, 2, nodes) weights of the mean; stiffness (m,), N/m per m of width.
     """
@@ -50,21 +50,23 @@ class Springs:
         freeze(self, ways=self.ways, stiffness=self.stiffness)
 
     def forces(self, displacement: Array) -> Array:
-        """What the springs do to the nodes, (2, nodes, k), N/m, at displacements of that shape."""
-        return -np.einsum("mcn,mk->cnk", self.ways, self.pulls(displacement))
+        """Nodal forces of the springs (2, nodes, k), N/m, at displacements (2, nodes, k), m."""
+        return np.asarray(-np.einsum("mcn,mk->cnk", self.ways, self.pulls(displacement)))
 
     def pulls(self, displacement: Array) -> Array:
-        """Force (m, k), N/m, in each spring, positive where it is drawn along its way."""
-        return self.stiffness[:, None] * np.einsum("mcn,cnk->mk", self.ways, displacement)
+        """Force (m, k), N/m, in each spring, positive at a positive mean displacement."""
+        return np.asarray(
+            self.stiffness[:, None] * np.einsum("mcn,cnk->mk", self.ways, displacement)
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class ElasticBody:
-    """Second-order finite elements on curved triangles, held on named boundaries or by springs.
+    """Quadratic triangles with curved edges, supported on named boundaries or by springs.
 
-    `held` names the boundary held fully, or maps boundaries to the components held there:
-    ``{"bottom": "y", "left": "x"}`` rolls on the bottom and along the left.
-    Displacements are arrays (2, nodes, ...) in the node order of the mesh.
+    `held` names the boundary held fully, or maps boundaries to the components held there, such
+    as ``{"bottom": "y", "left": "x"}``. Displacements are arrays (2, nodes, ...) in the node order
+    of the mesh.
     """
 
     mesh: BodyMesh
@@ -74,17 +76,17 @@ class ElasticBody:
     springs: Springs | None = None
 
     @cached_property
-    def basis(self) -> Any:
+    def basis(self) -> Basis:
         return Basis(self.mesh.to_skfem(), ElementVector(ElementTriP2()), intorder=4)
 
     @cached_property
-    def dofs(self) -> Any:
+    def dofs(self) -> NDArray[np.int64]:
         """Degrees of freedom (2, nodes) of the mesh's nodes."""
         return self.mesh.dof_map(self.basis)
 
     @cached_property
-    def stiffness(self) -> Any:
-        """Stiffness matrix, that of skfem's form for linear elasticity, put together faster."""
+    def stiffness(self) -> sparse.csc_matrix:
+        """Stiffness matrix of linear elasticity, N/m2; faster than the assembly of skfem."""
         scalar = self.basis.with_element(ElementTriP2())
         slopes = np.stack([shape[0].grad for shape in scalar.basis])  # (6, 2, elements, points)
         count = slopes.shape[2]
@@ -99,16 +101,14 @@ class ElasticBody:
         dofs = self.basis.element_dofs.T
         rows = np.broadcast_to(dofs[:, :, None], (count, 12, 12))
         columns = np.broadcast_to(dofs[:, None, :], rows.shape)
-        entries: Any = (local.ravel(), (rows.ravel(), columns.ravel()))
+        entries = (local.ravel(), (rows.ravel(), columns.ravel()))
         own = sparse.coo_matrix(entries, shape=(self.basis.N, self.basis.N)).tocsc()
         return own if self.springs is None else own + self._stiffness_of(self.springs)
 
-    def _stiffness_of(self, springs: Springs) -> Any:
+    def _stiffness_of(self, springs: Springs) -> sparse.csc_array:
+        """Stiffness matrix of the springs."""
         spring, component, node = np.nonzero(springs.ways)
-        entries: Any = (
-            springs.ways[spring, component, node],
-            (spring, self.dofs[component, node]),
-        )
+        entries = (springs.ways[spring, component, node], (spring, self.dofs[component, node]))
         ways = sparse.csc_matrix(entries, shape=(springs.stiffness.size, self.basis.N))
         return (ways.T @ sparse.diags_array(springs.stiffness) @ ways).tocsc()
 
@@ -138,19 +138,19 @@ class ElasticBody:
 
     @property
     def held_nodes(self) -> NDArray[np.int64]:
-        """Nodes held in one component at least."""
+        """Nodes with at least one held component."""
         return np.flatnonzero(np.isin(self.dofs, self.held_dofs).any(axis=0))
 
     @cached_property
     def beside_held(self) -> NDArray[np.int64]:
-        """Nodes that feel a displacement of what is held."""
+        """Nodes coupled by the stiffness to held degrees of freedom."""
         felt = np.zeros(self.basis.N, dtype=bool)
         coupling = self.stiffness[:, self.held_dofs].tocsr()
         felt[self.free_dofs] = np.diff(coupling.indptr)[self.free_dofs] > 0
         return np.flatnonzero(felt[self.dofs].any(axis=0))
 
     @cached_property
-    def _solver(self) -> tuple[Callable[[Array], Array], Any]:
+    def _solver(self) -> tuple[Callable[[Array], Array], sparse.csc_matrix]:
         rows = self.stiffness[self.free_dofs]
         return factorised(rows[:, self.free_dofs]), rows[:, self.held_dofs]
 
@@ -161,7 +161,7 @@ class ElasticBody:
     def displacement(self, loads: ArrayLike, held_at: ArrayLike | None = None) -> Array:
         """Displacement (2, nodes, k) under nodal forces (2, nodes, k), N/m.
 
-        `held_at` (2, nodes, k) gives the displacement of what is held; zero without it.
+        `held_at` (2, nodes, k) is the displacement of the held nodes, m; None: zero.
         """
         forces = np.asarray(loads, dtype=float)
         held, free = self.held_dofs, self.free_dofs
@@ -177,11 +177,11 @@ class ElasticBody:
         return solution[self.dofs]
 
     def condensed(self, nodes: ArrayLike) -> CondensedBody:
-        """The body as seen from some of its nodes."""
+        """The body condensed to some of its nodes."""
         return CondensedBody(self, nodes)
 
     def surface_forces(self, displacement: Array, boundary: str) -> Array:
-        """Forces (2, nodes), N/m, that act on a boundary where the body is displaced so."""
+        """Nodal forces (2, nodes), N/m, on a boundary at a displacement (2, nodes), m."""
         flat = np.zeros(self.basis.N)
         flat[self.dofs] = displacement
         nodes = self.mesh.boundary_nodes(boundary)
@@ -190,21 +190,21 @@ class ElasticBody:
         return forces
 
     def reaction(self, displacement: Array) -> Array:
-        """Resultant force (2,) of what holds the body on the body, N/m."""
+        """Resultant support reaction (2,) on the body, N/m, at a displacement (2, nodes), m."""
         flat = np.zeros(self.basis.N)
         flat[self.dofs] = displacement
         forces = np.zeros(self.basis.N)
         forces[self.held_dofs] = self.stiffness[self.held_dofs] @ flat
-        return forces[self.dofs].sum(axis=1)
+        return np.asarray(forces[self.dofs].sum(axis=1))
 
 
 class CondensedBody:
-    """A body that is loaded, and looked at, on a few nodes only.
+    """A body condensed to a few nodes, where its loads act and its displacements are evaluated.
 
     Parameters
     ----------
     body : ElasticBody
-    nodes : array (m,)   node numbers; held components of them do not move
+    nodes : array (m,)   node numbers; held components of them have zero displacement
     """
 
     def __init__(self, body: ElasticBody, nodes: ArrayLike) -> None:
@@ -220,21 +220,21 @@ class CondensedBody:
     def displacement(self, loads: ArrayLike, held_at: ArrayLike | None = None) -> Array:
         """Displacement (2, m, k) of the nodes under forces (2, m, k) on them.
 
-        `held_at` (2, all nodes, k) moves what is held; the nodes must then include the body's
-        `beside_held`.
+        `held_at` (2, all nodes, k) is the displacement of the held nodes, m; the condensed nodes
+        must then include `ElasticBody.beside_held`.
         """
         forces = np.asarray(loads, dtype=float)
         right = forces.reshape(-1, forces.shape[2]).copy()
-        found = np.zeros_like(right)
+        solution = np.zeros_like(right)
         seen = self.body.dofs[:, self.nodes].ravel()
         if held_at is not None:
-            given = np.zeros((self.body.basis.N, forces.shape[2]))
-            given[self.body.dofs] = np.asarray(held_at, dtype=float)
+            held_displacement = np.zeros((self.body.basis.N, forces.shape[2]))
+            held_displacement[self.body.dofs] = np.asarray(held_at, dtype=float)
             held = self.body.held_dofs
-            right -= self.body.stiffness[seen][:, held] @ given[held]
-            found[~self._kept] = given[seen[~self._kept]]
-        found[self._kept] = self._matrix.solve_last(right[self._kept])
-        return found.reshape(forces.shape)
+            right -= self.body.stiffness[seen][:, held] @ held_displacement[held]
+            solution[~self._kept] = held_displacement[seen[~self._kept]]
+        solution[self._kept] = self._matrix.solve_last(right[self._kept])
+        return solution.reshape(forces.shape)
 
     def everywhere(self, loads: ArrayLike) -> Array:
         """Displacement (2, all nodes, k) of the body under forces (2, m, k) on the nodes."""
@@ -247,17 +247,17 @@ class CondensedBody:
         return solution[body.dofs]
 
 
-def elements_near(body: ElasticBody, point: ArrayLike, reach: float) -> Any:
-    """Elements with a corner within `reach` of a point (2,)."""
+def elements_near(body: ElasticBody, point: ArrayLike, reach: float) -> NDArray[np.int64]:
+    """Numbers of the elements with a corner within `reach` (m) of a point (2,), m."""
     corners = body.mesh.points[:, body.mesh.triangles[:3]]
     distance = np.hypot(*(corners - np.reshape(point, (2, 1, 1))))
     return np.flatnonzero((distance < reach).any(axis=0))
 
 
 class StressRecovery:
-    """Nodal stress of some elements of a body by projection onto continuous quadratics.
+    """Nodal stress of some elements by L2 projection onto continuous quadratic shapes.
 
-    Linear in the displacement, so one instance serves any number of load columns.
+    Linear in the displacement; one instance evaluates any number of load columns.
     """
 
     def __init__(self, body: ElasticBody, elements: ArrayLike) -> None:
@@ -307,8 +307,10 @@ class StressRecovery:
         )
 
 
-def _stacked(values: list[Any], dofs: Any, shape: tuple[int, int]) -> Any:
-    """Sparse matrix (quadrature points, degrees of freedom) from values per local shape."""
+def _stacked(
+    values: list[Array], dofs: NDArray[np.int64], shape: tuple[int, int]
+) -> sparse.csr_array:
+    """Sparse matrix (quadrature points, degrees of freedom) of the values per local shape."""
     elements, quadrature = values[0].shape
     rows = np.arange(elements * quadrature)
     parts = [

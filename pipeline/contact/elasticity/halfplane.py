@@ -1,7 +1,6 @@
 """Half-plane under piecewise-linear pressure, in closed form.
 
-Independent of any mesh: the cross-check of the finite-element compliance, and the far field of
-the contact patch.
+Reference for the finite-element compliance, and far field of the contact patch.
 """
 
 from __future__ import annotations
@@ -17,8 +16,9 @@ _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 def point_force_displacement(x: ArrayLike, depth: ArrayLike, poisson: float) -> Array:
     """Displacement (2, ...) of a half-plane under a unit normal force per unit length.
 
-    In units of force over plane-strain modulus E / (1 - nu^2): along the surface, then into the
-    solid. The arbitrary rigid motion is the one without displacement on the axis at depth 1.
+    Components along the surface and into the solid, in units of force over plane-strain modulus
+    E / (1 - nu^2). The arbitrary rigid motion is chosen so that the point on the axis at depth 1
+    has no displacement.
 
     References
     ----------

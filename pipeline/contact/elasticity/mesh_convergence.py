@@ -1,4 +1,4 @@
-"""Three meshes of one contact: extrapolation, observed order, error estimate."""
+"""Mesh convergence on three meshes: Richardson extrapolation, observed order, error estimate."""
 
 from __future__ import annotations
 
@@ -9,17 +9,16 @@ import numpy as np
 
 from camwright.geometry.errors import InputError
 
-# Differences below this share are the scatter of mesh positions, not a trend.
+# Relative differences below this are scatter of the mesh position, not convergence.
 _SCATTER = 2e-4
 
 
 @dataclass(frozen=True)
 class Convergence:
-    """A quantity on meshes of falling size.
+    """A quantity on meshes of decreasing element size.
 
-    values, coarse to fine; extrapolated to zero size; order observed (None when the values
-    scatter rather than converge); gci, the grid convergence index, a relative error bar of the
-    finest value.
+    values, coarse to fine; extrapolated to zero element size; order, the observed one (None where
+    the values scatter); gci, the grid convergence index: relative error bar of the finest value.
     """
 
     values: tuple[float, ...]
@@ -31,8 +30,8 @@ class Convergence:
 def converged(values: Sequence[float], ratio: float) -> Convergence:
     """Richardson extrapolation of three values on meshes refined by a constant ratio.
 
-    Values that do not settle monotonically have no order; their spread, with the safety factor
-    of two meshes, is the error bar.
+    Values that do not converge monotonically have no order; their error bar is their spread times
+    the safety factor of two meshes.
 
     Raises
     ------
@@ -54,7 +53,7 @@ def converged(values: Sequence[float], ratio: float) -> Convergence:
     if first * second <= 0 or abs(second) >= abs(first) or spread < _SCATTER:
         return Convergence((coarse, middle, fine), fine, None, 3.0 * spread)
     order = float(np.log(first / second) / np.log(ratio))
-    # An order below one or above that of the stresses would flatter the error bar.
+    # An order above that of the stresses, or below one, would give too small an error bar.
     trusted = min(max(order, 1.0), 3.0)
     gain = ratio**trusted - 1
     return Convergence(

@@ -1,4 +1,4 @@
-"""Scalar measures of plane-strain stress."""
+"""Shear and von Mises stress of plane strain; maxima of fields at scattered points."""
 
 from __future__ import annotations
 
@@ -12,42 +12,42 @@ from camwright.geometry.arrays import Array
 
 
 def shear_in_plane(stress: ArrayLike) -> Array:
-    """Maximum shear in the plane, from (xx, yy, xy) stacked first."""
+    """Maximum in-plane shear stress (...), of plane-strain stress xx, yy, xy (3, ...)."""
     xx, yy, xy = np.asarray(stress, dtype=float)
-    return np.hypot((xx - yy) / 2, xy)
+    return np.asarray(np.hypot((xx - yy) / 2, xy))
 
 
 def shear_any_plane(field: ArrayLike, poisson: float) -> Array:
-    """Largest shear on any plane (...), of plane-strain stress (3, ...)."""
+    """Maximum shear stress on any plane (...), of plane-strain stress (3, ...)."""
     xx, yy, xy = np.asarray(field, dtype=float)
     middle, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
     out = poisson * (xx + yy)
     high, low = np.maximum(middle + radius, out), np.minimum(middle - radius, out)
-    return (high - low) / 2
+    return np.asarray((high - low) / 2)
 
 
 def von_mises(stress: ArrayLike, poisson: float) -> Array:
-    """Von Mises stress in plane strain, ``sigma_zz = nu (sigma_xx + sigma_yy)``."""
+    """Von Mises stress (...), with ``sigma_zz = nu (sigma_xx + sigma_yy)``."""
     xx, yy, xy = np.asarray(stress, dtype=float)
     zz = poisson * (xx + yy)
     squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    return np.sqrt(squares / 2 + 3 * xy**2)
+    return np.asarray(np.sqrt(squares / 2 + 3 * xy**2))
 
 
 _POWERS = np.array([(i, j) for i in range(5) for j in range(5 - i)])
 
 
 class PeakFinder:
-    """Maximum of fields known at scattered points, found between them.
+    """Maximum of fields on scattered points, interpolated between the points.
 
     A polynomial of fourth degree is fitted about the largest value, over a neighbourhood wide
-    enough to average the scatter of recovered stresses; the answer never leaves the middle of
-    the neighbourhood.
+    enough to average the scatter of recovered stresses. A maximum in the outer half of the
+    neighbourhood is rejected in favour of the largest value.
 
     Parameters
     ----------
-    points : array (2, m)   second component is the depth, >= 0; unit: the contact half-width
-    reach : float           of the neighbourhood; the unit is the same
+    points : array (2, m)   second component is the depth, >= 0; in half-widths
+    reach : float           radius of the neighbourhood, in half-widths
     """
 
     def __init__(self, points: ArrayLike, reach: float = 0.45) -> None:
@@ -56,7 +56,7 @@ class PeakFinder:
         self._tree = cKDTree(self._points.T)
 
     def __call__(self, values: ArrayLike) -> tuple[Array, Array]:
-        """Peak values (k,) and their places (2, k) of fields (m, k)."""
+        """Maxima (k,) and their places (2, k) of fields (m, k)."""
         fields = np.asarray(values, dtype=float)
         nodes = fields.argmax(axis=0)
         top, place = fields.max(axis=0), self._points[:, nodes]
@@ -69,15 +69,15 @@ class PeakFinder:
             arms = (self._points[:, near] - centre[:, None]) / self._reach
             fit = np.linalg.pinv(_terms(arms).T) @ fields[np.ix_(near, columns)]
             height, step, trusted = _summit(fit)
-            found = centre[:, None] + self._reach * step
-            trusted &= found[1] >= 0
+            summit = centre[:, None] + self._reach * step
+            trusted &= summit[1] >= 0
             top[columns[trusted]] = height[trusted]
-            place[:, columns[trusted]] = found[:, trusted]
+            place[:, columns[trusted]] = summit[:, trusted]
         return top, place
 
 
 def _terms(at: Array, by_x: int = 0, by_y: int = 0) -> Array:
-    """Powers (15, ...) of the polynomial, differentiated, at places (2, ...)."""
+    """Terms (15, ...) of the polynomial, differentiated, at places (2, ...)."""
     rows = []
     for i, j in _POWERS:
         if i < by_x or j < by_y:
@@ -89,10 +89,10 @@ def _terms(at: Array, by_x: int = 0, by_y: int = 0) -> Array:
 
 
 def _summit(fit: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Height (k,) and place (2, k) of the summits of polynomials (15, k); whether there is one."""
+    """Value (k,), place (2, k) and existence (k,) of the maxima of polynomials (15, k)."""
 
     def of(by_x: int, by_y: int) -> Array:
-        return (fit * _terms(at, by_x, by_y)).sum(axis=0)
+        return np.asarray((fit * _terms(at, by_x, by_y)).sum(axis=0))
 
     at = np.zeros((2, fit.shape[1]))
     trusted = np.ones(fit.shape[1], dtype=bool)

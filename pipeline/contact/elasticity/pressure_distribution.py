@@ -1,4 +1,4 @@
-"""Contact pressures as continuous piecewise-linear functions, and what is read off them."""
+"""Piecewise-linear and elliptic contact pressures; their peak, centre and half-width."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from camwright.geometry.arrays import Array, freeze, readonly
 from camwright.geometry.errors import ContactError
 
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
-# The peak is read from the middle half of the contact.
+# Share of the contact over which the peak is averaged.
 _MIDDLE = 0.5
 
 
@@ -19,7 +19,7 @@ _MIDDLE = 0.5
 class PressureShapes:
     """Continuous piecewise-linear pressures on `knots` (k + 2,), m.
 
-    The outermost knots carry none unless `open_ends`, so there are k shapes (or k + 2).
+    The outermost knots carry no pressure unless `open_ends`: k shapes, or k + 2.
     """
 
     knots: Array
@@ -38,7 +38,7 @@ class PressureShapes:
         """Integral (n,) of each shape, m."""
         widths = np.diff(self.knots) / 2
         total = np.concatenate([[0.0], widths]) + np.concatenate([widths, [0.0]])
-        return total if self.open_ends else total[1:-1]
+        return np.asarray(total if self.open_ends else total[1:-1])
 
     def values(self, xi: ArrayLike) -> Array:
         """Shapes (n, ...) at the coordinates xi (...)."""
@@ -53,7 +53,7 @@ class PressureShapes:
         return out if self.open_ends else out[1:-1]
 
     def integrated(self, function_values: Array, xi: Array, weights: Array) -> Array:
-        """Integral (n,) of a function, given at quadrature points, against each shape."""
+        """Integral (n,) of each shape times a function with values at quadrature points."""
         return self.values(xi) @ (weights * function_values)
 
     def quadrature(self, breaks: ArrayLike = ()) -> tuple[Array, Array]:
@@ -61,7 +61,7 @@ class PressureShapes:
         low, high = self.knots[0], self.knots[-1]
         inner = np.asarray(breaks, dtype=float).ravel()
         ends = np.unique(np.concatenate([self.knots, inner[(inner > low) & (inner < high)]]))
-        # A sliver shorter than round-off carries nothing and would only spoil the division.
+        # Pieces shorter than round-off are dropped: they would divide by zero.
         ends = ends[np.concatenate([[True], np.diff(ends) > 1e-13 * (high - low)])]
         half = np.diff(ends)[:, None] / 2
         xi = (ends[:-1, None] + half) + half * _GAUSS_POINTS
@@ -72,8 +72,8 @@ class PressureShapes:
 class EllipticShapes:
     """Piecewise-linear functions on `knots` (n,), m, times the ellipse between the outer two.
 
-    A Hertz pressure is one of these for any spacing of the knots, its edges included, which
-    plain linear shapes can only overshoot.
+    They represent a Hertz pressure exactly for any spacing of the knots; piecewise-linear shapes
+    overshoot at its edges.
     """
 
     knots: Array
@@ -83,7 +83,7 @@ class EllipticShapes:
 
     @classmethod
     def within(cls, knots: Array, ends: Array) -> EllipticShapes:
-        """Knots of a surface between two ends (2,); one nearer to them than half a step goes."""
+        """Shapes on the knots more than half a step inside two ends (2,), m, and on the ends."""
         apart = 0.5 * float(np.diff(knots).max())
         inner = knots[(knots > ends[0] + apart) & (knots < ends[1] - apart)]
         return cls(np.concatenate([ends[:1], inner, ends[1:]]))
@@ -107,11 +107,11 @@ class EllipticShapes:
         return PressureShapes(self.knots, open_ends=True).values(x) * ellipse
 
     def integrated(self, function_values: Array, xi: Array, weights: Array) -> Array:
-        """Integral (n,) of a function, given at quadrature points, against each shape."""
+        """Integral (n,) of each shape times a function with values at quadrature points."""
         return self.values(xi) @ (weights * function_values)
 
     def quadrature(self, breaks: ArrayLike = ()) -> tuple[Array, Array]:
-        """Points and weights (q,), m: Gauss in the angle of the ellipse, smooth at its edges."""
+        """Points and weights (q,), m, of Gauss quadrature in the angle of the ellipse."""
         middle, half_width = self._ellipse
         share = (np.concatenate([self.knots, np.ravel(breaks)]) - middle) / half_width
         turned = np.arcsin(np.clip(share, -1.0, 1.0))
@@ -126,7 +126,7 @@ class EllipticShapes:
 
 @dataclass(frozen=True, eq=False)
 class Ellipses:
-    """Peak (Pa), centre (m) and half-width (m) of `count` contact pressures."""
+    """Peak pressure (Pa), centre (m) and half-width (m) of ellipses, arrays (count,)."""
 
     p0: Array
     centre: Array
@@ -139,12 +139,12 @@ class Ellipses:
 def fitted_ellipses(shapes: PressureShapes | EllipticShapes, pressure: Array) -> Ellipses:
     """Peak, centre and half-width of contact pressures (count, n).
 
-    The square of a Hertz pressure is a parabola, so an ellipse is fitted: its half-width has
-    the second moment of the pressure, its peak the mean over the middle half under a smooth
-    weight. Integrals of a Galerkin pressure converge faster than its nodal values, which
-    wiggle next to the edge: with eight knots on the half-width, wherever the edge falls between
-    two knots, the half-width is within 0.45 % and the peak within 0.15 % of Hertz, and both
-    errors fall with the square of the spacing.
+    The fitted ellipse has the second moment of the pressure, which sets the half-width, and its
+    weighted mean over the middle half, which sets the peak. Integrals of a Galerkin pressure
+    converge faster than its nodal values, which oscillate next to the edge: with eight knots on
+    the half-width, for any position of the edge between two knots, the half-width is within
+    0.45 % and the peak within 0.15 % of Hertz. Both errors decrease with the square of the
+    spacing.
 
     Raises
     ------
@@ -153,7 +153,7 @@ def fitted_ellipses(shapes: PressureShapes | EllipticShapes, pressure: Array) ->
     """
     carrying = (pressure > 0).sum(axis=1)
     if (carrying < 4).any():
-        raise ContactError(f"only {int(carrying.min())} pressure knots carry the contact")
+        raise ContactError(f"{int(carrying.min())} pressure knots in contact, must be >= 4")
     xi, weights = shapes.quadrature()
     weighted = (pressure @ shapes.values(xi)) * weights
     force = weighted.sum(axis=1)

@@ -1,4 +1,4 @@
-"""Radial compliance of discs, holes and bushes under harmonics of pressure, plane strain."""
+"""Radial compliance of pins, holes and bushes under harmonic pressures, plane strain."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from camwright.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Pin:
-    """A solid round bar loaded along its middle: Young's modulus, Pa, and Poisson ratio."""
+    """A solid round bar with its resultant on the axis: Young's modulus, Pa, Poisson ratio."""
 
     modulus: float
     poisson: float
@@ -28,9 +28,9 @@ class Pin:
 
 @dataclass(frozen=True)
 class Bush(Pin):
-    """A hole; `wall` over its radius is that of a bush bonded into a rigid housing.
+    """A hole, or a bush bonded into a rigid housing with a `wall` over its radius.
 
-    No wall (None) means a body that has no other surface nearby.
+    wall None: the hole in an infinite body.
     """
 
     wall: float | None = None
@@ -51,7 +51,7 @@ def _elastic(field: str, modulus: float, poisson: float) -> None:
 def pin_compliance(count: int, pin: Pin) -> Array:
     """Inward radial displacement over pressure, both per unit cos(n phi), radius 1; (count,), 1/Pa.
 
-    The first harmonic is left out (0): its radial displacement is that of a rigid shift.
+    The first harmonic is 0: its radial displacement is a rigid translation.
 
     References
     ----------
@@ -77,8 +77,8 @@ def bush_compliance(count: int, bush: Bush) -> Array:
 
 
 def _bonded(n: Array, outer: float, kappa: float) -> Array:
-    """2 mu times the hole's radial displacement under unit pressure, clamped at `outer`; (n,)."""
-    # Growing terms are scaled to 1 at the outer rim, decaying ones at the hole.
+    """2 mu times radial displacement (n,) of the hole at unit pressure, `outer` radius clamped."""
+    # Terms that grow with the radius are scaled to 1 at the outer radius, others at the hole.
     grow, decay = outer ** (-n), outer ** (-n)
     zero = np.zeros_like(n)
     stress = [-n * (n - 1) * grow, -(n + 1) * (n - 2) * grow, -n * (n + 1), -(n + 2) * (n - 1)]
@@ -100,8 +100,8 @@ def _bonded(n: Array, outer: float, kappa: float) -> Array:
     right = np.zeros((n.size, 4, 1))
     right[:, 0] = -1.0
     size = np.abs(system).max(axis=2, keepdims=True)
-    found = np.linalg.solve(system / size, right / size)[..., 0]
-    return np.asarray(np.sum(found * np.array(radial).T, axis=1))
+    coefficients = np.linalg.solve(system / size, right / size)[..., 0]
+    return np.asarray(np.sum(coefficients * np.array(radial).T, axis=1))
 
 
 def _constants(body: Pin) -> tuple[float, float]:

@@ -1,8 +1,7 @@
-"""Sparse symmetric positive definite matrices, factored once and solved for many loads.
+"""Factorisation of sparse symmetric positive definite matrices.
 
-SciPy's SuperLU does it everywhere; CHOLMOD, through cvxopt, or Pardiso, through pypardiso, where
-one of them is installed and not switched off by ``CAMWRIGHT_SOLVER=scipy``. The answers are the
-same to round-off.
+By CHOLMOD (package cvxopt) or Pardiso (pypardiso) where installed, else by SuperLU (SciPy);
+``CAMWRIGHT_SOLVER=scipy`` selects SuperLU. Solutions agree to round-off.
 """
 
 from __future__ import annotations
@@ -11,25 +10,23 @@ import importlib
 import os
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 from scipy.linalg import solve_triangular
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
 
-# Legitimate for such a matrix, and several times faster than pivoting with COLAMD.
-_SYMMETRIC: dict[str, Any] = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+Index = NDArray[np.int64]
 
-_POSITIVE_DEFINITE = 2  # Pardiso's number for such a real matrix
+_POSITIVE_DEFINITE = 2  # matrix type of Pardiso: real symmetric positive definite
 
 
 def back_end() -> str:
-    """Which library factors: CHOLMOD or Pardiso where installed and not switched off, or SciPy."""
+    """Library of the factorisation: ``cholmod``, ``pardiso`` or ``scipy``."""
     if os.environ.get("CAMWRIGHT_SOLVER") != "scipy":
         for name, module in (("cholmod", "cvxopt.cholmod"), ("pardiso", "pypardiso")):
             with suppress(ImportError):
@@ -38,23 +35,34 @@ def back_end() -> str:
     return "scipy"
 
 
-def factorised(matrix: Any) -> Callable[[Array], Array]:
+def factorised(matrix: sparse.sparray) -> Callable[[Array], Array]:
     """Solver of a sparse symmetric positive definite matrix for right-hand sides (n, k)."""
     chosen = back_end()
     if chosen == "cholmod":
-        from cvxopt import cholmod, spmatrix
-        from cvxopt import matrix as dense
-
-        return _by_cholmod(sparse.csc_array(matrix), cholmod, spmatrix, dense)
+        return _by_cholmod(sparse.csc_array(matrix))
     if chosen == "pardiso":
-        from pypardiso import PyPardisoSolver
-
-        return _by_pardiso(matrix, PyPardisoSolver(mtype=_POSITIVE_DEFINITE))
-    factor = splu(sparse.csc_matrix(matrix), permc_spec="MMD_AT_PLUS_A", **_SYMMETRIC)
-    return factor.solve
+        return _by_pardiso(matrix)
+    solve: Callable[[Array], Array] = _symmetric_lu(matrix, "MMD_AT_PLUS_A").solve
+    return solve
 
 
-def _by_cholmod(matrix: Any, cholmod: Any, spmatrix: Any, dense: Any) -> Callable[[Array], Array]:
+def _symmetric_lu(matrix: sparse.sparray, ordering: str) -> SuperLU:
+    """Factors of a symmetric positive definite matrix.
+
+    Diagonal pivots are safe for such a matrix and several times faster than pivoting with COLAMD.
+    """
+    return splu(
+        sparse.csc_matrix(matrix),
+        permc_spec=ordering,
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+
+
+def _by_cholmod(matrix: sparse.csc_array) -> Callable[[Array], Array]:
+    from cvxopt import cholmod, spmatrix
+    from cvxopt import matrix as dense
+
     lower = sparse.coo_array(sparse.tril(matrix))
     rows, columns = lower.coords
     held = spmatrix(
@@ -71,7 +79,10 @@ def _by_cholmod(matrix: Any, cholmod: Any, spmatrix: Any, dense: Any) -> Callabl
     return solve
 
 
-def _by_pardiso(matrix: Any, solver: Any) -> Callable[[Array], Array]:
+def _by_pardiso(matrix: sparse.sparray) -> Callable[[Array], Array]:
+    from pypardiso import PyPardisoSolver
+
+    solver = PyPardisoSolver(mtype=_POSITIVE_DEFINITE)
     upper = sparse.csr_matrix(sparse.triu(matrix, format="csr"))
     upper.sort_indices()
     solver.factorize(upper)
@@ -83,29 +94,28 @@ def _by_pardiso(matrix: Any, solver: Any) -> Callable[[Array], Array]:
 
 
 class Condensed:
-    """A matrix condensed to some of its unknowns: loads act there and nowhere else.
+    """A matrix condensed to some of its unknowns, the only ones with loads.
 
-    The chosen unknowns are eliminated last, so that the end of the triangular factors is the
-    factor of the condensed matrix: loads on a few unknowns cost dense algebra of that few.
+    The chosen unknowns are eliminated last: the last rows of the triangular factors are the
+    factors of the condensed matrix, and each solution costs dense algebra of k unknowns.
 
     Parameters
     ----------
     matrix : sparse (n, n)   symmetric positive definite
-    pairs : array (2, m)     unknowns that share their neighbours, x and y of a node; unknowns
-                             without a partner stand in neither row. Orders the elimination
+    pairs : array (2, m)     x and y unknowns of each node with two, for the elimination order
     last : array (k,)        the chosen unknowns
     """
 
-    def __init__(self, matrix: Any, pairs: ArrayLike, last: ArrayLike) -> None:
+    def __init__(self, matrix: sparse.sparray, pairs: ArrayLike, last: ArrayLike) -> None:
         self._last = np.asarray(last, dtype=int)
         order = _elimination_order(matrix, np.asarray(pairs, dtype=int), self._last)
         permuted = sparse.csc_matrix(matrix)[order][:, order].tocsc()
-        factor = splu(permuted, permc_spec="NATURAL", **_SYMMETRIC)
+        factor = _symmetric_lu(permuted, "NATURAL")
         if not np.array_equal(factor.perm_r, factor.perm_c):
-            raise ContactError("the stiffness is not positive definite")
+            raise ContactError("stiffness matrix: not positive definite")
         self._order, self._factor = order, factor
         size, few = order.size, self._last.size
-        # SuperLU may still exchange columns that do not see each other: look where they went.
+        # SuperLU may exchange columns that are not coupled: restore their order.
         place = factor.perm_c[size - few :]
         shuffle = np.argsort(place)
         rows = np.sort(place)
@@ -117,20 +127,20 @@ class Condensed:
         """Values (k, m) of the chosen unknowns under loads (k, m) on them."""
         loads = np.asarray(right, dtype=float)[self._shuffle]
         half = solve_triangular(self._lower, loads, lower=True, unit_diagonal=True)
-        found = np.empty_like(loads)
-        found[self._shuffle] = solve_triangular(self._upper, half)
-        return found
+        solution = np.empty_like(loads)
+        solution[self._shuffle] = solve_triangular(self._upper, half)
+        return solution
 
     def solve(self, right: ArrayLike) -> Array:
-        """Values (n, m) of all unknowns under loads (n, m) anywhere."""
+        """Values (n, m) of all unknowns under loads (n, m)."""
         loads = np.asarray(right, dtype=float)
-        found = np.empty_like(loads)
-        found[self._order] = self._factor.solve(loads[self._order])
-        return found
+        solution = np.empty_like(loads)
+        solution[self._order] = self._factor.solve(loads[self._order])
+        return solution
 
 
-def _elimination_order(matrix: Any, pairs: NDArray[Any], last: NDArray[Any]) -> NDArray[Any]:
-    """Minimum degree on the nodes rather than on their components, the chosen ones last."""
+def _elimination_order(matrix: sparse.sparray, pairs: Index, last: Index) -> Index:
+    """Elimination order (n,): minimum degree on the nodes, the chosen unknowns last."""
     size = matrix.shape[0]
     chosen = np.zeros(size, dtype=bool)
     chosen[last] = True
@@ -139,7 +149,6 @@ def _elimination_order(matrix: Any, pairs: NDArray[Any], last: NDArray[Any]) -> 
     rest[inner] = False
     rest[last] = False
     block = sparse.csc_matrix(matrix)[inner[0]][:, inner[0]].tocsc()
-    found = splu(block, permc_spec="MMD_AT_PLUS_A", **_SYMMETRIC)
-    # perm_c[j] is where column j goes.
-    sequence = np.argsort(found.perm_c)
+    # perm_c[j] is the place of column j.
+    sequence = np.argsort(_symmetric_lu(block, "MMD_AT_PLUS_A").perm_c)
     return np.concatenate([inner[:, sequence].T.ravel(), np.flatnonzero(rest), last])

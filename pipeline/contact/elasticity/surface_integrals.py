@@ -1,9 +1,9 @@
 """Integrals over a curved, meshed surface in the frame of a contact.
 
-A contact lives in one frame: origin at the common point, tangent t, normal n. A surface point
-has the coordinate xi along t; pressures act along n and are counted per unit of xi, so a force
-is the plain integral over xi. Integrals are split at the pressure knots and at the facet ends
-of the surface: unsplit quadrature makes pressures oscillate by tens of per cent.
+The frame has its origin at the contact point, a tangent t and a normal n. A surface point has the
+coordinate xi along t; pressures act along n per unit of xi, so that a force is the integral over
+xi. Integrals are split at the pressure knots and at the facet ends of the surface: without the
+split, pressures oscillate by tens of per cent.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class ContactFrame:
 
     @property
     def tangent(self) -> Array:
-        """Normal turned clockwise: seen with the normal up, xi grows to the right."""
+        """Unit tangent (2,): the normal turned clockwise by 90 deg."""
         return readonly([self.normal[1], -self.normal[0]])
 
     def along(self, points: ArrayLike) -> Array:
@@ -51,21 +51,23 @@ def _relative(points: ArrayLike, origin: Array) -> Array:
 def knots_of(mesh: BodyMesh, boundary: str, frame: ContactFrame, reach: float) -> Array:
     """Pressure knots (k,) of a surface within `reach` of the contact, along the tangent, m.
 
-    All nodes of the surface, ends and middles of facets: with exact integrals the finer
-    pressure is stable, and results move four times less with the position of the mesh than
-    with knots at the ends alone.
+    Knots are all nodes of the surface, ends and middles of facets. With exact integrals the
+    pressure is stable, and results vary four times less with the position of the mesh than with
+    knots at facet ends.
 
     Raises
     ------
     ContactError
-        If there are fewer than nine.
+        If there are fewer than nine knots.
     """
     nodes = mesh.points[:, mesh.boundary_nodes(boundary)]
     xi, height = frame.along(nodes), np.abs(frame.above(nodes))
-    found = np.sort(xi[(np.abs(xi) <= reach) & (height <= reach)])
-    if found.size < 9:
-        raise ContactError(f"only {found.size} nodes of {boundary} within the contact window")
-    return found
+    knots = np.sort(xi[(np.abs(xi) <= reach) & (height <= reach)])
+    if knots.size < 9:
+        raise ContactError(
+            f"{knots.size} nodes of {boundary} within the contact window, must be >= 9"
+        )
+    return knots
 
 
 def normal_loads(
@@ -74,9 +76,9 @@ def normal_loads(
     frame: ContactFrame,
     shapes: PressureShapes | EllipticShapes,
 ) -> Array:
-    """Nodal forces (2, nodes, n) of each pressure shape acting along the frame's normal.
+    """Nodal forces (2, nodes, n) of each pressure shape along the normal of the frame, m.
 
-    The transpose weighs a displacement field with the shapes.
+    The transpose integrates a displacement times each shape.
 
     Raises
     ------
@@ -113,7 +115,7 @@ def normal_loads(
 
 
 def _local_coordinate(xi_nodes: Array, xi: Array) -> Array:
-    """Facet coordinate s in [0, 1] with xi(s) given, for quadratic facets (Newton)."""
+    """Facet coordinate s in [0, 1] at xi, of quadratic facets, by Newton's method."""
     first, last, middle = xi_nodes
     s = (xi - first) / (last - first)
     for _ in range(20):
@@ -123,4 +125,4 @@ def _local_coordinate(xi_nodes: Array, xi: Array) -> Array:
         s = s - step
         if np.abs(step).max(initial=0.0) < 1e-14:
             break
-    return s
+    return np.asarray(s)

@@ -60,8 +60,8 @@ def _expansion(target: Target) -> Outcome:
 
 
 def _magnitudes() -> Outcome:
-    found = torque_from_cylinder(ENGINE_800, SLOW_IDLE)
-    parts = found.components
+    torque = torque_from_cylinder(ENGINE_800, SLOW_IDLE)
+    parts = torque.components
     printed = torque_from_cylinder(
         replace(ENGINE_800, valve_spring_rate=PRINTED_VALVE_SPRING), SLOW_IDLE
     ).components["valve_train"]

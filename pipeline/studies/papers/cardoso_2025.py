@@ -122,7 +122,9 @@ def _fast_burn(targets: Mapping[str, Target]) -> dict[str, Outcome]:
     )
     ripple = motion.statistics
     swing = targets["C25-05"].value - targets["C25-04"].value
-    told = f"swing of {ripple.peak_to_peak:.3g} against {swing:g} rad/s with the effective inertia"
+    reason = (
+        f"swing of {ripple.peak_to_peak:.3g} against {swing:g} rad/s with the effective inertia"
+    )
     same: str = "reproduced" if abs(ripple.peak_to_peak / swing - 1) <= 0.1 else "not reproduced"
     return {
         "C25-01": within(torque.peak_to_peak, targets["C25-01"].value, 0.10,
@@ -130,8 +132,8 @@ def _fast_burn(targets: Mapping[str, Target]) -> dict[str, Outcome]:
         "C25-02": within(torque.peak, targets["C25-02"].value, 0.01,
                          "imposed by the intake pressure, "
                          f"{1e-3 * engine.intake_pressure:.3g} kPa; not an unloaded idle"),
-        "C25-04": Outcome(ripple.minimum, same, told),  # type: ignore[arg-type]
-        "C25-05": Outcome(ripple.maximum, same, told),  # type: ignore[arg-type]
+        "C25-04": Outcome(ripple.minimum, same, reason),  # type: ignore[arg-type]
+        "C25-05": Outcome(ripple.maximum, same, reason),  # type: ignore[arg-type]
     }  # fmt: skip
 
 
@@ -157,7 +159,7 @@ def _engaged(targets: Mapping[str, Target], cams: Cams) -> dict[str, Outcome]:
         "C25-14": "torque_std_Nm", "C25-18": "speed_std_rad_per_s", "C25-19": "speed_p2p_rad_per_s",
         "C25-20": "speed_std_rad_per_s", "C25-21": "speed_p2p_rad_per_s",
     }  # fmt: skip
-    found = {
+    outcomes = {
         row: Outcome(
             full[name],
             "not decidable",
@@ -175,15 +177,15 @@ def _engaged(targets: Mapping[str, Target], cams: Cams) -> dict[str, Outcome]:
     for row, (name, preload) in judged.items():
         other = figures["half", preload][name]
         why = f"cam cut for the full torque, 12 values 5 deg apart; half the torque {other:.3g}"
-        found[row] = within(figures["full", preload][name], targets[row].value, 0.10, why)
+        outcomes[row] = within(figures["full", preload][name], targets[row].value, 0.10, why)
     stds = {p: figures["full", p]["speed_std_rad_per_s"] for p in PRELOADS}
     halves = {p: figures["half", p]["speed_std_rad_per_s"] for p in PRELOADS}
-    found["C25-26"] = Outcome(
+    outcomes["C25-26"] = Outcome(
         _order(stds),
         "reproduced" if _order(stds) == targets["C25-26"].value else "not reproduced",
         f"order of the speed std with the full torque; half the torque gives {_order(halves)}",
     )
-    return found
+    return outcomes
 
 
 def _order(stds: Mapping[float, float]) -> str:
@@ -214,12 +216,12 @@ def _inertia(
     printed = sum(target.value)
     ripple = stock.statistics
     implied = implied_inertia(idle.total, ripple.mean, 3.74)
-    found = sorted((round(rebuilt.inertia, 5), round(implied, 5)))
+    sums = sorted((round(rebuilt.inertia, 5), round(implied, 5)))
     return Outcome(
-        found,
+        sums,
         "not reproduced",
         f"sum implied by the printed speeds with the printed torque and with the model's, against "
-        f"{printed:.4g} kg m2 printed: {found[0] / printed:.2g} times as much",
+        f"{printed:.4g} kg m2 printed: {sums[0] / printed:.2g} times as much",
     )
 
 

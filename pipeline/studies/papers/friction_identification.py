@@ -72,10 +72,10 @@ class Pendulum:
             return [state[1], -(drag + weight * np.sin(state[0])) / inertia]
 
         span = (float(time[0]), float(time[-1]))
-        found = solve_ivp(
+        solution = solve_ivp(
             motion, span, [angle, rate], t_eval=time, rtol=1e-9, atol=1e-11, method="DOP853"
         )
-        return np.asarray(found.y[0])
+        return np.asarray(solution.y[0])
 
 
 def from_pendulum(
@@ -178,21 +178,21 @@ def _fitted(
     scale = np.maximum(np.abs(start), 1e-6)
     # Steps far above what an integration within `miss` leaves to chance where the speed changes
     # its sign: a hundred times smaller ones made intervals of half their width.
-    found = least_squares(
+    fit = least_squares(
         miss, start, diff_step=np.full(start.size, 1e-3), x_scale=scale, xtol=1e-9, ftol=1e-9
     )
-    if not found.success:
-        raise InputError("decay", str(found.message), "a decay that friction explains")
-    freedom = len(found.fun) - len(start)
-    slope = np.asarray(found.jac)
-    covariance = np.linalg.pinv(slope.T @ slope) * (2.0 * found.cost / freedom)
+    if not fit.success:
+        raise InputError("decay", str(fit.message), "a decay that friction explains")
+    freedom = len(fit.fun) - len(start)
+    slope = np.asarray(fit.jac)
+    covariance = np.linalg.pinv(slope.T @ slope) * (2.0 * fit.cost / freedom)
     reach = stats.t.ppf(0.5 + 0.5 * CONFIDENCE, freedom) * np.sqrt(np.diag(covariance))
 
     def at(place: int | None) -> tuple[float, tuple[float, float]]:
         if place is None:
             return 0.0, (0.0, 0.0)
-        value = abs(float(found.x[place]))
+        value = abs(float(fit.x[place]))
         return value, (value - float(reach[place]), value + float(reach[place]))
 
     viscous, dry = at(places[0]), at(places[1])
-    return Identified(*viscous, *dry, residual=-found.fun)
+    return Identified(*viscous, *dry, residual=-fit.fun)

@@ -211,14 +211,14 @@ def compared(path: Path) -> dict[str, Any]:
     mechanisms: list[dict[str, Any]] = [_mechanism("slider-crank", rod, speed, dry)]
     for roller in case.rollers:
         drive = case.cam(roller)
-        found = drive.reactions(phi, speed)
-        need = np.abs(found.traction) / np.maximum(found.normal, 1e-300)
+        reactions = drive.reactions(phi, speed)
+        need = np.abs(reactions.traction) / np.maximum(reactions.normal, 1e-300)
         mechanisms.append(
             _mechanism(f"cam, roller {roller.name}", drive, speed, dry)
             | {
-                "normal_force_mean_N": float(found.normal.mean()),
-                "normal_force_min_N": float(found.normal.min()),
-                "normal_force_max_N": float(found.normal.max()),
+                "normal_force_mean_N": float(reactions.normal.mean()),
+                "normal_force_min_N": float(reactions.normal.min()),
+                "normal_force_max_N": float(reactions.normal.max()),
                 "traction_needed_mean": float(need.mean()),
                 "traction_needed_max": float(need.max()),
                 "sliding_loss_J": drive.sliding_loss(speed, roller.traction, roller.slide_ratio),
@@ -252,22 +252,22 @@ def _mechanism(
     name: str, drive: SliderCrankDrive | EccentricDrive, speed: float, dry: DryFriction | None
 ) -> dict[str, Any]:
     phi = uniform_turn(POSITIONS)
-    found = drive.reactions(phi, speed)
+    reactions = drive.reactions(phi, speed)
     return {
         "name": name,
         "losses_J": _losses(drive.losses(speed)),
         "dry_losses_J": None if dry is None else _losses(dry_losses(drive, speed, dry)),
         "efficiency_out_stroke": stroke_efficiency(drive, speed),
         "reduced_inertia_mean_kg_m2": float(drive.reduced_inertia(phi).mean()),
-        "pin_reaction_mean_N": float(np.hypot(*found.b).mean()),
-        "motor_torque_Nm": found.motor.tolist(),
+        "pin_reaction_mean_N": float(np.hypot(*reactions.b).mean()),
+        "motor_torque_Nm": reactions.motor.tolist(),
         "reduced_inertia_kg_m2": drive.reduced_inertia(phi).tolist(),
     }
 
 
-def _losses(found: Losses) -> dict[str, float]:
+def _losses(losses: Losses) -> dict[str, float]:
     names = ("shaft", "guide", "pin_a", "pin_b", "sliding", "total")
-    return {name: float(getattr(found, name)) for name in names}
+    return {name: float(getattr(losses, name)) for name in names}
 
 
 def _identified(decay: Decay, folder: Path) -> dict[str, Any]:
@@ -276,19 +276,19 @@ def _identified(decay: Decay, folder: Path) -> dict[str, Any]:
         raise InputError("decay.file", decay.file, "a relative path in the case file's folder")
     time, signal = read_decay(folder / name)
     if decay.kind == "run_down":
-        found = from_run_down(time, signal, decay.inertia)
+        friction = from_run_down(time, signal, decay.inertia)
     else:
         if decay.mass is None or decay.length is None:
             raise InputError("decay.mass, decay.length", "missing", "given for a pendulum")
-        found = from_pendulum(time, signal, Pendulum(decay.mass, decay.length, decay.inertia))
+        friction = from_pendulum(time, signal, Pendulum(decay.mass, decay.length, decay.inertia))
     return {
         "name": decay.name,
-        "viscous_Nms_per_rad": found.viscous,
-        "viscous_interval": list(found.viscous_interval),
-        "coulomb_Nm": found.coulomb,
-        "coulomb_interval": list(found.coulomb_interval),
-        "confidence": found.confidence,
-        "residual_rms": found.residual_rms,
+        "viscous_Nms_per_rad": friction.viscous,
+        "viscous_interval": list(friction.viscous_interval),
+        "coulomb_Nm": friction.coulomb,
+        "coulomb_interval": list(friction.coulomb_interval),
+        "confidence": friction.confidence,
+        "residual_rms": friction.residual_rms,
     }
 
 

@@ -72,7 +72,7 @@ def workspace(friction: PairFriction, speed: float) -> Workspace:
     Energy loss comparison between kinematically equivalent mechanisms (2024), eqs 43 to 46.
     """
     names = ("slider_crank", "big", "small")
-    found = {
+    energies = {
         name + suffix: np.full((len(CRANKS), len(RATIOS)), np.nan)
         for name in names
         for suffix in ("", "_offset")
@@ -85,12 +85,12 @@ def workspace(friction: PairFriction, speed: float) -> Workspace:
                 if rod < 2.0 * (crank + offset) * (1.0 - 1e-12):
                     continue
                 linkage = Eccentric(float(crank), rod, float(offset))
-                given = (friction, massless, slack)
+                common = (friction, massless, slack)
                 drives: tuple[SliderCrankDrive | EccentricDrive, ...] = (
-                    SliderCrankDrive(linkage, *given),
-                    EccentricDrive(linkage, BIG * rod, *given),
-                    EccentricDrive(linkage, SMALL * rod, *given),
+                    SliderCrankDrive(linkage, *common),
+                    EccentricDrive(linkage, BIG * rod, *common),
+                    EccentricDrive(linkage, SMALL * rod, *common),
                 )
                 for name, drive in zip(names, drives, strict=True):
-                    found[name + suffix][i, j] = drive.losses(speed, 360).total
-    return Workspace(CRANKS, RATIOS.astype(float), **found)
+                    energies[name + suffix][i, j] = drive.losses(speed, 360).total
+    return Workspace(CRANKS, RATIOS.astype(float), **energies)

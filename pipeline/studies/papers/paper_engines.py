@@ -61,5 +61,5 @@ def with_peak_torque(peak: float) -> CylinderEngine:
         engine = replace(fast, intake_pressure=pressure)
         return torque_from_cylinder(engine, IDLE_SPEED).peak - peak
 
-    pressure = brentq(excess, 34e3, 60e3, xtol=20.0, maxiter=12)
-    return replace(fast, intake_pressure=float(pressure))
+    pressure_for_peak = brentq(excess, 34e3, 60e3, xtol=20.0, maxiter=12)
+    return replace(fast, intake_pressure=float(pressure_for_peak))

@@ -18,7 +18,7 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, within
-from camwright.pipeline.studies.papers.valve_cam import (
+from camwright.pipeline.studies.valve_cam import (
     ElasticValve,
     ValveCam,
     rise_efficiency,
@@ -70,7 +70,7 @@ CRANK_RPM = 5000.0
 
 def study(targets: Mapping[str, Target]) -> PaperResult:
     """Every row of the paper that can be computed, and the studies behind them."""
-    rows = [_figures(name, given) for name, given in SETS.items()]
+    rows = [_figures(name, cam_set) for name, cam_set in SETS.items()]
     outcomes = {}
     for number, row in enumerate(rows, start=1):
         target = targets[f"P15-{number:02d}"]
@@ -96,13 +96,13 @@ def study(targets: Mapping[str, Target]) -> PaperResult:
     return PaperResult(outcomes, _studies(rows))
 
 
-def _figures(name: str, given: CamSet) -> dict[str, Any]:
-    cam, phi = given.cam, given.cam.rise()
+def _figures(name: str, cam_set: CamSet) -> dict[str, Any]:
+    cam, phi = cam_set.cam, cam_set.cam.rise()
     index, delta = cam.shape_index(phi), cam.pressure_angle(phi)
-    pitch = PitchCurve(given.motion.lift(), given.base_radius + ROLLER)
+    pitch = PitchCurve(cam_set.motion.lift(), cam_set.base_radius + ROLLER)
     contour = RollerContour(pitch, ROLLER)
     theta = np.arange(2880) * (2.0 * np.pi / 2880)
-    spring = Spring(rate=given.rate, preload=given.rate * given.compression)
+    spring = Spring(rate=cam_set.rate, preload=cam_set.rate * cam_set.compression)
     system = FollowerSystem(TAPPET, spring, GUIDE_SPACING, OVERHANG, GUIDE_FRICTION, GUIDE_FRICTION)
     return {
         "set": name,

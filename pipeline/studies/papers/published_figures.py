@@ -57,8 +57,8 @@ def within(obtained: float, published: float, tolerance: float, reason: str) -> 
 @cache
 def _document() -> Mapping[str, Any]:
     text = files(__package__).joinpath("targets.json").read_text(encoding="utf-8")
-    found: Mapping[str, Any] = json.loads(text)
-    return found
+    document: Mapping[str, Any] = json.loads(text)
+    return document
 
 
 def targets(paper: str | None = None) -> dict[str, Target]:
@@ -74,7 +74,7 @@ def citations() -> dict[str, Mapping[str, Any]]:
 
 def row_record(target: Target, outcome: Outcome | None) -> dict[str, Any]:
     """One row of ``validation.json``."""
-    found = outcome or Outcome(None, "not decidable", NOT_COMPUTED)
+    judged = outcome or Outcome(None, "not decidable", NOT_COMPUTED)
     return {
         "id": target.id,
         "paper": target.paper,
@@ -83,10 +83,10 @@ def row_record(target: Target, outcome: Outcome | None) -> dict[str, Any]:
         "kind": target.kind,
         "unit": target.unit,
         "published": target.value,
-        "obtained": found.obtained,
-        "difference": _difference(target.value, found.obtained),
-        "verdict": found.verdict,
-        "reason": found.reason,
+        "obtained": judged.obtained,
+        "difference": _difference(target.value, judged.obtained),
+        "verdict": judged.verdict,
+        "reason": judged.reason,
     }
 
 

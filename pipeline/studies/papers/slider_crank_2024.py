@@ -122,11 +122,11 @@ def _contact(
     }
     pins["slider-crank"] = float(np.hypot(*rod.reactions(phi, SPEED).b).mean())
     highest = max(pins, key=lambda name: pins[name])
-    told = ", ".join(f"{name} {force:.0f} N" for name, force in pins.items())
+    forces = ", ".join(f"{name} {force:.0f} N" for name, force in pins.items())
     outcomes["E24-18"] = Outcome(
         "trend" if highest == "small" else highest,
         "reproduced" if highest == "small" else "not reproduced",
-        f"mean reaction of the slider's pin: {told}; by a traction that is not there",
+        f"mean reaction of the slider's pin: {forces}; by a traction that is not there",
     )
     return outcomes
 
@@ -134,8 +134,8 @@ def _contact(
 def _inertia(
     targets: Mapping[str, Target], rod: SliderCrankDrive, cams: Mapping[str, EccentricDrive]
 ) -> dict[str, Outcome]:
-    found = [cams[name].masses.disc_inertia for name in ("small", "big")]
-    near = np.allclose(found, targets["E24-11"].value, rtol=0.12)
+    inertias = [cams[name].masses.disc_inertia for name in ("small", "big")]
+    near = np.allclose(inertias, targets["E24-11"].value, rtol=0.12)
     phi = uniform_turn(720)
     rises = [
         round(100 * float(drive.reduced_inertia(phi).mean() / drive.masses.common - 1), 2)
@@ -143,7 +143,7 @@ def _inertia(
     ]
     return {
         "E24-11": Outcome(
-            found,
+            inertias,
             "reproduced" if near else "not reproduced",
             "within 12 %: solid steel discs, 20 mm wide, of the inferred radii",
         ),
@@ -167,16 +167,16 @@ def _trends(space: Workspace) -> dict[str, Outcome]:
         )
     )
 
-    def told(holds: bool, word: str, reason: str) -> Outcome:
+    def trend(holds: bool, word: str, reason: str) -> Outcome:
         return Outcome(word if holds else "no", "reproduced" if holds else "not reproduced", reason)
 
     corner = bool(small.max() == small[0, 0])
     return {
-        "E24-14": told(space.big_is_best == total, "best",
+        "E24-14": trend(space.big_is_best == total, "best",
                        f"in {space.big_is_best} of {total} combinations"),
-        "E24-15": told(worse, "worse", "no exception where the offset is allowed"),
-        "E24-16": told(bool(rod.min() > 0), "above", f"by {rod.min():.1f} to {rod.max():.1f} %"),
-        "E24-17": told(corner, "trend", f"small roller {small[0, 0]:+.0f} % at 10 mm and ratio 2, "
+        "E24-15": trend(worse, "worse", "no exception where the offset is allowed"),
+        "E24-16": trend(bool(rod.min() > 0), "above", f"by {rod.min():.1f} to {rod.max():.1f} %"),
+        "E24-17": trend(corner, "trend", f"small roller {small[0, 0]:+.0f} % at 10 mm and ratio 2, "
                        f"at most {small[-1].max():+.0f} % at 400 mm"),
     }  # fmt: skip
 
@@ -218,6 +218,6 @@ def _studies(
     }
 
 
-def _by_pair(found: Any) -> dict[str, float]:
+def _by_pair(losses: Any) -> dict[str, float]:
     names = ("shaft", "guide", "pin_a", "pin_b", "sliding", "total")
-    return {f"{name}_J": round(float(getattr(found, name)), 3) for name in names}
+    return {f"{name}_J": round(float(getattr(losses, name)), 3) for name in names}

@@ -251,8 +251,8 @@ class EccentricDrive:
 
     def traction_needed(self, phi: Array, speed: float) -> Array:
         """|F_t| / F_n that rolling without slip asks for."""
-        found = self.reactions(phi, speed)
-        return np.abs(found.traction) / found.normal
+        reactions = self.reactions(phi, speed)
+        return np.abs(reactions.traction) / reactions.normal
 
     def sliding_loss(
         self,
@@ -326,17 +326,17 @@ def dry_losses(drive: SliderCrankDrive | EccentricDrive, speed: float, dry: DryF
     order in mu and left out.
     """
     phi = uniform_turn(POSITIONS)
-    found, linkage = drive.reactions(phi, speed), drive.linkage
+    reactions, linkage = drive.reactions(phi, speed), drive.linkage
     if isinstance(drive, SliderCrankDrive):
         spin = linkage.rod_rate(phi)
-        pin_a = _rubbed(dry.pin_a, found.a, 1.0 - spin)
+        pin_a = _rubbed(dry.pin_a, reactions.a, 1.0 - spin)
     else:
         spin, pin_a = drive.rolling_way(phi) / drive.roller_radius, 0.0
     return Losses(
-        shaft=_rubbed(dry.shaft, found.o, np.ones_like(phi)),
-        guide=_rubbed(dry.guide, found.side[None], linkage.height_rate(phi)),
+        shaft=_rubbed(dry.shaft, reactions.o, np.ones_like(phi)),
+        guide=_rubbed(dry.guide, reactions.side[None], linkage.height_rate(phi)),
         pin_a=pin_a,
-        pin_b=_rubbed(dry.pin_b, found.b, spin),
+        pin_b=_rubbed(dry.pin_b, reactions.b, spin),
     )
 
 

@@ -77,10 +77,10 @@ def reconstruct() -> Reconstruction:
     unknowns = least_squares(_residuals, guess, x_scale="jac", max_nfev=MAX_STEPS).x
     multipliers = np.zeros(_limits(unknowns).size)
     for _ in range(MAX_STEPS):
-        found = _step(unknowns, multipliers)
-        if found is None:
+        advance = _step(unknowns, multipliers)
+        if advance is None:
             break
-        step, multipliers = found
+        step, multipliers = advance
         unknowns = unknowns + step * min(1.0, FARTHEST / np.abs(step).max())
         if np.abs(step).max() < SETTLED:
             return Reconstruction(unknowns[:-1], float(unknowns[-1]) * 1e-3)
@@ -101,10 +101,10 @@ def _step(unknowns: Array, multipliers: Array) -> tuple[Array, Array] | None:
     met = _misses(unknowns).size  # from both sides; the rest are one-sided
     program.at_most(csr_array(-slopes), level)
     program.at_most(csr_array(slopes[:met]), -level[:met])
-    found = program.solved()
-    if found is None:
+    solution = program.solved()
+    if solution is None:
         return None
-    step, pushes, _ = found
+    step, pushes, _ = solution
     pushes[:met] -= pushes[level.size :]
     return step, pushes[: level.size]
 
@@ -180,19 +180,19 @@ def load() -> Reconstruction:
     return Reconstruction(np.array(rows, dtype=float)[:, 1], float(inertia.split("=")[1]))
 
 
-def to_csv(found: Reconstruction) -> str:
+def to_csv(reconstruction: Reconstruction) -> str:
     """Text of the file shipped; floats read back bit for bit."""
     head = [
         "# RECONSTRUCTED, not measured: the smoothest crank speed (third differences) that meets",
         "# the statistics of the stock GX120 at idle in Cardoso et al., Energies 2025, 18, 3256.",
         "# Written by: python -m camwright.pipeline.studies.papers.speed_reconstruction",
-        f"# inertia_kg_m2 = {found.inertia!r}",
+        f"# inertia_kg_m2 = {reconstruction.inertia!r}",
         "crank_angle_deg,speed_rad_per_s,torque_Nm",
     ]
-    torque = torque_of_motion(found.speed, found.inertia)
+    torque = torque_of_motion(reconstruction.speed, reconstruction.inertia)
     rows = [
         f"{10 * k},{float(speed)!r},{float(value)!r}"
-        for k, (speed, value) in enumerate(zip(found.speed, torque, strict=True))
+        for k, (speed, value) in enumerate(zip(reconstruction.speed, torque, strict=True))
     ]
     return "\n".join([*head, *rows]) + "\n"
 

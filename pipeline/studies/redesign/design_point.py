@@ -1,19 +1,19 @@
-"""One case to one point of a front. The full point is a pure function of its case.
+"""Point of a Pareto front from a case.
 
-That is the door for studies of many cases: `point_of` needs nothing but a case and gives plain
-numbers, so that any scheduler may spread it over processes or machines.
+`point_of` is a pure function of a case with plain numbers as result, for studies of many cases in
+parallel.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.registry import without_sign_off
@@ -28,7 +28,7 @@ from camwright.pipeline.smoothing.synthesis_problem import coarsened
 
 @dataclass(frozen=True)
 class Rough:
-    """A case on a coarse turn: worst ripple left over that without a cam, size m, mass kg."""
+    """Result on a coarse turn: residual over engine torque ripple, cam radius m, mass kg."""
 
     feasible: bool
     ripple: float
@@ -37,19 +37,18 @@ class Rough:
 
     @classmethod
     def impossible(cls) -> Rough:
-        """What there is no cam of."""
+        """Result of a case without a cam."""
         return cls(feasible=False, ripple=1.0, cam_radius=0.0, mass=0.0)
 
 
 @dataclass(frozen=True)
 class Point:
-    """A case by its preview, SI.
+    """Result of a case by its preview, SI.
 
-    ripple_before and ripple_left are the standard deviations of the crank torque, N m; mass is
-    that of cam, follower and the half of the spring that the follower does not count. failing and
-    open are the must-haves that fail or that a number is missing for, what only a run answers left
-    out; binding are the limits that cost ripple, the dearest first. p0_max is NaN where there is no
-    body.
+    ripple_before, ripple_left: standard deviation of the crank torque without and with the cam,
+    N m; mass: of cam, follower and the half of the spring not part of the follower; failing, open:
+    ids of the blocking checks that fail or are not evaluated, without those of a sign-off; binding:
+    limits by decreasing shadow price. p0_max is NaN where the contour does not bound a body.
     """
 
     feasible: bool
@@ -68,22 +67,22 @@ class Point:
     open: tuple[str, ...]
     binding: tuple[str, ...]
 
-    def as_record(self) -> dict[str, Any]:
-        """For JSON: each name with its unit."""
+    def as_record(self) -> dict[str, float | list[str] | None]:
+        """Record for JSON, names with units."""
         return {
             "feasible": self.feasible,
             "ripple_before_Nm": self.ripple_before,
             "ripple_left_Nm": self.ripple_left,
             "torque_reduction": 1.0 - self.ripple_left / self.ripple_before,
-            "cam_radius_mm": 1e3 * self.cam_radius,
-            "mass_g": 1e3 * self.mass,
-            "prime_radius_mm": 1e3 * self.prime_radius,
+            "cam_radius_mm": in_unit(self.cam_radius, "mm"),
+            "mass_g": in_unit(self.mass, "g"),
+            "prime_radius_mm": in_unit(self.prime_radius, "mm"),
             "preload_N": self.preload,
-            "spring_rate_N_per_mm": 1e-3 * self.spring_rate,
-            "lift_max_mm": 1e3 * self.lift_max,
-            "pressure_angle_max_deg": float(np.degrees(self.pressure_angle_max)),
+            "spring_rate_N_per_mm": in_unit(self.spring_rate, "N/mm"),
+            "lift_max_mm": in_unit(self.lift_max, "mm"),
+            "pressure_angle_max_deg": in_unit(self.pressure_angle_max, "deg"),
             "normal_force_max_N": self.normal_force_max,
-            "p0_max_MPa": 1e-6 * self.p0_max if np.isfinite(self.p0_max) else None,
+            "p0_max_MPa": in_unit(self.p0_max, "MPa") if np.isfinite(self.p0_max) else None,
             "failing": list(self.failing),
             "open": list(self.open),
             "binding": list(self.binding),
@@ -91,7 +90,7 @@ class Point:
 
 
 def point_of(case: Case) -> Point:
-    """The case by constrained synthesis and preview, as `camwright check CASE` does.
+    """Point of a case by constrained synthesis and preview.
 
     Raises
     ------
@@ -102,7 +101,7 @@ def point_of(case: Case) -> Point:
     drawn, contour, turn = trial.case, trial.contour, trial.cycles[0].turn
     rest, torque = turn.torque_after, turn.torque_before
     if rest is None or torque is None:
-        raise InputError("engine", "missing", "given: a redesign balances its torque")
+        raise InputError("engine", "missing", "specified: a redesign balances its torque")
     record = trial.synthesis or {"feasible": False, "prices": []}
     blocking = [check for check in without_sign_off(trial.checks) if check.blocks]
     return Point(
@@ -125,10 +124,10 @@ def point_of(case: Case) -> Point:
 
 
 def rough_point(case: Case, torques: Mapping[str, Torque]) -> Rough:
-    """The same on a coarse turn, and no checks but the limits of the synthesis.
+    """Point of a case on a coarse turn with the limits of the synthesis, without checks.
 
-    What is asked of the ripple is compared with the least that is found: as a limit it would
-    only keep the synthesis from telling how far off a hopeless case is.
+    The limit of the ripple is compared with its minimum afterwards: as a constraint it would hide
+    the ripple of an infeasible case.
     """
     problem = coarsened(problem_of(case, torques))
     design = synthesise(replace(problem, left_out=frozenset({TORQUE_REDUCTION.id})))
@@ -143,6 +142,7 @@ def rough_point(case: Case, torques: Mapping[str, Torque]) -> Rough:
 
 
 def _mass(case: Case, contour: Contour) -> float:
+    """Mass of cam, follower and half of the spring, kg."""
     cam, design = case.cam, case.spring.design
     disc = unbalance(contour, cam.bore_radius, cam.keyway, cam.width, cam.material.density).mass
     return float(disc + case.follower.mass + (0.0 if design is None else 0.5 * design.mass))

@@ -1,4 +1,4 @@
-"""The points that no other beats in both respects."""
+"""Pareto front of two objectives, both minimised."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from collections.abc import Sequence
 def front(
     figures: Sequence[tuple[float, float]], alike: float = 0.0, gain: float = 0.0
 ) -> list[int]:
-    """Indices of the points none of the others is as good as, by the first figure.
+    """Indices of the points of the front, by increasing first objective.
 
     Parameters
     ----------
-    figures : sequence of (float, float)   both the better the smaller; of equal ones the first
-    alike : float   share by which first figures may differ and still be one; the better stays
-    gain : float    what the second figure must fall by for a point to be worth telling
+    figures : sequence of (float, float)   objectives; of equal points the first
+    alike : float   relative difference of first objectives up to which the better point replaces
+    gain : float    minimum decrease of the second objective between points
     """
-    found: list[int] = []
+    chosen: list[int] = []
     for k in sorted(range(len(figures)), key=lambda k: (*figures[k], k)):
         size, left = figures[k]
-        if found and not left < figures[found[-1]][1] - gain:
+        if chosen and not left < figures[chosen[-1]][1] - gain:
             continue
-        if found and size <= figures[found[-1]][0] * (1.0 + alike):
-            found.pop()
-        found.append(k)
-    return found
+        if chosen and size <= figures[chosen[-1]][0] * (1.0 + alike):
+            chosen.pop()
+        chosen.append(k)
+    return chosen
 
 
 def thinned(places: Sequence[int], figures: Sequence[tuple[float, float]], most: int) -> list[int]:
-    """At most so many points of a front: those that add least to its area go, the ends stay."""
+    """At most `most` points of a front: without those of least area, with both ends."""
     kept = list(places)
     while len(kept) > max(most, 2):
         areas = [

@@ -1,8 +1,7 @@
-"""Which parts to try next, by bounds and by what has been solved.
+"""Search order of the catalogue, by bounds and by solved points.
 
-Rough points, on a coarse turn, find the way through the catalogue: for each roller the best spring
-and bushes without a bound on the cam's size, then again in ever less room. What is tried depends
-on the case alone, never on the number of processes or on which of them is first.
+Points on a coarse turn: for each roller the best spring and bush without a limit on the cam radius,
+then under decreasing limits. The choices depend on the case alone, not on the processes.
 """
 
 from __future__ import annotations
@@ -25,14 +24,14 @@ from camwright.pipeline.smoothing.synthesis_problem import Problem
 from camwright.pipeline.studies.redesign import ripple_bounds
 from camwright.pipeline.studies.redesign.design_point import Rough
 
-RUNGS, RUNG = 6, 0.93  # rooms tried for a roller, each this much smaller than the cam before
+RUNGS, RUNG = 6, 0.93  # limits of the cam radius per roller, and their ratio to the last cam
 
 Branch = Generator[Choice, Rough, None]
 
 
 @dataclass(frozen=True)
 class Pruned:
-    """A part left out before anything was solved with it, and why."""
+    """A part excluded without solution, and the reason."""
 
     part: str
     why: str
@@ -40,7 +39,7 @@ class Pruned:
 
 @dataclass(frozen=True)
 class Pair:
-    """Spring and bush for a roller, and the least ripple they can leave as far as is known."""
+    """Spring and bush of a roller, and the lower bound of their residual ripple."""
 
     spring: str
     bush: str
@@ -48,20 +47,19 @@ class Pair:
 
 
 Found = tuple[list[Pair], Rough | None]
-"""Pairs that keep the limits, with what they left as their bound, and the best point of them."""
+"""Feasible pairs with their residual ripple as bound, and the best point of them."""
 
 
 def branch(roller: str, least: Mapping[str, float], bushes: Sequence[str]) -> Branch:
-    """Choices to try with a roller, one at a time; is sent what came of each.
+    """Choices of a roller, one at a time; the point of each is sent back.
 
-    First without a bound on the cam's size, then in rooms that are each a little smaller than
-    the best cam before. Less room never leaves less ripple, so what a pair left in one room is
-    its bound in the next.
+    First without a limit on the cam radius, then under limits below the best cam so far. A smaller
+    limit never reduces the ripple: the ripple of a pair is its bound under the next limit.
 
     Parameters
     ----------
-    least : mapping      bound on the ripple by spring
-    bushes : sequence    the likeliest first
+    least : mapping      lower bound of the ripple by spring
+    bushes : sequence    best pv rating first
     """
     pairs, best = yield from _unbounded(roller, least, bushes)
     for _ in range(1, RUNGS):
@@ -73,50 +71,50 @@ def branch(roller: str, least: Mapping[str, float], bushes: Sequence[str]) -> Br
 def _unbounded(
     roller: str, least: Mapping[str, float], bushes: Sequence[str]
 ) -> Generator[Choice, Rough, Found]:
-    """Every spring with the likeliest bush, then the other bushes with the best spring."""
+    """All springs with the first bush, then the other bushes with the best spring."""
     pairs: list[Pair] = []
     points: list[Rough] = []
     ripples: dict[str, float] = {}
     for spring in sorted(least, key=lambda name: (least[name], name)):
-        found = yield Choice(roller, spring, bushes[0])
-        ripples[spring] = found.ripple
-        if found.feasible:
-            pairs.append(Pair(spring, bushes[0], max(found.ripple, least[spring])))
-            points.append(found)
-    likeliest = min(ripples, key=lambda name: (ripples[name], name))
+        point = yield Choice(roller, spring, bushes[0])
+        ripples[spring] = point.ripple
+        if point.feasible:
+            pairs.append(Pair(spring, bushes[0], max(point.ripple, least[spring])))
+            points.append(point)
+    best = min(ripples, key=lambda name: (ripples[name], name))
     for bush in bushes[1:]:
-        found = yield Choice(roller, likeliest, bush)
-        if found.feasible:
-            pairs.append(Pair(likeliest, bush, max(found.ripple, least[likeliest])))
-            points.append(found)
+        point = yield Choice(roller, best, bush)
+        if point.feasible:
+            pairs.append(Pair(best, bush, max(point.ripple, least[best])))
+            points.append(point)
     return pairs, min(points, key=lambda point: point.ripple, default=None)
 
 
 def _within(roller: str, pairs: Sequence[Pair], room: float) -> Generator[Choice, Rough, Found]:
-    """Pairs in the order of their bounds until a bound is no better than the best found."""
+    """Pairs by increasing bound until a bound is not below the best ripple."""
     best: Rough | None = None
     after: list[Pair] = []
     for pair in sorted(pairs, key=lambda p: (p.bound, p.spring, p.bush)):
         if best is not None and pair.bound >= best.ripple:
             after.append(pair)
             continue
-        found = yield Choice(roller, pair.spring, pair.bush, room)
-        if found.feasible:
-            after.append(replace(pair, bound=max(found.ripple, pair.bound)))
-            if best is None or found.ripple < best.ripple:
-                best = found
+        point = yield Choice(roller, pair.spring, pair.bush, room)
+        if point.feasible:
+            after.append(replace(pair, bound=max(point.ripple, pair.bound)))
+            if best is None or point.ripple < best.ripple:
+                best = point
     return after, best
 
 
 def branches(
     case: Case, parts: Catalogue, problem: Problem, *, by_mass: bool
 ) -> tuple[dict[str, Branch], list[Pruned]]:
-    """A branch for each roller worth trying, and the parts that are not, with the reasons.
+    """Search branch of each roller, and the excluded parts with reasons.
 
     Parameters
     ----------
-    problem : Problem   of the case as given: its torque and load cases
-    by_mass : bool      whether a lighter spring is worth trying beside a longer one
+    problem : Problem   of the original case: torque and load cases
+    by_mass : bool      whether mass is the second objective
     """
     rollers = undominated(parts.rollers, better_roller)
     bushes = undominated(parts.bushes, better_bush)
@@ -124,49 +122,49 @@ def branches(
     usable = {name: pair for name, pair in travels.items() if pair[1] > 0.0}
     springs = undominated(usable, lambda a, b: better_spring(a, b, by_mass=by_mass))
     pruned = [
-        *_left_out(parts.rollers, rollers, "another roller of its size is rated no lower"),
-        *_left_out(parts.bushes, bushes, "another bush rubs no more and bears no less"),
-        *_left_out(travels, usable, "a spring that keeps no limit at the case's preload"),
-        *_left_out(usable, springs, "another spring of its rate has no less travel"),
+        *_left_out(parts.rollers, rollers, "dominated by another roller of its size"),
+        *_left_out(parts.bushes, bushes, "dominated by another bush in friction and load"),
+        *_left_out(travels, usable, "no travel within its limits at the preload of the case"),
+        *_left_out(usable, springs, "dominated by another spring of its rate in travel"),
     ]
     names = sorted(bushes, key=lambda name: (-bushes[name].pv, name))
     names = [AS_GIVEN, *names] if _bushes_known(case) else names
     least = _Least(case, problem, springs)
-    found: dict[str, Branch] = {}
+    running: dict[str, Branch] = {}
     for name, card in rollers.items():
         force = ripple_bounds.bearable_force(card, case)
         bound = least.by_spring(force)
         if bound:
-            found[name] = branch(name, bound, names)
+            running[name] = branch(name, bound, names)
         else:
-            words = f"a roller that bears {force:.0f} N: too little for the reduction asked for"
+            words = f"roller load limit {force:.0f} N: too low for the required torque reduction"
             pruned.append(Pruned(name, words))
-    return found, pruned
+    return running, pruned
 
 
 @dataclass(frozen=True, eq=False)
 class _Least:
-    """The least ripple of springs behind a roller, from what they can hold."""
+    """Lower bounds of the ripple of springs with a roller, from their energy."""
 
     case: Case
     problem: Problem
     springs: dict[str, tuple[HelicalSpring, float]]
 
     def by_spring(self, force: float) -> dict[str, float]:
-        """Bounds for a roller that bears a force (N); springs that cannot do are left out."""
+        """Bounds by spring for a roller load limit (N), without infeasible springs."""
         case, problem = self.case, self.problem
         torque = max(problem.scenarios, key=lambda item: item.weight).torque
         bound = ripple_bounds.RippleBound(torque, problem.gear_ratio)
         relief = ripple_bounds.relief_of(problem.scenarios, problem.ratings.jump)
-        allowed = 1.0 - case.limits[TORQUE_REDUCTION] + ripple_bounds.IN_HAND
-        preload, found = case.spring.preload, {}
+        allowed = 1.0 - case.limits[TORQUE_REDUCTION] + ripple_bounds.RESERVE
+        preload, bounds = case.spring.preload, {}
         for name, (spring, travel) in self.springs.items():
             held = preload * travel + 0.5 * spring.rate * travel**2
             borne = ripple_bounds.bearable_energy(force, spring.rate, preload, relief)
             least = bound(min(held, borne))
             if least <= allowed:
-                found[name] = max(0.0, least - ripple_bounds.IN_HAND)
-        return found
+                bounds[name] = max(0.0, least - ripple_bounds.RESERVE)
+        return bounds
 
 
 def _bushes_known(case: Case) -> bool:
@@ -174,6 +172,6 @@ def _bushes_known(case: Case) -> bool:
     return all(g.pressure_limit is not None and g.pv_limit is not None for g in guides)
 
 
-def _left_out(given: Iterable[str], kept: Iterable[str], why: str) -> list[Pruned]:
+def _left_out(parts: Iterable[str], kept: Iterable[str], why: str) -> list[Pruned]:
     known = set(kept)
-    return [Pruned(name, why) for name in given if name not in known]
+    return [Pruned(name, why) for name in parts if name not in known]

@@ -1,4 +1,4 @@
-"""Points solved in a process of their own and kept on disk, by the case they are of."""
+"""Points solved in worker processes and cached on disk by case."""
 
 from __future__ import annotations
 
@@ -16,15 +16,17 @@ from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.studies.redesign.design_point import point_of, rough_point
 
+Record = dict[str, Any]
+
 SOLVED = "solved"
 
 
 @dataclass(frozen=True)
 class Task:
-    """A case as text to be solved on a coarse turn or whole.
+    """A case as text, to be solved on a coarse turn or in full.
 
-    base is the case all variants come from, whose torque they share; folder holds the files they
-    include, and ``solved/`` what is kept; version names what solves it.
+    base: the original case, whose torque all variants share; folder: of the included files and of
+    the cache ``solved/``; version: of the source.
     """
 
     text: str
@@ -35,13 +37,13 @@ class Task:
 
     @property
     def path(self) -> Path:
-        """Where the point is kept."""
+        """File of the point in the cache."""
         digest = hashlib.sha256(f"{self.version}\0{self.base}\0{self.text}".encode()).hexdigest()
         return self.folder / SOLVED / f"{self.tier}_{digest[:24]}.json"
 
 
-def solved(task: Task) -> dict[str, Any]:
-    """The record of a point, as kept or solved now; what cannot be a cam has its ``why``."""
+def solved(task: Task) -> Record:
+    """Record of a point, cached or solved; ``why`` states the reason of a missing cam."""
     known = _read(task.path)
     if known is not None:
         return known
@@ -57,16 +59,18 @@ def solved(task: Task) -> dict[str, Any]:
     return record
 
 
-def _read(path: Path) -> dict[str, Any] | None:
+def _read(path: Path) -> Record | None:
+    """Record of a cached point; None without one."""
     if not path.is_file():
         return None
     try:
-        found = read_json(path)
-    except CamError:  # torn by a crash of the machine: solved anew
+        record = read_json(path)
+    except CamError:  # damaged file: solved again
         return None
-    return found if isinstance(found, dict) and "feasible" in found else None
+    return record if isinstance(record, dict) and "feasible" in record else None
 
 
 @lru_cache(maxsize=1)
 def _torques(base: str, folder: Path) -> Mapping[str, Torque]:
+    """Engine torques of the original case by load case."""
     return engine_torques(parse_case(base, folder))

@@ -1,17 +1,18 @@
-"""`camwright redesign`: from a case and the catalogues to a front of runnable cases."""
+"""Command `camwright redesign`: Pareto front of cases over the catalogues."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import json_text, read_json, write_atomic
 from camwright.pipeline.base.progress import Progress
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.worker_processes import pool, workers_for
 from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.cards.substitution import Choice, variant
@@ -23,23 +24,22 @@ from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.studies.redesign.design_point import Rough
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.part_search import Branch, branches
-from camwright.pipeline.studies.redesign.point_store import SOLVED, Task, solved
+from camwright.pipeline.studies.redesign.point_store import SOLVED, Record, Task, solved
 
 AGAINST = {"size": "cam_radius_mm", "mass": "mass_g"}
 RECORD = "redesign.json"
-MOST_POINTS = 12  # of a front that are solved whole
-ALIKE = 1e-3  # share of size or of the whole ripple below which two points are one
-_BUSY = 64  # more processes than this have nothing to do
-_OF_A_BRANCH = 16  # choices it asks for, about
+MOST_POINTS = 12  # of a front, solved in full
+ALIKE = 1e-3  # relative size or ripple below which two points are equal
+_BUSY = 64  # maximum number of processes
+_OF_A_BRANCH = 16  # expected choices per branch
 _OURS = re.compile(rf"redesign\.(json|html|png)|point_\d+\.toml|inputs|{SOLVED}")
 
-Record = dict[str, Any]
 Tried = tuple[Choice, Record]
 
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """A case to be redesigned: where it lies, what it may choose from, where points go."""
+    """A case to be redesigned: its folder, catalogue, output folder and source version."""
 
     case: Case
     folder: Path
@@ -48,7 +48,7 @@ class Search:
     version: str
 
     def text(self, choice: Choice) -> str:
-        """The case with the parts of a choice, resolved."""
+        """Resolved text of the case with the parts of a choice."""
         return variant(self.case, self.parts, choice, self.folder).to_toml()
 
     def task(self, text: str, tier: Literal["rough", "whole"]) -> Task:
@@ -58,13 +58,13 @@ class Search:
 def redesign(
     case_file: Path, out: Path, against: str, jobs: int | None, progress: Progress
 ) -> Record:
-    """The front of ripple against size or mass over the catalogues, written to a folder.
+    """Pareto front of ripple and size or mass over the catalogues, written to a folder.
 
     Parameters
     ----------
     out : Path      for ``redesign.json``, ``point_01.toml`` and so on, and ``solved/``
     against : str   of `AGAINST`
-    jobs : int      processes; None: the processors there are, at most 4
+    jobs : int      processes; None: number of cores, at most 4
 
     Returns
     -------
@@ -73,21 +73,21 @@ def redesign(
     Raises
     ------
     CamError
-        If the case cannot be redesigned, or the folder holds something else.
+        If the case cannot be redesigned, or the folder has other content.
     """
     if against not in AGAINST:
         raise InputError("--against", against, " or ".join(AGAINST))
     case, folder = read_case(case_file), case_file.resolve().parent
     if case.engine is None:
-        raise InputError("engine", "missing", "given: a redesign balances its torque")
+        raise InputError("engine", "missing", "specified: a redesign balances its torque")
     search = Search(case, folder, catalogue_of(folder), out.absolute(), versions()["source"])
     problem = problem_of(case, engine_torques(case))
     running, pruned = branches(case, search.parts, problem, by_mass=against == "mass")
     _prepare(search)
     with pool(workers_for(jobs, _BUSY)) as workers:
-        progress.stage("search through the catalogue")
+        progress.stage("search the catalogue")
         tried = _searched(search, running, workers, progress)
-        given, points = _solved_whole(search, _chosen(tried, against), workers, progress)
+        original, points = _solved_whole(search, _chosen(tried, against), workers, progress)
     kept, refused = _split(points, against)
     document = {
         "schema": 1,
@@ -95,7 +95,7 @@ def redesign(
         "input_sha256": case.sha256,
         "version": search.version,
         "against": against,
-        "given": given,
+        "given": original,
         "points": _written(search, kept),
         "refused": [_named(choice) | {"why": _why(record)} for choice, record in refused],
         "pruned": [asdict(one) for one in pruned],
@@ -106,7 +106,7 @@ def redesign(
 
 
 def _prepare(search: Search) -> None:
-    """Room for a redesign of this case; refuses a folder that holds anything else."""
+    """Prepare the output folder; it may hold an earlier redesign of this case only."""
     out, case = search.out, search.case
     if out.exists():
         strangers = [] if not out.is_dir() else [
@@ -125,14 +125,14 @@ def _prepare(search: Search) -> None:
 def _searched(
     search: Search, running: Mapping[str, Branch], workers: ProcessPoolExecutor, progress: Progress
 ) -> list[Tried]:
-    """Every choice the branches asked for, with its rough point, in the order of the choices."""
-    found: list[Tried] = []
+    """All choices of the branches with their points on a coarse turn, by choice."""
+    tried: list[Tried] = []
     refusals: list[InputError] = []
-    waiting: dict[Any, tuple[Branch, Choice]] = {}
+    waiting: dict[Future[Record], tuple[Branch, Choice]] = {}
     expected = _OF_A_BRANCH * len(running)
 
     def ask(branch: Branch, answer: Rough | None) -> None:
-        """The branch's next choice that can be built goes to the workers."""
+        """Submit the next valid choice of a branch to the workers."""
         while True:
             try:
                 choice = next(branch) if answer is None else branch.send(answer)
@@ -142,7 +142,7 @@ def _searched(
                 task = search.task(search.text(choice), "rough")
             except InputError as error:
                 refusals.append(error)
-                found.append((choice, {"feasible": False, "why": str(error)}))
+                tried.append((choice, {"feasible": False, "why": str(error)}))
                 answer = Rough.impossible()
                 continue
             waiting[workers.submit(solved, task)] = (branch, choice)
@@ -151,32 +151,32 @@ def _searched(
     for branch in running.values():
         ask(branch, None)
     while waiting:
-        done, _ = wait(waiting, return_when=FIRST_COMPLETED)
-        for future in done:
+        completed, _ = wait(waiting, return_when=FIRST_COMPLETED)
+        for future in completed:
             branch, choice = waiting.pop(future)
             record = future.result()
-            found.append((choice, record))
-            progress.advance(len(found), max(expected, len(found) + len(waiting)))
+            tried.append((choice, record))
+            progress.advance(len(tried), max(expected, len(tried) + len(waiting)))
             ask(branch, Rough(**record) if "why" not in record else Rough.impossible())
-    if refusals and len(refusals) == len(found):
-        raise refusals[0]  # nothing fits: it is the case, not the parts
-    return sorted(found, key=lambda pair: str(pair[0]))
+    if refusals and len(refusals) == len(tried):
+        raise refusals[0]  # no choice is valid: an error of the case
+    return sorted(tried, key=lambda pair: str(pair[0]))
 
 
 def _chosen(tried: Sequence[Tried], against: str) -> list[Choice]:
-    """Choices on the front of the rough points."""
+    """Choices on the front of the points on a coarse turn."""
     feasible = [(choice, record) for choice, record in tried if record["feasible"]]
     size = "cam_radius" if against == "size" else "mass"
     figures = [(record[size], record["ripple"]) for _, record in feasible]
-    places = front(figures, ALIKE, ALIKE)  # the ripple is a share of that without a cam
+    places = front(figures, ALIKE, ALIKE)  # the ripple is relative to that of the engine
     return [feasible[k][0] for k in thinned(places, figures, MOST_POINTS)]
 
 
 def _solved_whole(
     search: Search, chosen: Sequence[Choice], workers: ProcessPoolExecutor, progress: Progress
 ) -> tuple[Record, list[Tried]]:
-    """The case as given, and every choice, each by synthesis and closed forms in full."""
-    progress.stage(f"{len(chosen)} points on the front, solved whole")
+    """Original case and choices by synthesis and preview."""
+    progress.stage(f"solve {len(chosen)} points of the front")
     texts = [search.case.to_toml(), *(search.text(choice) for choice in chosen)]
     futures = [workers.submit(solved, search.task(text, "whole")) for text in texts]
     records = []
@@ -187,7 +187,7 @@ def _solved_whole(
 
 
 def _split(points: Sequence[Tried], against: str) -> tuple[list[Tried], list[Tried]]:
-    """The front of what keeps every limit, smallest first, and the points that are not on it."""
+    """Points of the front by increasing size, and the other points."""
     good = [pair for pair in points if pair[1]["feasible"] and not pair[1]["failing"]]
     figures = [(record[AGAINST[against]], record["ripple_left_Nm"]) for _, record in good]
     least = min((record["ripple_before_Nm"] for _, record in good), default=0.0)
@@ -196,33 +196,38 @@ def _split(points: Sequence[Tried], against: str) -> tuple[list[Tried], list[Tri
 
 
 def _why(record: Record) -> str:
-    """Why a point that was solved whole is not on the front."""
+    """Reason why a solved point is not on the front."""
     if "why" in record:
         return str(record["why"])
     if not record["feasible"]:
         return "no cam keeps all limits on the fine turn"
-    return f"fails {', '.join(record['failing'])}" if record["failing"] else "another is better"
+    return (
+        f"fails {', '.join(record['failing'])}"
+        if record["failing"]
+        else "dominated by another point"
+    )
 
 
 def _written(search: Search, kept: Sequence[Tried]) -> list[Record]:
-    """The points as case files, in place of those of an earlier search, and their records."""
+    """Write the points as case files, replacing earlier ones; their records."""
     for old in search.out.glob("point_*.toml"):
         old.unlink()
-    found = []
+    records = []
     for number, (choice, record) in enumerate(kept, start=1):
         name, text = f"point_{number:02d}.toml", search.text(choice)
         head = (
             f"# Point {number} of {len(kept)} of the redesign of {search.case.name}.\n"
             f"# {choice.words}.\n"
-            f"# Foreseen: {record['ripple_left_Nm']:.4g} N m of torque ripple left (std), "
+            f"# Preview: {record['ripple_left_Nm']:.4g} N m of torque ripple left (std), "
             f"cam radius {record['cam_radius_mm']:.4g} mm, {record['mass_g']:.4g} g.\n"
         )
         write_atomic(search.out / name, head + text)
-        found.append({"file": name} | _named(choice) | record)
-    return found
+        records.append({"file": name} | _named(choice) | record)
+    return records
 
 
 def _named(choice: Choice) -> Record:
+    """Names of the parts of a choice, and the limit of the cam radius."""
     room = choice.cam_radius
     return {"roller": choice.roller, "spring": choice.spring, "bush": choice.bush,
-            "room_mm": None if room is None else 1e3 * room}  # fmt: skip
+            "room_mm": None if room is None else in_unit(room, "mm")}  # fmt: skip

@@ -1,4 +1,4 @@
-"""Cheap bounds: what ripple a spring and a roller must leave at least, before any cam is drawn."""
+"""Lower bounds of the residual ripple of a spring and a roller, without synthesis."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from camwright.pipeline.smoothing.constraints import Scenario
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.synthesis_problem import thinned
 
-IN_HAND = 0.05  # of the ripple, for friction and inertia, which the bound does not know
+RESERVE = 0.05  # relative ripple, for friction and inertia, which the bound neglects
 _COEFFICIENTS, _POINTS = 36, 144
 
 
 @dataclass(frozen=True, eq=False)
 class RippleBound:
-    """Least ripple left by a spring that can hold a given energy at most.
+    """Lower bound of the residual ripple of a spring with a maximum energy.
 
-    Torque is the slope of the stored energy, so the closest slope of any E(psi) between nothing
-    and the greatest energy bounds what every cam leaves, friction and inertia aside. The problem
-    is convex: one program an energy, exact for the splines of the turn.
+    The torque is the slope of the stored energy: the best approximation by the slope of any E(psi)
+    between 0 and the maximum energy bounds the residual of every cam, without friction and inertia.
+    One convex program per energy, exact for the splines of the turn.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class RippleBound:
     gear_ratio: float
 
     def __call__(self, energy: float) -> float:
-        """Ripple left over that without a cam, 0 to 1, at the greatest energy (J)."""
+        """Residual over engine torque ripple, 0 to 1, at a maximum energy (J)."""
         if not energy > 0.0:
             return 1.0
         theta = uniform_turn(_POINTS)
@@ -54,31 +54,31 @@ class RippleBound:
                 Rows("most", -one, csr_array(level), elastic=False)]  # fmt: skip
         none, box = np.zeros(_COEFFICIENTS), np.full((2, _COEFFICIENTS), 10.0)
         box[0] *= -1.0
-        found = solved([norm], rows, np.diag(none), none, box, 1.0)
-        if found is None:
-            raise ResultError("redesign: the bound on the ripple was not solved")
-        return found.ripple
+        program = solved([norm], rows, np.diag(none), none, box, 1.0)
+        if program is None:
+            raise ResultError("redesign: bound of the ripple not solved")
+        return program.ripple
 
 
 def bearable_force(card: BearingCard, case: Case) -> float:
-    """Greatest normal force (N) that a roller bears: static rating and outer ring."""
+    """Maximum normal force (N) of a roller, by static rating and outer ring."""
     static = card.C0 / case.limits[ROLLER_STATIC_SAFETY]
     return static if card.radial_limit is None else min(static, card.radial_limit)
 
 
 def bearable_energy(force: float, rate: float, preload: float, relief: float) -> float:
-    """Energy (J) at which the spring's push is all that the roller bears, at full lift.
+    """Energy (J) at which the spring force at full lift is the maximum normal force (N).
 
-    relief is the share of the spring force that the follower's inertia may take off there.
+    relief: share of the spring force that the inertia of the follower may cancel.
     """
     push = force / (1.0 - relief)
     return max(0.0, (push**2 - preload**2) / (2.0 * rate))
 
 
 def relief_of(scenarios: tuple[Scenario, ...], jump: float | None) -> float:
-    """Share of the spring force that inertia takes off in the slowest load case, at most.
+    """Maximum share of the spring force that inertia cancels in the slowest load case.
 
-    The limit on jump holds at the fastest; inertia falls with the square of the speed.
+    The limit of jump holds in the fastest; inertia is proportional to the square of the speed.
     """
     speeds = [item.cam_speed for item in scenarios]
     fastest = max(speeds)

@@ -19,7 +19,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.cycle.elastic_response import elastic_follower
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.results.trial import Trial
-from camwright.pipeline.studies.papers.valve_cam import (
+from camwright.pipeline.studies.valve_cam import (
     ElasticValve,
     ValveCam,
     follower_acceleration,
@@ -114,12 +114,14 @@ def _motion(cam: ValveCam, turn: Turn) -> list[Row]:
 
 def _elastic(machine: Machine, cam: ValveCam, phi: Array, speed: Array) -> list[Row]:
     """What the train gives way at full lift, in micrometres."""
-    given, spring, name = elastic_follower(machine), machine.spring, machine.load_case
-    train = ElasticValve(given.mass, given.stiffness, spring.rate, spring.preload / spring.rate)
+    follower, spring, name = elastic_follower(machine), machine.spring, machine.load_case
+    train = ElasticValve(
+        follower.mass, follower.stiffness, spring.rate, spring.preload / spring.rate
+    )
     top = int(np.argmax(cam.motion(phi)))
     s, slope = (float(cam.motion(phi[top], order)) for order in range(2))
     there = float(speed[top])
-    stiff = f"K = {1e-6 * given.stiffness:.3g} kN/mm of the case, not printed"
+    stiff = f"K = {1e-6 * follower.stiffness:.3g} kN/mm of the case, not printed"
     forms = {
         "as printed, its square dropped": s - train.dynamic_lift(s, slope, there, exact=False),
         "by the quadratic": s - train.dynamic_lift(s, slope, there),

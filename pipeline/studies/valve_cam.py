@@ -265,10 +265,10 @@ class ElasticValve:
             return [state[1], (push - self._sum * state[0]) / inertia]
 
         period = FULL_TURN / np.sqrt(self._sum / inertia)
-        found = solve_ivp(
+        solution = solve_ivp(
             rate, (0.0, float(at[-1])), [-self._rest, 0.0], method="DOP853", t_eval=at,
             rtol=1e-9, atol=1e-13, max_step=min(period / 8.0, 0.02),
         )  # fmt: skip
-        if not found.success:
-            raise ContactError(f"valve: the motion cannot be integrated: {found.message}")
-        return np.asarray(found.y[0])
+        if not solution.success:
+            raise ContactError(f"valve: the motion cannot be integrated: {solution.message}")
+        return np.asarray(solution.y[0])
