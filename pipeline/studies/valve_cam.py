@@ -204,10 +204,6 @@ class ElasticValve:
         """Compression of the train by the preload, k x0 / (K + k), m."""
         return self.spring_rate * self.spring_travel / self._sum
 
-    def drive_force(self, s: ArrayLike, x: ArrayLike) -> Array:
-        """Driving force F_m = K (s - x), N (eq. 6)."""
-        return self.stiffness * (np.asarray(s) - np.asarray(x))
-
     def spring_force(self, x: ArrayLike) -> Array:
         """Spring force F_r = k (x + x0), N (eq. 6)."""
         return self.spring_rate * (np.asarray(x) + self.spring_travel)
