@@ -28,12 +28,12 @@ def compare(
 
     Prints residual torque, pressure angle, lift, normal force, contact pressure and verdict.
     """
-    from camwright.pipeline.case.case_file import load_case_file
+    from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.case.load_case_torque import engine_torques
     from camwright.pipeline.studies.smoother_comparison import compared
     from camwright.reports import smoother_page
 
-    design = load_case_file(case)
+    design = read_case(case)
     results = list(compared(design, engine_torques(design)))
     rows = [{"smoother": one.smoother, "words": one.words, **one.record} for one in results]
     for row in rows:
