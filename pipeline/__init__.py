@@ -1,1 +1,35 @@
-"""The road from a case file to a verdict."""
+"""From a case to a verdict: the calculation in packages, lowest first.
+
+A run: `case` is read and its `engine` torque computed; `smoothing` gives the lift; `geometry` the
+contour; `meshes` the bodies; `contact` and `follower` the loads; `cycle` the turn; `checks` the
+verdict; a failed trial is smoothed again. `results` writes the run folder, `reports` the page.
+
+| package              | responsibility                                       | symbol, unit       |
+| -------------------- | ---------------------------------------------------- | ------------------ |
+| `geometry`           | motion law, lift, pitch curve, contour               | s, m; rho, m       |
+| `meshes`             | outlines, meshes, mesh files                         | h, m               |
+| `base`               | units, quantities, tables, files, cache, processes   |                    |
+| `engine`             | indicated cycle, torque, crankshaft                  | T, N m             |
+| `contact.elasticity` | plane-strain elasticity                              | u, m; sigma, Pa    |
+| `contact`            | contact of cam and follower, traction, oil film      | p0, Pa; a, m; h, m |
+| `follower`           | forces, guides, spring, roller, flat face            | F_n, N; p, Pa      |
+| `case`               | case file, limits, `Machine`                         | SI                 |
+| `case.cards`         | materials, bushes, oils, spring wires, bearings      |                    |
+| `cycle`              | loads, contact and part loads over one cam turn      | theta, rad         |
+| `checks`             | one function per check: demand, limit                | utilisation, -     |
+| `smoothing`          | smoothers, constrained synthesis, shadow prices      | s, m               |
+| `results`            | trial, run folder, records, workshop files, sign-off | mm, N, MPa         |
+| `solver`             | solution of one design at one tier                   |                    |
+| `preview`            | synthesis and preview of a case                      |                    |
+| `iteration`          | trials with smoothing between them                   |                    |
+| `run`                | trials and certificate of a case, run folder         |                    |
+| `studies`            | inspection, comparisons, valve cam                   |                    |
+| `studies.redesign`   | Pareto front over the catalogues                     |                    |
+| `studies.papers`     | published values, recomputed                         |                    |
+| `reports`            | report and pictures from a run folder                |                    |
+| `commands`           | one function per command                             |                    |
+| `cli`                | command line                                         |                    |
+
+`geometry`, `meshes` and `reports` lie beside this package. A module imports from its own package
+and from those above it in the table.
+"""

@@ -1,1 +1,14 @@
-"""The commands: one function each, arguments in, exit code out; `cli` gathers them."""
+"""Commands of the command line: arguments in, exit code out; `cli` registers them.
+
+| module                | responsibility                                          |
+| --------------------- | ------------------------------------------------------- |
+| `terminal`            | exit codes, output streams, progress, text of a verdict |
+| `run_command`         | `run`, `report`, `init`                                 |
+| `check_command`       | `check`: verdict of a run or preview of a case          |
+| `comparison_commands` | `compare`, `validate`, `compare-mechanisms`             |
+| `contact_command`     | `contact`, `deck`                                       |
+| `inspect_command`     | `inspect`: measured cam                                 |
+| `redesign_command`    | `redesign`: search of the catalogues                    |
+
+Imports every other package.
+"""

@@ -292,17 +292,3 @@ def _dang_van(
         tension = np.maximum(scale * unit.hydrostatic + body_hydrostatic[part, None, None], 0.0)
         values[part] = (scale * unit.shear + limits.dang_van * tension).max(axis=2)
     return values
-
-
-def required_strength(envelope: Envelope, depth: ArrayLike) -> Array:
-    """Required shear strength (k,), Pa, at depths (k,) m.
-
-    Maximum in-plane shear of the turn over all stations: the lower bound of the strength
-    k(z) of a hardened case.
-    """
-    at = np.asarray(depth, dtype=float)
-    needed = np.zeros(at.shape)
-    for levels, shear in zip(envelope.depth, envelope.tau_max, strict=True):
-        if levels[-1] > 0:
-            needed = np.maximum(needed, np.interp(at, levels, shear))
-    return needed

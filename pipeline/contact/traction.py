@@ -17,32 +17,16 @@ from camwright.geometry.errors import InputError
 
 _TURNS_MAX = 50
 _SETTLED = 1e-9
-# |x| over half-width that encloses half of a Hertz load, and the pressure there over p0.
-_HALF_LOAD = 0.403972753299517
-_HALF_LOAD_PRESSURE = np.sqrt(1 - _HALF_LOAD**2)
 
 
 def stick_half_width(ratio: ArrayLike) -> Array:
     """Half-width of the stick zone over that of the contact: 1 at no, 0 at full traction.
 
-    Equal for static contact (Cattaneo, Mindlin: in the middle) and rolling contact (Carter: at the
-    leading edge).
-
     References
     ----------
-    Johnson, Contact Mechanics (1985), secs. 7.2(d) and 8.3.
+    Carter (1926); Johnson, Contact Mechanics (1985), sec. 8.3.
     """
     return np.sqrt(1 - _ratio(ratio))
-
-
-def static_traction(x: ArrayLike, ratio: float) -> Array:
-    """Traction (...) of static contact under normal, then increasing tangential force.
-
-    References
-    ----------
-    Cattaneo (1938), Mindlin (1949); Johnson, Contact Mechanics (1985), sec. 7.2(d).
-    """
-    return _sheared(x, float(stick_half_width(ratio)), 0.0)
 
 
 def rolling_traction(x: ArrayLike, ratio: float) -> Array:
@@ -53,15 +37,12 @@ def rolling_traction(x: ArrayLike, ratio: float) -> Array:
     Carter (1926); Johnson, Contact Mechanics (1985), sec. 8.3.
     """
     stick = float(stick_half_width(ratio))
-    return _sheared(x, stick, stick - 1)
-
-
-def _sheared(x: ArrayLike, stick: float, centre: float) -> Array:
     at = np.asarray(x, dtype=float)
     full = np.sqrt(np.maximum(1 - at**2, 0.0))
     if stick == 0:
         return np.asarray(full)
-    return np.asarray(full - stick * np.sqrt(np.maximum(1 - ((at - centre) / stick) ** 2, 0.0)))
+    in_stick = np.sqrt(np.maximum(1 - ((at - (stick - 1)) / stick) ** 2, 0.0))
+    return np.asarray(full - stick * in_stick)
 
 
 def creepage(
@@ -83,22 +64,6 @@ def creepage(
     radius = positive("relative_radius", relative_radius, "m")
     slope = friction * np.asarray(half_width, dtype=float) / radius
     return slope * (1 - stick_half_width(ratio))
-
-
-def free_rolling_creepage(
-    moduli: tuple[float, float], poissons: tuple[float, float], peak_pressure: float
-) -> float:
-    """Creepage of free rolling of two materials, in the limit of zero friction.
-
-    The surfaces stretch differently under the pressure; slip changes sign where half of the load is
-    enclosed, so that the tractions balance.
-
-    References
-    ----------
-    Bentall and Johnson, Int. J. Mech. Sci. 9 (1967) 389.
-    """
-    stretch = [(1 - 2 * nu) * (1 + nu) / E for E, nu in zip(moduli, poissons, strict=True)]
-    return abs(stretch[0] - stretch[1]) * peak_pressure * float(_HALF_LOAD_PRESSURE)
 
 
 def ring_inertia(radius: float, hub_radius: float, width: float, density: float) -> float:

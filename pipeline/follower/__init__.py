@@ -1,1 +1,33 @@
-"""Follower, guides, roller and spring: the loads on the cam."""
+"""Follower: forces, guides, spring, roller, flat face, loads of the camshaft.
+
+In the order of the calculation:
+
+| module                  | responsibility                             | symbol, unit          |
+| ----------------------- | ------------------------------------------ | --------------------- |
+| `stem_beam`             | stem as a beam of Hermite elements         | E I, N m2; m/N        |
+| `spring`                | helical spring, force, fatigue, surge      | k, N/m; P, N; tau, Pa |
+| `follower_forces`       | forces with guide friction                 | F_a, N; T, N m        |
+| `guide_contact`         | beam in bores with unilateral contact      | N; m                  |
+| `guide_reactions`       | reactions and pressures of two guides      | A, B, N; p, Pa        |
+| `friction_coupling`     | contact force with guide friction          | F_a, N                |
+| `guide_effects`         | effects of guide length and clearance      | N                     |
+| `guide_friction`        | friction bounds and power, temperature     | mu, -; W; K           |
+| `elastic_follower`      | elastic follower, periodic response        | x, m; N, N            |
+| `follower_flight`       | flights and landings in time               | m; m/s; J             |
+| `roller_parts`          | bearing, outer ring and pin of the roller  |                       |
+| `roller_motion`         | spin, traction demand, rating life         | rad/s; L10, s         |
+| `bearing_ring`          | bending of outer ring and pin              | M, N m; sigma, Pa     |
+| `bearing_ring_elements` | outer ring on balls by finite elements     | m/N; Pa/N             |
+| `ring_on_balls`         | outer ring as roller                       |                       |
+| `flat_face_motion`      | sliding and entrainment speed of a face    | m/s; pv, Pa m/s       |
+| `follower_kind`         | protocol of the kinds of follower          |                       |
+| `roller`                | roller: geometry, contact body, rolling    | r, m                  |
+| `flat_face`             | flat face: geometry, contact body, sliding | m                     |
+| `camshaft_loads`        | key, bearings, unbalance, counter-hole     | N; Pa; kg m           |
+| `shaft_strength`        | fatigue of the camshaft, gear teeth        | Pa; safety, -         |
+
+A further kind of follower is a class with the attributes of `follower_kind.FollowerKind`, a contour
+in `geometry`, a contact body in `contact` and a section in `case`.
+
+Imports `geometry`, `base` and `contact`.
+"""

@@ -59,11 +59,6 @@ class ElasticFollower:
         critical = 2.0 * np.sqrt(mass * (stiffness + spring_rate))
         return cls(mass, stiffness, spring_rate, preload, ratio * float(critical))
 
-    @property
-    def natural_frequency(self) -> float:
-        """sqrt((K + k)/m) in contact, rad/s."""
-        return float(np.sqrt((self.stiffness + self.spring_rate) / self.mass))
-
 
 @dataclass(frozen=True, eq=False)
 class Response:

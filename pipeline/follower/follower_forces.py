@@ -120,11 +120,6 @@ class FollowerSystem:
         """|A|/F_t and |B|/F_t, see `levers`."""
         return levers(np.asarray(overhang, dtype=float), self.guide_spacing)
 
-    def friction_factor(self, overhang: ArrayLike) -> Array:
-        """c = [mu_A (a+b) + mu_B a]/b, friction per unit of side force on point supports."""
-        factor_a, factor_b = self.guide_factors(overhang)
-        return self.friction_a * factor_a + self.friction_b * factor_b
-
     def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:
         """Rubbing load of guides A and B over axial force and side-load factor."""
         if self.rubbing is None:
@@ -212,11 +207,6 @@ class Loads:
         """Friction loss of both guides and of a face over one cam turn, J."""
         rubbing = self.friction_force * np.abs(self.lift_slope) + self.sliding_torque
         return turn_integral(self.theta, rubbing + self.viscous_force * self.lift_slope)
-
-    @property
-    def cam_work(self) -> float:
-        """Work of the cam on the follower over one turn, J; equal to the friction loss."""
-        return turn_integral(self.theta, self.cam_torque)
 
 
 def turn_integral(theta: Array, values: Array) -> float:

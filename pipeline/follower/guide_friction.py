@@ -111,12 +111,6 @@ class FrictionBounds:
         worst = self.greatest
         return np.where(worst.lift_slope > 0.0, worst.jam_index, 0.0)
 
-    @property
-    def jam_margin(self) -> float:
-        """Factor of friction up to jamming; infinite without friction."""
-        worst = float(self.jam_index_max.max(initial=0.0))
-        return 1.0 / worst if worst > 0.0 else np.inf
-
 
 def friction_bounds(
     solved: Callable[[FollowerSystem], Loads], system: FollowerSystem, friction: FrictionRange

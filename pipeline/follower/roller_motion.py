@@ -38,11 +38,6 @@ class RollerMotion:
         """Mean of |spin|, rad/s."""
         return float(np.mean(np.abs(self.spin)))
 
-    @property
-    def spin_max(self) -> float:
-        """Maximum of |spin|, rad/s."""
-        return float(np.max(np.abs(self.spin)))
-
 
 @dataclass(frozen=True)
 class RatingLife:
@@ -201,36 +196,3 @@ def static_safety(normal_force: ArrayLike, static_rating: float) -> float:
         raise InputError("roller.bearing.C0", static_rating, "> 0 N")
     largest = float(np.max(np.abs(finite("normal_force", normal_force))))
     return static_rating / largest if largest > 0.0 else np.inf
-
-
-def traction_demand(
-    normal_force: ArrayLike,
-    spin_acceleration: ArrayLike,
-    inertia: float,
-    radius: float,
-    bearing_torque: float = 0.0,
-) -> Array:
-    """Traction coefficient (n,) of rolling without slip, |I a + T_b| / (r N).
-
-    Infinite where the demand is not zero and the contact has no load.
-
-    Parameters
-    ----------
-    normal_force, spin_acceleration : array (n,)   N; rad/s2
-    inertia : float                                of the outer ring, kg m2, >= 0
-    radius : float                                 of the roller, m, > 0
-    bearing_torque : float                         bearing drag, N m
-
-    Raises
-    ------
-    InputError
-        If the inertia is negative or the radius not positive.
-    """
-    if not 0.0 <= inertia < np.inf:
-        raise InputError("roller.inertia", inertia, ">= 0 kg m2")
-    if not 0.0 < radius < np.inf:
-        raise InputError("roller.radius", radius, "> 0 m")
-    force = finite("normal_force", normal_force)
-    pull = np.abs(inertia * finite("spin_acceleration", spin_acceleration) + bearing_torque)
-    idle = np.where(pull > 0.0, np.inf, 0.0)
-    return np.divide(pull, radius * force, out=idle, where=force > 0.0)

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite
-from camwright.geometry.energy import spring_deflection
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In, Length, Part, Preload, Pressure, Rate
 
@@ -203,10 +202,6 @@ class Spring(Part):
     def energy(self, lift: float) -> float:
         """Energy P s + k s^2 / 2 at a lift, m, beyond that at zero lift, J."""
         return self.preload * lift + 0.5 * self.rate * lift**2
-
-    def lift_for(self, energy: ArrayLike) -> Array:
-        """Lift (...), m, at an energy (...), J, beyond that at zero lift."""
-        return spring_deflection(energy, self.rate, self.preload)
 
 
 def surge_harmonics(

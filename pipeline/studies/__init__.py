@@ -1,1 +1,17 @@
-"""Studies beside a run: inspection, two cylinders, smoothers, redesign, papers."""
+"""Studies besides a run: inspection, comparisons, redesign, published values.
+
+In the order of the calculation:
+
+| module                   | responsibility                                | symbol, unit        |
+| ------------------------ | --------------------------------------------- | ------------------- |
+| `two_cylinders`          | line contact of two cylinders by three models | p0, Pa; a, m        |
+| `two_cylinders_document` | options, document and text of this contact    | MPa, mm             |
+| `smoother_comparison`    | smoothers on one case by previews             | N m                 |
+| `cam_inspection`         | measured cam: fit, cycle, checks              | m; um in the record |
+| `valve_cam`              | machine motion of a valve cam                 | J*, kg m2; rad/s    |
+| `valve_train`            | record of the machine motion in ``run.json``  |                     |
+| `redesign`               | Pareto front over the catalogues              |                     |
+| `papers`                 | published values, recomputed                  |                     |
+
+Imported by `commands`; the valve cam by `papers` as well.
+"""

@@ -165,11 +165,11 @@ def lines(document: Document) -> Iterator[str]:
     else:
         yield document["conforming"]["why"]
         for name, title in (("persson", "Persson, equal materials"), ("numerical", "numerical")):
-            found = document["conforming"][name]
-            if found is not None:
+            solution = document["conforming"][name]
+            if solution is not None:
                 yield (
-                    f"{title}: peak pressure {found['p0_MPa']:.6g} MPa, "
-                    f"half contact angle {found['half_angle_deg']:.4g} deg"
+                    f"{title}: peak pressure {solution['p0_MPa']:.6g} MPa, "
+                    f"half contact angle {solution['half_angle_deg']:.4g} deg"
                 )
     if "approach_mm" in document:
         yield f"approach {document['approach_mm']:.6g} mm"

@@ -1,18 +1,18 @@
-"""The machine motion of a valve cam as Petrescu and Petrescu (2015) study it, beside its run.
+"""Record of the machine motion of a valve cam in ``run.json``.
 
-Their systems 1 to 15 are lost in the text at hand but for 11 and 15. What stands in for the others
-is standard mechanics in the paper's words, and every row of it says *reconstructed*.
+Equations of Petrescu and Petrescu (2015), see `valve_cam`; rows by equations that are not available
+are marked *reconstructed*.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.machine import Machine
@@ -26,14 +26,16 @@ from camwright.pipeline.studies.valve_cam import (
     rise_efficiency,
 )
 
+MachineMotion = Mapping[str, str | list[dict[str, str | float]]]
+
 _ANGLES = 20_000
 RECONSTRUCTED = "reconstructed"
-_NO_YIELD = "the paper's momentary yield, eq. 6.18; no efficiency: the projection counts twice"
+_NO_YIELD = "momentary yield of eq. 6.18; no efficiency: force and velocity are both projected"
 
 
 @dataclass(frozen=True)
 class Row:
-    """One figure of a load case ("" where it holds for all), with what there is to say of it."""
+    """A value of a load case ("": of all), with a note on its source."""
 
     load_case: str
     name: str
@@ -43,10 +45,7 @@ class Row:
 
 
 def valve_cam(case: Case) -> ValveCam | None:
-    """The cam in the paper's terms; None where the case does not ask for it.
-
-    A case asks by `valve_train`, which a lift by segments has to go with.
-    """
+    """Valve cam of a case with ``[valve_train]``, whose lift is by segments; else None."""
     train, lift = case.valve_train, case.lift
     if train is None or not isinstance(lift, LiftSegments):
         return None
@@ -62,14 +61,14 @@ def valve_cam(case: Case) -> ValveCam | None:
     )
 
 
-def valve_record(trial: Trial) -> Mapping[str, Any]:
-    """Entry ``valve_train`` of ``run.json``: module and rows; null for a case without one."""
+def valve_record(trial: Trial) -> Mapping[str, MachineMotion | None]:
+    """Entry ``valve_train`` of ``run.json``: module and rows; null without a valve cam."""
     cam, turns = valve_cam(trial.case), [cycle.turn for cycle in trial.cycles]
     return {"valve_train": None if cam is None else machine_motion(cam, turns)}
 
 
-def machine_motion(cam: ValveCam, turns: Sequence[Turn]) -> Mapping[str, Any]:
-    """Module of the cam, and rows of its machine motion in every load case."""
+def machine_motion(cam: ValveCam, turns: Sequence[Turn]) -> MachineMotion:
+    """Module of the cam and rows of its machine motion in all load cases."""
     rows = [*_shape(cam), *(row for turn in turns for row in _motion(cam, turn))]
     return {"module": cam.module, "rows": [asdict(row) for row in rows]}
 
@@ -83,7 +82,7 @@ def _shape(cam: ValveCam) -> list[Row]:
         Row(
             "",
             "Mean reduced inertia",
-            1e6 * cam.mean_reduced_inertia(),
+            in_unit(cam.mean_reduced_inertia(), "kg mm^2"),
             "kg mm^2",
             f"eqs 1 and 8 to 10, {RECONSTRUCTED}",
         ),
@@ -95,7 +94,7 @@ def _motion(cam: ValveCam, turn: Turn) -> list[Row]:
     phi, motion = turn.theta, cam.motion
     speed, turning = cam.speed(phi, mean), cam.angular_acceleration(phi, mean)
     uneven = follower_acceleration(motion(phi, 1), motion(phi, 2), speed, turning)
-    uses = "share of the cam's work on the rise that reaches spring and mass, all friction counted"
+    uses = "work on spring and mass over work of the cam on the rise, with all friction"
     return [
         Row(name, "True efficiency of the rise", rise_efficiency(turn.loads), "-", uses),
         Row(name, "Shaft speed, least", float(speed.min()), "rad/s", _eq("2 and 3")),
@@ -106,14 +105,14 @@ def _motion(cam: ValveCam, turn: Turn) -> list[Row]:
             "Acceleration of the follower",
             float(np.abs(uneven).max()),
             "m/s^2",
-            "eq. 15, on the uneven speed",
+            "eq. 15, at the uneven speed",
         ),
         *_elastic(turn.machine, cam, phi, speed),
     ]
 
 
 def _elastic(machine: Machine, cam: ValveCam, phi: Array, speed: Array) -> list[Row]:
-    """What the train gives way at full lift, in micrometres."""
+    """Deflections of the valve train at full lift."""
     follower, spring, name = elastic_follower(machine), machine.spring, machine.load_case
     train = ElasticValve(
         follower.mass, follower.stiffness, spring.rate, spring.preload / spring.rate
@@ -121,17 +120,17 @@ def _elastic(machine: Machine, cam: ValveCam, phi: Array, speed: Array) -> list[
     top = int(np.argmax(cam.motion(phi)))
     s, slope = (float(cam.motion(phi[top], order)) for order in range(2))
     there = float(speed[top])
-    stiff = f"K = {1e-6 * follower.stiffness:.3g} kN/mm of the case, not printed"
+    stiff = f"K = {shown(follower.stiffness, 'kN/mm', 3)} of the case"
     forms = {
         "as printed, its square dropped": s - train.dynamic_lift(s, slope, there, exact=False),
         "by the quadratic": s - train.dynamic_lift(s, slope, there),
     }
     rows = [
-        Row(name, f"Deflection at full lift, {how}", 1e6 * float(value), "um",
+        Row(name, f"Deflection at full lift, {how}", in_unit(float(value), "um"), "um",
             f"{_eq('13 and 14')}; {stiff}")
         for how, value in forms.items()
     ]  # fmt: skip
-    still = 1e6 * (s - float(train.quasi_static(s)))
+    still = in_unit(s - float(train.quasi_static(s)), "um")
     return [
         *rows,
         Row(name, "Deflection at full lift, at rest", still, "um", f"{_eq('12')}; {stiff}"),

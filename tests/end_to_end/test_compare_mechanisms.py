@@ -72,7 +72,7 @@ def test_dry_friction_stands_besides(tmp_path):
     path.write_text(CASE.read_text() + "\n[dry_friction]\nguide = 0.1\npins = 0.1\n")
     document = compared(path)
     assert all(found["dry_losses_J"]["guide"] > 0 for found in document["mechanisms"])
-    assert "dry friction besides" in "\n".join(lines(document))
+    assert "dry friction, additional" in "\n".join(lines(document))
 
 
 @pytest.mark.parametrize(

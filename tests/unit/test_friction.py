@@ -10,7 +10,11 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.follower.follower_forces import FollowerSystem, follower_loads
+from camwright.pipeline.follower.follower_forces import (
+    FollowerSystem,
+    follower_loads,
+    turn_integral,
+)
 from camwright.pipeline.follower.guide_friction import (
     NYLON_PV,
     FrictionRange,
@@ -50,12 +54,13 @@ def test_force_lies_between_the_bounds():
 def test_jam_margin_is_the_factor_to_locking():
     """At that many times the worst friction the index is 1."""
     found = friction_bounds(loads_of, SYSTEM, FrictionRange(NOMINAL, (0.0, 0.0), (0.1, 0.3)))
-    locked = replace(SYSTEM, friction_a=0.1 * found.jam_margin, friction_b=0.3 * found.jam_margin)
+    margin = 1.0 / found.jam_index_max.max()
+    locked = replace(SYSTEM, friction_a=0.1 * margin, friction_b=0.3 * margin)
     loads = follower_loads(PITCH, locked, SPEED, THETA)
     assert loads.jam_index[loads.lift_slope > 0].max() == pytest.approx(1.0, rel=1e-12)
     nothing = (0.0, 0.0)
     none = friction_bounds(loads_of, SYSTEM, FrictionRange(nothing, nothing, nothing))
-    assert none.jam_margin == np.inf
+    assert none.jam_index_max.max() == 0.0
 
 
 @pytest.mark.parametrize(
@@ -128,7 +133,7 @@ def test_viscous_drag_follows_the_speed():
     )
     # s' = 0.01 sin: the integral of c3 w s'^2 over the turn is c3 w pi 1e-4
     assert drag.friction_loss == pytest.approx(30.0 * SPEED * np.pi * 1e-4, rel=1e-9)
-    assert drag.cam_work == pytest.approx(drag.friction_loss, rel=1e-9)
+    assert turn_integral(drag.theta, drag.cam_torque) == pytest.approx(drag.friction_loss, rel=1e-9)
     faster = follower_loads(PITCH, thick, 2 * SPEED, THETA)
     assert faster.friction_loss == pytest.approx(2 * drag.friction_loss, rel=1e-12)
     np.testing.assert_allclose(drag.friction_power, 30.0 * drag.velocity**2, atol=1e-12)
@@ -137,7 +142,9 @@ def test_viscous_drag_follows_the_speed():
 def test_viscous_drag_and_rubbing_together():
     """Work of the cam is heat, both frictions on."""
     loads = follower_loads(PITCH, replace(SYSTEM, viscous_damping=30.0), SPEED, THETA)
-    assert loads.cam_work == pytest.approx(loads.friction_loss, rel=1e-9)
+    assert turn_integral(loads.theta, loads.cam_torque) == pytest.approx(
+        loads.friction_loss, rel=1e-9
+    )
     with pytest.raises(InputError, match="viscous_damping"):
         replace(SYSTEM, viscous_damping=-1.0)
 

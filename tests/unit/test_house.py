@@ -144,6 +144,26 @@ def test_a_package_can_be_overlooked(name: str) -> None:
     assert len(own) <= (FLAT_MAX if name == "pipeline" else PACKAGE_MAX), own
 
 
+def test_the_table_of_a_package_names_its_modules() -> None:
+    """Rows of the table in a package's docstring; the table of `pipeline` names packages too."""
+    for name, path in modules().items():
+        text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+        if path.name != "__init__.py" or "| module" not in text:
+            continue
+        inside = {p.stem for p in path.parent.glob("*.py")} - {"__init__"}
+        inside |= {p.parent.name for p in path.parent.glob("*/__init__.py")}
+        assert sorted(re.findall(r"^\| `(\w+)`", text, re.MULTILINE)) == sorted(inside), name
+
+
+def test_the_table_of_the_pipeline_is_the_order_of_the_packages() -> None:
+    text = ast.get_docstring(ast.parse(modules()["pipeline"].read_text(encoding="utf-8"))) or ""
+    flat = {p.stem for p in modules()["pipeline"].parent.glob("*.py")} - {"__init__", "cli"}
+    rows = re.findall(r"^\| `([\w.]+)`", text, re.MULTILINE)
+    assert flat < set(rows)
+    packages = [name.removeprefix("pipeline.") for name in ORDER if name != "pipeline"]
+    assert [row for row in rows if row not in flat] == packages
+
+
 def test_every_module_named_as_text_is_there() -> None:
     """A name in a string or a docstring that no longer resolves guards nothing."""
     wrong = []

@@ -20,22 +20,19 @@ def turn(drag, force=100.0, spin=500.0, speed=4.0):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("law", [traction.static_traction, traction.rolling_traction])
 @pytest.mark.parametrize("ratio", [0.0, 0.3, 0.64, 1.0])
-def test_traction_carries_its_force_and_stays_below_friction(law, ratio):
+def test_traction_carries_its_force_and_stays_below_friction(ratio):
     # x = cos(t) puts the points where the root of the ellipse bends.
     x = -np.cos(np.linspace(0, np.pi, 20001))
-    q = law(x, ratio)
+    q = traction.rolling_traction(x, ratio)
     assert np.trapezoid(q, x) == pytest.approx(ratio * np.pi / 2, abs=2e-6)
     assert (q <= np.sqrt(1 - np.minimum(x**2, 1)) + 1e-12).all()
     assert (q >= -1e-12).all()
 
 
-def test_static_contact_sticks_in_the_middle_and_rolling_at_its_leading_edge():
+def test_rolling_sticks_at_its_leading_edge():
     full = np.sqrt(1 - np.array([-0.9, 0.0, 0.9]) ** 2)
-    static = traction.static_traction([-0.9, 0.0, 0.9], 0.64) < full - 1e-9
     rolling = traction.rolling_traction([-0.9, 0.0, 0.9], 0.64) < full - 1e-9
-    assert static.tolist() == [False, True, False]
     assert rolling.tolist() == [True, True, False]
 
 

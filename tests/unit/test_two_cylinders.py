@@ -70,7 +70,7 @@ def test_for_people_it_prints_both_columns():
     assert "Hertz" in text and "finite elements" in text
     assert "606.037" in text and "606.06" in text
     assert "error bar" in text
-    assert "finite disc would add" in text
+    assert "as a finite disc" in text
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,6 @@ from camwright.pipeline.contact.rolling_envelope import (
     STATIONS,
     FatigueLimits,
     _smallest_sphere,
-    required_strength,
     rolling_pass,
     swept,
 )
@@ -226,18 +225,6 @@ def test_stress_added_by_a_real_cam_is_that_of_its_correction():
     exact = bodies.cam.correction(pair.contour.points(theta), pair.contour.normal(theta)).along
     np.testing.assert_allclose(along, load * exact, atol=0.01 * np.abs(load * exact).max())
     assert not np.any(others)
-
-
-def test_required_strength_is_the_worst_place_at_each_depth():
-    pair = pair_of(0.02)
-    theta = uniform_turn(180)
-    contact = closed_form_history(pair, theta, force(theta))
-    map_ = swept(pair, theta, contact, theta, force(theta) / WIDTH)
-    depth = np.array([0.0, map_.depth.max() / 3, 1.0])
-    needed = required_strength(map_, depth)
-    assert needed[0] == pytest.approx(map_.tau_max[:, 0].max(), abs=1.0)
-    strongest = [np.interp(depth[1], d, t) for d, t in zip(map_.depth, map_.tau_max, strict=True)]
-    assert needed[1] == pytest.approx(max(strongest))
 
 
 def test_bore_of_a_round_cam_feels_the_same_at_every_angle():

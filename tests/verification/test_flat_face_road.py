@@ -93,7 +93,7 @@ def test_work_over_the_turn_is_the_heat(friction, guides):
     rubs = float(guides) * (turn.guides.rubbing_load_a + turn.guides.rubbing_load_b)
     heat = turn_integral(THETA, rubs * np.abs(slope) + mu * loads.normal_force * height)
     swing = turn_integral(THETA, np.abs(loads.cam_torque))
-    assert abs(loads.cam_work - heat) < 1e-10 * swing
+    assert abs(turn_integral(loads.theta, loads.cam_torque) - heat) < 1e-10 * swing
     assert contour.pitch.lift.stroke == pytest.approx(2 * E, rel=1e-9)
 
 

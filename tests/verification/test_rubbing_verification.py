@@ -11,7 +11,12 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.follower import friction_coupling
-from camwright.pipeline.follower.follower_forces import JAM_FLOOR, FollowerSystem, follower_loads
+from camwright.pipeline.follower.follower_forces import (
+    JAM_FLOOR,
+    FollowerSystem,
+    follower_loads,
+    turn_integral,
+)
 from camwright.pipeline.follower.friction_coupling import balanced, guided_loads
 from camwright.pipeline.follower.guide_effects import guide_shares
 from camwright.pipeline.follower.guide_reactions import Guide, GuidePair, guide_reactions
@@ -99,10 +104,10 @@ def test_cam_work_is_the_heat_of_the_finite_guides():
     bearing = solved_anew(loads)
     heat = 0.2 * bearing.rubbing_load_a + 0.3 * bearing.rubbing_load_b
     taken = float(np.mean(heat * np.abs(loads.lift_slope)) * 2 * np.pi)
-    assert loads.cam_work == pytest.approx(taken, rel=1e-9)
+    assert turn_integral(loads.theta, loads.cam_torque) == pytest.approx(taken, rel=1e-9)
     assert loads.friction_loss == pytest.approx(taken, rel=1e-9)
     on_points = follower_loads(PITCH, ROUGH, SPEED, THETA)
-    assert abs(on_points.cam_work / taken - 1.0) > 0.05
+    assert abs(turn_integral(on_points.theta, on_points.cam_torque) / taken - 1.0) > 0.05
 
 
 def test_short_stiff_guides_are_the_papers_statics():

@@ -1,7 +1,24 @@
-"""The published studies, run again: one module per paper, each row with its verdict.
+"""Published values, recomputed: one module per paper.
 
-A further paper is a further module with a function `study(targets) -> PaperResult`, named in
-`PAPERS`. Rows without an outcome are not decidable: not computed by this version.
+In the order of the calculation:
+
+| module                    | responsibility                                 | symbol, unit   |
+| ------------------------- | ---------------------------------------------- | -------------- |
+| `published_figures`       | targets, outcomes, verdicts                    |                |
+| `paper_engines`           | engines of the papers in the cylinder model    | N m            |
+| `balancing_cam`           | balancing cam under an engine torque           | N m; rad/s     |
+| `speed_reconstruction`    | crank speed from published statistics          | rad/s          |
+| `cardoso_2024`            | engine at 800 rpm, cam without losses          |                |
+| `cardoso_2025`            | engine at idle and its balancing cam           |                |
+| `petrescu_2015`           | valve cams of modules B and C                  |                |
+| `slider_crank_drive`      | slider-crank and eccentric cam: forces, losses | N; J           |
+| `mechanism_sizes`         | friction energy over the sizes                 | J              |
+| `slider_crank_2024`       | slider-crank and eccentric cam                 |                |
+| `friction_identification` | friction from measured decays                  | N m; N m s/rad |
+| `mechanism_comparison`    | command `compare-mechanisms`                   |                |
+
+A paper is a module with a function `study(targets) -> PaperResult`, named in `PAPERS`. Values
+without an outcome are not decidable. Imported by `commands.comparison_commands` alone.
 """
 
 from __future__ import annotations
@@ -27,7 +44,7 @@ PAPERS: Mapping[str, str] = {
 
 
 def validate() -> dict[str, Any]:
-    """Contents of ``validation.json``: every published figure with what is obtained for it."""
+    """Contents of ``validation.json``: published and computed values with verdicts."""
     results: dict[str, PaperResult] = {
         paper: import_module(module).study(targets(paper)) for paper, module in PAPERS.items()
     }

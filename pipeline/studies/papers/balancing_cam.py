@@ -1,4 +1,4 @@
-"""The balancing cam of the papers under a torque: what it stores, delivers and leaves over."""
+"""Balancing cam of the papers under an engine torque: residual torque and speed ripple."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 RATIO = 2.0
 POSITIONS = 720
 
-# Energies 2025: k, P, follower mass, b, friction; the overhang at full lift is assumed.
+# Energies 18 (2025) 3256: k, P, follower mass, b, friction; overhang at full lift assumed.
 FOLLOWER_2025 = FollowerSystem(
     mass=0.175,
     spring=Spring(rate=24_200.0, preload=242.0),
@@ -34,13 +34,13 @@ TWELVE_DEGREES = replace(TWELVE_VALUES, spacing=float(np.radians(1.0)))
 
 @dataclass(frozen=True, eq=False)
 class Balanced:
-    """A cam cut for a torque and run under it.
+    """A cam synthesised for a torque, and its residual.
 
     Parameters
     ----------
     pitch : PitchCurve
-    residual : array (n,)    N m about its mean, crank torque left over at constant speed
-    ideal : array (n,)       N m, the same without friction and inertia of the follower
+    residual : array (n,)    residual crank torque at constant speed without its mean, N m
+    ideal : array (n,)       the same without friction and inertia of the follower, N m
     study : SpeedStudy
     """
 
@@ -53,7 +53,7 @@ class Balanced:
         freeze(self, residual=self.residual, ideal=self.ideal)
 
     def figures(self) -> dict[str, float]:
-        """Ripple of torque and speed, N m and rad/s."""
+        """Ripple of torque and speed, and cam radius, names with units."""
         ripple = self.study.after.statistics
         return {
             "torque_std_Nm": float(self.residual.std()),
@@ -68,7 +68,7 @@ class Balanced:
 def designed_pitch(
     torque: Array, multiplier: float, smoother: Smoother, system: FollowerSystem
 ) -> PitchCurve:
-    """Pitch curve of a cam cut for `multiplier` times a smoothed crank torque (n,)."""
+    """Pitch curve of a cam for `multiplier` times a smoothed crank torque (n,), N m."""
     target = multiplier * smoothed(torque - torque.mean(), smoother)
     theta = uniform_turn(torque.size)
     lift = lift_from_torque(
@@ -88,15 +88,15 @@ def balanced(
     added: float = 0.0,
     system: FollowerSystem = FOLLOWER_2025,
 ) -> Balanced:
-    """A cam cut at the design preload and run at another.
+    """A cam synthesised at the design preload and run at another.
 
     Parameters
     ----------
-    torque : array (n,)     N m on the crank at equal angles of the cycle
-    inertia, added : float  kg m2, of the engine and of what turns in the mechanism
+    torque : array (n,)     crank torque at equal angles of the cycle, N m
+    inertia, added : float  of the engine and of the mechanism, kg m2
     mean_speed : float      rad/s
-    multiplier : float      cam torque over crank torque that the cam is cut for: 2 by power
-    preload : float         N, at which it runs; None: as designed
+    multiplier : float      design cam torque over crank torque; 2: by power
+    preload : float         in operation, N; None: as designed
     """
     pitch = designed_pitch(torque, multiplier, smoother, system)
     runs = (

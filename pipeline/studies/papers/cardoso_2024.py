@@ -1,4 +1,4 @@
-"""Cardoso et al., Designs 2024, 8, 47: the engine at 800 rpm and a cam without losses."""
+"""Cardoso et al., Designs 8, 47 (2024): engine at 800 rpm and cam without losses."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from camwright.pipeline.studies.papers.paper_engines import ENGINE_800, FULL_LOA
 from camwright.pipeline.studies.papers.published_figures import Outcome, PaperResult, Target, within
 
 PRINTED_VALVE_SPRING = 588_000.0  # N/m, table 1
-ONE_MAGNITUDE = 15.0  # between the largest and the least of torques "of the same magnitude"
-# Table 2: k and P; guides and mass do not enter a cam without losses.
+ONE_MAGNITUDE = 15.0  # maximum ratio of torques "of the same magnitude"
+# Table 2: k and P; guides and mass have no effect without losses.
 SPRING = Spring(rate=100_000.0, preload=100.0)
 FOLLOWER = FollowerSystem(0.0, SPRING, 0.08, 0.03, 0.0, 0.0)
 UNSMOOTHED = Smoother("none")
 
 
 def study(targets: Mapping[str, Target]) -> PaperResult:
-    """Every row of the paper."""
+    """Outcome of each value of the paper."""
     torque = torque_from_cylinder(ENGINE_800, SLOW_IDLE).without_mean()
     cams = {
         name: designed_pitch(torque.total, multiplier, UNSMOOTHED, FOLLOWER)

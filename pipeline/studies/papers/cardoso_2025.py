@@ -1,8 +1,8 @@
-"""Cardoso et al., Energies 2025, 18, 3256: the GX120 at idle and its balancing cam.
+"""Cardoso et al., Energies 18 (2025) 3256: GX120 at idle and its balancing cam.
 
-The torque behind the published cam is not printed. Rows of the stock engine are judged by the
-cylinder model, tuned to the measured idle; rows of the cam by the speed reconstructed from the
-published statistics, as the paper drew its cam from a measured speed.
+The torque of the published cam is not printed. Values of the stock engine are compared with the
+cylinder model, tuned to the measured idle; values of the cam with a cam for the speed
+reconstructed from the published statistics, as the paper designed its cam from a measured speed.
 """
 
 from __future__ import annotations
@@ -35,13 +35,15 @@ from camwright.pipeline.studies.papers.published_figures import Outcome, PaperRe
 
 PRELOADS = (121.0, 242.0, 363.0)
 MULTIPLIERS = {"full": 2.0, "half": 1.0}
-MOUNTED = 3.74 / 3.58 - 1.0  # share of inertia the mounted mechanism adds, by the speeds printed
+MOUNTED = (
+    3.74 / 3.58 - 1.0
+)  # inertia of the mounted mechanism over that of the engine, by the printed speeds
 SPRING_RATE = 24_200.0
-TUNED_ROW = "of the cylinder model, which is tuned to this idle"
+TUNED_ROW = "of the cylinder model, tuned to this idle"
 
 
 def study(targets: Mapping[str, Target]) -> PaperResult:
-    """Every row of the paper that can be computed, and the studies behind them."""
+    """Outcome of each value of the paper that can be computed, and the studies."""
     idle = torque_from_cylinder(GX120, IDLE_SPEED).without_mean()
     rebuilt = speed_reconstruction.load()
     stock = crank_motion(idle.total, _constant(EFFECTIVE_INERTIA), speed_reconstruction.SPEED_MEAN)
@@ -65,7 +67,7 @@ Cams = Mapping[tuple[str, float], Balanced]
 
 
 def _cams(torque: Array, inertia: float) -> Cams:
-    """The cam cut for the full and for half the torque, run at the three preloads."""
+    """Cams for the full and half the torque at the three preloads."""
     return {
         (name, preload): balanced(
             torque,
@@ -83,7 +85,7 @@ def _cams(torque: Array, inertia: float) -> Cams:
 def _stock(
     targets: Mapping[str, Target], torque: Torque, motion: CrankMotion
 ) -> dict[str, Outcome]:
-    """Rows of the measured stock engine, by the cylinder model: 10 %, speeds 1 %."""
+    """Values of the measured stock engine by the cylinder model: 10 %, speeds 1 %."""
     ripple, speed = motion.statistics, motion.speed
     late = speed[int(450 / 720 * speed.size) :]
     part = np.degrees(torque.theta_crank)
@@ -114,7 +116,7 @@ def _stock(
 
 
 def _fast_burn(targets: Mapping[str, Target]) -> dict[str, Outcome]:
-    """Rows of the paper's own engine simulation: the model brought to its peak torque."""
+    """Values of the engine simulation of the paper, by the model at its peak torque."""
     engine = with_peak_torque(targets["C25-02"].value)
     torque = torque_from_cylinder(engine, IDLE_SPEED).without_mean()
     motion = crank_motion(
@@ -140,7 +142,7 @@ def _fast_burn(targets: Mapping[str, Target]) -> dict[str, Outcome]:
 def _mounted(
     targets: Mapping[str, Target], stock: CrankMotion, torque: Array
 ) -> dict[str, Outcome]:
-    """Rows with the mechanism mounted and held off: its inertia alone."""
+    """Values with the mechanism mounted and disengaged: its inertia alone."""
     heavier = _constant(EFFECTIVE_INERTIA * (1.0 + MOUNTED))
     ripple = crank_motion(torque, heavier, speed_reconstruction.SPEED_MEAN).statistics
     why = f"{100 * MOUNTED:.2g} % more inertia, one number fitted to the ratio of both stds"
@@ -152,7 +154,7 @@ def _mounted(
 
 
 def _engaged(targets: Mapping[str, Target], cams: Cams) -> dict[str, Outcome]:
-    """Rows of the engaged mechanism. By power the cam takes the full torque, twice the crank's."""
+    """Values of the engaged mechanism; by power the cam torque is twice the crank torque."""
     figures = {key: cam.figures() for key, cam in cams.items()}
     full, half = figures["full", 242.0], figures["half", 242.0]
     undecided = {
@@ -193,7 +195,7 @@ def _order(stds: Mapping[float, float]) -> str:
 
 
 def _arithmetic(targets: Mapping[str, Target]) -> dict[str, Outcome]:
-    """Rows that follow from other printed figures, or are inputs."""
+    """Values that follow from other printed values, or are inputs."""
 
     def value(number: int) -> float:
         return float(targets[f"C25-{number:02d}"].value)
@@ -228,7 +230,7 @@ def _inertia(
 def _studies(
     idle: Array, cams: Cams, rebuilt: speed_reconstruction.Reconstruction, stock: CrankMotion
 ) -> dict[str, Any]:
-    """Preloads, full and half torque, the flywheel that would do the same, what was tuned."""
+    """Studies of preload, torque multiplier, smoothing window, equivalent flywheel, tuning."""
     rows = [
         {"torque": "reconstruction", "cut_for": name, "preload_N": preload, **cam.figures()}
         for (name, preload), cam in cams.items()
@@ -261,7 +263,7 @@ def _studies(
 
 
 def _flywheel(name: str, cam: Balanced, inertia: float) -> dict[str, Any]:
-    """The paper's argument against flywheels, in kilograms at the cam's outer radius."""
+    """Flywheel of equal speed ripple, its mass at the outer radius of the cam."""
     radius = 0.050 + cam.pitch.lift.highest.value - 0.008
     disc, rim = cam.study.flywheel_masses(radius)
     return {

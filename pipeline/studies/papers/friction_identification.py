@@ -1,4 +1,4 @@
-"""Friction coefficients from the decay of a pendulum or the run-down of a shaft."""
+"""Identification of viscous and dry friction from a pendulum decay or a shaft run-down."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True, eq=False)
 class Identified:
-    """Friction found by least squares, with confidence intervals.
+    """Friction by least squares, with confidence intervals.
 
-    viscous (N m s/rad), coulomb (N m): best value; *_interval its bounds at `confidence`;
-    residual (n,) measured less fitted, in the unit of the signal.
+    viscous (N m s/rad), coulomb (N m): estimates; *_interval: bounds at `confidence`; residual
+    (n,): measured less fitted, in the unit of the signal.
     """
 
     viscous: float
@@ -40,12 +40,13 @@ class Identified:
 
     @property
     def residual_rms(self) -> float:
+        """Root mean square of the residual."""
         return float(np.sqrt(np.mean(self.residual**2)))
 
 
 @dataclass(frozen=True)
 class Pendulum:
-    """A body of mass m (kg) hung at the distance l (m), I_G (kg m^2) about its centre."""
+    """Pendulum: mass m (kg), distance l of its centre (m), inertia I_G about it (kg m^2)."""
 
     mass: float
     length: float
@@ -58,13 +59,13 @@ class Pendulum:
 
     @property
     def total_inertia(self) -> float:
-        """m l^2 + I_G, kg m^2."""
+        """Inertia about the pin m l^2 + I_G, kg m^2."""
         return self.mass * self.length**2 + self.inertia
 
     def swing(self, time: Array, angle: float, rate: float, viscous: float, dry: float) -> Array:
-        """theta (n,), rad: (m l^2 + I_G) theta'' + c theta' + T_c sign(theta') + m g l sin = 0."""
+        """Angle theta (n,), rad, by (m l^2 + I_G) theta'' + c theta' + T_c sign + m g l sin = 0."""
         weight, inertia = self.mass * GRAVITY * self.length, self.total_inertia
-        # a sign smoothed over far less than the speeds that matter
+        # sign function smoothed over a speed far below that of the swing
         creep = 1e-3 * np.sqrt(weight / inertia)
 
         def motion(_: float, state: Array) -> list[float]:
@@ -81,18 +82,18 @@ class Pendulum:
 def from_pendulum(
     time: ArrayLike, angle: ArrayLike, pendulum: Pendulum, *, small: bool = False
 ) -> Identified:
-    """Viscous and dry friction of a pin from a pendulum's decay (eq. A52 and a dry part).
+    """Viscous and dry friction of a pin from a pendulum decay (eq. A52 with a dry term).
 
     Parameters
     ----------
     time : array (n,)       s, strictly increasing, n >= 20
-    angle : array (n,)      rad from hanging at rest
-    small : bool            the paper's linear equation with viscous friction only, in closed form
+    angle : array (n,)      from the rest position, rad
+    small : bool            linear equation with viscous friction only, in closed form
 
     Raises
     ------
     InputError
-        For a signal that is too short or not a decaying swing.
+        If the signal is too short or not a decaying swing.
     """
     at, seen = _signal(time, angle)
     stiffness = pendulum.mass * GRAVITY * pendulum.length
@@ -117,7 +118,7 @@ def from_pendulum(
 
 
 def from_run_down(time: ArrayLike, speed: ArrayLike, inertia: float) -> Identified:
-    """Viscous and dry friction of a shaft that runs down: I w' = -c w - T_c.
+    """Viscous and dry friction of a shaft from its run-down, I w' = -c w - T_c.
 
     Parameters
     ----------
@@ -135,7 +136,7 @@ def from_run_down(time: ArrayLike, speed: ArrayLike, inertia: float) -> Identifi
     t = at - at[0]
 
     def miss(p: Array) -> Array:
-        # w = (w0 + T/c) exp(-c t / I) - T/c, written so that c -> 0 is no special case
+        # w = (w0 + T/c) exp(-c t / I) - T/c, in a form regular at c = 0
         rate = p[1] / inertia
         grown = -np.expm1(-rate * t) / rate if abs(rate) > 1e-12 else t
         return p[0] * np.exp(-rate * t) - p[2] / inertia * grown - seen
@@ -145,12 +146,12 @@ def from_run_down(time: ArrayLike, speed: ArrayLike, inertia: float) -> Identifi
 
 
 def read_decay(path: str | Path) -> tuple[Array, Array]:
-    """Time (s) and angle (rad) or speed (rad/s) of a CSV of two columns with a heading.
+    """Time (s) and angle (rad) or speed (rad/s) from a CSV file of two columns with a heading.
 
     Raises
     ------
     InputError
-        If the file is no such table.
+        If the file is not such a table.
     """
     path = Path(path)
     try:
@@ -174,15 +175,15 @@ def _signal(time: ArrayLike, values: ArrayLike) -> tuple[Array, Array]:
 def _fitted(
     miss: Callable[[Array], Array], start: Array, places: tuple[int, int | None]
 ) -> Identified:
-    """Least squares from a start; intervals by the linearised covariance and Student's t."""
+    """Least squares; intervals by the linearised covariance and Student's t."""
     scale = np.maximum(np.abs(start), 1e-6)
-    # Steps far above what an integration within `miss` leaves to chance where the speed changes
-    # its sign: a hundred times smaller ones made intervals of half their width.
+    # Steps far above the integration error at sign changes of the speed: steps smaller by a factor
+    # of 100 halved the intervals.
     fit = least_squares(
         miss, start, diff_step=np.full(start.size, 1e-3), x_scale=scale, xtol=1e-9, ftol=1e-9
     )
     if not fit.success:
-        raise InputError("decay", str(fit.message), "a decay that friction explains")
+        raise InputError("decay", str(fit.message), "a decay by viscous and dry friction")
     freedom = len(fit.fun) - len(start)
     slope = np.asarray(fit.jac)
     covariance = np.linalg.pinv(slope.T @ slope) * (2.0 * fit.cost / freedom)

@@ -1,4 +1,4 @@
-"""The command ``camwright compare-mechanisms``: slider-crank and eccentric cams of one case."""
+"""Command ``camwright compare-mechanisms``: slider-crank and eccentric cams of one case."""
 
 from __future__ import annotations
 
@@ -36,6 +36,8 @@ from camwright.pipeline.studies.papers.slider_crank_drive import (
     stroke_efficiency,
 )
 
+Document = dict[str, Any]
+
 Viscous = Annotated[float, In("N m s/rad", at_least=0, at_most=1e6)]
 Inertia = Annotated[float, In("kg m^2", at_least=0, at_most=1e6)]
 OptionalMass = Annotated[float, In("kg", at_least=0, at_most=1e6)]
@@ -62,7 +64,7 @@ class Frictions(Section):
 
 
 class Dry(Section):
-    """Coulomb friction of the guide, and of shaft and pins with their radii."""
+    """Dry friction coefficients of guide, shaft and pins, with radii."""
 
     guide: Ratio = 0.0
     shaft: Ratio = 0.0
@@ -72,13 +74,13 @@ class Dry(Section):
     source: Text = ""
 
     def build(self) -> DryFriction:
-        """mu times radius for what turns."""
+        """Friction coefficient of the guide, friction radii of shaft and pins, m."""
         pin = self.pins * self.pin_radius
         return DryFriction(self.guide, self.shaft * self.shaft_radius, pin, pin)
 
 
 class Moving(Section):
-    """Masses of both mechanisms; the common inertia is that of what they share."""
+    """Masses of both mechanisms; common_inertia: of the shared parts."""
 
     slider: OptionalMass
     rod: OptionalMass = 0.0
@@ -88,7 +90,7 @@ class Moving(Section):
 
 
 class Holding(Section):
-    """The spring that keeps the roller on the cam."""
+    """Spring that keeps the roller on the cam."""
 
     preload: Force
     rate: Annotated[float, In("N/m", at_least=0, at_most=1e9)]
@@ -96,7 +98,7 @@ class Holding(Section):
 
 
 class ComparedRoller(Section):
-    """A roller of the eccentric cam, the disc that goes with it, and its creep."""
+    """Roller of an eccentric cam, the disc for it, traction coefficient and slide-roll ratio."""
 
     name: Name
     radius: Length
@@ -109,7 +111,7 @@ class ComparedRoller(Section):
 
 
 class Decay(Section):
-    """A measured decay to identify friction from: a pendulum's angle or a shaft's speed."""
+    """Measured decay for the identification of friction: pendulum angle or shaft speed."""
 
     name: Name
     kind: Literal["pendulum", "run_down"]
@@ -120,7 +122,7 @@ class Decay(Section):
 
 
 class ComparisonCase(Section):
-    """A slider-crank, its eccentric cams, and what to compare them by."""
+    """Comparison case: slider-crank, eccentric cams, friction, decays."""
 
     schema_version: Literal[1]
     name: Name
@@ -160,7 +162,7 @@ class ComparisonCase(Section):
         return SliderCrankDrive(self.linkage, self.pair_friction, masses, self.holding)
 
     def cam(self, roller: ComparedRoller) -> EccentricDrive:
-        """The eccentric cam with one of the rollers, a solid cylinder."""
+        """Eccentric cam with a roller, a solid cylinder."""
         masses = Masses(
             slider=self.masses.slider,
             roller=roller.mass,
@@ -178,7 +180,7 @@ def load_comparison(path: Path) -> ComparisonCase:
     Raises
     ------
     InputError
-        For the first thing that is wrong, by its dotted name.
+        Naming the first invalid field.
     """
     try:
         with path.open("rb") as file:
@@ -202,13 +204,13 @@ def load_comparison(path: Path) -> ComparisonCase:
         raise InputError(field, value, str(limit)) from None
 
 
-def compared(path: Path) -> dict[str, Any]:
-    """Everything of the comparison as plain numbers: energies, forces, inertia, workspaces."""
+def compared(path: Path) -> Document:
+    """Document of the comparison: energies, forces, inertia, workspaces."""
     case = load_comparison(path)
     speed, phi = case.mechanism.speed, uniform_turn(POSITIONS)
     rod = case.slider_crank()
     dry = None if case.dry_friction is None else case.dry_friction.build()
-    mechanisms: list[dict[str, Any]] = [_mechanism("slider-crank", rod, speed, dry)]
+    mechanisms: list[Document] = [_mechanism("slider-crank", rod, speed, dry)]
     for roller in case.rollers:
         drive = case.cam(roller)
         reactions = drive.reactions(phi, speed)
@@ -250,7 +252,7 @@ def compared(path: Path) -> dict[str, Any]:
 
 def _mechanism(
     name: str, drive: SliderCrankDrive | EccentricDrive, speed: float, dry: DryFriction | None
-) -> dict[str, Any]:
+) -> Document:
     phi = uniform_turn(POSITIONS)
     reactions = drive.reactions(phi, speed)
     return {
@@ -270,7 +272,7 @@ def _losses(losses: Losses) -> dict[str, float]:
     return {name: float(getattr(losses, name)) for name in names}
 
 
-def _identified(decay: Decay, folder: Path) -> dict[str, Any]:
+def _identified(decay: Decay, folder: Path) -> Document:
     name = Path(decay.file)
     if name.is_absolute() or ".." in name.parts:
         raise InputError("decay.file", decay.file, "a relative path in the case file's folder")
@@ -279,7 +281,7 @@ def _identified(decay: Decay, folder: Path) -> dict[str, Any]:
         friction = from_run_down(time, signal, decay.inertia)
     else:
         if decay.mass is None or decay.length is None:
-            raise InputError("decay.mass, decay.length", "missing", "given for a pendulum")
+            raise InputError("decay.mass, decay.length", "missing", "specified for a pendulum")
         friction = from_pendulum(time, signal, Pendulum(decay.mass, decay.length, decay.inertia))
     return {
         "name": decay.name,
@@ -292,30 +294,34 @@ def _identified(decay: Decay, folder: Path) -> dict[str, Any]:
     }
 
 
-def lines(document: Mapping[str, Any]) -> Iterator[str]:
+def lines(document: Document) -> Iterator[str]:
     """The document as lines of text."""
     yield f"{document['case']} at {document['speed_rad_per_s']:.6g} rad/s, energy of a turn in J"
     heads = ("shaft", "guide", "pin_a", "pin_b", "sliding", "total")
     yield f"{'':34}" + "".join(f"{head:>9}" for head in heads)
-    for found in document["mechanisms"]:
-        yield _row(found["name"], found["losses_J"])
-        if found["dry_losses_J"] is not None:
-            yield _row("  dry friction besides", found["dry_losses_J"])
-        for friction, losses in found.get("slipping", {}).items():
+    for entry in document["mechanisms"]:
+        yield _row(entry["name"], entry["losses_J"])
+        if entry["dry_losses_J"] is not None:
+            yield _row("  dry friction, additional", entry["dry_losses_J"])
+        for friction, losses in entry.get("slipping", {}).items():
             yield _row(f"  slipping at mu {friction}", losses)
-    for found in document["mechanisms"]:
+    for entry in document["mechanisms"]:
         yield (
-            f"{found['name']}: out-stroke efficiency {found['efficiency_out_stroke']:.4f}, reduced "
-            f"inertia {found['reduced_inertia_mean_kg_m2']:.5g} kg m2, mean pin reaction "
-            f"{found['pin_reaction_mean_N']:.4g} N"
+            f"{entry['name']}: out-stroke efficiency {entry['efficiency_out_stroke']:.4f}, reduced "
+            f"inertia {entry['reduced_inertia_mean_kg_m2']:.5g} kg m2, mean pin reaction "
+            f"{entry['pin_reaction_mean_N']:.4g} N"
         )
-        if "traction_needed_max" in found:
-            rolls = "" if found["traction_needed_max"] < 0.1 else ": rolling is not credible"
+        if "traction_needed_max" in entry:
+            rolls = (
+                ""
+                if entry["traction_needed_max"] < 0.1
+                else ": rolling without slip is implausible"
+            )
             yield (
-                f"  normal force {found['normal_force_mean_N']:.4g} N on average; rolling asks for "
-                f"traction {found['traction_needed_mean']:.3g} of it, "
-                f"{found['traction_needed_max']:.3g} at most{rolls}; "
-                f"creep loses {found['sliding_loss_J']:.3g} J"
+                f"  mean normal force {entry['normal_force_mean_N']:.4g} N; rolling needs a "
+                f"traction coefficient {entry['traction_needed_mean']:.3g} on average, "
+                f"{entry['traction_needed_max']:.3g} at most{rolls}; "
+                f"creep loss {entry['sliding_loss_J']:.3g} J"
             )
     space = document["workspace"]
     yield (
@@ -330,13 +336,13 @@ def lines(document: Mapping[str, Any]) -> Iterator[str]:
         f"big roller {_range_of(space, 'big_roller_offset')} %, "
         f"small {_range_of(space, 'small_roller_offset')} %"
     )
-    for found in document["identified"]:
-        low, high = found["viscous_interval"]
-        dry_low, dry_high = found["coulomb_interval"]
+    for entry in document["identified"]:
+        low, high = entry["viscous_interval"]
+        dry_low, dry_high = entry["coulomb_interval"]
         yield (
-            f"{found['name']}: viscous {found['viscous_Nms_per_rad']:.4g} N m s/rad "
-            f"({low:.4g} to {high:.4g}), dry {found['coulomb_Nm']:.3g} N m ({dry_low:.3g} to "
-            f"{dry_high:.3g}), {100 * found['confidence']:.0f} % confidence"
+            f"{entry['name']}: viscous {entry['viscous_Nms_per_rad']:.4g} N m s/rad "
+            f"({low:.4g} to {high:.4g}), dry {entry['coulomb_Nm']:.3g} N m ({dry_low:.3g} to "
+            f"{dry_high:.3g}), {100 * entry['confidence']:.0f} % confidence"
         )
 
 
@@ -354,11 +360,11 @@ _RIVALS = {
 
 
 def _percent(space: Workspace, name: str) -> list[list[float | None]]:
-    """Energy over the best one's, less one, in percent; None where the sizes do not allow it."""
+    """Energy over that of the big roller, less one, in percent; None for invalid sizes."""
     rows = 100.0 * space.above_best(name)
     return [[float(v) if np.isfinite(v) else None for v in row] for row in rows]
 
 
-def _range_of(space: Mapping[str, Any], name: str) -> str:
+def _range_of(space: Document, name: str) -> str:
     values = np.array(space[f"{name}_above_best_percent"], dtype=float)
     return f"{np.nanmin(values):.1f} to {np.nanmax(values):.1f}"

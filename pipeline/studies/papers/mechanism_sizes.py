@@ -1,4 +1,4 @@
-"""Energy of a turn over the sizes of the mechanism: which one wastes least, and where."""
+"""Friction energy of a turn over the sizes of slider-crank and eccentric cams."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ CRANKS = np.linspace(0.010, 0.400, 17)
 RATIOS = np.arange(2, 11)
 """l2 / l1 (eq. 44); 17 x 9 = 153 combinations."""
 OFFSET_SHARE = 0.75
-"""Of l1; with eq. 45 it leaves the ratios from 3.5."""
+"""Offset over l1; by eq. 45 for ratios from 3.5."""
 BIG, SMALL = 2.0 / 3.0, 1.0 / 3.0
 """Roller radius over l2, the ends of eq. 46."""
 
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """Energies (cranks, ratios) of a turn, J, of the slider-crank and the cams; NaN: not allowed.
+    """Friction energies (cranks, ratios) of a turn, J, of slider-crank and cams; NaN: invalid size.
 
-    big, small: the roller's size without offset; the others with an offset of 0.75 l1.
+    big, small: by roller size without offset; *_offset: with an offset of 0.75 l1.
     """
 
     cranks: Array
@@ -47,6 +47,7 @@ class Workspace:
 
     @property
     def combinations(self) -> int:
+        """Number of size combinations."""
         return self.big.size
 
     def above_best(self, name: str) -> Array:
@@ -55,7 +56,7 @@ class Workspace:
 
     @property
     def big_is_best(self) -> int:
-        """In how many combinations nothing allowed beats the big roller without offset."""
+        """Number of combinations with minimum energy of the big roller without offset."""
         rivals = [name for name in self.__dataclass_fields__ if name not in _AXES]
         lowest = np.nanmin(np.stack([getattr(self, name) for name in rivals]), axis=0)
         return int(np.sum(self.big <= lowest))
@@ -65,7 +66,7 @@ _AXES = ("cranks", "ratios", "big")
 
 
 def workspace(friction: PairFriction, speed: float) -> Workspace:
-    """The 153 combinations at one speed (rad/s); friction alone counts, not the masses.
+    """Friction energy of the 153 combinations at one speed (rad/s), without masses.
 
     References
     ----------

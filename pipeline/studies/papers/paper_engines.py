@@ -1,4 +1,4 @@
-"""Engines of the papers as cylinder models; tuned values are marked."""
+"""Engines of the papers in the cylinder model, with tuned parameters."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ FULL_LOAD_800 = replace(
 
 
 def with_peak_torque(peak: float) -> CylinderEngine:
-    """The GX120 with a faster, later burn and the intake pressure of a peak torque (N m)."""
+    """GX120 with faster, later burn and the intake pressure of a peak torque (N m)."""
     fast = replace(GX120, spark=radians(342.0), burn_duration=radians(50.0))
 
     def excess(pressure: float) -> float:

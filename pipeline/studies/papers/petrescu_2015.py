@@ -1,7 +1,7 @@
 """Petrescu and Petrescu (2015): roller-follower cams of module B and the classical module C.
 
-The yields printed do not follow from the paper's own eq. 6.18, whose greatest value is near 0.30
-for every set: no average of it can reach 0.39 to 0.60. The equations are what is tested.
+The printed yields of 0.39 to 0.60 do not follow from eq. 6.18 of the paper, whose maximum is about
+0.30 for every set: the equations are tested.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class CamSet:
 
     @property
     def motion(self) -> Motion:
-        """The paper's cosine law up and down, then rest."""
+        """Harmonic rise and return, then dwell."""
         angle = float(np.radians(self.rise))
         return Motion(
             (
@@ -54,6 +54,7 @@ class CamSet:
 
     @property
     def cam(self) -> ValveCam:
+        """Valve cam with the roller of the paper."""
         return ValveCam(self.motion, self.base_radius, ROLLER)
 
 
@@ -64,12 +65,12 @@ SETS = {
     "B4": CamSet(0.013, 0.012, 22.5, 1.5e6, 0.09),
 }
 CLASSICAL = CamSet(0.013, 0.006, 90.0, 150e3, 0.03)
-STIFFNESS = (5e6, 1e7, 5e7)  # K of the train, N/m; not printed
+STIFFNESS = (5e6, 1e7, 5e7)  # K of the valve train, N/m; not printed
 CRANK_RPM = 5000.0
 
 
 def study(targets: Mapping[str, Target]) -> PaperResult:
-    """Every row of the paper that can be computed, and the studies behind them."""
+    """Outcome of each value of the paper that can be computed, and the studies."""
     rows = [_figures(name, cam_set) for name, cam_set in SETS.items()]
     outcomes = {}
     for number, row in enumerate(rows, start=1):

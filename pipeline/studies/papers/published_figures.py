@@ -1,4 +1,4 @@
-"""Published figures, what this version obtains for them, and the verdict on each."""
+"""Published values, computed values and the verdict on each."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ NOT_COMPUTED = "not computed by this version"
 
 @dataclass(frozen=True)
 class Target:
-    """One published figure: `value` a number, numbers, or a statement in words."""
+    """A published value: number, numbers, or a statement in words."""
 
     id: str
     paper: str
@@ -23,12 +23,12 @@ class Target:
     value: Any
     unit: str
     condition: str
-    kind: str  # simulated or measured, by the paper
+    kind: str  # simulated or measured in the paper
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What was obtained for a target, and what that says, in a sentence."""
+    """Computed value of a target, verdict and reason."""
 
     obtained: Any
     verdict: Verdict
@@ -37,17 +37,14 @@ class Outcome:
 
 @dataclass(frozen=True)
 class PaperResult:
-    """Outcomes of one paper by the id of their target, and studies beyond the targets."""
+    """Outcomes of one paper by target id, and further studies."""
 
     outcomes: Mapping[str, Outcome]
     studies: Mapping[str, Any] = field(default_factory=dict)
 
 
-# A paper's module gives one of these: from its targets by id to what was obtained.
-
-
 def within(obtained: float, published: float, tolerance: float, reason: str) -> Outcome:
-    """Reproduced where the figures differ by no more than a share of the published one."""
+    """Outcome by a tolerance relative to the published value."""
     near = abs(obtained - published) <= tolerance * abs(published)
     how = f"within {100 * tolerance:g} %" if near else f"more than {100 * tolerance:g} % away"
     verdict: Verdict = "reproduced" if near else "not reproduced"
@@ -62,7 +59,7 @@ def _document() -> Mapping[str, Any]:
 
 
 def targets(paper: str | None = None) -> dict[str, Target]:
-    """Published figures by id, of one paper or of all."""
+    """Published values by id, of one paper or of all."""
     rows = (Target(**row) for row in _document()["targets"])
     return {row.id: row for row in rows if paper in (None, row.paper)}
 
@@ -91,7 +88,7 @@ def row_record(target: Target, outcome: Outcome | None) -> dict[str, Any]:
 
 
 def _difference(published: Any, obtained: Any) -> Any:
-    """Obtained less published where both are numbers, entry by entry; else null."""
+    """Computed less published value where both are numbers, by entry; else null."""
     if isinstance(published, list) and isinstance(obtained, list):
         return [_difference(p, o) for p, o in zip(published, obtained, strict=True)]
     numbers = (int, float)

@@ -1,8 +1,8 @@
-"""Slider-crank against eccentric cam (2024): energies, forces, inertia, trends.
+"""Slider-crank and eccentric cam (2024): energies, forces, inertia, trends.
 
-The paper's tables of dimensions are lost. Five dimensions are inferred from its three energies and
-some coarser figures: crank 20 mm, rod 80 mm, rollers 47.5 and 17.5 mm, 37.219 rad/s. Masses and
-spring are assumed. Rows that the dimensions were fitted to say so.
+The tables of dimensions of the paper are not available. Five dimensions are inferred from its three
+energies and some coarser values: crank 20 mm, rod 80 mm, rollers 47.5 and 17.5 mm, 37.219 rad/s.
+Masses and spring are assumed. Values used for the fit are marked.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from camwright.pipeline.studies.papers.published_figures import (
 from camwright.pipeline.studies.papers.slider_crank_drive import (
     EccentricDrive,
     HoldingSpring,
+    Losses,
     Masses,
     PairFriction,
     SliderCrankDrive,
@@ -40,16 +41,16 @@ TRACTION = {"big": 0.046, "small": 0.014}
 CREEP = 0.05
 PRINTED_LOAD = {"big": 94.0, "small": 93.0}
 SLIP_FRICTION = (0.05, 0.2)
-FITTED = "with five dimensions fitted to this paper's figures, a consistent set and no proof"
+FITTED = "with five dimensions fitted to values of this paper"
 
 
 def cylinder_mass(radius: float) -> float:
-    """Of solid steel 20 mm wide, kg."""
+    """Mass of a solid steel cylinder 20 mm wide, kg."""
     return float(STEEL * np.pi * radius**2 * DISC_WIDTH)
 
 
 def drives() -> tuple[SliderCrankDrive, dict[str, EccentricDrive]]:
-    """The slider-crank and the cams by their roller."""
+    """Slider-crank, and eccentric cams by roller."""
     rod = Masses(slider=1.0, rod=0.6, rod_inertia=3e-4, common=0.075)
     cams = {}
     for name, radius in RADII.items():
@@ -67,7 +68,7 @@ def drives() -> tuple[SliderCrankDrive, dict[str, EccentricDrive]]:
 
 
 def study(targets: Mapping[str, Target]) -> PaperResult:
-    """Every row of the paper that can be computed, and the studies behind them."""
+    """Outcome of each value of the paper that can be computed, and the studies."""
     rod, cams = drives()
     space = workspace(FRICTION, SPEED)
     outcomes = {
@@ -95,7 +96,7 @@ def _energies(
         "E24-01": near("E24-01", crank, 0.002, FITTED),
         "E24-02": near("E24-02", big, 0.002, FITTED),
         "E24-03": near("E24-03", small, 0.002,
-                       f"{FITTED}; rolling without slip, for which the traction is missing"),
+                       f"{FITTED}; rolling without slip, beyond the available traction"),
         "E24-04": near("E24-04", 100 * (crank / big - 1), 0.05, FITTED),
         "E24-05": near("E24-05", 100 * (small / big - 1), 0.02,
                        f"{FITTED}; the printed energies give 176.5 %"),
@@ -126,7 +127,7 @@ def _contact(
     outcomes["E24-18"] = Outcome(
         "trend" if highest == "small" else highest,
         "reproduced" if highest == "small" else "not reproduced",
-        f"mean reaction of the slider's pin: {forces}; by a traction that is not there",
+        f"mean reaction of the slider's pin: {forces}; by a traction beyond the available one",
     )
     return outcomes
 
@@ -184,9 +185,11 @@ def _trends(space: Workspace) -> dict[str, Outcome]:
 def _studies(
     rod: SliderCrankDrive, cams: Mapping[str, EccentricDrive], space: Workspace
 ) -> dict[str, Any]:
-    """Energies by pair, the slip alternative beside them, the traction that rolling asks for."""
+    """Studies of energy by pair, with and without slip, of traction and of trends."""
     phi = uniform_turn(720)
-    rows: list[dict[str, Any]] = [{"mechanism": "slider-crank", **_by_pair(rod.losses(SPEED))}]
+    rows: list[dict[str, str | float]] = [
+        {"mechanism": "slider-crank", **_by_pair(rod.losses(SPEED))}
+    ]
     for name, cam in cams.items():
         rows.append({"mechanism": f"{name} roller, no slip", **_by_pair(cam.losses(SPEED))})
         rows += [
@@ -218,6 +221,7 @@ def _studies(
     }
 
 
-def _by_pair(losses: Any) -> dict[str, float]:
+def _by_pair(losses: Losses) -> dict[str, float]:
+    """Energies of the pairs, J."""
     names = ("shaft", "guide", "pin_a", "pin_b", "sliding", "total")
     return {f"{name}_J": round(float(getattr(losses, name)), 3) for name in names}

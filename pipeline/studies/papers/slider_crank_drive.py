@@ -1,7 +1,7 @@
-"""Slider-crank and eccentric cam with roller, side by side: forces, friction, reduced inertia.
+"""Slider-crank and eccentric cam with roller: forces, friction energy, reduced inertia.
 
-Signs, roots and fractions of the paper's equations are lost in the text at hand; they are restored
-here from the mechanics and tested by power balance.
+Signs, roots and fractions of the equations are not legible in the source; they are derived from
+the mechanics and tested by power balance.
 
 References
 ----------
@@ -39,9 +39,9 @@ class PairFriction:
 
 @dataclass(frozen=True)
 class Masses:
-    """kg and kg m^2. The rod's centre is at its middle; the roller and disc turn about theirs.
+    """Masses, kg, and inertias about the own centres, kg m^2; centre of the rod at its middle.
 
-    common is the inertia about the shaft of all that both mechanisms share.
+    common: inertia about the shaft of the parts that both mechanisms share.
     """
 
     slider: float
@@ -61,7 +61,7 @@ class Masses:
 
 @dataclass(frozen=True)
 class HoldingSpring:
-    """F = preload + rate (d - least d), N (eqs 38 and 39)."""
+    """Spring force preload + rate (d - minimum d), N (eqs 38 and 39)."""
 
     preload: float
     rate: float
@@ -74,11 +74,11 @@ class HoldingSpring:
 
 @dataclass(frozen=True, eq=False)
 class Reactions:
-    """Forces over one turn at constant or given speed, arrays (n,), SI, in the paper's axes.
+    """Forces over one turn, arrays (n,), SI, in the axes of the source.
 
-    o, a, b are (2, n): on the crank at O and at A, on the slider side at B as in eqs 5 to 12. For
-    the cam `a` is the contact's force on the disc. normal and traction are the contact's, zero for
-    the slider-crank; side is the guide's force; motor the torque T_m.
+    o, a, b (2, n): on the crank at O and A, on the slider at B as in eqs 5 to 12; for the cam `a`
+    is the contact force on the disc. normal and traction of the contact, zero for the slider-crank;
+    side: force of the guide; motor: torque T_m.
     """
 
     phi: Array
@@ -106,13 +106,13 @@ class Losses:
 
     @property
     def total(self) -> float:
-        """All viscous pairs and, where the roller slips, its sliding; J."""
+        """Energy of all viscous pairs and of sliding, J."""
         return self.shaft + self.guide + self.pin_a + self.pin_b + self.sliding
 
 
 @dataclass(frozen=True)
 class SliderCrankDrive:
-    """A crank with balanced or eccentric mass, a rod with its centre in the middle, a slider."""
+    """Slider-crank: balanced crank, rod with its centre in the middle, slider."""
 
     linkage: Eccentric
     friction: PairFriction
@@ -120,7 +120,7 @@ class SliderCrankDrive:
     spring: HoldingSpring
 
     def losses(self, speed: float, count: int = POSITIONS) -> Losses:
-        """Friction energy of a turn at constant speed (rad/s), by pair (eq. 18)."""
+        """Viscous friction energy of a turn at constant speed (rad/s), by pair (eq. 18)."""
         phi, c = uniform_turn(count), self.friction
         spin = self.linkage.rod_rate(phi)
         return Losses(
@@ -131,7 +131,7 @@ class SliderCrankDrive:
         )
 
     def reduced_inertia(self, phi: Array) -> Array:
-        """I_red about the shaft (eq. 49), kg m^2."""
+        """Reduced inertia about the shaft (eq. 49), kg m^2."""
         l1, angle = self.linkage.crank, self.linkage.rod_angle(phi)
         sin, cos = np.sin(phi), np.cos(angle)
         middle = 1.0 - sin / cos * np.sin(phi - angle) + 0.25 * sin**2 / cos**2
@@ -141,7 +141,7 @@ class SliderCrankDrive:
         return np.asarray(self.masses.common + l1**2 * total)
 
     def reactions(self, phi: Array, speed: float, acceleration: float = 0.0) -> Reactions:
-        """Newton and Euler for slider, rod and crank (eqs 5 to 12); the crank is balanced."""
+        """Newton-Euler equations of slider, rod and balanced crank (eqs 5 to 12)."""
         linkage, c, m = self.linkage, self.friction, self.masses
         l1, l2 = linkage.crank, linkage.rod
         angle = linkage.rod_angle(phi)
@@ -152,7 +152,7 @@ class SliderCrankDrive:
         pull = pull + linkage.height_rate(phi) * acceleration
         sin1, cos1, sin2, cos2 = np.sin(phi), np.cos(phi), np.sin(angle), np.cos(angle)
 
-        # eqs 8 and 9: the rod's middle moves as the crank pin and half the rod turning
+        # eqs 8 and 9: acceleration of the middle of the rod
         x = acceleration * l1 * cos1 - speed**2 * l1 * sin1
         x = m.rod * (x - 0.5 * l2 * (spin_up * sin2 + spin**2 * cos2))
         y = acceleration * l1 * sin1 + speed**2 * l1 * cos1
@@ -174,7 +174,7 @@ class SliderCrankDrive:
 
 @dataclass(frozen=True)
 class EccentricDrive:
-    """An eccentric disc that moves a roller on a slider; the roller rolls without slip."""
+    """Eccentric cam with a roller on a slider, rolling without slip."""
 
     linkage: Eccentric
     roller_radius: float
@@ -188,12 +188,12 @@ class EccentricDrive:
             raise InputError("roller.radius", self.roller_radius, limit)
 
     def rolling_way(self, phi: Array) -> Array:
-        """|I13 J|, of the contact over the roller per radian (eq. 35), m/rad."""
+        """Rolling distance |I13 J| per radian (eq. 35), m/rad."""
         side = self.linkage.height_rate(phi) - self.linkage.offset
         return np.asarray(np.hypot(self.linkage.height(phi), side) - self.roller_radius)
 
     def losses(self, speed: float, count: int = POSITIONS) -> Losses:
-        """Friction energy of a turn at constant speed (rad/s), rolling without slip (eq. 40)."""
+        """Viscous friction energy of a turn at constant speed (rad/s), without slip (eq. 40)."""
         phi, c = uniform_turn(count), self.friction
         spin = self.rolling_way(phi) / self.roller_radius
         return Losses(
@@ -204,14 +204,14 @@ class EccentricDrive:
         )
 
     def reduced_inertia(self, phi: Array) -> Array:
-        """I_red about the shaft (eqs 50 and 51), kg m^2."""
+        """Reduced inertia about the shaft (eqs 50 and 51), kg m^2."""
         m, spin = self.masses, self.rolling_way(phi) / self.roller_radius
         pushed = (m.roller + m.slider) * self.linkage.height_rate(phi) ** 2
         own = m.common + m.disc_inertia + m.disc * self.linkage.crank**2
         return np.asarray(own + m.roller_inertia * spin**2 + pushed)
 
     def reactions(self, phi: Array, speed: float, acceleration: float = 0.0) -> Reactions:
-        """Newton and Euler for slider, roller and disc (eqs 25 to 31), without slip."""
+        """Newton-Euler equations of slider, roller and disc (eqs 25 to 31), without slip."""
         way, c, m = self.rolling_way(phi), self.friction, self.masses
         d1, d2 = self.linkage.height_rate(phi), self.linkage.height_rate_slope(phi)
         d, side = self.linkage.height(phi), d1 - self.linkage.offset
@@ -222,7 +222,7 @@ class EccentricDrive:
         return self._with_traction(phi, speed, acceleration, traction)
 
     def push(self, phi: Array, speed: float, acceleration: float = 0.0) -> Array:
-        """Axial force that slider, roller, guide and spring ask of the cam, N."""
+        """Axial force on the cam by slider, roller, guide and spring, N."""
         d1, d2 = self.linkage.height_rate(phi), self.linkage.height_rate_slope(phi)
         inertia = (self.masses.slider + self.masses.roller) * (d2 * speed**2 + d1 * acceleration)
         held = _held(self.spring, self.linkage, phi)
@@ -250,7 +250,7 @@ class EccentricDrive:
         return Reactions(phi, o, -on_roller, b, normal, traction, b[1], motor)
 
     def traction_needed(self, phi: Array, speed: float) -> Array:
-        """|F_t| / F_n that rolling without slip asks for."""
+        """Traction coefficient |F_t| / F_n of rolling without slip."""
         reactions = self.reactions(phi, speed)
         return np.abs(reactions.traction) / reactions.normal
 
@@ -262,10 +262,10 @@ class EccentricDrive:
         normal_force: float | None = None,
         count: int = POSITIONS,
     ) -> float:
-        """mu F_n SRR v over a turn, J (eqs 41 and 42): v is the rolling speed of eq. 35.
+        """Creep loss mu F_n SRR v over a turn, J (eqs 41 and 42), with rolling speed v of eq. 35.
 
-        A creep beside the no-slip kinematics; it is small and is not part of the total. Without
-        a mean `normal_force` (N), as the paper takes it, F_n is that of every angle.
+        Small against the kinematics without slip and not part of the total. normal_force: mean
+        normal force, N; None: that of each angle.
         """
         phi = uniform_turn(count)
         normal = self.reactions(phi, speed).normal if normal_force is None else normal_force
@@ -273,10 +273,10 @@ class EccentricDrive:
         return float(np.mean(power) * FULL_TURN / speed)
 
     def slipping_losses(self, speed: float, friction: float, count: int = POSITIONS) -> Losses:
-        """Friction energy of a turn when the traction is limited to mu F_n, J.
+        """Friction energy of a turn with the traction limited to mu F_n, J.
 
-        Where rolling asks for no more the roller rolls; elsewhere the pin is driven by mu F_n
-        alone, and the rest of the rolling speed slides. The roller's inertia is left out.
+        The roller rolls within the limit; beyond it mu F_n drives the pin, and the rest of the
+        rolling speed is slip. The inertia of the roller is neglected.
         """
         phi, c, r = uniform_turn(count), self.friction, self.roller_radius
         angle, surface = self.linkage.rod_angle(phi), self.rolling_way(phi) * speed
@@ -297,7 +297,7 @@ class EccentricDrive:
 
 
 def stroke_efficiency(drive: SliderCrankDrive | EccentricDrive, speed: float) -> float:
-    """Work put into the spring over the out-stroke, over that of the motor, at constant speed."""
+    """Work on the spring over work of the motor on the outward stroke at constant speed."""
     phi = uniform_turn(7200)
     out = drive.linkage.height_rate(phi) > 0.0
     held = _held(drive.spring, drive.linkage, phi) * drive.linkage.height_rate(phi)
@@ -306,7 +306,7 @@ def stroke_efficiency(drive: SliderCrankDrive | EccentricDrive, speed: float) ->
 
 @dataclass(frozen=True)
 class DryFriction:
-    """Coulomb friction of the pairs: guide (-); shaft and pins mu times radius, m."""
+    """Dry friction of the pairs: coefficient of the guide; times radius of shaft and pins, m."""
 
     guide: float = 0.0
     shaft: float = 0.0
@@ -320,10 +320,10 @@ class DryFriction:
 
 
 def dry_losses(drive: SliderCrankDrive | EccentricDrive, speed: float, dry: DryFriction) -> Losses:
-    """Coulomb friction energy of a turn by pair, J: mu |R| times the way rubbed.
+    """Dry friction energy of a turn by pair, J: mu |R| times sliding distance.
 
-    With the reactions of the viscous mechanism: what dry friction changes in them is of second
-    order in mu and left out.
+    With the reactions of the viscous mechanism: their change by dry friction is of second order in
+    mu and neglected.
     """
     phi = uniform_turn(POSITIONS)
     reactions, linkage = drive.reactions(phi, speed), drive.linkage
@@ -341,18 +341,19 @@ def dry_losses(drive: SliderCrankDrive | EccentricDrive, speed: float, dry: DryF
 
 
 def _rubbed(friction: float, force: Array, way: Array) -> float:
-    """mu |F| |ds/dphi| over a turn, J; force (1 or 2, n), way (n,) in m or rad per radian."""
+    """Integral of mu |F| |ds/dphi| over a turn, J; force (1 or 2, n), ds/dphi (n,)."""
     size = np.sqrt(np.sum(force**2, axis=0))
     return float(np.mean(friction * size * np.abs(way)) * FULL_TURN)
 
 
 def _held(spring: HoldingSpring, linkage: Eccentric, phi: Array) -> Array:
+    """Spring force (n,), N."""
     travel = linkage.height(phi) - linkage.height_base
     return np.asarray(spring.preload + spring.rate * travel)
 
 
 def _turn_loss(damping: Array, speed: float) -> float:
-    """Energy of a turn of torques `damping` times speed^2 over speed, J."""
+    """Energy of a turn, J, of damping coefficients (n,), N m s."""
     if not 0.0 < speed < np.inf:
         raise InputError("speed", speed, "> 0 rad/s")
     return float(np.mean(damping) * speed * FULL_TURN)

@@ -1,10 +1,9 @@
-"""A crank speed of the GX120 that meets every statistic published of it; not measured data.
+"""Crank speed of the GX120 reconstructed from published statistics; not measured data.
 
-Cardoso et al., Energies 2025, 18, 3256, print statistics and a few points of the speed of the
-stock engine at idle, no curve. They leave the curve open. Here it is the smoothest that meets
-them all, by third differences over the 72 tooth places of two turns of their 36-tooth wheel; the
-effective inertia is found with it. This module, run as a script, writes
-``gx120_speed.csv`` anew.
+Cardoso et al., Energies 18 (2025) 3256, print statistics and a few points of the speed of the stock
+engine at idle, no curve. The reconstruction is the smoothest curve that satisfies all of them, by
+third differences over the 72 teeth of two turns of the 36-tooth wheel, together with the effective
+inertia. Run as a script this module writes ``gx120_speed.csv``.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from camwright.pipeline.engine.crankshaft import torque_of_motion
 from camwright.pipeline.smoothing.cone_program import Cones
 
 FILE = "gx120_speed.csv"
-TEETH = 72  # tooth places of a cycle, 10 deg apart
+TEETH = 72  # teeth of a cycle, 10 deg apart
 
 SPEED_STD = 3.74  # rad/s, stock
 SPEED_AMPLITUDE = 11.08 * 3.74 / 3.58  # printed with the mechanism mounted; scaled by the std
@@ -31,16 +30,16 @@ SPEED_MEAN = 151.0  # of the printed points
 POINTS = {0: 153.0, 18: 147.0}  # rad/s at 0 and 180 deg
 SLOWEST, FASTEST = 35, 45  # "just before 360 deg", "around 450 deg"
 TORQUE_STD, TORQUE_AMPLITUDE, TORQUE_PEAK = 6.25, 29.79, 25.0
-MAX_STEPS = 100  # towards a first guess, and from it
-SETTLED = 1e-7  # rad/s and g m2, the last step
-FARTHEST = 0.5  # of one step
-_APART = 1e-3  # of the differences behind slopes of smooth functions, rad/s and g m2
-PEAK, TROUGH = 37, 48  # tooth places of the torque, chosen for a smooth curve
+MAX_STEPS = 100  # of the initial guess, and of the solution
+SETTLED = 1e-7  # last step, rad/s and g m2
+FARTHEST = 0.5  # maximum step, rad/s and g m2
+_APART = 1e-3  # step of difference quotients, rad/s and g m2
+PEAK, TROUGH = 37, 48  # teeth of the torque extremes, chosen for a smooth curve
 
 
 @dataclass(frozen=True, eq=False)
 class Reconstruction:
-    """Speed (72,), rad/s, at every 10 deg of the cycle, and the inertia it implies, kg m2."""
+    """Speed (72,), rad/s, at every 10 deg of the cycle, and effective inertia, kg m2."""
 
     speed: Array
     inertia: float
@@ -49,29 +48,29 @@ class Reconstruction:
         freeze(self, speed=self.speed)
 
     def speed_at(self, count: int) -> Array:
-        """The trigonometric interpolant at `count` equal angles, rad/s."""
+        """Speed (count,) at equal angles by trigonometric interpolation, rad/s."""
         spectrum = np.fft.rfft(self.speed)
         if count > self.speed.size:
-            spectrum[-1] *= 0.5  # shared by both of the harmonics it stands for
+            spectrum[-1] *= 0.5  # shared by two harmonics
         return np.asarray(np.fft.irfft(spectrum, n=count) * (count / self.speed.size), dtype=float)
 
     def torque_at(self, count: int) -> Array:
-        """J omega domega/dtheta of it, N m."""
+        """Torque (count,) J omega domega/dtheta, N m."""
         return torque_of_motion(self.speed_at(count), self.inertia)
 
 
 def reconstruct() -> Reconstruction:
-    """The smoothest curve that meets the published statistics.
+    """The smoothest curve that satisfies the published statistics.
 
     Raises
     ------
     ResultError
-        If no curve meets them.
+        If no curve satisfies them.
 
     Notes
     -----
-    Steps of sequential quadratic programming with the curvature of the Lagrangian: the optimum is
-    flat, and weighted least squares stop wherever they tire.
+    Sequential quadratic programming with the Hessian of the Lagrangian: the optimum is flat, and
+    weighted least squares stop early.
     """
     guess = np.append(_first_guess(), 13.3)  # the inertia in g m2, to be of one size
     unknowns = least_squares(_residuals, guess, x_scale="jac", max_nfev=MAX_STEPS).x
@@ -85,11 +84,11 @@ def reconstruct() -> Reconstruction:
         if np.abs(step).max() < SETTLED:
             return Reconstruction(unknowns[:-1], float(unknowns[-1]) * 1e-3)
     miss = float(np.abs(_misses(unknowns)).max())
-    raise ResultError(f"no speed curve meets the published statistics: off by {miss:.2g}")
+    raise ResultError(f"speed curve: residual of the published statistics = {miss:.2g}")
 
 
 def _step(unknowns: Array, multipliers: Array) -> tuple[Array, Array] | None:
-    """To the optimum of the quadratic model, and its multipliers; None where it has none."""
+    """Step to the optimum of the quadratic model, and multipliers; None without one."""
     level, slopes = _limits(unknowns), _slopes(_limits, unknowns)
     bend = _slopes(lambda at: multipliers @ _slopes(_limits, at), unknowns)
     smooth = np.zeros_like(bend)
@@ -98,7 +97,7 @@ def _step(unknowns: Array, multipliers: Array) -> tuple[Array, Array] | None:
     program = Cones(unknowns.size)
     program.charge(smooth @ unknowns)
     program.charge_square((vectors * np.maximum(values, 1e-8)) @ vectors.T)
-    met = _misses(unknowns).size  # from both sides; the rest are one-sided
+    met = _misses(unknowns).size  # equalities; the others are inequalities
     program.at_most(csr_array(-slopes), level)
     program.at_most(csr_array(slopes[:met]), -level[:met])
     solution = program.solved()
@@ -110,13 +109,13 @@ def _step(unknowns: Array, multipliers: Array) -> tuple[Array, Array] | None:
 
 
 def _slopes(function: Callable[[Array], Array], at: Array) -> Array:
-    """Derivatives by central differences: what is differentiated is nearly quadratic."""
+    """Derivatives by central differences of a nearly quadratic function."""
     steps = _APART * np.eye(at.size)
     return np.array([(function(at + h) - function(at - h)) / (2 * _APART) for h in steps]).T
 
 
 def _residuals(unknowns: Array) -> Array:
-    """Third differences, what misses the published figures and what passes their extremes."""
+    """Third differences, residuals of the published values and of their extremes."""
     passed = np.minimum(_room(unknowns), 0.0)
     return np.concatenate([_differences(unknowns[:-1]), _misses(unknowns), passed])
 
@@ -144,7 +143,7 @@ def _torque(unknowns: Array) -> Array:
 
 
 def _misses(unknowns: Array) -> Array:
-    """By how much each published figure is missed."""
+    """Residuals of the published values."""
     speed, torque = unknowns[:-1], _torque(unknowns)
     return np.array(
         [
@@ -160,7 +159,7 @@ def _misses(unknowns: Array) -> Array:
 
 
 def _room(unknowns: Array) -> Array:
-    """Not below zero where neither torque nor speed passes its published extremes."""
+    """Margins of torque and speed to their published extremes, >= 0."""
     speed, torque = unknowns[:-1], _torque(unknowns)
     return np.concatenate(
         [
@@ -173,7 +172,7 @@ def _room(unknowns: Array) -> Array:
 
 
 def load() -> Reconstruction:
-    """The reconstruction as shipped."""
+    """The shipped reconstruction."""
     text = files(__package__).joinpath(FILE).read_text(encoding="utf-8")
     inertia = next(line for line in text.splitlines() if line.startswith("# inertia_kg_m2"))
     rows = [line.split(",") for line in text.splitlines() if line[:1].isdigit()]
@@ -181,7 +180,7 @@ def load() -> Reconstruction:
 
 
 def to_csv(reconstruction: Reconstruction) -> str:
-    """Text of the file shipped; floats read back bit for bit."""
+    """Text of the shipped file; floats are exact."""
     head = [
         "# RECONSTRUCTED, not measured: the smoothest crank speed (third differences) that meets",
         "# the statistics of the stock GX120 at idle in Cardoso et al., Energies 2025, 18, 3256.",

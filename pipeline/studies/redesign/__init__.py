@@ -1,1 +1,15 @@
-"""Redesign: parts of the catalogues tried in a case, the cam drawn anew for each of them."""
+"""Redesign: Pareto front of torque ripple and size or mass over the catalogues.
+
+In the order of the calculation:
+
+| module           | responsibility                                | symbol, unit |
+| ---------------- | --------------------------------------------- | ------------ |
+| `ripple_bounds`  | lower bounds of the residual ripple           | -; J; N      |
+| `design_point`   | point of a case: ripple, size, mass           | N m; m; kg   |
+| `point_store`    | points in worker processes, cached on disk    |              |
+| `part_search`    | search order over rollers, springs and bushes |              |
+| `pareto_front`   | front of two objectives                       |              |
+| `redesign_study` | command: search, front, case files, record    |              |
+
+Imported by `commands` alone.
+"""
