@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import clarabel
 import numpy as np
@@ -71,12 +70,10 @@ class Cones:
         self._linear: list[tuple[csr_array, Array]] = []
         self._cones: list[tuple[csr_array, Array, int]] = []
 
-    def columns(self, matrix: Any, start: int) -> csr_array:
-        """A matrix (m, w) of the unknowns from `start` on, as one of them all, (m, size)."""
-        found = csr_array(matrix)
-        return csr_array(
-            (found.data, found.indices + start, found.indptr), shape=(found.shape[0], self.size)
-        )
+    def columns(self, matrix: csr_array, start: int) -> csr_array:
+        """Matrix (m, size) of all unknowns from one (m, w) of those from `start` on."""
+        parts = (matrix.data, matrix.indices + start, matrix.indptr)
+        return csr_array(parts, shape=(matrix.shape[0], self.size))
 
     def charge(self, slopes: ArrayLike, start: int = 0) -> None:
         """Add slopes (w,) @ x to the cost."""

@@ -16,7 +16,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
-from camwright.pipeline.smoothing.grid import Grid
+from camwright.pipeline.smoothing.energy_spline import Grid
 from camwright.pipeline.smoothing.linear_model import State
 from camwright.pipeline.smoothing.sampled_problem import LEAST_ENERGY, Search
 from camwright.pipeline.smoothing.synthesis_problem import FINEST, RESERVE, Design, Problem

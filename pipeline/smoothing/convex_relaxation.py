@@ -20,9 +20,15 @@ from scipy.sparse import csr_array
 from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.pipeline.smoothing.cone_program import Cones
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
-from camwright.pipeline.smoothing.ripple import ripple_of, triangle
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.synthesis_problem import COARSE_POINTS, RESERVE, Problem, thinned
+from camwright.pipeline.smoothing.synthesis_problem import (
+    COARSE_POINTS,
+    RESERVE,
+    Problem,
+    ripple_of,
+    thinned,
+    triangle,
+)
 
 
 @dataclass(frozen=True, eq=False)

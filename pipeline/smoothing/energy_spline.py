@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -18,6 +19,7 @@ from camwright.geometry.errors import InputError
 DEGREE = 5
 LEAST_COEFFICIENTS = 12
 _FIT_ANGLES = 1440
+ORDERS = 4  # E, E', E'', E'''
 
 
 @lru_cache(maxsize=1)
@@ -68,6 +70,30 @@ def basis_rows(theta: ArrayLike, count: int, derivative: int = 0) -> tuple[Array
         values += front * step[:, None] ** (power - derivative) * _pieces()[:, power]
     columns = np.mod(place[:, None] - np.arange(DEGREE + 1), count)
     return values / part**derivative, columns
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Cam angles (m,), the columns (m, 6) of the splines there, and their values by order."""
+
+    theta: Array
+    columns: NDArray[np.intp]
+    entries: Array
+
+    @classmethod
+    def at(cls, theta: Array, count: int) -> Grid:
+        """The grid of `count` splines at angles theta (m,), rad."""
+        rows = [basis_rows(theta, count, order) for order in range(ORDERS)]
+        return cls(theta, rows[0][1], np.stack([values for values, _ in rows]))
+
+    def energy(self, coefficients: Array) -> tuple[Array, ...]:
+        """E, E', E'', E''' at the angles, J/rad^k, each (m,)."""
+        local = coefficients[self.columns]
+        return tuple(np.sum(entry * local, axis=1) for entry in self.entries)
+
+    def chained(self, local: Array) -> Array:
+        """Derivatives (m, 6) by the coefficients, from those (4, m) by E, E', E'', E'''."""
+        return np.asarray(np.einsum("km,kmj->mj", local, self.entries))
 
 
 def fitted_energy(cam_torque: ArrayLike, count: int) -> Array:

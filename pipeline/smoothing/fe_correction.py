@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple, NotRequired, TypedDict
 
 import numpy as np
 
@@ -13,10 +13,11 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.smoothing.multistart import Starts
+from camwright.pipeline.smoothing.infeasibility import ConflictRecord
+from camwright.pipeline.smoothing.multistart import Starts, StartsRecord
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Correction
-from camwright.pipeline.smoothing.shadow_prices import prices
+from camwright.pipeline.smoothing.shadow_prices import PriceRecord, prices
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
 SETTLED = 0.01  # utilisation that finite elements may still move, of the limit
@@ -59,6 +60,26 @@ def with_corrections(problem: Problem, corrections: Mapping[str, Correction]) ->
         replace(item, correction=named(item.name) or item.correction) for item in problem.scenarios
     )
     return replace(problem, scenarios=scenarios)
+
+
+class SynthesisRecord(TypedDict):
+    """JSON record of a synthesis; ``infeasible`` where its limits conflict."""
+
+    feasible: bool
+    converged: bool
+    steps: int
+    ripple_left: float
+    initial_energy_J: float
+    spring_rate_N_per_mm: float
+    preload_N: float
+    prime_radius_mm: float
+    phase_deg: float
+    reserve: float
+    starts: StartsRecord | None
+    corrections: dict[str, dict[str, list[float]]]
+    utilisation: dict[str, float]
+    prices: list[PriceRecord]
+    infeasible: NotRequired[ConflictRecord]
 
 
 class Moved(NamedTuple):
@@ -149,7 +170,9 @@ def redrawn(case: Case, design: Design) -> Case:
     return case.model_copy(update={"spring": spring, "cam": cam})
 
 
-def design_record(design: Design, problem: Problem, starts: Starts | None = None) -> dict[str, Any]:
+def design_record(
+    design: Design, problem: Problem, starts: Starts | None = None
+) -> SynthesisRecord:
     """What ``trial.json`` keeps of a synthesis.
 
     Parameters

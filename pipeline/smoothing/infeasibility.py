@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -42,6 +42,13 @@ class Relaxation:
         return self.change(problem, self.factor)
 
 
+class ConflictRecord(TypedDict):
+    """JSON record of conflicting limits and of the relaxations, the cheapest first."""
+
+    conflict: list[str]
+    relaxations: list[dict[str, str | float]]
+
+
 @dataclass(frozen=True)
 class Infeasibility:
     """Limits of which every smaller set can be kept, and single changes that free them."""
@@ -49,7 +56,7 @@ class Infeasibility:
     conflict: tuple[str, ...]
     relaxations: tuple[Relaxation, ...]
 
-    def as_record(self) -> dict[str, Any]:
+    def as_record(self) -> ConflictRecord:
         return {
             "conflict": list(self.conflict),
             "relaxations": [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 from scipy.sparse.linalg import spsolve
@@ -18,6 +18,16 @@ from camwright.pipeline.smoothing.synthesis_problem import Design, Problem, coar
 AGREE = 0.01  # of the ripple left: designs that differ by less are one
 NOTHING_LEFT = 1e-3  # of the engine's ripple: below it no design is better than another
 _SEED = 1989
+
+
+class StartsRecord(TypedDict):
+    """JSON record of `Starts`."""
+
+    tried: int
+    ripple_left: list[float | None]
+    spread_percent: float
+    agree: bool
+    sentence: str
 
 
 @dataclass(frozen=True)
@@ -61,7 +71,7 @@ class Starts:
             f"{100 * self.spread:.2g} %, so that the best of them is not known to be the best"
         )
 
-    def as_record(self) -> dict[str, Any]:
+    def as_record(self) -> StartsRecord:
         return {
             "tried": len(self.ripples),
             "ripple_left": list(self.ripples),

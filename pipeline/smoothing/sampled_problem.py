@@ -20,13 +20,17 @@ from camwright.pipeline.smoothing.constraints import (
     load_utilisations,
     shape_utilisations,
 )
-from camwright.pipeline.smoothing.energy_spline import basis_matrix, exact_start
+from camwright.pipeline.smoothing.energy_spline import Grid, basis_matrix, exact_start
 from camwright.pipeline.smoothing.gradients import FREED, Function, Gradient, differentiated
-from camwright.pipeline.smoothing.grid import Grid
 from camwright.pipeline.smoothing.linear_model import Linear, Model, State, Summit
-from camwright.pipeline.smoothing.ripple import ripple_of, torque_ripple, triangle
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
-from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
+from camwright.pipeline.smoothing.synthesis_problem import (
+    RESERVE,
+    Problem,
+    ripple_of,
+    torque_ripple,
+    triangle,
+)
 
 INITIAL_ENERGY = "initial_energy"
 LEAST_ENERGY = "least_energy"

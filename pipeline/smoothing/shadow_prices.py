@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,20 @@ from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Prob
 BINDING = 2e-3  # below the reserve by less than this share of a limit: it binds
 
 
-def prices(design: Design, problem: Problem) -> list[dict[str, Any]]:
+class PriceRecord(TypedDict):
+    """JSON record of a shadow price."""
+
+    limit: str
+    words: str
+    value: float
+    unit: str
+    ripple_per_unit_Nm: float
+    ripple_per_percent_Nm: float
+    binds_at_deg: list[tuple[float, float]]
+    sentence: str
+
+
+def prices(design: Design, problem: Problem) -> list[PriceRecord]:
     """One record for each limit that costs ripple, the dearest first.
 
     The price is the crank-torque ripple (std, N m) that one more unit of the limit would take
@@ -35,14 +48,14 @@ def prices(design: Design, problem: Problem) -> list[dict[str, Any]]:
     """
     bounds = bounds_of(problem.ratings)
     before = max(float(np.std(item.torque)) for item in problem.scenarios if item.weight > 0)
-    found = []
+    records: list[PriceRecord] = []
     for name, multiplier in design.multipliers.items():
         known = bounds.get(name, Bound(name.replace("_", " "), 1.0, "-", 1.0))
         slope = known.slope
         if name == "contact_pressure":
             slope *= 2.0 * _load_share(design, problem)
         price = multiplier * before * slope
-        found.append(
+        records.append(
             {
                 "limit": name,
                 "words": known.words,
@@ -54,7 +67,7 @@ def prices(design: Design, problem: Problem) -> list[dict[str, Any]]:
                 "sentence": _sentence(known, price),
             }
         )
-    return sorted(found, key=lambda record: -record["ripple_per_percent_Nm"])
+    return sorted(records, key=lambda record: -record["ripple_per_percent_Nm"])
 
 
 def limits_in_use(design: Design) -> tuple[Array, dict[str, Array]]:

@@ -14,8 +14,7 @@ from camwright.geometry.energy import lift_from_torque
 from camwright.pipeline.case.case_file import load_case_file
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.constrained_synthesis import Problem, synthesise
-from camwright.pipeline.smoothing.energy_spline import exact_start, fitted_energy
-from camwright.pipeline.smoothing.grid import Grid
+from camwright.pipeline.smoothing.energy_spline import Grid, exact_start, fitted_energy
 from camwright.pipeline.smoothing.multistart import explored
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
