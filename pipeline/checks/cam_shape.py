@@ -7,6 +7,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.extrema import Extremum
 from camwright.geometry.extrema import greatest as greatest_of
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
     ACCELERATION_STEP,
     CLOSURE,
@@ -166,15 +167,21 @@ def second_contact(solution: Solution) -> Demand:
 )
 def concave_radius(solution: Solution) -> Demand | None:
     """Least concave radius of the contour, m; None for a convex cam."""
-    tool, least = solution.case.largest_tool, solution.contour.concave_radius_min()
+    least, allowed = solution.contour.concave_radius_min(), least_concave_radius(solution.case)
     if np.isposinf(least.value):
         return None
     return Demand(
         float(least.value),
-        None if tool is None else TOOL_ALLOWANCE * tool,
+        allowed,
         _at(least),
-        note="" if tool is not None else "no tool radius is given",
+        note="" if allowed is not None else "no tool radius is given",
     )
+
+
+def least_concave_radius(case: Case) -> float | None:
+    """Minimum concave radius that the tool of the case can machine, m; None without a tool."""
+    tool = case.largest_tool
+    return None if tool is None else TOOL_ALLOWANCE * tool
 
 
 @check(

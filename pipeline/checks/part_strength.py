@@ -6,13 +6,20 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import BORE_PRESSURE, KEY_PRESSURE, PIN_SHARE, UNBALANCE
+from camwright.pipeline.case.limits import (
+    BORE_PRESSURE,
+    KEY_PRESSURE,
+    PIN_SHARE,
+    UNBALANCE,
+    LimitValues,
+)
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import greatest, worst_case
 from camwright.pipeline.cycle.cam_balance import Balance, balance
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.bearing_ring import goodman
+from camwright.pipeline.follower.roller_parts import Pin
 
 
 @check(
@@ -26,18 +33,23 @@ from camwright.pipeline.follower.bearing_ring import goodman
 )
 def roller_pin(solution: Solution) -> Demand:
     """Bending stress of the roller's pin, Pa."""
-    roller, share = solution.machine.roller, solution.machine.limits[PIN_SHARE]
+    roller = solution.machine.roller
     pin = None if roller is None else roller.pin
     if pin is None:
         return Demand(None, None, note="no pin is given")
     worst = greatest(solution.cycles, lambda cycle: _known(cycle.parts.pin_stress))
     return Demand(
         worst.value,
-        share * pin.material.yield_strength,
+        allowed_pin_stress(pin, solution.machine.limits),
         worst,
         figures=(f"{pin.material.name}: {pin.material.source}",),
         method=f"32 M/(pi d^3), {pin.mounting}, the load spread over the bearing",
     )
+
+
+def allowed_pin_stress(pin: Pin, limits: LimitValues) -> float:
+    """Maximum bending stress of the roller pin, Pa."""
+    return limits[PIN_SHARE] * pin.material.yield_strength
 
 
 @check(

@@ -7,6 +7,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.limits import ROLLER_LIFE, ROLLER_SPEED_SHARE, ROLLER_STATIC_SAFETY
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cycle import Cycle
@@ -33,6 +34,12 @@ def spin(cycle: Cycle) -> Array:
     """Speed of the roller on its pin, rad/s, (n,)."""
     contour = cycle.contour.require_roller()
     return roller_motion(contour.pitch, contour.roller_radius, cycle.cam_speed, cycle.theta).spin
+
+
+def allowed_spin(machine: Machine) -> float | None:
+    """Maximum speed of the roller on its pin, rad/s; None without a limiting speed."""
+    speed = None if machine.roller is None else machine.roller.bearing.speed_limit
+    return None if speed is None else machine.limits[ROLLER_SPEED_SHARE] * speed
 
 
 def _force(solution: Solution) -> Extreme:
@@ -105,9 +112,8 @@ def _life(cycle: Cycle, rating: float | None) -> float:
 )
 def roller_speed(solution: Solution) -> Demand:
     """Greatest speed of the roller on its pin, rad/s."""
-    bearing, share = bearing_of(solution), solution.machine.limits[ROLLER_SPEED_SHARE]
+    bearing, allowed = bearing_of(solution), allowed_spin(solution.machine)
     worst = greatest(solution.cycles, lambda cycle: np.abs(spin(cycle)))
-    allowed = None if bearing.speed_limit is None else share * bearing.speed_limit
     return Demand(
         worst.value,
         allowed,

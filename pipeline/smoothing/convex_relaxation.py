@@ -18,6 +18,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
+from camwright.pipeline.case.limits import PRESSURE_ANGLE
 from camwright.pipeline.smoothing.cone_program import Cones
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.sampled_problem import Search
@@ -92,8 +93,9 @@ def _program(search: Search) -> Cones:
     # q / P^2 = 1 + growth, and sigma / P is the unknown
     growth = (2.0 * variables.rate / variables.preload**2) * energy
     sigma = program.columns(csr_array(np.eye(points)), count + 1)
-    if ratings.pressure_angle is not None:
-        steep = np.tan(ratings.pressure_angle * (1.0 - RESERVE)) * variables.preload
+    steepest = ratings.limits.get(PRESSURE_ANGLE)
+    if steepest is not None:
+        steep = np.tan(steepest * (1.0 - RESERVE)) * variables.preload
         by_root = variables.prime_radius - variables.preload / variables.rate
         room = steep * (by_root * sigma + (variables.preload / variables.rate) * growth)
         for side in (1.0, -1.0):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, uniform_turn
-from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
 from camwright.pipeline.smoothing.cone_program import Norm
 from camwright.pipeline.smoothing.constraints import (
     Jet,
@@ -71,7 +71,7 @@ class Search:
             rate=variables.rate,
             preload=variables.preload,
             prime_radius=variables.prime_radius,
-            pressure_angle=ratings.pressure_angle or np.pi / 3,
+            pressure_angle=ratings.limits.get(PRESSURE_ANGLE, np.pi / 3),
             energy_max=variables.preload * travel + 0.5 * variables.rate * travel**2,
         )
         rise = float(np.clip(0.0, problem.energy[0] - 1e-12, problem.energy[1]))

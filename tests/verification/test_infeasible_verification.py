@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.case_file import load_case_file
@@ -13,7 +14,7 @@ from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.roller_alternatives import roller_problems
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -24,7 +25,7 @@ def small(**ratings):
     theta = uniform_turn(120)
     torque = 8.0 * np.sin(2 * theta) + 4.0 * np.cos(3 * theta)
     running = Scenario("idle", 78.5, torque, 0.2, 0.08, 0.038, 0.06, 0.06)
-    limits = Ratings(roller_radius=0.008, pressure_angle=np.pi / 6, **ratings)
+    limits = rated(roller_radius=0.008, pressure_angle=np.pi / 6, **ratings)
     return Problem(
         (running,), limits, DesignVariables(24.2e3, 242.0, 0.05), coefficients=24, points=120,
         torque_reduction=0.5,
