@@ -4,27 +4,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import AfterValidator, Discriminator, Field, Tag
 
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import DWELL, LAWS, Motion, Segment
 from camwright.pipeline.base.quantities import In, Length
 from camwright.pipeline.case.cylinder_section import LiftPoint
-from camwright.pipeline.case.section import FileName, Section
+from camwright.pipeline.case.section import FileName, Section, refusal, suggestion
 
 if TYPE_CHECKING:
     pass
 
 Stroke = Annotated[float, In("mm", above=-10_000, below=10_000)]
-LawName = Literal[
-    "dwell",
-    "parabolic",
-    "harmonic",
-    "cycloidal",
-    "modified_trapezoid",
-    "modified_sine",
-    "polynomial_345",
-    "polynomial_4567",
-]
+
+
+def _known_law(name: str) -> str:
+    laws = (DWELL, *LAWS)
+    if name not in laws:
+        raise refusal(f"a motion law{suggestion(name, laws)}")
+    return name
+
+
+LawName = Annotated[str, AfterValidator(_known_law)]
 
 
 class LiftTable(Section):

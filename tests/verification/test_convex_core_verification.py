@@ -120,7 +120,7 @@ def test_energy_held_at_zero_leaves_more_ripple():
 
 
 @pytest.mark.parametrize("change", [{"variables": DesignVariables(RATE, PRELOAD, 0.009)},
-                                    {"ratings": rated(roller_radius=0.008, offset=0.002)}])  # fmt: skip
+                                    {"ratings": rated(roller_radius=8e-3, offset=2e-3)}])  # fmt: skip
 def test_what_is_not_convex_has_no_convex_part(change):
     given = replace(problem(**LIMITS["angle"]), **change)
     assert convex_start(given) is None
