@@ -119,8 +119,13 @@ def test_energy_held_at_zero_leaves_more_ripple():
     assert (LEVEL @ found.coefficients).min() == pytest.approx(0.0, abs=1e-6)
 
 
-@pytest.mark.parametrize("change", [{"variables": DesignVariables(RATE, PRELOAD, 0.009)},
-                                    {"ratings": rated(roller_radius=8e-3, offset=2e-3)}])  # fmt: skip
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"variables": DesignVariables(RATE, PRELOAD, 0.009)},
+        {"ratings": rated(roller_radius=8e-3, offset=2e-3)},
+    ],
+)
 def test_what_is_not_convex_has_no_convex_part(change):
     given = replace(problem(**LIMITS["angle"]), **change)
     assert convex_start(given) is None
