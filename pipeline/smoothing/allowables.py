@@ -1,4 +1,4 @@
-"""Limits of a case as a synthesis keeps them: those of the checks."""
+"""Ratings of a synthesis: the limits of a case as the checks apply them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _TRAVEL_LEAST, _TRAVEL_MOST = 1e-6, 1.0  # m, of any spring
 
 
 def ratings_of(case: Case) -> Ratings:
-    """Limits of a case as the checks apply them.
+    """Ratings of a case.
 
     Raises
     ------
@@ -41,9 +41,9 @@ def ratings_of(case: Case) -> Ratings:
     states, roller = machines(case), case.roller
     machine, bearing = states[0], roller.bearing
     limits, guides, life = machine.limits, machine.guides, machine.limits[ROLLER_LIFE]
-    wear = None
+    cubed = None
     if bearing.C is not None and life is not None:
-        wear = bearing.C**3 * MILLION_TURNS / life
+        cubed = bearing.C**3 * MILLION_TURNS / life
     pressure, pressure_by = _least(pressure_allowables(machine, life_turns(states)))
     normal_force, normal_force_by = _least(force_limits(case))
     by_rating = normal_force_by == "roller_static"
@@ -64,7 +64,7 @@ def ratings_of(case: Case) -> Ratings:
         normal_force_by=normal_force_by or "roller_static",
         force_safety=limits[ROLLER_STATIC_SAFETY] if by_rating else 1.0,
         dynamic_rating=bearing.C,
-        life_force_cubed=wear,
+        life_force_cubed=cubed,
         roller_spin=allowed_spin(machine),
         guide_pressure=(guides.a.pressure_limit, guides.b.pressure_limit),
         guide_pv=(pv_limit(guides.a), pv_limit(guides.b)),
@@ -75,8 +75,8 @@ def ratings_of(case: Case) -> Ratings:
 def travel_limits(case: Case) -> dict[str, float]:
     """Greatest lift allowed by each check of the spring, m, by its id.
 
-    Where rate or preload is free the spring as wound is still to be chosen; only the given travel
-    bounds the lift.
+    Where rate or preload is free, the spring design is open and the spring travel alone limits
+    the lift.
     """
     spring, limits = case.spring, case.limits
     allowed = {}
@@ -120,7 +120,7 @@ def force_limits(case: Case) -> dict[str, float]:
 
 
 def _least(limits: dict[str, float]) -> tuple[float | None, str]:
-    """The least of some limits and its name."""
+    """Least limit and its name."""
     if not limits:
         return None, ""
     name = min(limits, key=lambda each: limits[each])

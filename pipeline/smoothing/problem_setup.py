@@ -15,14 +15,14 @@ from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.smoothing.allowables import ratings_of
-from camwright.pipeline.smoothing.constrained_synthesis import Problem
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
+from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 POINTS = 720
 
 
 def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
-    """The constrained synthesis of a case.
+    """Constrained synthesis of a case.
 
     Parameters
     ----------

@@ -15,11 +15,12 @@ from camwright.pipeline.case.case_file import load_case_file
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.follower.follower_forces import follower_loads
-from camwright.pipeline.smoothing.constrained_synthesis import RESERVE, Problem, synthesise
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.shadow_prices import prices
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
 
 CASES = Path(__file__).parents[2] / "cases"
 RATINGS = rated(

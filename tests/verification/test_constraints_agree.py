@@ -244,7 +244,7 @@ def test_gradients_match_differences(free):
     step[24:] *= 1e-2  # the rest moves as much for a hundredth of k, P and r0
 
     def beside(side):
-        return search.model(search.state(*search.moved(state, side * h * step))).limits
+        return search.model(search.state(*search.after(state, side * h * step))).limits
 
     seen = set()
     for limit, up, down in zip(search.model(state).limits, beside(1), beside(-1), strict=True):
@@ -272,7 +272,7 @@ def test_gradient_of_each_term_of_the_objective(free, term):
     state = search.state(search.start + 2.0, given.variables)
     step, h = np.random.default_rng(7).normal(size=24 + len(free)), 1e-5
     step[24:] *= 1e-2
-    up, down = (search.state(*search.moved(state, side * h * step)) for side in (1, -1))
+    up, down = (search.state(*search.after(state, side * h * step)) for side in (1, -1))
     model = search.model(state)
     if term == "jerk":
         slope, differences = model.slope @ step, (up.jerk - down.jerk) / (2 * h)

@@ -9,11 +9,12 @@ from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE
-from camwright.pipeline.smoothing.constrained_synthesis import RESERVE, Problem, started
+from camwright.pipeline.smoothing.constrained_synthesis import started
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
 from camwright.pipeline.smoothing.trust_region import descended
 
 COUNT, POINTS = 14, 60

@@ -14,14 +14,14 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque
 from camwright.pipeline.case.case_file import load_case_file
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.smoothing.constrained_synthesis import Problem, synthesise
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.energy_spline import Grid, exact_start, fitted_energy
 from camwright.pipeline.smoothing.multistart import explored
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.smoothers import KINDS, Smoother, smoothed
-from camwright.pipeline.smoothing.synthesis_problem import coarsened
+from camwright.pipeline.smoothing.synthesis_problem import Problem, coarsened
 
 CASES = Path(__file__).parents[2] / "cases"
 RATE, PRELOAD, BASE = 24.2e3, 242.0, 0.05
