@@ -1,4 +1,4 @@
-"""The roller's bearing: static rating, life, speed, outer ring."""
+"""Checks of the roller bearing: static rating, life, speed, outer ring."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ def bearing_of(solution: Solution) -> Bearing:
     Raises
     ------
     InputError
-        Under a flat face; a check of the bearing declares that it needs a roller.
+        If the follower has a flat face.
     """
     roller = solution.machine.roller
     if roller is None:
-        raise InputError("roller", "missing", "given for a check of its bearing")
+        raise InputError("roller", "missing", "given for the checks of its bearing")
     return roller.bearing
 
 
@@ -56,7 +56,7 @@ def _force(solution: Solution) -> Extreme:
     needs="roller",
 )
 def roller_static(solution: Solution) -> Demand:
-    """Static safety s0 of the bearing."""
+    """Static safety factor s0 of the bearing."""
     bearing, worst = bearing_of(solution), _force(solution)
     rating = bearing.C0
     rated = rating is not None and worst.value > 0
@@ -78,7 +78,7 @@ def roller_static(solution: Solution) -> Demand:
     needs="roller",
 )
 def roller_life(solution: Solution) -> Demand:
-    """Rating life of the bearing over the turn, s."""
+    """L10 rating life of the bearing, s."""
     bearing, target = bearing_of(solution), solution.machine.limits[ROLLER_LIFE]
     worst = worst_case(solution.cycles, lambda c: _life(c, bearing.C), at_least=True)
     missing = ["no dynamic rating is given"] if bearing.C is None else []
@@ -103,7 +103,7 @@ def _life(cycle: Cycle, rating: float | None) -> float:
 @check(
     ROLLER_SPEED_SHARE,
     id="roller_speed",
-    title="Roller speed vs. limiting speed",
+    title="Maximum roller speed vs. limiting speed",
     unit="rpm",
     method="rolling without slip: w (|dP/dtheta| - r) / r",
     lift_can_help=True,
@@ -111,7 +111,7 @@ def _life(cycle: Cycle, rating: float | None) -> float:
     needs="roller",
 )
 def roller_speed(solution: Solution) -> Demand:
-    """Greatest speed of the roller on its pin, rad/s."""
+    """Maximum speed of the roller on its pin, rad/s."""
     bearing, allowed = bearing_of(solution), allowed_spin(solution.machine)
     worst = greatest(solution.cycles, lambda cycle: np.abs(spin(cycle)))
     return Demand(
@@ -124,7 +124,7 @@ def roller_speed(solution: Solution) -> Demand:
 
 
 @check(
-    title="Roller force vs. maximum radial load of the outer ring",
+    title="Normal force vs. maximum radial load of the outer ring",
     unit="N",
     source="F_r,max of a track roller",
     method="greatest normal force over the turn",
@@ -132,7 +132,7 @@ def roller_speed(solution: Solution) -> Demand:
     needs="roller",
 )
 def roller_radial(solution: Solution) -> Demand:
-    """Greatest force on the roller, N, beside the rating of its unsupported outer ring."""
+    """Maximum normal force, N, against the rating of an unsupported outer ring."""
     bearing, worst = bearing_of(solution), _force(solution)
     return Demand(
         worst.value,

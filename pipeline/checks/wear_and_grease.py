@@ -1,6 +1,6 @@
-"""Long running: grease of the roller bearing, expansion and wear of the guides.
+"""Checks of service life: lubrication of the roller bearing, expansion and wear of the guides.
 
-Each check applies where the case has its data, and is left out (None) where it has none.
+A check without data in the case is left out.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_reactions import WALL_SHARE
 
-ROOM = 293.15  # K, at which the clearance is measured
-STANDS = 1.0  # rpm of the roller, below which nothing is greased by motion
+ROOM = 293.15  # K, temperature of the clearance measurement
+STANDSTILL = 1.0  # rpm of the roller, below which the viscosity ratio does not apply
 
 
 @check(
     VISCOSITY_RATIO,
     id="bearing_lubrication",
-    title="Viscosity ratio of the roller bearing",
-    method="viscosity given over v1 at the mean speed of the roller, where it turns",
+    title="Viscosity ratio (kappa) of the roller bearing",
+    method="viscosity over v1 at the mean speed of the roller; infinite at rest",
     must_have=False,
     needs="roller",
 )
 def bearing_lubrication(solution: Solution) -> Demand | None:
-    """Viscosity of the bearing's oil over the rated one; None where it is not given."""
+    """Viscosity ratio of the roller bearing; None without a viscosity."""
     bearing = bearing_of(solution)
     viscosity, ring, pitch = bearing.viscosity, bearing.ring, bearing.pitch_diameter
     if viscosity is None:
@@ -42,7 +42,7 @@ def bearing_lubrication(solution: Solution) -> Demand | None:
         speed = in_unit(float(np.mean(np.abs(spin(cycle)))), "rpm")
         if pitch is None or np.isnan(speed):
             return np.nan
-        return np.inf if speed < STANDS else viscosity / rated_viscosity(speed, pitch)
+        return np.inf if speed < STANDSTILL else viscosity / rated_viscosity(speed, pitch)
 
     worst = worst_case(solution.cycles, ratio, at_least=True)
     return Demand(
@@ -55,7 +55,7 @@ def bearing_lubrication(solution: Solution) -> Demand | None:
 
 
 def rated_viscosity(speed: float, pitch_diameter: float) -> float:
-    """Kinematic viscosity v1 (m2/s) that a bearing needs at a speed (rpm, > 0); diameter in m.
+    """Rated kinematic viscosity v1 of a bearing, m2/s, at a speed, rpm, > 0; diameter in m.
 
     References
     ----------
@@ -71,8 +71,8 @@ def _guide_expansion(side: Side) -> Declaration:
         id=f"guide_expansion_{side}",
         title=f"Thermal and moisture expansion vs. clearance in guide {side}",
         unit="mm",
-        source="no seizure when hot and wet, bush makers",
-        method="wall of a quarter of the bore swells inwards, in a rigid housing, at the bush's"
+        source="no seizure at temperature and moisture, bush makers",
+        method="inward expansion of a wall of a quarter of the bore, in a rigid housing, at the"
         " running temperature",
         must_have=False,
         lift_can_help=True,
@@ -104,7 +104,7 @@ def _guide_wear(side: Side) -> Declaration:
         WEAR_DEPTH,
         id=f"guide_wear_{side}",
         title=f"Wear depth of guide {side} at target life",
-        method="wear rate times mean pressure times sliding distance, all the life in the worst"
+        method="wear rate times mean pressure times sliding distance, all of the life in the worst"
         " load case",
         must_have=False,
         lift_can_help=True,

@@ -325,7 +325,7 @@ def _guide_pressure(side: Literal["A", "B"]) -> Constraint[Loads]:
 
     def utilisation(at: Loads, limit: float) -> Array:
         reaction = at.side * at.force.push[place]
-        return demands.bush_pressure(reaction, at.ratings.guide_area[place]) / limit
+        return demands.guide_pressure(reaction, at.ratings.guide_area[place]) / limit
 
     return Constraint(
         f"guide_pressure_{side}", lambda ratings: ratings.guide_pressure[place], utilisation
@@ -337,7 +337,7 @@ def _guide_pv(side: Literal["A", "B"]) -> Constraint[Loads]:
 
     def utilisation(at: Loads, limit: float) -> Mean:
         load, velocity = at.side * at.force.rub[place], at.scenario.cam_speed * at.jet.slope
-        return Mean(demands.bush_pv(load, velocity, at.ratings.guide_area[place]) / limit)
+        return Mean(demands.guide_pv(load, velocity, at.ratings.guide_area[place]) / limit)
 
     return Constraint(f"guide_pv_{side}", lambda ratings: ratings.guide_pv[place], utilisation)
 

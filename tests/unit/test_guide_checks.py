@@ -38,8 +38,8 @@ def test_the_limits_of_nylon_are_not_those_of_another_bush():
 
 @pytest.mark.parametrize(
     ("scale", "says"),
-    [(0.9, "nylon carries it dry"), (1.1, "nylon carries it greased once"),
-     (11.0, "nylon carries it in no lubrication")],
+    [(0.9, "permissible for nylon dry"), (1.1, "permissible for nylon greased once"),
+     (11.0, "above all PV limits of nylon")],
 )  # fmt: skip
 def test_least_lubrication_that_carries_the_pv(scale, says):
     """The load that makes 0.083 MPa m/s, taken times 0.9, 1.1 and 11; 0.83 is the last limit."""
