@@ -271,7 +271,7 @@ def _benchmark(name: str, *, title: str, source: str) -> Declaration:
         title=title,
         unit="%",
         source=f"{source}; 2 to 3 % usual",
-        method="greater difference of p0 and half-width from the reference, solved with the libraries"
+        method="greater difference of p0 and half-width from the reference, by the libraries"
         " of this run",
         evidence=True,
         tier=Tier.FINITE_ELEMENTS,
