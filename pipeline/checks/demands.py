@@ -11,6 +11,12 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import magnitude
 
 
+def ripple_reduction(before: Array, after: Array) -> float:
+    """1 - std of the torque after over that before; NaN without a ripple."""
+    ripple = float(np.std(before))
+    return float(1.0 - np.std(after) / ripple) if ripple > 0 else np.nan
+
+
 def unloading(inertia: Array, spring: Array) -> Array:
     """Unloading inertia force over spring force: -m w^2 s'' / F_s."""
     return -inertia / spring

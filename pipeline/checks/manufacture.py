@@ -13,6 +13,7 @@ from camwright.pipeline.case.limits import (
     TORQUE_REDUCTION,
     WAVINESS,
 )
+from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
 from camwright.pipeline.checks.torque_balance import cycles_of_ripple
@@ -137,18 +138,16 @@ def phase_tolerance(solution: Solution) -> Demand | None:
 
 
 def _reduction(cycle: Cycle, phase: float) -> float:
+    """Lesser ripple reduction with the engine torque advanced and delayed by a crank angle."""
     before, after = cycle.turn.torque_before, cycle.turn.torque_after
     if before is None or after is None:
         return np.nan
-    ripple = float(np.std(before))
-    if not ripple > 0:
-        return float(np.nan)
-    # As many periods as the cycle holds: a shift is exact in its harmonics.
+    # A shift of the harmonics is exact.
     waves = np.fft.rfft(before)
-    order, taken = np.arange(waves.size), before - after
-    turned = phase / cycle.machine.gear_ratio
-    left = [
-        np.std(np.fft.irfft(waves * np.exp(-1j * order * late), before.size) - taken)
-        for late in (-turned, turned)
+    order, cam_torque = np.arange(waves.size), before - after
+    advance = phase / cycle.machine.gear_ratio
+    shifted = [
+        np.fft.irfft(waves * np.exp(1j * order * angle), before.size) - cam_torque
+        for angle in (-advance, advance)
     ]
-    return float(1.0 - np.max(left) / ripple)
+    return float(np.min([demands.ripple_reduction(before, each) for each in shifted]))

@@ -87,7 +87,6 @@ UNSIGNED = check(
     source="a sign-off needs a certified solution by finite elements",
     method="none: the solution is not certified",
 )(made_from_others)
-MADE_FROM_OTHERS = (WAIVERS_WITHOUT_EFFECT, TOLERANCE_CORNERS, UNSIGNED)
 
 
 def checks_of(

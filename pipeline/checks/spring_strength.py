@@ -13,7 +13,6 @@ from camwright.pipeline.case.limits import (
     SPRING_SOLID,
     SPRING_SURGE,
     Limit,
-    Sense,
 )
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import worst_case
@@ -57,9 +56,7 @@ def _wound(
     title: str,
     method: str,
     limit: Limit | None = None,
-    allowed: Callable[[Spring], float] = lambda _: 1.0,
     source: str = "",
-    sense: Sense | None = None,
     lift_can_help: bool = True,
 ) -> Declaration:
     """Check of the spring design at the upper ends of its tolerances."""
@@ -71,7 +68,6 @@ def _wound(
         unit="-",
         method=method,
         source=source,
-        sense=sense,
         lift_can_help=lift_can_help,
         moved_by_tolerance=False,
     )
@@ -82,7 +78,7 @@ def _wound(
             return Demand(None, None, note=NOT_WOUND)
         preload = max(machine.spring.preload for machine in solution.machines)
         travel = solution.contour.pitch.lift.highest.value
-        bound = allowed(spring) if limit is None else solution.machine.limits[limit]
+        bound = 1.0 if limit is None else solution.machine.limits[limit]
         value = measure(design, hardest_work(spring, design, preload, travel))
         return Demand(value, bound, figures=(design.source,), corner=_corner(spring))
 
@@ -120,7 +116,7 @@ spring_buckling = _wound(
     lambda design, _: design.buckling_use,
     title="Spring free length / buckling length",
     source="L0 < 2.63 D over the end factor, Shigley ch. 10",
-    method="closed form",
+    method="free length over 2.63 D / end factor",
     lift_can_help=False,
 )
 

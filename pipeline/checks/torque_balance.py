@@ -12,6 +12,7 @@ from camwright.pipeline.case.limits import (
     SPEED_REDUCTION,
     TORQUE_REDUCTION,
 )
+from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import Extreme, worst_case
 from camwright.pipeline.cycle.cycle import Cycle
@@ -82,9 +83,9 @@ def speed_reduction(solution: Solution) -> Demand | None:
 
 def _reduction(cycle: Cycle) -> float:
     before, after = cycle.turn.torque_before, cycle.turn.torque_after
-    if before is None or after is None or not np.std(before) > 0:
+    if before is None or after is None:
         return np.nan
-    return float(1.0 - np.std(after) / np.std(before))
+    return demands.ripple_reduction(before, after)
 
 
 @check(

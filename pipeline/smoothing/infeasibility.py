@@ -40,10 +40,6 @@ class Relaxation:
         unit = f" {self.unit}" if self.unit != "-" else ""
         return f"{self.what}: {self.after:.4g}{unit} instead of {self.before:.4g}{unit}"
 
-    def applied(self, problem: Problem) -> Problem:
-        """The relaxed problem."""
-        return self.change(problem, self.factor)
-
 
 class ConflictRecord(TypedDict):
     """JSON record of conflicting limits and of the relaxations, the smallest first."""

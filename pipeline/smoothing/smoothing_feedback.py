@@ -22,11 +22,10 @@ WIDEST = CYCLE / 2.0  # rad of crank; a wider window leaves no ripple to compens
 
 @dataclass(frozen=True)
 class Next:
-    """Smoother of one more trial, and why. `final`: the best one, repeated to end on it."""
+    """Smoother of one more trial, and why."""
 
     smoother: Smoother
     why: str
-    final: bool = False
 
 
 @dataclass(frozen=True)
@@ -36,11 +35,6 @@ class Stop:
     reason: str
     binding: tuple[str, ...]
     best: int
-
-    @property
-    def passed(self) -> bool:
-        """Whether the last trial passes every must-have check."""
-        return not self.binding
 
 
 def next_smoother(attempts: Sequence[Attempt], max_trials: int, forecast: Forecast) -> Next | Stop:
@@ -103,7 +97,7 @@ def _end(attempts: Sequence[Attempt], room: int, cause: str) -> Next | Stop:
     is_best = best == len(attempts) - 1 or latest.smoother == chosen.smoother
     if not is_best and room > 0:
         why = f"trial {best + 1} is the best; it is repeated as the last one"
-        return Next(chosen.smoother, f"{cause}: {why}", final=True)
+        return Next(chosen.smoother, f"{cause}: {why}")
     text = _statement(attempts, latest, cause)
     if not is_best:
         text += f"; trial {best + 1} was better, but no trial was left to repeat it"
