@@ -13,7 +13,7 @@ In the order of the calculation:
 | `contact_strength`      | endurance, yield, shakedown                | p0, Pa                   |
 | `surface_durability`    | traction, oil film, fatigue, hardened case | T/F_n; lambda; sigma, Pa |
 | `roller_bearing`        | rating, life, speed of the roller bearing  | s0; L10, s; n, rad/s     |
-| `guide_bushes`          | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
+| `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
 | `spring_strength`       | strength, solid length, buckling, surge    | tau, Pa; f, Hz           |
 | `part_strength`         | pin, outer ring, key, bore, unbalance      | sigma, Pa; e w, m/s      |
 | `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s        |

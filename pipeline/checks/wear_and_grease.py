@@ -11,7 +11,7 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import TARGET_LIFE, VISCOSITY_RATIO, WEAR_DEPTH
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import worst_case
-from camwright.pipeline.checks.guide_bushes import Side, heat_of, mean_pv
+from camwright.pipeline.checks.guide_strength import Side, guide_of, heat_of, mean_pv
 from camwright.pipeline.checks.roller_bearing import bearing_of, spin
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
@@ -78,9 +78,8 @@ def _guide_expansion(side: Side) -> Declaration:
         lift_can_help=True,
     )
     def expansion(solution: Solution) -> Demand | None:
-        """Expansion of bush and stem, m, beside the clearance between them."""
-        guides = solution.machine.guides
-        guide = guides.a if side == "A" else guides.b
+        """Expansion of guide and stem, m, against the clearance between them."""
+        guide = guide_of(solution.machine, side)
         bush, stem = guide.material, solution.case.follower.stem_material
         coefficient, of_stem = bush.expansion, stem.expansion or 0.0
         if coefficient is None:
@@ -93,7 +92,7 @@ def _guide_expansion(side: Side) -> Declaration:
             return float(wall + guide.diameter * of_stem * warmer)
 
         worst = worst_case(solution.cycles, growth)
-        note = "the bush's temperature is not known" if np.isnan(worst.value) else ""
+        note = "the temperature of the guide is not known" if np.isnan(worst.value) else ""
         return Demand(worst.value, guide.clearance, worst, note=note, figures=(bush.source,))
 
     return expansion
@@ -111,8 +110,7 @@ def _guide_wear(side: Side) -> Declaration:
     )
     def wear(solution: Solution) -> Demand | None:
         """Wear depth of a guide over the target life, m; None without a wear rate."""
-        guides, limits = solution.machine.guides, solution.machine.limits
-        guide = guides.a if side == "A" else guides.b
+        guide, limits = guide_of(solution.machine, side), solution.machine.limits
         rate, life = guide.wear_rate, limits[TARGET_LIFE]
         if rate is None:
             return None

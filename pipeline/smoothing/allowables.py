@@ -18,7 +18,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.cam_shape import least_concave_radius
 from camwright.pipeline.checks.contact_strength import life_turns, pressure_allowables
-from camwright.pipeline.checks.guide_bushes import pv_limit
+from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.jump_and_jamming import overspeed
 from camwright.pipeline.checks.part_strength import allowed_pin_stress
 from camwright.pipeline.checks.roller_bearing import allowed_spin

@@ -9,6 +9,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
@@ -21,20 +22,14 @@ from camwright.pipeline.follower.guide_reactions import Guide
 Side = Literal["A", "B"]
 
 
-def guide_of(cycle: Cycle, side: Side) -> Guide:
-    """Guide A or B of a load case."""
-    guides = cycle.machine.guides
-    return guides.a if side == "A" else guides.b
+def guide_of(machine: Machine, side: Side) -> Guide:
+    """Guide A or B."""
+    return machine.guides.a if side == "A" else machine.guides.b
 
 
 def heat_of(parts: PartLoads, side: Side) -> GuideHeat:
     """Friction heat of guide A or B."""
     return parts.heat_a if side == "A" else parts.heat_b
-
-
-def _guide(solution: Solution, side: Side) -> Guide:
-    guides = solution.machine.guides
-    return guides.a if side == "A" else guides.b
 
 
 def _reaction(cycle: Cycle, side: Side) -> Array:
@@ -53,7 +48,7 @@ def _guide_pressure(side: Side) -> Declaration:
     )
     def pressure(solution: Solution) -> Demand:
         """Maximum over the turn of the mean pressure in a guide, Pa."""
-        guide = _guide(solution, side)
+        guide = guide_of(solution.machine, side)
         worst = greatest(
             solution.cycles,
             lambda c: demands.guide_pressure(_reaction(c, side), guide.projected_area),
@@ -87,7 +82,7 @@ def _contributions(solution: Solution, side: Side, worst: Extreme) -> str:
     statics = guides.statics_a if side == "A" else guides.statics_b
     reaction = _reaction(cycle, side)
     k = int(np.argmax(np.abs(reaction)))
-    per_newton = np.sign(reaction[k]) / guide_of(cycle, side).projected_area
+    per_newton = np.sign(reaction[k]) / guide_of(cycle.machine, side).projected_area
     points, length, clearance = (
         shown(float(per_newton * each[k]), "MPa", 3)
         for each in (statics, share.by_length, share.by_clearance)
@@ -99,13 +94,13 @@ def mean_pv(cycle: Cycle, side: Side) -> float:
     """PV value in guide A or B, mean over the turn, Pa m/s."""
     guides = cycle.guides
     load = guides.rubbing_load_a if side == "A" else guides.rubbing_load_b
-    area = guide_of(cycle, side).projected_area
+    area = guide_of(cycle.machine, side).projected_area
     return float(np.mean(demands.guide_pv(load, cycle.loads.velocity, area)))
 
 
 def _pv_of_reaction(cycle: Cycle, side: Side) -> float:
     """PV value by the net reaction, in which loads on opposite sides of the bore cancel, Pa m/s."""
-    load, area = np.abs(_reaction(cycle, side)), guide_of(cycle, side).projected_area
+    load, area = np.abs(_reaction(cycle, side)), guide_of(cycle.machine, side).projected_area
     return float(np.mean(demands.guide_pv(load, cycle.loads.velocity, area)))
 
 
@@ -122,7 +117,7 @@ def _guide_pv(side: Side) -> Declaration:
     )
     def pv(solution: Solution) -> Demand:
         """PV value in a guide, mean over the turn, Pa m/s."""
-        guide = _guide(solution, side)
+        guide = guide_of(solution.machine, side)
         worst = worst_case(solution.cycles, lambda cycle: mean_pv(cycle, side))
         alone = worst_case(solution.cycles, lambda cycle: _pv_of_reaction(cycle, side))
         limit = pv_limit(guide)
@@ -180,7 +175,7 @@ def _guide_edge_pressure(side: Side) -> Declaration:
     )
     def edge(solution: Solution) -> Demand:
         """Maximum guide edge pressure, Pa."""
-        card = _guide(solution, side).material
+        card = guide_of(solution.machine, side).material
         worst = greatest(solution.cycles, lambda cycle: _edge(cycle.parts, side))
         source = f"yield strength of {card.name}: {card.source}"
         return Demand(worst.value, card.yield_strength, worst, source=source)
@@ -204,7 +199,7 @@ def _guide_temperature(side: Side) -> Declaration:
     )
     def temperature(solution: Solution) -> Demand:
         """Steady temperature of a guide, degC."""
-        guide = _guide(solution, side)
+        guide = guide_of(solution.machine, side)
         card = guide.material
         worst = worst_case(solution.cycles, lambda c: celsius(heat_of(c.parts, side).temperature))
         limit = card.temperature_limit
