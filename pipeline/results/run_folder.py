@@ -32,7 +32,7 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import json_text, read_json, write_atomic
 from camwright.pipeline.base.tables import Column, table
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.results import run_reader, signoff
 
 _STATE, _CHUNKS, _LOCK = ".state.json", ".chunks", ".lock"
@@ -347,8 +347,8 @@ def _differing(found: Any, wanted: Mapping[str, Any]) -> str:
 
 def drawn_cam(run: Path) -> tuple[Case, Contour]:
     """The case of a run and the contour of its last trial."""
-    found = run_reader.load_run(run)
-    case = load_case_file(run / "case.toml")
+    found = run_reader.read_run(run)
+    case = read_case(run / "case.toml")
     values = 1e-3 * np.asarray(found.final.lift["lift_mm"], dtype=float)
     return case, case.contour(Lift(uniform_turn(values.size), values))
 

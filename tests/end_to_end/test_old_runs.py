@@ -37,7 +37,7 @@ def test_a_kept_run_is_small(name: str) -> None:
 
 
 def test_an_old_run_is_reported(run: Path) -> None:
-    made = sections.build(run)
+    made = sections.report(run)
     assert {path.stem for path in made["figures"]} >= ALWAYS
     text = made["page"][0].read_text(encoding="utf-8")
     summary = run_reader.read_summary(run)
