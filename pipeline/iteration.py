@@ -1,4 +1,4 @@
-"""From a case to its cam: lift and contour, and the trials until a cam passes."""
+"""Synthesis of the cam of a case, and the trials until a cam passes."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Protocol
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
 from camwright.geometry.lift import Lift
@@ -23,12 +24,11 @@ from camwright.pipeline.preview import preview_case, smoothing_record
 from camwright.pipeline.results.trial import CONSTRAINED, GIVEN_LIFT, SmoothingRecord, Trial
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.fe_correction import (
-    Moved,
-    corrections_of,
+    LimitShift,
+    SynthesisRecord,
+    corrected,
     design_record,
-    moved,
     redrawn,
-    refined_problem,
     settled,
 )
 from camwright.pipeline.smoothing.infeasibility import infeasibility
@@ -47,10 +47,13 @@ FORECAST_POSITIONS = 360
 
 @dataclass(frozen=True, eq=False)
 class Synthesis:
-    """A cam and the case it was drawn for.
+    """Cam of a case.
 
-    case has the spring and prime radius of a constrained synthesis; record is its record, None
-    where a smoother or the case drew the lift.
+    Parameters
+    ----------
+    case : Case         with the spring and prime radius of a constrained synthesis
+    contour : Contour
+    record : mapping    of a constrained synthesis; None without one
     """
 
     case: Case
@@ -60,26 +63,26 @@ class Synthesis:
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """Trials of a run, the last one the answer, and the reason why there are no more."""
+    """Trials of a run, the last one final, and the stopping criterion in words."""
 
     trials: tuple[Trial, ...]
     statement: str
 
 
 class TrialSink(Protocol):
-    """Receives every trial as soon as it is solved."""
+    """Receives each trial when it is solved."""
 
     def store(self, number: int) -> ContactStore:
-        """Store of the contact of a trial."""
+        """Store of the contact solutions of a trial."""
         ...
 
     def keep(self, trial: Trial) -> None:
-        """A trial is solved and checked."""
+        """Keep a solved and checked trial."""
         ...
 
 
 class NotKept:
-    """A sink that keeps nothing."""
+    """Sink that discards the trials."""
 
     def store(self, number: int) -> ContactStore:  # noqa: ARG002
         return NOT_STORED
@@ -88,10 +91,10 @@ class NotKept:
 
 
 def synthesize(case: Case, *, progress: Progress = SILENT) -> Synthesis:
-    """The cam of a case: torque, lift, contour.
+    """Cam of a case: torque, lift, contour.
 
-    A smoother is taken as the case has it; `run_case` adapts it until the cam passes. A
-    constrained synthesis finds the cam of least ripple within all limits, corrected by previews.
+    The smoother is that of the case; `run_case` widens it until the cam passes. A constrained
+    synthesis minimises the ripple within all limits, corrected by previews.
 
     Raises
     ------
@@ -112,12 +115,12 @@ def trials_of(
     sink: TrialSink | None = None,
     progress: Progress = SILENT,
 ) -> Trials:
-    """Trials by finite elements until one passes or none could do better.
+    """Trials by finite elements until one passes or no better one is forecast.
 
     Parameters
     ----------
     torques : mapping    engine torque by load case
-    sink : TrialSink     receives each trial as soon as it is solved
+    sink : TrialSink     receives each trial when it is solved
 
     Raises
     ------
@@ -129,14 +132,14 @@ def trials_of(
         return _constrained(task)
     if case.engine is None:
         trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
-        reason = "a given lift is not smoothed" if trial.binding else "the given lift passes"
+        reason = f"prescribed lift: {'fails' if trial.binding else 'passes'}, not smoothed"
         return Trials((trial,), reason)
     return _smoothed(task)
 
 
 @dataclass(frozen=True, eq=False)
 class _Task:
-    """What all trials of a case share."""
+    """Input common to all trials of a case."""
 
     case: Case
     torques: Mapping[str, Torque]
@@ -150,9 +153,10 @@ class _Task:
         lift: Lift,
         why: str,
         smoothing: SmoothingRecord,
-        **of_synthesis: Any,
+        synthesis: SynthesisRecord | None = None,
+        uses: tuple[Array, Mapping[str, Array]] | None = None,
     ) -> Trial:
-        """A trial of a lift, handed to the sink."""
+        """Trial of a lift, passed to the sink; uses: see `Trial.limits_in_use`."""
         self.progress.stage(f"trial {number}: lift and contour")
         trial = solve(
             case,
@@ -161,20 +165,25 @@ class _Task:
             store=self.sink.store(number),
             progress=_Prefixed(self.progress, f"trial {number}: "),
         )
-        # A trial of a search is judged by its design; the last one is certified afterwards.
-        checks = without_sign_off(trial.checks)
         trial = replace(
-            trial, number=number, why=why, smoothing=smoothing, checks=checks, **of_synthesis
+            trial,
+            number=number,
+            why=why,
+            smoothing=smoothing,
+            # the last trial alone is certified, afterwards
+            checks=without_sign_off(trial.checks),
+            synthesis=synthesis,
+            limits_in_use=uses,
         )
         self.sink.keep(trial)
         return trial
 
 
 def _smoothed(task: _Task) -> Trials:
-    """Trials of ever gentler smoothers."""
+    """Trials of ever wider smoothers."""
     case, torques = task.case, task.torques
     forecast = cache(lambda smoother: forecast_checks(case, torques, smoother))
-    smoother, why = Smoother.from_case(case.smoothing), "smoothing of the case"
+    smoother, why = Smoother.from_case(case.smoothing), "smoother of the case"
     trials: list[Trial] = []
     attempts: list[Attempt] = []
     while True:
@@ -192,12 +201,12 @@ def _smoothed(task: _Task) -> Trials:
 def forecast_checks(
     case: Case, torques: Mapping[str, Torque], smoother: Smoother
 ) -> tuple[Check, ...]:
-    """The quick checks of the cam that a smoother leads to, by a coarse preview.
+    """Quick checks of the cam of a smoother, by a coarse preview.
 
     Raises
     ------
     GeometryError
-        If there is no such cam.
+        If the smoother leads to no cam.
     """
     contour = case.contour(cam_lift(case, torques, smoother))
     if not is_body(contour):
@@ -209,54 +218,51 @@ def forecast_checks(
 
 
 def _constrained(task: _Task) -> Trials:
-    """Synthesis and finite elements in turn, until these move no limit in use any more."""
-    given, torques = task.case, task.torques
-    problem = problem_of(given, torques)
-    why = "the cam of least ripple within all limits"
+    """Synthesis and finite elements in turn, until no utilisation above one half changes."""
+    case, torques = task.case, task.torques
+    problem = problem_of(case, torques)
+    why = "least ripple within all limits"
     trials: list[Trial] = []
     starts: Starts | None = None
-    earlier: Moved | None = None
+    shift: LimitShift | None = None
     while True:
         number = len(trials) + 1
         task.progress.stage(f"trial {number}: synthesis")
-        if trials:  # from the trial before, whose optimum it follows
+        if trials:  # starts from the optimum of the trial before
             design = synthesise(problem)
         else:
-            design, starts = explored(problem, given.smoothing.starts)
+            design, starts = explored(problem, case.smoothing.starts)
         record = design_record(design, problem, None if trials else starts)
         conflict = None
         if not design.feasible:
             task.progress.stage("conflicting limits")
-            conflict = infeasibility(problem, roller_problems(given, torques, problem))
+            conflict = infeasibility(problem, roller_problems(case, torques, problem))
             record["infeasible"] = conflict.as_record()
         trial = task.solved(
             number,
-            redrawn(given, design),
+            redrawn(case, design),
             design.lift(),
             why,
             CONSTRAINED,
             synthesis=record,
-            limits_in_use=limits_in_use(design),
+            uses=limits_in_use(design),
         )
         trials.append(trial)
         if conflict is not None:
             return Trials(tuple(trials), conflict.sentence)
-        corrections = corrections_of(trial.cycles)
-        change = moved(design, problem, corrections)
-        last = number == given.solver.max_trials
-        if settled(change, trial.checks) or trial.mesh is None or last:
+        shift, problem = corrected(problem, design, trial.cycles, shift)
+        last = number == case.solver.max_trials
+        if settled(shift, trial.checks) or trial.mesh is None or last:
             result = "fails" if trial.binding else "passes every must-have check"
             agree = "" if starts is None else f"; {starts.sentence}"
-            return Trials(tuple(trials), f"trial {number} {result}; {change.sentence}{agree}")
-        why = change.sentence
+            return Trials(tuple(trials), f"trial {number} {result}; {shift.sentence}{agree}")
+        why = shift.sentence
         task.progress.note(f"trial {number}: {why}")
-        problem = refined_problem(problem, design, corrections, change.swing(earlier))
-        earlier = change
 
 
 @dataclass(frozen=True)
 class _Prefixed:
-    """Progress whose stages begin with the same words."""
+    """Progress whose stages have a common prefix."""
 
     progress: Progress
     prefix: str

@@ -1,4 +1,4 @@
-"""Preview of a case: torque, lift, contour, loads and guides as of a run, Hertz contact."""
+"""Preview of a case: torque, lift, contour, loads and guides as in a run; Hertz contact."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.trial import CONSTRAINED, GIVEN_LIFT, SmoothingRecord, Trial
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.fe_correction import (
-    corrections_of,
+    LimitShift,
+    corrected,
     design_record,
-    moved,
     redrawn,
-    refined_problem,
     settled,
 )
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -27,10 +26,10 @@ _ROUNDS = 4  # of synthesis and correction
 
 
 def preview_case(case: Case, *, progress: Progress = SILENT) -> Trial:
-    """The cam of a case solved by closed forms: never a sign-off.
+    """Cam of a case with the contact by closed forms; no sign-off.
 
-    A constrained synthesis is corrected by the length and clearance of the guides, in as many
-    rounds as they move a limit in use.
+    A constrained synthesis is corrected for length and clearance of the guides until no
+    utilisation above one half changes.
 
     Returns
     -------
@@ -47,7 +46,8 @@ def preview_case(case: Case, *, progress: Progress = SILENT) -> Trial:
         trial = solve(case, contour, tier=Tier.PREVIEW, torques=torques, progress=progress)
         smoother = None if case.engine is None else Smoother.from_case(case.smoothing)
         return replace(trial, smoothing=smoothing_record(smoother))
-    problem, earlier = problem_of(case, torques), None
+    problem = problem_of(case, torques)
+    earlier: LimitShift | None = None
     for _ in range(_ROUNDS):
         design = synthesise(problem)
         drawn = redrawn(case, design)
@@ -57,17 +57,14 @@ def preview_case(case: Case, *, progress: Progress = SILENT) -> Trial:
             smoothing=CONSTRAINED,
             synthesis=design_record(design, problem),
         )
-        corrections = corrections_of(trial.cycles)
-        change = moved(design, problem, corrections)
-        if not design.feasible or settled(change, trial.checks):
+        earlier, problem = corrected(problem, design, trial.cycles, earlier)
+        if not design.feasible or settled(earlier, trial.checks):
             break
-        problem = refined_problem(problem, design, corrections, change.swing(earlier))
-        earlier = change
     return trial
 
 
 def smoothing_record(smoother: Smoother | None) -> SmoothingRecord:
-    """Record of a smoother; of none, that of a lift the case gives."""
+    """Record of a smoother; None: of a lift in the case file."""
     if smoother is None:
         return GIVEN_LIFT
     return SmoothingRecord(

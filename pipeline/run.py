@@ -1,4 +1,4 @@
-"""A run: trials of a case, certificate, tolerance corners, files; one folder."""
+"""Run of a case: trials, certificate, tolerance corners, run folder."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ def run_case(
     present: Callable[[Path], object] = lambda _: None,
     also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
 ) -> Run:
-    """Solve a case until a cam passes or the limit that binds is named, and write its run folder.
+    """Trials of a case until a cam passes or the limit that binds is named; writes the run folder.
 
     Parameters
     ----------
-    positions : int      per cam turn, instead of the case's
-    jobs : int           processes for the certificate; None: the processors, at most 4
+    positions : int      per cam turn; None: those of the case
+    jobs : int           processes for the certificate; None: number of processors, at most 4
     resume : bool        continue an interrupted run
-    present : callable   draws page and pictures into the folder, from its files alone
-    also : callable      the final trial -> further entries of ``run.json``
+    present : callable   writes page and pictures into the run folder
+    also : callable      final trial -> further entries of ``run.json``
 
     Returns
     -------
@@ -55,7 +55,7 @@ def run_case(
     Raises
     ------
     CamError
-        In one line, for whatever the user can act upon.
+        If the case, a trial or a file cannot be solved, read or written.
     """
     out = Path(out)
     case = case if positions is None else case.with_positions(positions)
@@ -73,7 +73,7 @@ def run_case(
         writer.judge(final)
         watch.stage("fields")
         write_fields(folder.fields, final, watch.advance)
-        if final.mesh is not None:  # else no body, nothing to cut
+        if final.mesh is not None:  # else the contour is no body to machine
             watch.stage(WORKSHOP)
             write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
         summary = _summary(folder, torques, trials, final) | dict(also(final))
@@ -87,7 +87,7 @@ def run_case(
 def _with_corners(
     folder: RunFolder, torques: Mapping[str, Torque], final: Trial, progress: Progress
 ) -> Trial:
-    """The final trial with the governing corner of each check; ``corners.json``."""
+    """Final trial with the governing corner of each check; writes ``corners.json``."""
     progress.stage("tolerance corners")
     tried = outcomes(final.case, torques, final.contour)
     if len(tried) > 1:
@@ -98,7 +98,7 @@ def _with_corners(
 def _summary(
     folder: RunFolder, torques: Mapping[str, Torque], trials: Trials, final: Trial
 ) -> dict[str, Any]:
-    """Contents of ``run.json``; ``1_speed.csv`` beside it."""
+    """Contents of ``run.json``; writes ``1_speed.csv``."""
     case, required = final.case, None
     if final.smoothing.strength is not None:
         smoother = Smoother.from_case(case.smoothing).stretched(final.smoothing.strength)
@@ -123,7 +123,7 @@ def _summary(
 
 @dataclass
 class Stopwatch:
-    """Progress that adds up the seconds of each stage; trials share their stages."""
+    """Progress that sums the time of each stage, s, over all trials."""
 
     progress: Progress
     seconds: dict[str, float] = field(default_factory=dict)
@@ -142,7 +142,7 @@ class Stopwatch:
         self.progress.note(text)
 
     def read(self) -> dict[str, float]:
-        """Seconds by stage, the running one included, and in all."""
+        """Time by stage, the current one included, and total, s."""
         self._close()
         total = time.perf_counter() - self._began
         return {name: round(s, 3) for name, s in (self.seconds | {"total": total}).items()}

@@ -1,4 +1,4 @@
-"""From a cam contour to its checks: the one way, without files and prints."""
+"""Solution and checks of a cam contour, without files and prints."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ def solve(
     Parameters
     ----------
     case : Case
-    contour : Contour     of the cam, as `synthesize` gives it
+    contour : Contour     of the cam, such as from `synthesize`
     tier : Tier           PREVIEW: contact by closed forms; FINITE_ELEMENTS: by finite elements
-    torques : mapping     engine torque by load case; None: worked out from the case
-    positions : int       per cam turn; None: the case's
+    torques : mapping     engine torque by load case; None: computed from the case
+    positions : int       per cam turn; None: those of the case
     certify : int         cam angles solved in full on three meshes; 0: no certificate
-    store : ContactStore  of the pieces of the contact, to resume an interrupted solution
+    store : ContactStore  of partial contact solutions, to resume an interrupted run
     progress : Progress
-    jobs : int            processes of the certificate; None: the processors, at most 4
+    jobs : int            processes for the certificate; None: number of processors, at most 4
 
     Returns
     -------
@@ -73,11 +73,11 @@ def solve(
 
 
 def certify_trial(trial: Trial, *, jobs: int | None = None, progress: Progress = SILENT) -> Trial:
-    """The trial with its certificate, checked again.
+    """Trial with its certificate, checked again.
 
     Parameters
     ----------
-    jobs : int   processes; None: the processors there are, at most 4
+    jobs : int   processes; None: number of processors, at most 4
     """
     count = trial.case.solver.certificate_positions
     solved = certified_solution(trial.solution, count, jobs=jobs, progress=progress)

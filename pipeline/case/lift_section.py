@@ -4,25 +4,25 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import AfterValidator, Discriminator, Field, Tag
 
-from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.motion_laws import DWELL, LAWS, Motion, Segment
 from camwright.pipeline.base.quantities import FileName, In, Length
-from camwright.pipeline.case.section import Section, Table
+from camwright.pipeline.case.section import Section, Table, refusal, suggestion
 from camwright.pipeline.case.toml_text import TomlValue
 from camwright.pipeline.engine.cylinder import LiftPoint
 
 Stroke = Annotated[float, In("mm", above=-10_000, below=10_000)]
-LawName = Literal[
-    "dwell",
-    "parabolic",
-    "harmonic",
-    "cycloidal",
-    "modified_trapezoid",
-    "modified_sine",
-    "polynomial_345",
-    "polynomial_4567",
-]
+
+
+def _known_law(name: str) -> str:
+    laws = (DWELL, *LAWS)
+    if name not in laws:
+        raise refusal(f"a motion law{suggestion(name, laws)}")
+    return name
+
+
+LawName = Annotated[str, AfterValidator(_known_law)]
 
 
 class LiftTable(Section):

@@ -102,7 +102,7 @@ CURVATURE_RATIO = Limit(
 )  # fmt: skip
 UNDERCUT_FACTOR = Limit(
     "undercut_factor", "undercut factor", _INNER_SHARE, 0.3,
-    "a cusp at zero, Rothbart (2004) ch. 6; of a flat face Norton (2009) ch. 7", "at_least", "rest",
+    "0: cusp, Rothbart (2004) ch. 6; flat face: Norton (2009) ch. 7", "at_least", "rest",
 )  # fmt: skip
 SECOND_CONTACT_DEPTH = Limit(  # below the form error of ground cams
     "second_contact_depth", "depth of a second contact", In("mm", above=0, at_most=1), 1e-6,
@@ -110,11 +110,11 @@ SECOND_CONTACT_DEPTH = Limit(  # below the form error of ground cams
 )  # fmt: skip
 TOOL_RADIUS = OpenLimit(
     "tool_radius", "tool radius for concave flanks", _LENGTH,
-    "hollow at least a tenth above the tool radius, Rothbart (2004) ch. 6", "at_least",
+    "concave radius at least 1.1 tool radii, Rothbart (2004) ch. 6", "at_least",
 )  # fmt: skip
 CURVATURE_RATE = OpenLimit(
     "curvature_rate", "rate of change of curvature", In("1/m/rad", above=0, at_most=1e9),
-    "bound of the case, for grinding and for wear",
+    "limit of the case, for grinding and wear",
 )  # fmt: skip
 MINIMUM_WALL = Limit(  # outer over inner radius of the ring about the bore
     "minimum_wall", "contour radius over bore radius", _RATIO, 1.75,
@@ -151,7 +151,7 @@ GUIDE_GAP = Limit(
     "guide_gap", "gap at guide A", In("mm", above=0, at_most=1000), 0.001,
     "1 to 2 mm, shop practice: verify", "at_least",
 )  # fmt: skip
-CAM_RADIUS = OpenLimit("cam_radius", "cam radius", _LENGTH, "space of the case")
+CAM_RADIUS = OpenLimit("cam_radius", "cam radius", _LENGTH, "installation space of the case")
 TARGET_LIFE = OpenLimit(
     "target_life", "target life", _LIFE, "log10 K = (B - log10 n)/A, Rothbart (2004) eq. 9.15",
 )  # fmt: skip
@@ -169,7 +169,7 @@ CHORD_SHARE = Limit(
 )  # fmt: skip
 JAM_INDEX = Limit(
     "jam_index", "jam index", _INNER_SHARE, 0.5,
-    "locks at 1, Rothbart (2004) eq. 6.8; half of it held",
+    "self-locking at 1, Rothbart (2004) eq. 6.8; safety factor 2",
 )  # fmt: skip
 ROLLER_STATIC_SAFETY = Limit(
     "roller_static_safety", "static safety of the roller bearing", _SAFETY, 1.0,
@@ -180,7 +180,7 @@ ROLLER_LIFE = OpenLimit(
 )  # fmt: skip
 ROLLER_SPEED_SHARE = Limit(
     "roller_speed_share", "roller speed over limiting speed", _SHARE, 0.7,
-    "share of the maker's limit",
+    "share of the limiting speed",
 )  # fmt: skip
 PIN_SHARE = Limit(
     "pin_share", "pin stress over yield strength", _SHARE, 0.6, "0.6 of the yield strength",
@@ -265,11 +265,11 @@ GUIDE_LENGTH = Limit(
 )  # fmt: skip
 TORQUE_REDUCTION = Limit(
     "torque_reduction", "torque ripple reduction", _INNER_SHARE, 0.4,
-    "least value required by the case", "at_least",
+    "requirement of the case", "at_least",
 )  # fmt: skip
 SPEED_REDUCTION = OpenLimit(
     "speed_reduction", "speed ripple reduction", _INNER_SHARE,
-    "least value required by the case", "at_least",
+    "requirement of the case", "at_least",
 )  # fmt: skip
 ENERGY_CLOSURE = Limit(
     "energy_closure", "energy balance", _RESIDUAL, 1e-9, "conservation of energy over one turn",
@@ -279,11 +279,11 @@ FRICTION_BALANCE = Limit(
 )  # fmt: skip
 EQUILIBRIUM = Limit(
     "equilibrium", "equilibrium residual", _RESIDUAL, 1e-9,
-    "equilibrium and contact law hold; ASME V&V 10-2019, solution verification",
+    "equilibrium and contact conditions, ASME V&V 10-2019, solution verification",
 )  # fmt: skip
 COMPLEMENTARITY = Limit(
     "complementarity", "contact law residual", _RESIDUAL, 1e-9,
-    "equilibrium and contact law hold; ASME V&V 10-2019, solution verification",
+    "equilibrium and contact conditions, ASME V&V 10-2019, solution verification",
 )  # fmt: skip
 MESH_UNCERTAINTY = Limit(
     "mesh_uncertainty", "discretisation uncertainty", In(above=0, at_most=1), 0.03,

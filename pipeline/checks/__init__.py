@@ -1,1 +1,30 @@
-"""One function a limit."""
+"""Checks: one function per limit.
+
+In the order of the calculation:
+
+| module                  | responsibility                             | symbol, unit             |
+| ----------------------- | ------------------------------------------ | ------------------------ |
+| `extremes`              | extremes over load cases and cam angles    | cam angle, rad           |
+| `check`                 | declaration, demand and limit, verdict     | utilisation              |
+| `demands`               | formulas common to checks and synthesis    | SI                       |
+| `torque_balance`        | ripple reduction, energy balance           | T, N m; E, J             |
+| `cam_shape`             | pressure angle, curvature, interference    | alpha, rad; rho, m       |
+| `jump_and_jamming`      | contact force, follower jump, jam index    | F_n, N; n, rad/s         |
+| `contact_strength`      | endurance, yield, shakedown                | p0, Pa                   |
+| `surface_durability`    | traction, oil film, fatigue, hardened case | T/F_n; lambda; sigma, Pa |
+| `roller_bearing`        | rating, life, speed of the roller bearing  | s0; L10, s; n, rad/s     |
+| `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
+| `spring_strength`       | strength, solid length, buckling, surge    | tau, Pa; f, Hz           |
+| `part_strength`         | pin, outer ring, key, bore, unbalance      | sigma, Pa; e w, m/s      |
+| `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s        |
+| `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |
+| `wear_and_grease`       | lubrication, expansion and wear            | kappa; m                 |
+| `manufacture`           | space, waviness, chord error, phase        | m                        |
+| `plane_strain_validity` | validity limits of the plane-strain model  | half-widths              |
+| `solution_verification` | residuals, meshes, certificate, benchmarks | relative                 |
+| `error_bars`            | error bars of the demands                  | relative                 |
+| `registry`              | all checks of a solution, with waivers     |                          |
+| `tolerance_corners`     | governing tolerance corner of each check   |                          |
+
+Imports `geometry`, `meshes`, `base`, `engine`, `contact`, `follower`, `case` and `cycle`.
+"""

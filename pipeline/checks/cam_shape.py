@@ -1,4 +1,4 @@
-"""Shape of the cam, over the continuous turn and not at samples only."""
+"""Checks of the cam shape, refined between samples."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.extrema import Extremum
 from camwright.geometry.extrema import greatest as greatest_of
+from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
     ACCELERATION_STEP,
     CLOSURE,
@@ -22,12 +23,12 @@ from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.cycle.solution import Solution
 
-RESTING = 1e-9  # swing of s'' over the lift, 1/rad^2, of a cam that is round
-TOOL_ALLOWANCE = 1.1  # a hollow is ground by a wheel at least a tenth smaller
+AT_REST = 1e-9  # range of s'' over the lift, 1/rad^2, of a round cam
+TOOL_ALLOWANCE = 1.1  # minimum concave radius over tool radius
 
 
 def _place(theta: float) -> Extreme:
-    """Cam angle of a demand; nowhere where it is not finite."""
+    """Cam angle of a demand; None where it is not finite."""
     return Extreme(np.nan, "", float(np.mod(theta, FULL_TURN)) if np.isfinite(theta) else None)
 
 
@@ -39,34 +40,34 @@ def _at(extremum: Extremum) -> Extreme:
     CLOSURE,
     title="Lift closure over one turn",
     unit="m",
-    method="difference of the lift at the two ends of the turn, as its source gave it",
+    method="difference of the lift between the ends of the turn, before closing",
     forecast=True,
     moved_by_tolerance=False,
 )
 def closure(solution: Solution) -> Demand:
-    """Difference of the lift at the two ends of the turn, m."""
+    """Difference of the lift between the ends of the turn, m."""
     lift = solution.contour.pitch.lift
     return Demand(float(lift.closure), solution.machine.limits[CLOSURE])
 
 
 @check(
     ACCELERATION_STEP,
-    title="Acceleration step / acceleration swing",
-    method="greatest difference of s'' between neighbouring samples of the lift over its swing:"
-    " a step does not shrink with their distance",
+    title="Maximum acceleration step / acceleration range",
+    method="greatest difference of s'' between neighbouring samples over the range of s'';"
+    " independent of the spacing at a discontinuity",
     lift_can_help=True,
     forecast=True,
     moved_by_tolerance=False,
 )
 def acceleration_step(solution: Solution) -> Demand:
-    """Greatest step of the acceleration between samples over its swing."""
+    """Greatest step of the acceleration between samples over its range."""
     lift = solution.contour.pitch.lift
     bend = np.asarray(lift(lift.theta, 2), dtype=float)
     steps = np.abs(np.diff(bend, append=bend[:1]))
     worst, swing = int(np.argmax(steps)), float(np.ptp(bend))
     return Demand(
-        # Rest, and the round-off of it, has no step.
-        0.0 if swing <= RESTING * lift.highest.value else float(steps[worst] / swing),
+        # round-off of a cam at rest is no step
+        0.0 if swing <= AT_REST * lift.highest.value else float(steps[worst] / swing),
         solution.machine.limits[ACCELERATION_STEP],
         _place(float(lift.theta[worst])),
         note=f"{len(lift.theta)} samples",
@@ -75,7 +76,7 @@ def acceleration_step(solution: Solution) -> Demand:
 
 @check(
     PRESSURE_ANGLE,
-    title="Pressure angle",
+    title="Maximum pressure angle",
     method="greatest |atan((s' - e)/d)| of the pitch curve, refined between samples",
     lift_can_help=True,
     forecast=True,
@@ -107,7 +108,7 @@ def curvature_ratio(solution: Solution) -> Demand:
 @check(
     UNDERCUT_FACTOR,
     id="undercut",
-    title="Undercut factor",
+    title="Minimum undercut factor",
     method="least 1 - roller radius x pitch curvature, refined between samples",
     lift_can_help=True,
     forecast=True,
@@ -121,15 +122,15 @@ def undercut(solution: Solution) -> Demand:
         _place(float(least.theta)),
         method=""
         if solution.machine.face is None
-        else "least radius of curvature over the face's height, refined between samples",
+        else "least (r + s + s'')/(r + s), refined between samples",
     )
 
 
 @check(
     title="Contour self-intersections",
     unit="crossings",
-    source="a contour that crosses itself is cut away",
-    method="crossings of the contour with itself, between samples too",
+    source="no undercut: the cutter removes a self-intersecting part",
+    method="number of crossings of the contour with itself, between samples too",
     lift_can_help=True,
     moved_by_tolerance=False,
 )
@@ -142,15 +143,15 @@ def self_intersection(solution: Solution) -> Demand:
 @check(
     SECOND_CONTACT_DEPTH,
     id="second_contact",
-    title="Interference of the {follower} away from its contact",
-    method="depth of the follower in contour parts away from its contact",
+    title="Interference of the {follower} outside the contact",
+    method="greatest penetration of the follower into the contour outside the contact",
     lift_can_help=True,
     moved_by_tolerance=False,
 )
 def second_contact(solution: Solution) -> Demand:
-    """Depth of the follower in contour parts away from its contact, m."""
+    """Penetration of the follower into the contour outside the contact, m."""
     nearest = solution.contour.second_contact()
-    depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinity is no depth
+    depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinite clearance is 0
     place = _place(float(nearest.theta))
     return Demand(depth, solution.machine.limits[SECOND_CONTACT_DEPTH], place)
 
@@ -166,20 +167,26 @@ def second_contact(solution: Solution) -> Demand:
 )
 def concave_radius(solution: Solution) -> Demand | None:
     """Least concave radius of the contour, m; None for a convex cam."""
-    tool, least = solution.case.largest_tool, solution.contour.concave_radius_min()
+    least, allowed = solution.contour.concave_radius_min(), least_concave_radius(solution.case)
     if np.isposinf(least.value):
         return None
     return Demand(
         float(least.value),
-        None if tool is None else TOOL_ALLOWANCE * tool,
+        allowed,
         _at(least),
-        note="" if tool is not None else "no tool radius is given",
+        note="" if allowed is not None else "no tool radius is given",
     )
+
+
+def least_concave_radius(case: Case) -> float | None:
+    """Minimum concave radius that the tool of the case can machine, m; None without a tool."""
+    tool = case.largest_tool
+    return None if tool is None else TOOL_ALLOWANCE * tool
 
 
 @check(
     CURVATURE_RATE,
-    title="Rate of change of contour curvature",
+    title="Maximum rate of change of contour curvature",
     method="greatest change of curvature per radian of cam angle, refined between samples",
     lift_can_help=True,
     forecast=True,
@@ -196,14 +203,14 @@ def curvature_rate(solution: Solution) -> Demand | None:
 
 @check(
     MINIMUM_WALL,
-    title="Minimum contour radius / bore radius with keyway",
+    title="Minimum contour radius / bore radius including keyway",
     method="least contour radius over bore radius plus keyway depth",
     forecast=True,
 )
 def minimum_wall(solution: Solution) -> Demand:
     """Least contour radius over the radius of bore and keyway.
 
-    The key's far edge may point at the lowest place of the contour; it is assumed to.
+    The keyway is assumed at the cam angle of the least radius.
     """
     outside = solution.contour.radius_min()
     ratio = float(outside.value / solution.machine.cam.held_radius)
@@ -211,16 +218,16 @@ def minimum_wall(solution: Solution) -> Demand:
 
 
 @check(
-    title="Lift vs. spring travel",
+    title="Maximum lift vs. spring travel",
     unit="mm",
-    source="travel of the spring as given in the case",
+    source="spring travel of the case",
     method="greatest lift, between samples too",
     lift_can_help=True,
     forecast=True,
     moved_by_tolerance=False,
 )
 def spring_travel(solution: Solution) -> Demand:
-    """Greatest lift, m, beside the travel of the spring."""
+    """Maximum lift, m, against the spring travel."""
     travel, highest = solution.machine.spring.travel_max, solution.contour.pitch.lift.highest
     note = "" if travel is not None else "no spring travel is given"
     return Demand(float(highest.value), travel, _at(highest), note=note)

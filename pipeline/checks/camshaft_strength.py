@@ -1,4 +1,4 @@
-"""The camshaft: key shear, fatigue, bearings, driving gear."""
+"""Checks of the camshaft: key shear, fatigue, bearings, driving gear."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from camwright.pipeline.follower.shaft_strength import (
 )
 
 NO_SHAFT = "no camshaft is given"
-REVERSED = 0.7  # share of the bending limit where the torque changes its sign
+REVERSED = 0.7  # of the bending limit, for reversed torque
 
 
 @check(
@@ -72,7 +72,7 @@ def key_shear(solution: Solution) -> Demand:
     lift_can_help=True,
 )
 def shaft_fatigue(solution: Solution) -> Demand:
-    """Safety of the shaft under the cam against fatigue in bending and torsion."""
+    """Fatigue safety of the shaft at the cam in bending and torsion."""
     shaft = solution.machine.camshaft
     if shaft is None or shaft.diameter is None or shaft.material is None:
         note = NO_SHAFT if shaft is None else "no diameter or no material of the camshaft is given"
@@ -108,7 +108,7 @@ def shaft_fatigue(solution: Solution) -> Demand:
     lift_can_help=True,
 )
 def shaft_bearing_life(solution: Solution) -> Demand:
-    """Rating life of the harder loaded bearing of the camshaft, s."""
+    """Rating life of the camshaft bearing with the greater load, s."""
     shaft = solution.machine.camshaft
     rating = None if shaft is None else shaft.bearing_rating
     if shaft is None or rating is None:
@@ -139,12 +139,12 @@ def shaft_bearing_life(solution: Solution) -> Demand:
     id="gear_bending",
     title="Tooth root bending stress of the driving gear",
     unit="MPa",
-    method="F K/(b m pi y) at the greatest torque, one tooth bearing all of it at its tip",
+    method="F K/(b m pi y) at the greatest torque, load on the tip of one tooth",
     must_have=False,
     lift_can_help=True,
 )
 def gear_bending(solution: Solution) -> Demand | None:
-    """Bending stress at the root of the driving teeth, Pa; None without a gear."""
+    """Tooth root bending stress of the driving gear, Pa; None without a gear."""
     shaft = solution.machine.camshaft
     gear = None if shaft is None else shaft.gear
     if shaft is None or gear is None:
@@ -175,7 +175,7 @@ def gear_bending(solution: Solution) -> Demand | None:
     lift_can_help=True,
 )
 def gear_contact(solution: Solution) -> Demand | None:
-    """Hertz pressure on the flanks of the driving teeth, Pa; None without a gear."""
+    """Contact pressure on the tooth flanks of the driving gear, Pa; None without a gear."""
     shaft = solution.machine.camshaft
     gear = None if shaft is None else shaft.gear
     if shaft is None or gear is None:

@@ -1,4 +1,4 @@
-"""One limit: what is demanded, what is allowed, who says so; and the verdict of many."""
+"""Check: demand against limit, with method and source; verdict of many checks."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ Record = dict[str, str | float | bool | None]
 
 @dataclass(frozen=True)
 class Demand:
-    """Demand of one solution beside what is allowed, SI.
+    """Demand and limit of one solution, SI.
 
     Parameters
     ----------
-    value : float       None or NaN: the number is missing
-    allowed : float     None or infinite: the number is missing
-    at : Extreme        load case and angle of the demand; None: it has none
-    note : str          what a reader must know besides
-    figures : tuple     sources of figures besides that of the limit, such as a material card's
+    value : float       None or NaN: missing
+    allowed : float     limit; None or infinite: missing
+    at : Extreme        load case and cam angle of the demand; None: it has none
+    note : str          remark, such as the missing input
+    figures : tuple     sources of further data, such as a material card
     method, source : str   in place of the declared ones, where they depend on the case
-    must_have : bool    False: not required of this solution, though declared so
-    corner : str        tolerance corner where the demand already stands; "" at the nominal
+    must_have : bool    False: optional for this solution
+    corner : str        tolerance corner of the demand; "": nominal
     """
 
     value: float | None
@@ -49,25 +49,25 @@ class Demand:
 
 @dataclass(frozen=True)
 class Declaration:
-    """A check as declared, once for all solutions; calling it checks one.
+    """Declaration of a check; calling it checks a solution.
 
     Parameters
     ----------
-    id, title : str            stable name, and what a reader sees; ``{follower}`` in a title
-                               stands for roller or face
+    id, title : str            key, and heading; ``{follower}`` is replaced by roller or face
     unit : str                 of the record, such as MPa
     sense : str                "at_most": demand <= limit passes; "at_least": demand >= limit
-    method : str               how the demand is computed
-    source : str               clause behind the limit, where no row of the table has it
-    limit : Limit              row of the table; None: the limit is not the user's to set
-    must_have : bool           decides the verdict
-    evidence : bool            about the numbers, not the design: nobody can waive it
-    lift_can_help : bool       a gentler lift can lower the demand
-    tier : Tier                least tier that can judge it; below it is left out
+    method : str               calculation of the demand
+    source : str               clause or book of the limit, without a row of the table
+    limit : Limit              row of the table; None: not set by the user
+    must_have : bool           it decides the verdict
+    evidence : bool            verification of the solution: it cannot be waived
+    lift_can_help : bool       a gentler lift can pass it
+    tier : Tier                least tier of the contact; below it the check is left out
     forecast : bool            quick enough to forecast a smoother
-    moved_by_tolerance : bool  its demand differs at a corner of the tolerances
-    error : str                what the error bar of the demand is made of
+    moved_by_tolerance : bool  its demand differs at a tolerance corner
+    error : str                origin of the error bar of the demand
     needs : str                kind of follower; "": any
+    demand : callable          solution -> demand; None where the check does not apply
     """
 
     id: str
@@ -88,7 +88,7 @@ class Declaration:
     demand: Callable[[Solution], Demand | None] = field(repr=False)
 
     def __call__(self, solution: Solution) -> Check | None:
-        """The check of a solution; None where it does not apply."""
+        """Check of a solution; None where it does not apply."""
         kind = solution.machine.follower
         if solution.tier < self.tier or self.needs not in ("", kind.word):
             return None
@@ -96,7 +96,7 @@ class Declaration:
         return None if demand is None else self.judged(solution.machine, demand)
 
     def judged(self, machine: Machine, demand: Demand) -> Check:
-        """The check of a demand whose solution is known by its machine."""
+        """Check of a demand on a machine."""
         source = demand.source or self.source
         if self.limit is not None and not demand.source:
             source = machine.limits.source(self.limit)
@@ -122,7 +122,7 @@ def check(
     *,
     title: str,
     method: str,
-    id: str = "",  # noqa: A002 - as a record has it
+    id: str = "",  # noqa: A002 - key of the record
     unit: str = "",
     sense: Sense | None = None,
     source: str = "",
@@ -135,9 +135,9 @@ def check(
     error: Error = "sampling",
     needs: Literal["", "roller", "face"] = "",
 ) -> Callable[[Callable[[Solution], Demand | None]], Declaration]:
-    """Declare a check: the decorated function gives its demand. See `Declaration`.
+    """Declare a check of the demand that the decorated function returns; see `Declaration`.
 
-    Id, unit and sense are those of the function and the limit unless they are given.
+    Id, unit and sense default to those of the function and the limit.
     """
 
     def declared(demand: Callable[[Solution], Demand | None]) -> Declaration:
@@ -164,26 +164,26 @@ def check(
 
 
 def made_from_others(_: Solution) -> None:
-    """None: the demand is made from other checks, after them."""
+    """None: the demand follows from other checks."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """A demand beside its limit, SI.
+    """Demand and limit of one check, SI.
 
     Parameters
     ----------
     declaration : Declaration
-    demand, limit : float    None or NaN: the number is missing
-    load_case : str          where the demand is worst; "" when it has none
-    cam_angle : float        where the demand is worst, rad; None when it has none
+    demand, limit : float    None or NaN: missing
+    load_case : str          of the worst demand; "": none
+    cam_angle : float        of the worst demand, rad; None: none
     title, source, method : str   of this solution
-    must_have : bool         decides the verdict
-    note : str               what a reader must know besides
-    error_share : float      error bar of the demand over the demand; None: not known
-    waiver : str             name, reason and date; None when nobody waived it
-    corner : str             the tolerance corner where the demand is worst; "" when none was tried
-    corner_demand : float    the demand there; None when none was tried
+    must_have : bool         it decides the verdict
+    note : str               remark, such as the missing input
+    error_share : float      half of the error bar over the demand; None: not known
+    waiver : str             name, reason and date; None: not waived
+    corner : str             tolerance corner of the worst demand; "": none was solved
+    corner_demand : float    demand at that corner; None: none was solved
     """
 
     declaration: Declaration
@@ -216,12 +216,12 @@ class Check:
 
     @property
     def evidence(self) -> bool:
-        """Whether it is about the numbers, not the design."""
+        """Whether it verifies the solution, not the design."""
         return self.declaration.evidence
 
     @property
     def lift_can_help(self) -> bool:
-        """Whether a gentler lift can lower the demand."""
+        """Whether a gentler lift can pass it."""
         return self.declaration.lift_can_help
 
     @property
@@ -234,13 +234,13 @@ class Check:
 
     @property
     def margin(self) -> float | None:
-        """Share of the limit that is left; negative beyond it."""
+        """1 - utilisation; negative beyond the limit."""
         used = self.utilisation
         return None if used is None else 1.0 - used
 
     @property
     def evaluated(self) -> bool:
-        """Whether both numbers are there; NaN is a missing number, so is an infinite limit."""
+        """Whether demand and limit are known; NaN and an infinite limit are not."""
         demand, limit = self.demand, self.limit
         return not (
             demand is None or math.isnan(demand) or limit is None or not math.isfinite(limit)
@@ -248,10 +248,10 @@ class Check:
 
     @property
     def utilisation(self) -> float | None:
-        """Share of the limit in use, passing at <= 1; None when a number is missing.
+        """Demand over limit, or limit over demand of a least value; None if one is missing.
 
-        A demand that is not positive cannot meet a positive least value by any factor:
-        infinite. So is a positive demand against a limit of zero.
+        A check passes at <= 1. Infinite for a demand <= 0 against a positive least value, and for
+        a positive demand against a limit of zero.
         """
         if not self.evaluated:
             return None
@@ -276,14 +276,13 @@ class Check:
 
     @property
     def blocks(self) -> bool:
-        """A must-have that neither passes nor is waived: the verdict is fail."""
+        """Whether it fails the verdict: a must-have check, neither passed nor waived."""
         return self.must_have and self.status in ("fail", "not_evaluated")
 
     def as_record(self) -> Record:
-        """The JSON record, in `unit` and degrees; numbers JSON cannot hold become null.
+        """JSON record, in `unit` and degrees; NaN and infinity become null.
 
-        An infinite utilisation therefore reads null beside the status `fail`, a missing one
-        null beside `not_evaluated`.
+        A utilisation of null is infinite with the status `fail`, missing with `not_evaluated`.
         """
         unit = self.unit
         return {
@@ -312,21 +311,18 @@ class Check:
 
 
 def verdict(checks: Iterable[Check]) -> Verdict:
-    """`pass` when there are checks and every must-have passes or is waived."""
+    """`pass` when there are checks and each must-have check passes or is waived."""
     checks = tuple(checks)
     return "pass" if checks and not any(each.blocks for each in checks) else "fail"
 
 
 def binding(checks: Iterable[Check]) -> tuple[str, ...]:
-    """Ids of the must-have checks that fail the verdict, worst first.
-
-    A missing number comes before every utilisation: its extent is unknown.
-    """
+    """Ids of the must-have checks that fail the verdict: not evaluated first, then worst first."""
     return tuple(each.id for each in in_order(checks) if each.blocks)
 
 
 def in_order(checks: Iterable[Check]) -> tuple[Check, ...]:
-    """Not evaluated first (must-haves before the rest), then by falling utilisation."""
+    """Not evaluated first, must-have checks before others, then by descending utilisation."""
     return tuple(sorted(checks, key=_place))
 
 
@@ -337,7 +333,7 @@ def _place(one: Check) -> tuple[int, float, str]:
 
 
 def _shown(value: float | None, unit: str = "") -> float | None:
-    """A value of a record: 15 digits, so that 30 deg reads 30."""
+    """Value of a record, to 15 digits: 30 deg is 30, not 29.999999999999996."""
     if value is None or not math.isfinite(value):
         return None
     return float(f"{in_unit(value, unit):.15g}")

@@ -1,4 +1,4 @@
-"""Strength of the material under the contact: endurance, yield, shakedown."""
+"""Checks of the contact pressure: endurance, yield, shakedown."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ FIRST_YIELD = 1.79  # p0 / Y, von Mises, line contact, nu = 0.3
 
 
 def peak_pressure(solution: Solution) -> Extreme:
-    """Greatest contact pressure of the turn, Pa."""
+    """Maximum contact pressure over the turn, Pa."""
     return greatest(solution.cycles, lambda cycle: cycle.contact.p0)
 
 
 def pressure_allowables(machine: Machine, turns: float) -> dict[str, float]:
-    """Peak pressure allowed by each check, Pa, by its id; a check without its data is left out.
+    """Allowable contact pressure by check, Pa; checks without data are left out.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def pressure_allowables(machine: Machine, turns: float) -> dict[str, float]:
 
 
 def applied_edge_factor(machine: Machine) -> float:
-    """Edge factor on the plane pressure; 1 where the follower is crowned."""
+    """Edge factor on the plane-strain pressure; 1 for a crowned follower."""
     return 1.0 if machine.follower.crowned else machine.limits[EDGE_FACTOR]
 
 
@@ -84,7 +84,7 @@ def _allowed(solution: Solution, name: str) -> float | None:
     error="contact",
 )
 def contact_pressure(solution: Solution) -> Demand:
-    """Peak contact pressure, Pa, beside the endurance of the softer body."""
+    """Maximum contact pressure, Pa, against the endurance of the softer body."""
     worst, softer = peak_pressure(solution), solution.machine.softer
     allowed = _allowed(solution, "contact_pressure")
     return Demand(
@@ -108,7 +108,7 @@ def contact_pressure(solution: Solution) -> Demand:
     error="contact",
 )
 def first_yield(solution: Solution) -> Demand:
-    """Greatest von Mises stress, Pa; a rolling contact may live above first yield."""
+    """Maximum von Mises stress, Pa; shakedown permits values above first yield."""
     softer = solution.machine.softer
     worst = greatest(solution.cycles, lambda cycle: cycle.contact.von_mises)
     onset = shown(FIRST_YIELD * softer.yield_strength, "MPa")
@@ -133,7 +133,7 @@ def first_yield(solution: Solution) -> Demand:
     error="contact",
 )
 def shakedown(solution: Solution) -> Demand:
-    """Peak contact pressure, Pa, beside the limit of elastic shakedown."""
+    """Maximum contact pressure, Pa, against elastic shakedown."""
     worst, softer = peak_pressure(solution), solution.machine.softer
     return Demand(
         worst.value,
@@ -149,13 +149,13 @@ def shakedown(solution: Solution) -> Demand:
     id="contact_pressure_at_life",
     title="Peak contact pressure vs. endurance limit at target life",
     unit="MPa",
-    method="greatest contact pressure over the turn; every turn loads each place once, all turns"
-    " in the worst load case",
+    method="greatest contact pressure over the turn; one load cycle per turn and contour point, all"
+    " turns in the worst load case",
     lift_can_help=True,
     error="contact",
 )
 def contact_pressure_at_life(solution: Solution) -> Demand:
-    """Peak contact pressure, Pa, beside the endurance at the target life."""
+    """Maximum contact pressure, Pa, against the endurance at the target life."""
     machine, worst = solution.machine, peak_pressure(solution)
     card, missing = machine.cam.material, []
     if machine.limits[TARGET_LIFE] is None:
@@ -167,10 +167,11 @@ def contact_pressure_at_life(solution: Solution) -> Demand:
 
 
 def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: float) -> float:
-    """Contact pressure (Pa) that a surface bears `cycles` times.
+    """Endurance limit of the contact pressure at a number of load cycles, Pa.
 
     Parameters
     ----------
+    cycles : float             n, number of load cycles
     slope, intercept : float   A and B of log10 K = (B - log10 n)/A with K in psi
     modulus : float            E*, Pa
 
@@ -187,12 +188,12 @@ def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: flo
     id="edge_pressure",
     title="Edge pressure of the {follower} vs. endurance limit",
     unit="MPa",
-    method="greatest contact pressure times the edge factor; plane strain has no ends",
+    method="greatest contact pressure times the edge factor; plane strain does not include ends",
     lift_can_help=True,
     error="contact",
 )
 def edge_pressure(solution: Solution) -> Demand:
-    """Pressure at the ends of the line contact, Pa, by a factor on the plane pressure."""
+    """Contact pressure at the ends of the line contact, Pa, by the edge factor."""
     worst, machine = peak_pressure(solution), solution.machine
     softer, factor = machine.softer, applied_edge_factor(machine)
     endurance = softer.endurance_pressure
@@ -203,7 +204,7 @@ def edge_pressure(solution: Solution) -> Demand:
         worst,
         note="" if endurance is not None else _no_endurance(solution),
         figures=(f"{softer.name}: {softer.source}",),
-        method=f"greatest contact pressure times {factor:g}; plane strain has no ends",
+        method=f"greatest contact pressure times {factor:g}; plane strain does not include ends",
     )
 
 
@@ -218,7 +219,7 @@ def edge_pressure(solution: Solution) -> Demand:
     error="contact",
 )
 def shakedown_traction(solution: Solution) -> Demand:
-    """Peak contact pressure, Pa, beside the limit of shakedown under full sliding."""
+    """Maximum contact pressure, Pa, against shakedown in full sliding."""
     worst, softer = peak_pressure(solution), solution.machine.softer
     kind = solution.machine.follower
     return Demand(
@@ -236,8 +237,8 @@ def shakedown_traction(solution: Solution) -> Demand:
 def shakedown_factor(friction: float) -> float:
     """p0/k at the limit of elastic shakedown of a sliding line contact: 4 without friction.
 
-    Residual stress can carry every stress component but the shear along the surface, which must
-    therefore stay within the shear yield strength: the limit is 1/max|tau_xz| at p0 = 1.
+    Residual stresses can compensate all components but the shear stress along the surface, which
+    is limited by the shear yield strength: the limit is 1/max|tau_xz| at p0 = 1.
 
     References
     ----------

@@ -1,7 +1,6 @@
-"""Demands of the checks as functions of motion and forces, each written once.
+"""Demands common to checks and constraints of the synthesis, from motion and forces.
 
-The checks judge them; the constrained synthesis differentiates them by complex steps and holds
-them below the same limits, so that a check and its constraint cannot disagree. All arrays (...).
+The synthesis differentiates them by complex steps. All arrays (...), SI.
 """
 
 from __future__ import annotations
@@ -12,31 +11,37 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import magnitude
 
 
+def ripple_reduction(before: Array, after: Array) -> float:
+    """1 - std of the torque after over that before; NaN without a ripple."""
+    ripple = float(np.std(before))
+    return float(1.0 - np.std(after) / ripple) if ripple > 0 else np.nan
+
+
 def unloading(inertia: Array, spring: Array) -> Array:
-    """Share of the spring force that inertia takes away: -m w^2 s'' / F_s."""
+    """Unloading inertia force over spring force: -m w^2 s'' / F_s."""
     return -inertia / spring
 
 
 def force_left(spring: Array, inertia: Array, preload: float) -> Array:
-    """What spring and inertia leave to press the roller on the cam, over the preload."""
+    """Sum of spring and inertia force over the preload, without friction."""
     return (spring + inertia) / preload
 
 
 def jam_outward(lift_slope: Array, jam_index: Array) -> Array:
-    """Jam index on the way out; coming back, friction holds the cam and cannot lock it."""
+    """Jam index on the rise, 0 on the return: there friction cannot lock the follower."""
     return np.where(np.real(lift_slope) > 0, jam_index, 0.0 * jam_index)
 
 
-def bush_pressure(reaction: Array, area: float) -> Array:
-    """Mean pressure of a guide's reaction (N) on diameter times length (m^2), Pa."""
+def guide_pressure(reaction: Array, area: float) -> Array:
+    """Mean guide pressure, Pa, from the reaction, N, and the projected area, m^2."""
     return magnitude(reaction) / area
 
 
-def bush_pv(rubbing_load: Array, velocity: Array, area: float) -> Array:
-    """Pressure times sliding speed, Pa m/s, of the load that rubs (N) at a velocity (m/s)."""
-    return magnitude(rubbing_load * velocity) / area
+def guide_pv(normal_load: Array, velocity: Array, area: float) -> Array:
+    """PV value, Pa m/s, from the normal load, N, sliding speed, m/s, and projected area, m^2."""
+    return magnitude(normal_load * velocity) / area
 
 
 def contour_radius(along: Array, across: Array, offset: float, inset: Array) -> Array:
-    """Distance of the contour from the cam axis, m; inset is r / |dP/dtheta|, see `Contour`."""
+    """Distance of the contour from the cam axis, m; inset: r / |dP/dtheta|, see `Contour`."""
     return np.sqrt((across * (1.0 - inset)) ** 2 + (offset + inset * along) ** 2)

@@ -1,4 +1,4 @@
-"""Error bars of the demands: samples, meshes, and the two tiers of the contact."""
+"""Error bars of the demands: sampling, meshes, difference of the contact tiers."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import numpy as np
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.cycle.solution import Solution
 
-# A closed form refined between samples, or an exact integral: what rounding leaves.
+# Of closed forms refined between samples and of exact integrals.
 ROUNDING = 1e-9
 GUIDE_ERROR = "mesh_reaction"
 
 
 def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check, ...]:
-    """The checks with the share of error of their demands.
+    """The checks with the relative errors of their demands.
 
-    A demand on a guide has the discretisation uncertainty of its reaction. One of the contact has
-    the certificate's greatest difference and grid convergence index besides what lies between
-    samples; without a certificate its error is not known.
+    A demand on a guide has the discretisation uncertainty of the guide reaction. One on the
+    contact has the greatest sum of difference and grid convergence index of the certificate, and
+    the sampling error; without a certificate its error is not known.
     """
     checks = tuple(checks)
     contact = contact_error(solution)
@@ -30,9 +30,9 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
 
 
 def contact_error(solution: Solution) -> float | None:
-    """Greatest difference between turn and certificate plus its error bar, as a share.
+    """Greatest difference between cycle and certificate plus its uncertainty, relative.
 
-    None without a certificate, NaN where a certified figure is not known.
+    None without a certificate, NaN where a certified value is not known.
     """
     points = solution.certificate
     if not points:

@@ -1,4 +1,4 @@
-"""Extreme values over the turns of all load cases, and where they are."""
+"""Extreme values over the turns of all load cases, with load case and cam angle."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from camwright.pipeline.cycle.cycle import Cycle
 
 
 class Extreme(NamedTuple):
-    """The value that decides, and where.
+    """Extreme value with load case and cam angle.
 
     Parameters
     ----------
     value : float
-    load_case : str        "" where there is none
-    cam_angle : float      rad; None where there is none
-    error_share : float    difference of the samples' peak from the true one, over the value
+    load_case : str        "": none
+    cam_angle : float      rad; None: none
+    error_share : float    sampling error of the extreme over its value
     """
 
     value: float
@@ -32,24 +32,24 @@ NOWHERE = Extreme(np.nan)
 
 
 def greatest(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extreme:
-    """The greatest of a measure over all load cases and angles; a NaN wins.
+    """Greatest value over all load cases and angles; NaN if any is.
 
     Parameters
     ----------
-    measure : callable   cycle -> array (n,), one value an angle
+    measure : callable   cycle -> array (n,), by cam angle
     """
     return _extreme(cycles, measure, 1.0)
 
 
 def least(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extreme:
-    """The least of a measure over all load cases and angles; a NaN wins."""
+    """Least value over all load cases and angles; NaN if any is."""
     return _extreme(cycles, measure, -1.0)
 
 
 def worst_case(
     cycles: Iterable[Cycle], measure: Callable[[Cycle], float], *, at_least: bool = False
 ) -> Extreme:
-    """The load case with the greatest (or least) value of a measure of the whole turn."""
+    """Greatest (or least) over the load cases of one value per turn; NaN if any is."""
     return _extreme(cycles, lambda c: np.array([measure(c)]), -1.0 if at_least else 1.0, False)
 
 
@@ -64,16 +64,15 @@ def _extreme(
         if extreme.load_case and not (np.isnan(value) or sign * value > sign * extreme.value):
             continue
         theta = float(cycle.theta[worst]) if angle else None
-        share = _missed_between_samples(values, worst) if angle and values.size > 2 else 0.0
+        share = _sampling_error(values, worst) if angle and values.size > 2 else 0.0
         extreme = Extreme(value, cycle.load_case, theta, share)
     return extreme
 
 
-def _missed_between_samples(values: Array, worst: int) -> float:
-    """Distance of the parabola's vertex through three samples beyond the middle one, relative.
+def _sampling_error(values: Array, worst: int) -> float:
+    """Vertex of the parabola through three samples less the middle one, relative.
 
-    A kink has no vertex; the parabola then gives less than half a step of the slope, which is
-    what the samples are good for.
+    At a kink it is below half of the difference of neighbouring samples: the sampling error there.
     """
     before, here, after = values[worst - 1], values[worst], values[(worst + 1) % values.size]
     if not np.isfinite([before, here, after]).all():

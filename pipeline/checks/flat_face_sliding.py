@@ -1,4 +1,4 @@
-"""A flat face that slides on the cam: width and PV value."""
+"""Checks of a flat face sliding on the cam: width and PV value."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from camwright.pipeline.cycle.solution import Solution
     title="Required face width",
     unit="mm",
     source="contact inside the face, Norton (2009) ch. 7",
-    method="twice the greatest |s' - e| plus the contact's half-width",
+    method="twice the sum of |s' - e| and contact half-width, greatest over the turn",
     lift_can_help=True,
     needs="face",
 )
 def face_width(solution: Solution) -> Demand | None:
-    """Width of the face that the contact needs, half-width included, m."""
+    """Required width of the face, contact half-width included, m."""
     face = solution.machine.face
     if face is None:
         return None
@@ -36,7 +36,7 @@ def face_width(solution: Solution) -> Demand | None:
 @check(
     title="PV value of the flat face",
     unit="MPa m/s",
-    source="PV limit of the face as given",
+    source="PV limit of the face",
     method="greatest pi/4 p0 w (r + s) over the turn",
     lift_can_help=True,
     needs="face",
@@ -58,6 +58,6 @@ def face_pv(solution: Solution) -> Demand | None:
 
 
 def _pv(cycle: Cycle) -> Array:
-    """Pressure times speed (n,), Pa m/s; NaN where it is not known."""
+    """PV value (n,), Pa m/s; NaN where it is not known."""
     sliding = cycle.rolling.sliding
     return np.full(cycle.theta.size, np.nan) if sliding is None else sliding.pv

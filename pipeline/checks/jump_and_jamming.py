@@ -1,4 +1,4 @@
-"""Forces that keep the follower on the cam and free in its guides."""
+"""Checks of follower jump and of jamming in the guides."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ from camwright.pipeline.cycle.solution import Solution
     forecast=True,
 )
 def contact_force_margin(solution: Solution) -> Demand:
-    """Least contact force over the preload."""
+    """Minimum contact force over the preload."""
     worst = least(solution.cycles, lambda c: c.loads.normal_force / c.machine.spring.preload)
     return Demand(worst.value, solution.machine.limits[CONTACT_FORCE_MARGIN], worst)
 
 
 @check(
     JUMP,
-    title="Unloading inertia force / spring force",
+    title="Maximum unloading inertia force / spring force",
     method="greatest -m w^2 s'' / F_s over the turn; the jump speed is w / sqrt of it",
     lift_can_help=True,
     forecast=True,
 )
 def jump(solution: Solution) -> Demand:
-    """Share of the spring force that the follower's inertia takes from the contact."""
+    """Maximum unloading inertia force over the spring force."""
     worst = greatest(
         solution.cycles,
         lambda cycle: np.maximum(
@@ -55,14 +55,14 @@ def jump(solution: Solution) -> Demand:
 
 @check(
     JAM_INDEX,
-    title="Jam index",
-    method="greatest friction of both guides over the cam's axial push on the rise, the guides"
-    " with their length and clearance",
+    title="Maximum jam index",
+    method="greatest friction of both guides over the axial cam force on the rise; guides of finite"
+    " length with clearance",
     lift_can_help=True,
     forecast=True,
 )
 def jam_index(solution: Solution) -> Demand:
-    """Friction of the guides over the axial push on the rise."""
+    """Friction of the guides over the axial cam force on the rise."""
     worst = greatest(
         solution.cycles, lambda c: demands.jam_outward(c.loads.lift_slope, c.loads.jam_index)
     )
@@ -78,13 +78,13 @@ def jam_index(solution: Solution) -> Demand:
 @check(
     JAM_INDEX,
     id="jam_index_friction_max",
-    title="Jam index at maximum friction",
-    method="greatest friction of both guides over the axial push on the rise, at the greatest"
-    " friction of both guides",
+    title="Maximum jam index at maximum friction",
+    method="greatest friction of both guides over the axial cam force on the rise, at the maximum"
+    " friction coefficients",
     lift_can_help=True,
 )
 def jam_index_friction_max(solution: Solution) -> Demand:
-    """Jam index at the greatest friction of both guides."""
+    """Jam index at the maximum friction coefficients of both guides."""
     bounded = solution.machine.friction.bounded
     worst = greatest(solution.cycles, lambda cycle: cycle.parts.friction.jam_index_max)
     return Demand(
@@ -97,13 +97,13 @@ def jam_index_friction_max(solution: Solution) -> Demand:
 
 @check(
     JUMP_SPEED,
-    title="Follower jump speed of the crank",
+    title="Crank speed at follower jump",
     unit="rpm",
-    method="least w sqrt(F_s / (-m w^2 s'')) where the follower decelerates, frictionless",
+    method="least w sqrt(F_s / (-m w^2 s'')) where the follower decelerates, without friction",
     lift_can_help=True,
 )
 def jump_speed(solution: Solution) -> Demand:
-    """Crank speed at which the follower leaves the cam, rad/s."""
+    """Minimum crank speed of follower jump, rad/s."""
     worst = least(solution.cycles, _jump_speed)
     over, note = _overspeed(solution)
     allowed = solution.machine.limits[JUMP_SPEED] * over
@@ -114,11 +114,11 @@ def jump_speed(solution: Solution) -> Demand:
     CONTACT_FORCE_MARGIN,
     id="contact_at_overspeed",
     title="Minimum contact force / preload at overspeed",
-    method="least spring force plus m w^2 s'' at the overspeed, frictionless",
+    method="least spring force plus m w^2 s'' at the overspeed, without friction",
     lift_can_help=True,
 )
 def contact_at_overspeed(solution: Solution) -> Demand:
-    """Least contact force at the overspeed over the preload."""
+    """Minimum contact force at the overspeed over the preload."""
     over, note = _overspeed(solution)
 
     def force(cycle: Cycle) -> Array:
@@ -135,12 +135,12 @@ def contact_at_overspeed(solution: Solution) -> Demand:
     CONTACT_FORCE_MARGIN,
     id="elastic_contact",
     title="Minimum contact force / preload with elastic stem",
-    method="one mass on the stem's stiffness, frictionless",
+    method="one mass on the stiffness of the stem, without friction",
     must_have=False,
     lift_can_help=True,
 )
 def elastic_contact(solution: Solution) -> Demand:
-    """Least contact force of the follower on its elastic stem over the preload."""
+    """Minimum contact force with an elastic stem over the preload."""
     worst = least(
         solution.cycles,
         lambda c: c.parts.elastic.response.contact_force / c.machine.spring.preload,
@@ -152,12 +152,12 @@ def elastic_contact(solution: Solution) -> Demand:
         solution.machine.limits[CONTACT_FORCE_MARGIN],
         worst,
         note=_flights(histories),
-        method=f"one mass on the stem's stiffness, frictionless: {methods}",
+        method=f"one mass on the stiffness of the stem, without friction: {methods}",
     )
 
 
 def _flights(histories: list[ElasticHistory]) -> str:
-    """Number of losses of contact in a turn, and the highest flight."""
+    """Number of losses of contact per turn, and the highest flight."""
     flights = [flight for history in histories for flight in history.flights]
     if not flights:
         return ""
@@ -165,14 +165,14 @@ def _flights(histories: list[ElasticHistory]) -> str:
     lift_off, landing = (np.degrees(angle) % 360.0 for angle in (high.jump, high.landing))
     force = max(history.force_max for history in histories)
     return (
-        f"{len(flights)} losses of contact in a turn; the highest flight starts at"
+        f"{len(flights)} losses of contact per turn; the highest flight starts at"
         f" {lift_off:.1f} deg and ends at {landing:.1f} deg, {shown(high.height, 'mm', 3)} high,"
         f" with {shown(high.landing_speed, 'm/s', 3)}; greatest impact force {shown(force, 'N')}"
     )
 
 
 def _jump_speed(cycle: Cycle) -> Array:
-    """Crank speed (n,), rad/s, at which the follower leaves each place; a NaN stays."""
+    """Crank speed of follower jump by cam angle (n,), rad/s; NaN where not known."""
     pull = -cycle.loads.inertia_force
     slows = pull > 0
     ratio = np.sqrt(cycle.loads.spring_force / np.where(slows, pull, 1.0))
@@ -181,13 +181,13 @@ def _jump_speed(cycle: Cycle) -> Array:
 
 
 def overspeed(machines: tuple[Machine, ...]) -> float:
-    """Overspeed of the crank, rad/s: the given one, at least that of the fastest load case."""
+    """Overspeed of the crank, rad/s; at least the speed of the fastest load case."""
     fastest = max(machine.crank_speed for machine in machines)
     return max(machines[0].limits[OVERSPEED] or fastest, fastest)
 
 
 def _overspeed(solution: Solution) -> tuple[float, str]:
-    """Overspeed of the crank, rad/s, and a note where it is not given."""
+    """Overspeed of the crank, rad/s, and a note where the case has none."""
     over = overspeed(solution.machines)
-    given = solution.machine.limits[OVERSPEED] == over
-    return over, "" if given else "no overspeed is given: that of the fastest load case"
+    prescribed = solution.machine.limits[OVERSPEED] == over
+    return over, "" if prescribed else "no overspeed is given: speed of the fastest load case"

@@ -1,4 +1,4 @@
-"""Space and manufacture: clearances, waviness, chord error, phase."""
+"""Checks of space and manufacture: clearances, waviness, chord error, phase."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from camwright.pipeline.case.limits import (
     TORQUE_REDUCTION,
     WAVINESS,
 )
+from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
 from camwright.pipeline.checks.torque_balance import cycles_of_ripple
@@ -23,7 +24,7 @@ from camwright.pipeline.cycle.solution import Solution
 @check(
     GUIDE_GAP,
     title="Gap between guide A and cam or {follower}",
-    method="guide's face less the greatest contour radius, and less the follower, at full lift",
+    method="end of guide A less maximum contour radius, and less the follower, at maximum lift",
     lift_can_help=True,
 )
 def guide_gap(solution: Solution) -> Demand:
@@ -45,30 +46,30 @@ def guide_gap(solution: Solution) -> Demand:
     lift_can_help=True,
 )
 def cam_radius(solution: Solution) -> Demand:
-    """Greatest radius of the cam, m, beside the space for it."""
+    """Maximum radius of the cam, m, against the installation space."""
     largest, allowed = solution.contour.radius_max(), solution.machine.limits[CAM_RADIUS]
     return Demand(
         float(largest.value),
         allowed,
         Extreme(float(largest.value), "", float(np.mod(largest.theta, FULL_TURN))),
-        note="" if allowed is not None else "no space for the cam is given",
+        note="" if allowed is not None else "no maximum cam radius is given",
     )
 
 
 @check(
     WAVINESS,
     id="profile_waviness",
-    title="Waviness force / contact force",
-    method="m delta (2 pi v/lambda)^2, waves that fill the profile tolerance",
+    title="Waviness inertia force / contact force",
+    method="m delta (2 pi v/lambda)^2, waves over the full profile tolerance",
 )
 def profile_waviness(solution: Solution) -> Demand:
-    """Force of the follower riding over the contour's waves over the contact force."""
+    """Inertia force of the follower on a wavy contour over the contact force."""
     cam = solution.machine.cam
     band, length = cam.profile_tolerance, cam.waviness_length
 
     def force(cycle: Cycle) -> Array:
         along = cycle.cam_speed * np.abs(cycle.contour.speed(cycle.theta))
-        # A wave that fills the band of the tolerance has half of it as amplitude.
+        # the amplitude is half of the tolerance
         amplitude = 0.5 * (band or 0.0)
         added = cycle.machine.mass * amplitude * (FULL_TURN * along / length) ** 2
         nominal = cycle.loads.normal_force
@@ -97,7 +98,7 @@ _NO_BAND = "no profile tolerance is given"
     moved_by_tolerance=False,
 )
 def chord_error(solution: Solution) -> Demand:
-    """Distance of the chords of the workshop's contour table from the contour, m."""
+    """Distance of the chords of the contour table from the contour, m."""
     limits, tolerance = solution.machine.limits, solution.machine.cam.profile_tolerance
     theta, contour = solution.case.workshop_order.theta, solution.contour
     points = contour.points(theta)
@@ -117,7 +118,7 @@ def chord_error(solution: Solution) -> Demand:
     TORQUE_REDUCTION,
     id="phase_tolerance",
     title="Torque ripple reduction at phase tolerance",
-    method="the engine's torque early and late by the phase tolerance, the worse",
+    method="engine torque shifted by plus and minus the phase tolerance; the lesser",
     must_have=False,
     moved_by_tolerance=False,
 )
@@ -137,18 +138,16 @@ def phase_tolerance(solution: Solution) -> Demand | None:
 
 
 def _reduction(cycle: Cycle, phase: float) -> float:
+    """Lesser ripple reduction with the engine torque advanced and delayed by a crank angle."""
     before, after = cycle.turn.torque_before, cycle.turn.torque_after
     if before is None or after is None:
         return np.nan
-    ripple = float(np.std(before))
-    if not ripple > 0:
-        return float(np.nan)
-    # As many periods as the cycle holds: a shift is exact in its harmonics.
+    # A shift of the harmonics is exact.
     waves = np.fft.rfft(before)
-    order, taken = np.arange(waves.size), before - after
-    turned = phase / cycle.machine.gear_ratio
-    left = [
-        np.std(np.fft.irfft(waves * np.exp(-1j * order * late), before.size) - taken)
-        for late in (-turned, turned)
+    order, cam_torque = np.arange(waves.size), before - after
+    advance = phase / cycle.machine.gear_ratio
+    shifted = [
+        np.fft.irfft(waves * np.exp(1j * order * angle), before.size) - cam_torque
+        for angle in (-advance, advance)
     ]
-    return float(1.0 - np.max(left) / ripple)
+    return float(np.min([demands.ripple_reduction(before, each) for each in shifted]))

@@ -1,4 +1,4 @@
-"""Parts around the cam: roller pin, outer ring, key, bore, unbalance."""
+"""Checks of the parts at the cam: roller pin, outer ring, key, bore, unbalance."""
 
 from __future__ import annotations
 
@@ -6,13 +6,20 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import BORE_PRESSURE, KEY_PRESSURE, PIN_SHARE, UNBALANCE
+from camwright.pipeline.case.limits import (
+    BORE_PRESSURE,
+    KEY_PRESSURE,
+    PIN_SHARE,
+    UNBALANCE,
+    LimitValues,
+)
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import greatest, worst_case
 from camwright.pipeline.cycle.cam_balance import Balance, balance
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.bearing_ring import goodman
+from camwright.pipeline.follower.roller_parts import Pin
 
 
 @check(
@@ -20,24 +27,29 @@ from camwright.pipeline.follower.bearing_ring import goodman
     id="roller_pin",
     title="Bending stress of the roller pin",
     unit="MPa",
-    method="32 M/(pi d^3), the load spread over the bearing",
+    method="32 M/(pi d^3), load uniform over the bearing width",
     lift_can_help=True,
     needs="roller",
 )
 def roller_pin(solution: Solution) -> Demand:
-    """Bending stress of the roller's pin, Pa."""
-    roller, share = solution.machine.roller, solution.machine.limits[PIN_SHARE]
+    """Bending stress of the roller pin, Pa."""
+    roller = solution.machine.roller
     pin = None if roller is None else roller.pin
     if pin is None:
         return Demand(None, None, note="no pin is given")
     worst = greatest(solution.cycles, lambda cycle: _known(cycle.parts.pin_stress))
     return Demand(
         worst.value,
-        share * pin.material.yield_strength,
+        allowed_pin_stress(pin, solution.machine.limits),
         worst,
         figures=(f"{pin.material.name}: {pin.material.source}",),
-        method=f"32 M/(pi d^3), {pin.mounting}, the load spread over the bearing",
+        method=f"32 M/(pi d^3), {pin.mounting}, load uniform over the bearing width",
     )
+
+
+def allowed_pin_stress(pin: Pin, limits: LimitValues) -> float:
+    """Maximum bending stress of the roller pin, Pa."""
+    return limits[PIN_SHARE] * pin.material.yield_strength
 
 
 @check(
@@ -45,14 +57,14 @@ def roller_pin(solution: Solution) -> Demand:
     title="Bending fatigue of the roller's outer ring",
     unit="MPa",
     source="fatigue strength in bending",
-    method="stress at the groove as the ring turns, finite elements on balls that only push, all"
-    " ball positions; its amplitude about no mean stress by Goodman's line",
+    method="stress at the groove of the turning ring, finite elements on balls without tension, all"
+    " ball positions; amplitude reduced to zero mean stress by the Goodman line",
     must_have=False,
     lift_can_help=True,
     needs="roller",
 )
 def roller_ring_fatigue(solution: Solution) -> Demand:
-    """Stress amplitude of the bearing's outer ring as it rolls on the cam, Pa."""
+    """Stress amplitude of the outer ring rolling on the cam, Pa."""
     roller = solution.machine.roller
     ring = None if roller is None else roller.bearing.ring
     if roller is None or ring is None or roller.solid_reason:
@@ -87,12 +99,12 @@ def _ring_amplitude(parts: PartLoads, tensile_strength: float | None) -> Array:
 @check(
     KEY_PRESSURE,
     title="Key flank pressure",
-    method="4 T/(d h l) at the greatest cam torque, the key's height twice the keyway's depth",
+    method="4 T/(d h l) at the greatest cam torque; key height twice the keyway depth",
     must_have=False,
     lift_can_help=True,
 )
 def key_pressure(solution: Solution) -> Demand:
-    """Pressure on the flank of the cam's key, Pa."""
+    """Flank pressure of the key of the cam, Pa."""
     if solution.machine.cam.keyway is None:
         return Demand(None, None, note="no keyway is given")
     worst = greatest(solution.cycles, lambda cycle: np.abs(_known(cycle.parts.key_pressure)))
@@ -101,13 +113,13 @@ def key_pressure(solution: Solution) -> Demand:
 
 @check(
     BORE_PRESSURE,
-    title="Bore pressure on the shaft",
+    title="Mean bore pressure on the camshaft",
     method="greatest normal force over bore diameter and cam width",
     must_have=False,
     lift_can_help=True,
 )
 def bore_pressure(solution: Solution) -> Demand:
-    """Mean pressure of the cam's bore on its shaft, Pa."""
+    """Mean pressure of the bore on the shaft, Pa."""
     worst = greatest(solution.cycles, lambda cycle: cycle.parts.bore_pressure)
     return Demand(worst.value, solution.machine.limits[BORE_PRESSURE], worst)
 
@@ -116,11 +128,11 @@ def bore_pressure(solution: Solution) -> Demand:
     title="Torque reversals per turn at gear and key",
     unit="-",
     source="crossover shock, Rothbart, Cam Design Handbook (2004)",
-    method="changes of sign of cam torque and drag",
+    method="sign changes of cam torque plus drag",
     must_have=False,
 )
 def torque_reversals(solution: Solution) -> Demand:
-    """Number of reversals of the torque through gear and key in a turn."""
+    """Number of torque reversals at gear and key per turn."""
     worst = worst_case(solution.cycles, lambda cycle: float(len(cycle.parts.reversals)))
     slopes = [abs(one.slope) for cycle in solution.cycles for one in cycle.parts.reversals]
     steepest = max(slopes, default=0.0)
@@ -132,12 +144,12 @@ def torque_reversals(solution: Solution) -> Demand:
     UNBALANCE,
     id="cam_unbalance",
     title="Cam unbalance",
-    method="exact first moment of the contour's area; bore, keyway and drilled hole subtracted",
+    method="exact first moment of the area of the contour less bore, keyway and counter-hole",
     must_have=False,
     moved_by_tolerance=False,
 )
 def cam_unbalance(solution: Solution) -> Demand:
-    """Eccentricity times speed of the cam as made, m/s, and the hole that would remove it."""
+    """Eccentricity times speed of the finished cam, m/s, and the counter-hole for it."""
     balanced = balance(solution.machine.cam, solution.contour)
     made, speed = balanced.as_made, max(machine.cam_speed for machine in solution.machines)
     angle = np.degrees(made.angle) % 360

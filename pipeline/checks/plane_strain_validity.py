@@ -1,8 +1,4 @@
-"""Validity limits of the plane-strain model.
-
-Each statement of the sign-off that limits the meaning of its figures is a check that can fail, so
-that nobody signs for a plane solution where it does not hold.
-"""
+"""Checks of the validity limits of the plane-strain model."""
 
 from __future__ import annotations
 
@@ -19,39 +15,39 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 
-LEAST_EDGE_FACTOR = 1.3  # on a contact without a crown: 1.3 to 2, shop practice: verify
-HELD_DISTANCE = 10.0  # half-widths, beyond which a contact is free of how a body is held
-EXCLUDED_SHARE = 0.5  # of the keyway's depth
-SUBSURFACE = 0.3  # half-widths: a maximum nearer the surface is an edge's or an element's
+LEAST_EDGE_FACTOR = 1.3  # without a crown: 1.3 to 2, shop practice: verify
+HELD_DISTANCE = 10.0  # half-widths, beyond which the supports do not affect the contact
+EXCLUDED_SHARE = 0.5  # of the keyway depth
+SUBSURFACE = 0.3  # half-widths: a shallower maximum is a singularity or an element error
 
 
 @check(
-    title="Edge factor on the plane contact pressure",
+    title="Edge factor on the plane-strain contact pressure",
     unit="-",
     sense="at_least",
     source="factor 1.3 to 2, or crown the roller, shop practice: verify",
-    method="factor of edge_pressure on the plane solution; 1 where the ends are crowned",
+    method="factor of edge_pressure on the plane-strain solution; 1 for crowned ends",
     evidence=True,
     tier=Tier.FINITE_ELEMENTS,
 )
 def edge_factor(solution: Solution) -> Demand:
-    """Factor on the plane pressure that stands for the ends of the contact."""
+    """Factor on the plane-strain pressure for the ends of the contact."""
     allowed = 1.0 if solution.machine.follower.crowned else LEAST_EDGE_FACTOR
-    note = "plane strain has neither the ends of the contact nor a tilt of its axis"
+    note = "plane strain includes neither the ends of the contact nor a tilt of the axes"
     return Demand(applied_edge_factor(solution.machine), allowed, note=note)
 
 
 @check(
-    title="Contact distance from held boundaries / half-width",
+    title="Distance of the contact from fixed boundaries / half-width",
     unit="-",
     sense="at_least",
-    source="held places are excluded: their stress is that of the model, not of the part",
-    method="least wall to bore, keyway or hub over the greatest half-width of the turn",
+    source="Saint-Venant: the stress at a fixed boundary is that of the model, not of the part",
+    method="least wall to bore, keyway or hub over the greatest half-width",
     evidence=True,
     tier=Tier.FINITE_ELEMENTS,
 )
 def held_distance(solution: Solution) -> Demand:
-    """Least material between contact and held surface, in half-widths."""
+    """Minimum distance of the contact from a fixed boundary, in half-widths."""
     machine = solution.machine
     wall = solution.contour.radius_min().value - machine.cam.held_radius
     depth = machine.follower.held_depth
@@ -65,13 +61,13 @@ def held_distance(solution: Solution) -> Demand:
 @check(
     title="Radius of the excluded zone at keyway edges",
     unit="mm",
-    source="an edge has no finite stress: a zone about it is left out, half the depth at most",
-    method="1.5 lengths of the elements at the keyway; the stress within is given apart",
+    source="singular stress at an edge: at most half of the keyway depth is excluded",
+    method="1.5 element lengths at the keyway; the stress within is stated separately",
     evidence=True,
     tier=Tier.FINITE_ELEMENTS,
 )
 def excluded_zone(solution: Solution) -> Demand | None:
-    """Size of the zones at the keyway's edges without stress, m; None without a key."""
+    """Radius of the excluded zones at the keyway edges, m; None without a keyway."""
     key, bores = solution.machine.cam.keyway, _bores(solution)
     if key is None or not bores:
         return None
@@ -82,16 +78,16 @@ def excluded_zone(solution: Solution) -> Demand | None:
 @check(
     BORE_SAFETY,
     id="bore_stress",
-    title="Von Mises stress at the bore",
+    title="Von Mises stress at bore and keyway vs. yield strength",
     unit="MPa",
-    method="finite elements on a rigid shaft, edges of the keyway left out by excluded_zone",
+    method="finite elements on a rigid shaft, keyway edges excluded, see excluded_zone",
     must_have=False,
     lift_can_help=True,
     tier=Tier.FINITE_ELEMENTS,
     error="unknown",
 )
 def bore_stress(solution: Solution) -> Demand | None:
-    """Von Mises stress at bore and keyway, Pa, the zones at its edges left out."""
+    """Maximum von Mises stress at bore and keyway without the excluded zones, Pa."""
     bores = _bores(solution)
     if not bores:
         return None
@@ -100,12 +96,12 @@ def bore_stress(solution: Solution) -> Demand | None:
     at_edges = max(float(np.max(bore.von_mises)) for bore in bores)
     core = card.core_yield_strength or card.yield_strength
     radius = max(bore.excluded for bore in bores)
-    within = f"{shown(at_edges, 'MPa')} within {shown(radius, 'mm', 2)} of the keyway's edges"
+    within = f"{shown(at_edges, 'MPa')} within {shown(radius, 'mm', 2)} of the keyway edges"
     return Demand(
         worst.value,
         core / solution.machine.limits[BORE_SAFETY],
         worst,
-        note=f"{within}, where it grows with refinement" if radius > 0 else "",
+        note=f"{within}, where it diverges with refinement" if radius > 0 else "",
         figures=(f"{card.name}: {card.source}",),
     )
 
@@ -115,12 +111,12 @@ def bore_stress(solution: Solution) -> Demand | None:
     unit="-",
     sense="at_least",
     source="0.70 half-widths under a frictionless line contact, Johnson (1985) sec. 4.2(c)",
-    method="least depth over the turn: a maximum at the surface is an edge's or an element's",
+    method="least depth over the turn; a maximum at the surface is a singularity or element error",
     evidence=True,
     tier=Tier.FINITE_ELEMENTS,
 )
 def subsurface_depth(solution: Solution) -> Demand:
-    """Depth of the greatest von Mises stress, in half-widths."""
+    """Minimum depth of the maximum von Mises stress, in half-widths."""
 
     def share(cycle: Cycle) -> Array:
         half = cycle.contact.half_width

@@ -1,4 +1,4 @@
-"""The list of checks, and the checks of a solution."""
+"""List of all checks; checks of a solution."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from camwright.pipeline.checks import (
     camshaft_strength,
     contact_strength,
     flat_face_sliding,
-    guide_bushes,
+    guide_strength,
     jump_and_jamming,
     manufacture,
     part_strength,
@@ -43,7 +43,7 @@ MODULES: tuple[ModuleType, ...] = (
     contact_strength,
     surface_durability,
     roller_bearing,
-    guide_bushes,
+    guide_strength,
     spring_strength,
     part_strength,
     camshaft_strength,
@@ -53,61 +53,58 @@ MODULES: tuple[ModuleType, ...] = (
     plane_strain_validity,
     solution_verification,
 )
-"""Modules of checks, in the order of the calculation: a check declared in one is in the list."""
+"""Modules of checks, in the order of the calculation; each check declared in one is listed."""
 
 CHECKS: tuple[Declaration, ...] = tuple(
     each for module in MODULES for each in vars(module).values() if isinstance(each, Declaration)
 )
 FORECAST = tuple(each for each in CHECKS if each.forecast)
-"""Checks of the design that are quick, to forecast a smoother."""
+"""Quick checks of the design, to forecast a smoother."""
 TOLERANCED = tuple(each for each in CHECKS if each.moved_by_tolerance and not each.evidence)
-"""Checks of the design whose demand differs at a corner of the tolerances."""
+"""Checks of the design whose demand differs at a tolerance corner."""
 PREVIEW_MARK = "preview: "
-# A waiver that fits no check, or one of the evidence, which stands or falls by itself.
 WAIVERS_WITHOUT_EFFECT = check(
     id="waivers_without_effect",
     title="Waivers without effect",
     unit="waivers",
-    source="a waiver names a check of the design; a wrong number cannot be accepted",
-    method="names of the case's waivers against the ids of its checks",
+    source="a waiver names a check of the design; a verification check cannot be waived",
+    method="check ids of the waivers of the case against the ids of its checks",
     must_have=False,
 )(made_from_others)
 TOLERANCE_CORNERS = check(
     id="tolerance_corners",
-    title="Checks that pass at the nominal and fail at a tolerance corner",
+    title="Checks that fail at a tolerance corner only",
     unit="checks",
-    source="tolerances of the case; one at a time and a seeded sample",
-    method="closed forms at the corners; one that cannot be solved counts as a check",
+    source="tolerances of the case, one at a time and by a seeded sample",
+    method="closed forms at the corners; an unsolved corner counts as a failed check",
     must_have=False,
 )(made_from_others)
 UNSIGNED = check(
     id="signed_off",
-    title="Finite elements, certificate and error bars",
+    title="Certified finite-element solution",
     unit="-",
     sense="at_least",
     source="a sign-off needs a certified solution by finite elements",
     method="none: the solution is not certified",
 )(made_from_others)
-MADE_FROM_OTHERS = (WAIVERS_WITHOUT_EFFECT, TOLERANCE_CORNERS, UNSIGNED)
 
 
 def checks_of(
     solution: Solution, declarations: Iterable[Declaration] = CHECKS
 ) -> tuple[Check, ...]:
-    """The checks of a solution, with error bars and waivers: not evaluated first, then by falling
-    utilisation.
+    """Checks of a solution, with error bars and waivers, in the order of `in_order`.
 
-    A check that does not apply, such as the torque reduction of a cam without an engine, is left
-    out; so is one that the solution's tier cannot judge.
+    Checks that do not apply, such as the torque reduction of a cam without an engine, and those
+    above the tier of the solution are left out.
     """
     made = [one for one in (declared(solution) for declared in declarations) if one is not None]
     return in_order(waived(with_error_bars(solution, made), solution.case.waivers))
 
 
 def all_checks(solution: Solution) -> tuple[Check, ...]:
-    """Every check of a solution, and one for waivers without effect.
+    """All checks of a solution, and one for waivers without effect.
 
-    Unless the solution is certified one more, never evaluated, says so: it cannot pass.
+    A solution without a certificate has one more check, not evaluated, and cannot pass.
     """
     made = checks_of(solution)
     if not solution.final:
@@ -124,11 +121,11 @@ def all_checks(solution: Solution) -> tuple[Check, ...]:
 
 
 def without_sign_off(checks: Iterable[Check]) -> tuple[Check, ...]:
-    """The checks without the one that says a solution is not certified."""
+    """The checks without that of the certified solution."""
     return tuple(one for one in checks if one.id != UNSIGNED.id)
 
 
 def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, ...]:
-    """The checks, each with the waiver the case has for it; the evidence cannot be waived."""
+    """The checks with the waivers of the case; a check of the solution cannot be waived."""
     texts = {w.check: f"{w.name}, {w.date}: {w.reason}" for w in waivers}
     return tuple(one if one.evidence else replace(one, waiver=texts.get(one.id)) for one in checks)

@@ -1,4 +1,4 @@
-"""The roller's bearing: static rating, life, speed, outer ring."""
+"""Checks of the roller bearing: static rating, life, speed, outer ring."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.limits import ROLLER_LIFE, ROLLER_SPEED_SHARE, ROLLER_STATIC_SAFETY
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cycle import Cycle
@@ -21,11 +22,11 @@ def bearing_of(solution: Solution) -> Bearing:
     Raises
     ------
     InputError
-        Under a flat face; a check of the bearing declares that it needs a roller.
+        If the follower has a flat face.
     """
     roller = solution.machine.roller
     if roller is None:
-        raise InputError("roller", "missing", "given for a check of its bearing")
+        raise InputError("roller", "missing", "given for the checks of its bearing")
     return roller.bearing
 
 
@@ -33,6 +34,12 @@ def spin(cycle: Cycle) -> Array:
     """Speed of the roller on its pin, rad/s, (n,)."""
     contour = cycle.contour.require_roller()
     return roller_motion(contour.pitch, contour.roller_radius, cycle.cam_speed, cycle.theta).spin
+
+
+def allowed_spin(machine: Machine) -> float | None:
+    """Maximum speed of the roller on its pin, rad/s; None without a limiting speed."""
+    speed = None if machine.roller is None else machine.roller.bearing.speed_limit
+    return None if speed is None else machine.limits[ROLLER_SPEED_SHARE] * speed
 
 
 def _force(solution: Solution) -> Extreme:
@@ -49,7 +56,7 @@ def _force(solution: Solution) -> Extreme:
     needs="roller",
 )
 def roller_static(solution: Solution) -> Demand:
-    """Static safety s0 of the bearing."""
+    """Static safety factor s0 of the bearing."""
     bearing, worst = bearing_of(solution), _force(solution)
     rating = bearing.C0
     rated = rating is not None and worst.value > 0
@@ -71,7 +78,7 @@ def roller_static(solution: Solution) -> Demand:
     needs="roller",
 )
 def roller_life(solution: Solution) -> Demand:
-    """Rating life of the bearing over the turn, s."""
+    """L10 rating life of the bearing, s."""
     bearing, target = bearing_of(solution), solution.machine.limits[ROLLER_LIFE]
     worst = worst_case(solution.cycles, lambda c: _life(c, bearing.C), at_least=True)
     missing = ["no dynamic rating is given"] if bearing.C is None else []
@@ -96,7 +103,7 @@ def _life(cycle: Cycle, rating: float | None) -> float:
 @check(
     ROLLER_SPEED_SHARE,
     id="roller_speed",
-    title="Roller speed vs. limiting speed",
+    title="Maximum roller speed vs. limiting speed",
     unit="rpm",
     method="rolling without slip: w (|dP/dtheta| - r) / r",
     lift_can_help=True,
@@ -104,10 +111,9 @@ def _life(cycle: Cycle, rating: float | None) -> float:
     needs="roller",
 )
 def roller_speed(solution: Solution) -> Demand:
-    """Greatest speed of the roller on its pin, rad/s."""
-    bearing, share = bearing_of(solution), solution.machine.limits[ROLLER_SPEED_SHARE]
+    """Maximum speed of the roller on its pin, rad/s."""
+    bearing, allowed = bearing_of(solution), allowed_spin(solution.machine)
     worst = greatest(solution.cycles, lambda cycle: np.abs(spin(cycle)))
-    allowed = None if bearing.speed_limit is None else share * bearing.speed_limit
     return Demand(
         worst.value,
         allowed,
@@ -118,7 +124,7 @@ def roller_speed(solution: Solution) -> Demand:
 
 
 @check(
-    title="Roller force vs. maximum radial load of the outer ring",
+    title="Normal force vs. maximum radial load of the outer ring",
     unit="N",
     source="F_r,max of a track roller",
     method="greatest normal force over the turn",
@@ -126,7 +132,7 @@ def roller_speed(solution: Solution) -> Demand:
     needs="roller",
 )
 def roller_radial(solution: Solution) -> Demand:
-    """Greatest force on the roller, N, beside the rating of its unsupported outer ring."""
+    """Maximum normal force, N, against the rating of an unsupported outer ring."""
     bearing, worst = bearing_of(solution), _force(solution)
     return Demand(
         worst.value,

@@ -1,4 +1,4 @@
-"""Verification of the solution: residuals, meshes, certificate, benchmarks."""
+"""Checks of the solution: residuals, meshes, certificate, benchmarks."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from camwright.pipeline.follower.guide_reactions import KNOTS, guide_reactions
 
 VERIFICATION = "ASME V&V 10-2019, solution verification"
 CERTIFIED = f"{VERIFICATION}; ASME V&V 20-2009 (GCI)"
-# Bounds on the tool's own numbers: no case may loosen them.
+# Limits that no case can change.
 CONTACT_EQUILIBRIUM = 1e-6  # of the load
-HERTZ_DIFFERENCE = 0.03  # of p0: 2 to 3 % in use
+HERTZ_DIFFERENCE = 0.03  # of p0: 2 to 3 % usual
 SPREAD = 0.01  # of p0
-BENCHMARK = 0.03  # of the known answer: 2 to 3 % in use
+BENCHMARK = 0.03  # of the reference: 2 to 3 % usual
 KNOTS_TRIED = (7, 13, 25)  # twice as many each time, the ends counted once
 NO_CERTIFICATE = "this trial has no certificate"
 
@@ -45,7 +45,7 @@ def _residual(
     allowed: Callable[[Solution], float],
     limit: bool = True,
 ) -> Declaration:
-    """A check of a residual, relative."""
+    """Check of a relative residual."""
     row = {"guide_equilibrium_force": EQUILIBRIUM, "guide_equilibrium_moment": EQUILIBRIUM}
 
     @check(
@@ -53,7 +53,7 @@ def _residual(
         id=name,
         title=title,
         unit="-",
-        source=f"equilibrium and contact law hold; {VERIFICATION}",
+        source=f"equilibrium and contact conditions, {VERIFICATION}",
         method=method,
         evidence=True,
         tier=Tier.FINITE_ELEMENTS,
@@ -70,7 +70,7 @@ guide_equilibrium_force = _residual(
     lambda cycle: np.maximum(np.abs(cycle.guides.force_residual), cycle.turn.friction_residual),
     title="Force equilibrium residual of the guides",
     method="greatest sum of guide and side forces over the side force, beam on elastic supports; or"
-    " of push, spring, inertia and guide friction over the push",
+    " of cam, spring, inertia and friction forces over the cam force",
     allowed=lambda solution: solution.machine.limits[EQUILIBRIUM],
 )
 guide_equilibrium_moment = _residual(
@@ -91,8 +91,8 @@ contact_equilibrium = _residual(
 contact_complementarity = _residual(
     "contact_complementarity",
     lambda cycle: np.abs(cycle.contact.residual_complementarity),
-    title="Contact law residual",
-    method="greatest relative tension, overlap or gap under pressure",
+    title="Complementarity residual of the contact",
+    method="greatest relative tension, penetration or gap under pressure",
     allowed=lambda solution: solution.machine.limits[COMPLEMENTARITY],
 )
 
@@ -100,14 +100,14 @@ contact_complementarity = _residual(
 @check(
     title="Peak pressure, finite elements vs. Hertz",
     unit="%",
-    source="Johnson (1985) sec. 4.2(c); 2 to 3 % in use",
+    source="Johnson (1985) sec. 4.2(c); 2 to 3 % usual",
     method="greatest |p0 by finite elements / p0 by Hertz - 1| over the turn",
     must_have=False,
     evidence=True,
     tier=Tier.FINITE_ELEMENTS,
 )
 def hertz_difference(solution: Solution) -> Demand:
-    """Difference of the finite elements from the closed form; it needs a reason, not a fix."""
+    """Maximum difference of the contact pressure from Hertz, relative."""
     worst = greatest(solution.cycles, lambda cycle: np.abs(cycle.contact.p0_difference))
     return Demand(worst.value, HERTZ_DIFFERENCE, worst)
 
@@ -115,7 +115,7 @@ def hertz_difference(solution: Solution) -> Demand:
 def _certified(
     solution: Solution, share: Callable[[CertificatePoint], float], allowed: float
 ) -> Demand:
-    """The greatest of a share over the certified angles."""
+    """Greatest value over the certified cam angles."""
     points = solution.certificate
     if not points:
         return Demand(None, allowed, note=NO_CERTIFICATE, must_have=solution.final)
@@ -128,12 +128,12 @@ def _certified(
     title="Peak pressure, cycle vs. certificate",
     unit="%",
     source=CERTIFIED,
-    method="p0 of the turn against both bodies meshed and solved at the certificate's angles",
+    method="p0 of the cycle against the finite-element solution of both bodies at certified angles",
     evidence=True,
     tier=Tier.FINITE_ELEMENTS,
 )
 def certificate_spread(solution: Solution) -> Demand:
-    """Difference of the turn's contact from that on the certificate's meshes, relative."""
+    """Difference of the contact between cycle and certificate, relative."""
     return _certified(solution, lambda point: point.spread, SPREAD)
 
 
@@ -147,7 +147,7 @@ def certificate_spread(solution: Solution) -> Demand:
     tier=Tier.FINITE_ELEMENTS,
 )
 def certificate_gci(solution: Solution) -> Demand:
-    """Error bar of the certificate from three meshes, relative."""
+    """Grid convergence index of the certificate, relative."""
     allowed = solution.machine.limits[MESH_UNCERTAINTY]
     return _certified(solution, lambda point: point.gci, allowed)
 
@@ -155,7 +155,7 @@ def certificate_gci(solution: Solution) -> Demand:
 def _mesh(
     name: str, figure: Callable[[Quality], float], allowed: float, *, title: str, unit: str = "-"
 ) -> Declaration:
-    """A check of the mesh quality."""
+    """Check of the mesh quality."""
 
     @check(
         id=name,
@@ -200,13 +200,13 @@ mesh_edges = _mesh(
 def _uncertainty(
     name: str, words: str, figure: Callable[[CertificatePoint], Convergence]
 ) -> Declaration:
-    """A check of the discretisation uncertainty of a certified figure."""
+    """Check of the discretisation uncertainty of a certified quantity."""
     meshes = "three meshes of both bodies at every certified angle"
 
     @check(
         MESH_UNCERTAINTY,
         id=f"mesh_{name}",
-        title=f"Discretisation uncertainty of {words}",
+        title=f"Discretisation uncertainty of the {words}",
         unit="%",
         method=meshes,
         evidence=True,
@@ -231,7 +231,7 @@ def _uncertainty(
 mesh_p0 = _uncertainty("p0", "peak pressure", lambda point: point.p0)
 mesh_half_width = _uncertainty("half_width", "half-width", lambda point: point.half_width)
 mesh_von_mises = _uncertainty("von_mises", "von Mises stress", lambda point: point.von_mises)
-mesh_tau_max = _uncertainty("tau_max", "maximum shear", lambda point: point.tau_max)
+mesh_tau_max = _uncertainty("tau_max", "maximum shear stress", lambda point: point.tau_max)
 
 
 @check(
@@ -244,7 +244,7 @@ mesh_tau_max = _uncertainty("tau_max", "maximum shear", lambda point: point.tau_
     tier=Tier.FINITE_ELEMENTS,
 )
 def mesh_reaction(solution: Solution) -> Demand:
-    """Error bar of the guide reaction from three divisions of the guides, relative."""
+    """Discretisation uncertainty of the guide reaction, relative."""
     cycle = max(solution.cycles, key=lambda c: float(np.max(np.abs(c.guides.reaction_a))))
     k = int(np.argmax(np.abs(cycle.guides.reaction_a)))
     load, reach = cycle.loads.tangential_force[[k]], cycle.loads.overhang[[k]]
@@ -264,15 +264,15 @@ def mesh_reaction(solution: Solution) -> Demand:
 
 
 def _benchmark(name: str, *, title: str, source: str) -> Declaration:
-    """A check of a contact with a known answer, solved by the libraries of this run."""
+    """Check of a contact with a reference solution, solved by the libraries of this run."""
 
     @check(
         id=f"benchmark_{name}",
         title=title,
         unit="%",
-        source=f"{source}; 2 to 3 % in use",
-        method="greater difference of p0 and half-width from the known answer, solved by the"
-        " libraries of this run",
+        source=f"{source}; 2 to 3 % usual",
+        method="greater difference of p0 and half-width from the reference, by the libraries"
+        " of this run",
         evidence=True,
         tier=Tier.FINITE_ELEMENTS,
     )
@@ -294,17 +294,17 @@ benchmark_nafems = _benchmark(
 )
 benchmark_hertz = _benchmark(
     "hertz",
-    title="Benchmark Hertz, the case's radius on a block",
+    title="Benchmark Hertz, roller of the case on a block",
     source="Johnson (1985) sec. 4.2(c)",
 )
 
 
 def _gci(figure: Convergence) -> float:
-    """The error bar, a NaN beyond all others."""
+    """Grid convergence index; NaN counts as infinite."""
     return np.inf if np.isnan(figure.gci) else figure.gci
 
 
 def _order(figure: Convergence) -> str:
     if figure.order is None:
-        return "no order observed, the meshes scatter: their spread with a factor of 3"
+        return "no order observed: spread of the meshes times 3"
     return f"observed order {figure.order:.2f}"

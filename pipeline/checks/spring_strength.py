@@ -1,4 +1,4 @@
-"""The spring as wound: strength, fatigue, solid length, buckling, surge."""
+"""Checks of the spring design: strength, fatigue, solid length, buckling, surge."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from camwright.pipeline.case.limits import (
     SPRING_SOLID,
     SPRING_SURGE,
     Limit,
-    Sense,
 )
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import worst_case
@@ -22,12 +21,12 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.spring import HelicalSpring, Spring, surge_harmonics
 
 NOT_WOUND = "no wire, diameter and coils of the spring are given"
-RATE_TOLERANCE = 0.05  # of the rate, where the case gives none
+RATE_TOLERANCE = 0.05  # of the rate, where the case has none
 HARDEST = "preload and rate high"
 
 
 class Work(NamedTuple):
-    """Working range of the hardest spring within the tolerances: N, N, and m of travel."""
+    """Working range of the hardest spring in tolerance: preload, maximum force, N; travel, m."""
 
     preload: float
     greatest: float
@@ -38,12 +37,12 @@ Measure = Callable[[HelicalSpring, Work], float]
 
 
 def hardest_work(spring: Spring, design: HelicalSpring, preload: float, travel: float) -> Work:
-    """Working range of the hardest spring within its tolerances.
+    """Working range of the hardest spring in tolerance.
 
     Parameters
     ----------
-    preload : float   the greatest of the load cases, N
-    travel : float    greatest lift, m
+    preload : float   greatest of the load cases, N
+    travel : float    maximum lift, m
     """
     hard = preload * (1.0 + spring.preload_tolerance)
     rate = design.rate * (1.0 + spring.rate_tolerance)
@@ -57,12 +56,10 @@ def _wound(
     title: str,
     method: str,
     limit: Limit | None = None,
-    allowed: Callable[[Spring], float] = lambda _: 1.0,
     source: str = "",
-    sense: Sense | None = None,
     lift_can_help: bool = True,
 ) -> Declaration:
-    """A check of the spring as wound, at the hard end of its tolerances."""
+    """Check of the spring design at the upper ends of its tolerances."""
 
     @check(
         limit,
@@ -71,7 +68,6 @@ def _wound(
         unit="-",
         method=method,
         source=source,
-        sense=sense,
         lift_can_help=lift_can_help,
         moved_by_tolerance=False,
     )
@@ -82,7 +78,7 @@ def _wound(
             return Demand(None, None, note=NOT_WOUND)
         preload = max(machine.spring.preload for machine in solution.machines)
         travel = solution.contour.pitch.lift.highest.value
-        bound = allowed(spring) if limit is None else solution.machine.limits[limit]
+        bound = 1.0 if limit is None else solution.machine.limits[limit]
         value = measure(design, hardest_work(spring, design, preload, travel))
         return Demand(value, bound, figures=(design.source,), corner=_corner(spring))
 
@@ -99,41 +95,41 @@ spring_stress = _wound(
     lambda design, work: design.static_use(work.greatest),
     title="Spring shear stress / static strength",
     source="0.56 R_m, EN 13906-1: verify",
-    method="Wahl's factor, force at full lift",
+    method="Wahl factor, force at maximum lift",
 )
 spring_fatigue = _wound(
     "spring_fatigue",
     lambda design, work: design.fatigue_safety(work.preload, work.greatest),
     title="Fatigue safety factor of the spring",
     limit=SPRING_FATIGUE,
-    method="Wahl's factor, preload to force at full lift",
+    method="Wahl factor, from preload to force at maximum lift",
 )
 spring_solid = _wound(
     "spring_solid",
     lambda design, work: design.solid_clearance(work.preload, work.travel),
     title="Spring solid-height clearance",
     limit=SPRING_SOLID,
-    method="free length less solid length less deflection at full lift, over that deflection",
+    method="free length less solid length less deflection at maximum lift, over that deflection",
 )
 spring_buckling = _wound(
     "spring_buckling",
     lambda design, _: design.buckling_use,
-    title="Spring free length / buckling limit",
+    title="Spring free length / buckling length",
     source="L0 < 2.63 D over the end factor, Shigley ch. 10",
-    method="closed form",
+    method="free length over 2.63 D / end factor",
     lift_can_help=False,
 )
 
 
 @check(
-    title="Spring rate error",
+    title="Deviation of the spring design from the spring rate",
     unit="-",
     source="tolerance of the rate in the case, else 5 %",
-    method="G d^4/(8 D^3 n) against spring.rate",
+    method="G d^4/(8 D^3 n) of the spring design against spring.rate",
     moved_by_tolerance=False,
 )
 def spring_rate(solution: Solution) -> Demand:
-    """Difference of the wound spring's rate from that of the case, relative."""
+    """Deviation of the rate of the spring design from that of the case, relative."""
     spring = solution.machine.spring
     if spring.design is None:
         return Demand(None, None, note=NOT_WOUND)
@@ -151,7 +147,7 @@ def spring_rate(solution: Solution) -> Demand:
     moved_by_tolerance=False,
 )
 def spring_surge(solution: Solution) -> Demand:
-    """First natural frequency of the spring over the cam's frequency."""
+    """First natural frequency of the spring over the cam frequency."""
     design = solution.machine.spring.design
     if design is None:
         return Demand(None, None, note=NOT_WOUND)

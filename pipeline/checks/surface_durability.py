@@ -1,4 +1,4 @@
-"""Durability of the running surface: traction, oil film, fatigue, case depth."""
+"""Checks of the running surface: traction, oil film, fatigue, case depth."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ CASE_CARBURISED = 1500e6  # Pa, quality MQ
 @check(
     TRACTION_SHARE,
     id="traction_demand",
-    title="Traction demand vs. friction limit",
+    title="Traction coefficient vs. friction limit",
     method="(roller inertia + bearing drag) over roller radius and normal force",
     must_have=False,
     lift_can_help=True,
     needs="roller",
 )
 def traction_demand(solution: Solution) -> Demand:
-    """Tangential over normal force of rolling without slip."""
+    """Maximum tangential over normal force of rolling without slip."""
     machine = solution.machine
     worst, friction = greatest(solution.cycles, _traction), machine.follower.friction
     return Demand(
@@ -49,12 +49,12 @@ def traction_demand(solution: Solution) -> Demand:
 
 @check(
     FILM_RATIO,
-    title="Lambda ratio (film thickness / roughness)",
+    title="Minimum film thickness ratio (lambda)",
     method="least film of Dowson and Higginson (1966) where loaded, over the rms roughness",
     must_have=False,
 )
 def film_ratio(solution: Solution) -> Demand:
-    """Least film thickness over roughness."""
+    """Minimum film thickness over roughness."""
     machine = solution.machine
     oil, kind = machine.lubricant, machine.follower
     worst, missing = least(solution.cycles, _lambda), []
@@ -74,7 +74,7 @@ def film_ratio(solution: Solution) -> Demand:
 
 
 def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) -> Demand:
-    """A fatigue stress beside the limit in torsion of the cam's material, Pa."""
+    """Equivalent fatigue stress against the fatigue limit in torsion of the cam, Pa."""
     worst = worst_case(solution.cycles, lambda cycle: measure(cycle.rolling.envelope))
     card = solution.machine.cam.material
     torsion, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
@@ -94,14 +94,14 @@ def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) ->
     title="Subsurface fatigue, Crossland criterion",
     unit="MPa",
     method="Crossland (1956): root of J2's amplitude plus weighted hydrostatic stress, the load"
-    " swept along the contour",
+    " travelling along the contour",
     must_have=False,
     lift_can_help=True,
     error="contact",
 )
 def surface_fatigue(solution: Solution) -> Demand:
-    """Crossland's stress of the load's passage, Pa."""
-    return _torsion_demand(solution, lambda map_: _greatest_of(map_.crossland))
+    """Maximum Crossland stress of a passage of the contact, Pa."""
+    return _torsion_demand(solution, lambda swept: _greatest_of(swept.crossland))
 
 
 @check(
@@ -110,14 +110,14 @@ def surface_fatigue(solution: Solution) -> Demand:
     title="Subsurface fatigue, Dang Van criterion",
     unit="MPa",
     method="Dang Van (1993): shear amplitude plus weighted hydrostatic stress, no credit for"
-    " compression (Desimone 2006), the load swept along the contour",
+    " compression (Desimone 2006), the load travelling along the contour",
     must_have=False,
     lift_can_help=True,
     error="contact",
 )
 def dang_van(solution: Solution) -> Demand:
-    """Dang Van's stress of the load's passage, Pa."""
-    return _torsion_demand(solution, lambda map_: _greatest_of(map_.dang_van))
+    """Maximum Dang Van stress of a passage of the contact, Pa."""
+    return _torsion_demand(solution, lambda swept: _greatest_of(swept.dang_van))
 
 
 @check(
@@ -131,7 +131,7 @@ def dang_van(solution: Solution) -> Demand:
     error="contact",
 )
 def hardened_case(solution: Solution) -> Demand:
-    """Von Mises stress over the yield strength at its depth."""
+    """Maximum von Mises stress over the yield strength at its depth."""
     card = solution.machine.cam.material
     known = card.case_depth is not None and card.core_yield_strength is not None
     worst = worst_case(
@@ -149,13 +149,13 @@ def hardened_case(solution: Solution) -> Demand:
 @check(
     CASE_DEPTH_RATIO,
     id="case_depth",
-    title="Effective case depth / depth of maximum shear",
-    method="effective depth of the card over the greatest depth of tau_max over the turn",
+    title="Effective case depth / depth of maximum shear stress",
+    method="effective case depth of the material over the greatest depth of tau_max over the turn",
     must_have=False,
     lift_can_help=True,
 )
 def case_depth(solution: Solution) -> Demand:
-    """Depth of the hardened case over that of the greatest shear."""
+    """Effective case depth over the greatest depth of maximum shear stress."""
     card = solution.machine.cam.material
     depth, worst = card.case_depth, greatest(solution.cycles, lambda c: c.contact.tau_depth)
     loaded = worst.value > 0 or np.isnan(worst.value)
@@ -178,7 +178,7 @@ def case_depth(solution: Solution) -> Demand:
     error="contact",
 )
 def pressure_by_hardness(solution: Solution) -> Demand | None:
-    """Peak contact pressure, Pa, beside Buckingham's estimate; None for a hardened surface."""
+    """Maximum contact pressure, Pa, against the Buckingham estimate; None if surface-hardened."""
     card = solution.machine.cam.material
     if card.case_depth is not None or card.treatment not in (None, "through_hardened"):
         return None
@@ -197,13 +197,13 @@ def pressure_by_hardness(solution: Solution) -> Demand | None:
     title="Peak contact pressure vs. gear flank allowable",
     unit="MPa",
     source="ISO 6336-5, quality MQ, recalled: verify",
-    method="greatest contact pressure over the turn; a comparison",
+    method="greatest contact pressure over the turn; for comparison only",
     must_have=False,
     lift_can_help=True,
     error="contact",
 )
 def pressure_by_gear_limits(solution: Solution) -> Demand:
-    """Peak contact pressure, Pa, beside that of gear flanks of such steel, for comparison."""
+    """Maximum contact pressure, Pa, against the allowable stress of gear flanks."""
     worst, card = peak_pressure(solution), solution.machine.cam.material
     allowed = gear_limit(card)
     return Demand(
@@ -218,7 +218,7 @@ def pressure_by_gear_limits(solution: Solution) -> Demand:
 
 
 def buckingham(hardness: float) -> float:
-    """Contact pressure (Pa) that steel of a Brinell hardness bears 1e8 times; >= 0.
+    """Allowable contact pressure of steel at 1e8 load cycles, from the Brinell hardness, Pa.
 
     References
     ----------
@@ -228,7 +228,7 @@ def buckingham(hardness: float) -> float:
 
 
 def gear_limit(card: Material) -> float | None:
-    """Allowable contact stress (Pa) of gear flanks of such steel; None where it is unknown.
+    """Allowable contact stress of gear flanks of a steel, Pa; None where it is unknown.
 
     References
     ----------
@@ -245,7 +245,7 @@ def gear_limit(card: Material) -> float | None:
 
 
 def _traction(cycle: Cycle) -> Array:
-    """Traction demand (n,) where loaded; NaN where it is not known."""
+    """Traction coefficient (n,), 0 where unloaded; NaN where it is not known."""
     demand = cycle.rolling.traction_demand
     if demand is None:
         return np.full(cycle.theta.size, np.nan)
@@ -253,7 +253,7 @@ def _traction(cycle: Cycle) -> Array:
 
 
 def _lambda(cycle: Cycle) -> Array:
-    """Lambda ratio (n,), infinite where there is no load; NaN where it is not known."""
+    """Film thickness ratio (n,), infinite where unloaded; NaN where it is not known."""
     film = cycle.rolling.film
     ratio = None if film is None else film.ratio
     if ratio is None:
@@ -261,14 +261,14 @@ def _lambda(cycle: Cycle) -> Array:
     return np.where(np.isnan(ratio), inf, ratio)
 
 
-def _greatest_of(map_: Array | None) -> float:
-    return np.nan if map_ is None else float(map_.max())
+def _greatest_of(field: Array | None) -> float:
+    return np.nan if field is None else float(field.max())
 
 
-def _use_of_strength(map_: Envelope, card: Material) -> float:
+def _use_of_strength(swept: Envelope, card: Material) -> float:
     depth, core = card.case_depth, card.core_yield_strength
     if depth is None or core is None:
         return np.nan
-    inward = np.clip(map_.depth / depth, 0.0, 1.0)
+    inward = np.clip(swept.depth / depth, 0.0, 1.0)
     strength = card.yield_strength + (core - card.yield_strength) * inward
-    return float((map_.von_mises / strength).max())
+    return float((swept.von_mises / strength).max())

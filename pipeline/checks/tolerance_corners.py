@@ -1,8 +1,8 @@
-"""The final cam at the corners of its tolerances, by closed forms: the corner that governs a check.
+"""Checks of the final cam at its tolerance corners, by closed forms; governing corner of a check.
 
-Every tolerance goes to both ends alone, then a seeded sample takes them all at once. The cam is
-the one that was designed; friction, spring, masses, phase and contour are those of the corner. The
-demand at a corner is the nominal one times the ratio of the closed forms there and here.
+Each tolerance is at both ends in turn; then a seeded sample varies all at once. The lift is the
+nominal one; friction, spring, masses, phase and contour are those of the corner. The demand at a
+corner is the nominal demand times the ratio of the closed forms at the corner and at the nominal.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.guide_friction import FrictionRange
 
 POSITIONS = 90
-"""Angles a turn: a corner gives the ratio of two demands, not either."""
+"""Cam angles per turn, enough for the ratio of two demands."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Demands by check id at one corner, or why there are none."""
+    """Demands by check id at one corner, or the refusal in words."""
 
     corner: Corner
     demands: Mapping[str, float]
@@ -41,7 +41,7 @@ class Outcome:
 
 
 def corners_of(case: Case) -> tuple[Corner, ...]:
-    """One tolerance at a time to both ends, then the seeded sample of all together."""
+    """Corners of one tolerance at a time, then the seeded sample of all."""
     ranges = _ranges(case)
     alone = []
     for label, bounds in ranges.items():
@@ -55,14 +55,14 @@ def corners_of(case: Case) -> tuple[Corner, ...]:
     for number in range(case.tolerances.samples):
         values: dict[str, float] = {}
         for bounds in ranges.values():
-            place = float(draw.random())  # both guides share the day's oil
+            place = float(draw.random())  # both guides share their lubrication
             values |= {name: low + place * (high - low) for name, (low, high) in bounds.items()}
         sample.append(Corner(f"sample {number + 1}", **values))
     return (*alone, *sample)
 
 
 def outcomes(case: Case, torques: Mapping[str, Torque], contour: Contour) -> tuple[Outcome, ...]:
-    """The nominal case first, then every corner of it."""
+    """Outcomes at the nominal, then at each corner."""
     return tuple(
         _outcome(case, torques, contour, corner)
         for corner in (Corner("nominal"), *corners_of(case))
@@ -72,9 +72,9 @@ def outcomes(case: Case, torques: Mapping[str, Torque], contour: Contour) -> tup
 def governed(
     machine: Machine, checks: Sequence[Check], tried: Sequence[Outcome]
 ) -> tuple[Check, ...]:
-    """The checks with the corner where each is worst and its demand there.
+    """The checks with the governing corner and the demand there.
 
-    The last is a check of its own: how many pass at the nominal and fail at a corner.
+    The last is the number of checks that pass at the nominal and fail at a corner.
     """
     if len(tried) < 2:
         return tuple(checks)
@@ -83,9 +83,9 @@ def governed(
 
 
 def _robust(machine: Machine, checks: Sequence[Check], tried: Sequence[Outcome]) -> Check:
-    """How many governed checks pass at the nominal and fail at a corner."""
+    """Number of checks that pass at the nominal and fail at a corner."""
     refused = [f"{one.corner.name}: {one.refused}" for one in tried if one.refused]
-    lost = [
+    failing = [
         one.id
         for one in checks
         if one.must_have
@@ -94,10 +94,10 @@ def _robust(machine: Machine, checks: Sequence[Check], tried: Sequence[Outcome])
         and replace(one, demand=one.corner_demand).status == "fail"
     ]
     demand = Demand(
-        float(len(lost) + len(refused)),
+        float(len(failing) + len(refused)),
         0.0,
-        note=", ".join((*lost, *refused)),
-        method=f"closed forms at {len(tried) - 1} corners; one that cannot be solved counts as a"
+        note=", ".join((*failing, *refused)),
+        method=f"closed forms at {len(tried) - 1} corners; an unsolved corner counts as a failed"
         " check",
     )
     return TOLERANCE_CORNERS.judged(machine, demand)
@@ -118,7 +118,7 @@ def corners_record(case: Case, tried: Sequence[Outcome]) -> dict[str, object]:
 
 
 def _plain(demands: Mapping[str, float]) -> dict[str, float | None]:
-    """As JSON holds them, in the units of the checks: a demand beyond all bounds is null."""
+    """Demands in the units of the checks; infinity becomes null."""
     units = {declared.id: declared.unit for declared in TOLERANCED}
     return {
         name: in_unit(value, units[name]) if np.isfinite(value) else None
@@ -127,7 +127,7 @@ def _plain(demands: Mapping[str, float]) -> dict[str, float | None]:
 
 
 def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
-    """Bounds of the fields of `Corner` by what moves together; nothing of no width."""
+    """Bounds of the fields of `Corner` by tolerance; zero tolerances are left out."""
     tolerances, spring = case.tolerances, case.spring
     friction = FrictionRange.of(case.guides, tolerances.friction)
 
@@ -136,7 +136,7 @@ def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
 
     profile = case.cam.profile_tolerance or 0.0
     inertia = 0.0 if case.crankshaft is None else tolerances.inertia
-    found: dict[str, dict[str, tuple[float, float]]] = {
+    ranges: dict[str, dict[str, tuple[float, float]]] = {
         "friction": {
             "friction_a": friction.factors(0),
             "friction_b": friction.factors(1),
@@ -150,7 +150,7 @@ def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
     }
     return {
         label: bounds
-        for label, bounds in found.items()
+        for label, bounds in ranges.items()
         if any(high > low for low, high in bounds.values())
     }
 
@@ -185,16 +185,16 @@ def _shape(contour: Contour, corner: Corner) -> Contour:
 
 
 def _early(contour: Contour, advance: float) -> Contour:
-    """The cam `advance` (rad of its own) early against the engine."""
+    """Contour advanced by `advance`, rad of cam, against the engine."""
     if advance == 0.0:
         return contour
     lift = contour.pitch.lift
-    moved = np.maximum(lift(lift.theta + advance), 0.0)
-    return replace(contour, pitch=replace(contour.pitch, lift=Lift(lift.theta, moved)))
+    advanced = np.maximum(lift(lift.theta + advance), 0.0)
+    return replace(contour, pitch=replace(contour.pitch, lift=Lift(lift.theta, advanced)))
 
 
 def _phased(each: Turn, corner: Corner) -> Turn:
-    """The turn with the engine's torque `phase` (rad of crank) late against the cam."""
+    """Turn with the engine torque delayed by the phase, rad of crank."""
     before, ratio = each.torque_before, each.machine.gear_ratio
     if before is None or corner.phase == 0.0:
         return each

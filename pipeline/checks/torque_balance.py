@@ -1,4 +1,4 @@
-"""Purpose of the cam: ripple reduction and energy balance."""
+"""Checks of ripple reduction and energy balance."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ from camwright.pipeline.case.limits import (
     SPEED_REDUCTION,
     TORQUE_REDUCTION,
 )
+from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import Extreme, worst_case
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 
-# Exact for the degree 9 of lift times slope on a quintic piece.
+# Exact for lift times slope on a quintic piece: degree 9.
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 
-# A gentler lift only reduces the ripple less: this one is never traded.
+# A gentler lift lowers the reduction: lift_can_help stays False.
 @check(
     TORQUE_REDUCTION,
     title="Torque ripple reduction",
@@ -30,7 +31,7 @@ GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(5)
     forecast=True,
 )
 def torque_reduction(solution: Solution) -> Demand | None:
-    """Share of the torque ripple that the cam removes; None without an engine."""
+    """Reduction of the torque ripple by the cam; None without an engine."""
     cycles = cycles_of_ripple(solution)
     if not cycles:
         return None
@@ -45,7 +46,7 @@ def torque_reduction(solution: Solution) -> Demand | None:
 
 
 def cycles_of_ripple(solution: Solution) -> tuple[Cycle, ...]:
-    """The cycles with an engine whose load case counts for the ripple."""
+    """Cycles with an engine whose load case counts for the ripple."""
     return tuple(
         cycle
         for cycle in solution.cycles
@@ -60,7 +61,7 @@ def cycles_of_ripple(solution: Solution) -> tuple[Cycle, ...]:
     " inertia of crank and follower included",
 )
 def speed_reduction(solution: Solution) -> Demand | None:
-    """Share of the crank speed's ripple that the cam removes; None without a crankshaft."""
+    """Reduction of the crank speed ripple by the cam; None without a crankshaft."""
     idle = {m.load_case for m in solution.machines if not m.ripple_weight > 0}
     shares = {
         name: 1.0 - after / before if before > 0 else np.nan
@@ -82,41 +83,41 @@ def speed_reduction(solution: Solution) -> Demand | None:
 
 def _reduction(cycle: Cycle) -> float:
     before, after = cycle.turn.torque_before, cycle.turn.torque_after
-    if before is None or after is None or not np.std(before) > 0:
+    if before is None or after is None:
         return np.nan
-    return float(1.0 - np.std(after) / np.std(before))
+    return demands.ripple_reduction(before, after)
 
 
 @check(
     ENERGY_CLOSURE,
-    title="Energy balance of the frictionless cam",
-    method="integral of (F_s + m w^2 s'') s' over the lift's spline, over the energy stored",
+    title="Energy balance of the cam without friction",
+    method="integral of (F_s + m w^2 s'') s' over the spline of the lift, over the stored energy",
     evidence=True,
     moved_by_tolerance=False,
 )
 def energy_closure(solution: Solution) -> Demand:
-    """Energy that the frictionless cam does not return."""
+    """Work of the cam without friction over a turn, over the stored energy."""
     worst = worst_case(solution.cycles, _imbalance)
     return Demand(worst.value, solution.machine.limits[ENERGY_CLOSURE], worst)
 
 
 @check(
     FRICTION_BALANCE,
-    title="Friction loss vs. heat in guides and face",
-    method="cam work less that of spring and inertia, against friction times sliding distance of"
-    " guides and face, relative",
+    title="Friction work vs. heat in guides and face",
+    method="cam work less work of spring and inertia, against friction force times sliding distance"
+    " of guides and face, relative",
     evidence=True,
     moved_by_tolerance=False,
 )
 def friction_balance(solution: Solution) -> Demand:
-    """Difference of the torque spent on friction from the heat of guides and face."""
+    """Difference of friction work from heat of guides and face, relative."""
     worst = worst_case(solution.cycles, _heat_mismatch)
     allowed = solution.machine.limits[FRICTION_BALANCE]
     return Demand(worst.value, allowed, worst, note="; ".join(map(_loss, solution.cycles)))
 
 
 def _stored(cycle: Cycle) -> float:
-    """Energy stored at the greatest lift, J."""
+    """Energy stored at maximum lift, J."""
     return cycle.machine.spring.energy(float(cycle.contour.pitch.lift.highest.value))
 
 
@@ -131,12 +132,12 @@ def _imbalance(cycle: Cycle) -> float:
 
 
 def _touching_slope(cycle: Cycle) -> Array:
-    """Slope of the lift (n,), zero where cam and follower are apart: nothing slides there."""
+    """Slope of the lift (n,), m/rad, 0 where cam and follower are separated."""
     return np.where(cycle.loads.normal_force > 0, cycle.loads.lift_slope, 0.0)
 
 
 def _heat(cycle: Cycle) -> float:
-    """Friction heat of a turn, J; of the guides, from the contact pressures in their bores."""
+    """Friction heat of a turn, J; of the guides, from the pressures in their bores."""
     loads, slope = cycle.loads, _touching_slope(cycle)
     heat_a, heat_b = cycle.parts.heat_a, cycle.parts.heat_b
     dragged = np.abs(loads.viscous_force * slope) + loads.sliding_torque
@@ -145,9 +146,9 @@ def _heat(cycle: Cycle) -> float:
 
 
 def _loss(cycle: Cycle) -> str:
-    """Friction loss of a load case: power, and share of the energy stored."""
+    """Friction loss of a load case in words: power, and share of the stored energy."""
     heat, stored = _heat(cycle), _stored(cycle)
-    share = f" or {heat / stored:.1%} of the energy stored" if stored > 0 else ""
+    share = f" or {heat / stored:.1%} of the stored energy" if stored > 0 else ""
     return f"{cycle.load_case}: {shown(heat * cycle.cam_speed / FULL_TURN, 'W', 3)}{share}"
 
 
@@ -160,7 +161,7 @@ def _heat_mismatch(cycle: Cycle) -> float:
 
 
 def _relative(part: float, whole: float) -> float:
-    """Share of the whole; zero of nothing is no share."""
+    """|part| / whole; 0 for a part of zero."""
     if np.isnan(part) or np.isnan(whole):
         return np.nan
     return 0.0 if part == 0.0 else float(np.divide(abs(part), whole)) if whole > 0 else np.inf

@@ -1,6 +1,6 @@
-"""Long running: grease of the roller bearing, expansion and wear of the guides.
+"""Checks of service life: lubrication of the roller bearing, expansion and wear of the guides.
 
-Each check applies where the case has its data, and is left out (None) where it has none.
+A check without data in the case is left out.
 """
 
 from __future__ import annotations
@@ -11,26 +11,26 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import TARGET_LIFE, VISCOSITY_RATIO, WEAR_DEPTH
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import worst_case
-from camwright.pipeline.checks.guide_bushes import Side, heat_of, mean_pv
+from camwright.pipeline.checks.guide_strength import Side, guide_of, heat_of, mean_pv
 from camwright.pipeline.checks.roller_bearing import bearing_of, spin
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_reactions import WALL_SHARE
 
-ROOM = 293.15  # K, at which the clearance is measured
-STANDS = 1.0  # rpm of the roller, below which nothing is greased by motion
+ROOM = 293.15  # K, temperature of the clearance measurement
+STANDSTILL = 1.0  # rpm of the roller, below which the viscosity ratio does not apply
 
 
 @check(
     VISCOSITY_RATIO,
     id="bearing_lubrication",
-    title="Viscosity ratio of the roller bearing",
-    method="viscosity given over v1 at the mean speed of the roller, where it turns",
+    title="Viscosity ratio (kappa) of the roller bearing",
+    method="viscosity over v1 at the mean speed of the roller; infinite at rest",
     must_have=False,
     needs="roller",
 )
 def bearing_lubrication(solution: Solution) -> Demand | None:
-    """Viscosity of the bearing's oil over the rated one; None where it is not given."""
+    """Viscosity ratio of the roller bearing; None without a viscosity."""
     bearing = bearing_of(solution)
     viscosity, ring, pitch = bearing.viscosity, bearing.ring, bearing.pitch_diameter
     if viscosity is None:
@@ -42,7 +42,7 @@ def bearing_lubrication(solution: Solution) -> Demand | None:
         speed = in_unit(float(np.mean(np.abs(spin(cycle)))), "rpm")
         if pitch is None or np.isnan(speed):
             return np.nan
-        return np.inf if speed < STANDS else viscosity / rated_viscosity(speed, pitch)
+        return np.inf if speed < STANDSTILL else viscosity / rated_viscosity(speed, pitch)
 
     worst = worst_case(solution.cycles, ratio, at_least=True)
     return Demand(
@@ -55,7 +55,7 @@ def bearing_lubrication(solution: Solution) -> Demand | None:
 
 
 def rated_viscosity(speed: float, pitch_diameter: float) -> float:
-    """Kinematic viscosity v1 (m2/s) that a bearing needs at a speed (rpm, > 0); diameter in m.
+    """Rated kinematic viscosity v1 of a bearing, m2/s, at a speed, rpm, > 0; diameter in m.
 
     References
     ----------
@@ -71,16 +71,15 @@ def _guide_expansion(side: Side) -> Declaration:
         id=f"guide_expansion_{side}",
         title=f"Thermal and moisture expansion vs. clearance in guide {side}",
         unit="mm",
-        source="no seizure when hot and wet, bush makers",
-        method="wall of a quarter of the bore swells inwards, in a rigid housing, at the bush's"
+        source="no seizure at temperature and moisture, bush makers",
+        method="inward expansion of a wall of a quarter of the bore, in a rigid housing, at the"
         " running temperature",
         must_have=False,
         lift_can_help=True,
     )
     def expansion(solution: Solution) -> Demand | None:
-        """Expansion of bush and stem, m, beside the clearance between them."""
-        guides = solution.machine.guides
-        guide = guides.a if side == "A" else guides.b
+        """Expansion of guide and stem, m, against the clearance between them."""
+        guide = guide_of(solution.machine, side)
         bush, stem = guide.material, solution.case.follower.stem_material
         coefficient, of_stem = bush.expansion, stem.expansion or 0.0
         if coefficient is None:
@@ -93,7 +92,7 @@ def _guide_expansion(side: Side) -> Declaration:
             return float(wall + guide.diameter * of_stem * warmer)
 
         worst = worst_case(solution.cycles, growth)
-        note = "the bush's temperature is not known" if np.isnan(worst.value) else ""
+        note = "the temperature of the guide is not known" if np.isnan(worst.value) else ""
         return Demand(worst.value, guide.clearance, worst, note=note, figures=(bush.source,))
 
     return expansion
@@ -104,15 +103,14 @@ def _guide_wear(side: Side) -> Declaration:
         WEAR_DEPTH,
         id=f"guide_wear_{side}",
         title=f"Wear depth of guide {side} at target life",
-        method="wear rate times mean pressure times sliding distance, all the life in the worst"
+        method="wear rate times mean pressure times sliding distance, all of the life in the worst"
         " load case",
         must_have=False,
         lift_can_help=True,
     )
     def wear(solution: Solution) -> Demand | None:
         """Wear depth of a guide over the target life, m; None without a wear rate."""
-        guides, limits = solution.machine.guides, solution.machine.limits
-        guide = guides.a if side == "A" else guides.b
+        guide, limits = guide_of(solution.machine, side), solution.machine.limits
         rate, life = guide.wear_rate, limits[TARGET_LIFE]
         if rate is None:
             return None

@@ -1,4 +1,4 @@
-"""Limits of a case as a synthesis keeps them: those of the checks."""
+"""Ratings of a synthesis: the limits of a case as the checks apply them."""
 
 from __future__ import annotations
 
@@ -9,28 +9,21 @@ from scipy.optimize import brentq
 from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
-    CAM_RADIUS,
-    CONTACT_FORCE_MARGIN,
-    CURVATURE_RATE,
-    CURVATURE_RATIO,
-    JAM_INDEX,
-    JUMP,
     JUMP_SPEED,
-    PIN_SHARE,
-    PRESSURE_ANGLE,
     ROLLER_LIFE,
-    ROLLER_SPEED_SHARE,
     ROLLER_STATIC_SAFETY,
     SPRING_FATIGUE,
     SPRING_SOLID,
-    UNDERCUT_FACTOR,
 )
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.checks.cam_shape import TOOL_ALLOWANCE
+from camwright.pipeline.checks.cam_shape import least_concave_radius
 from camwright.pipeline.checks.contact_strength import life_turns, pressure_allowables
-from camwright.pipeline.checks.guide_bushes import pv_limit
+from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.jump_and_jamming import overspeed
+from camwright.pipeline.checks.part_strength import allowed_pin_stress
+from camwright.pipeline.checks.roller_bearing import allowed_spin
 from camwright.pipeline.checks.spring_strength import Work, hardest_work
+from camwright.pipeline.smoothing.constraints import ROWS
 from camwright.pipeline.smoothing.scenario import Ratings
 
 MILLION_TURNS = 1e6 * FULL_TURN  # rad
@@ -38,49 +31,41 @@ _TRAVEL_LEAST, _TRAVEL_MOST = 1e-6, 1.0  # m, of any spring
 
 
 def ratings_of(case: Case) -> Ratings:
-    """Limits of a case as the checks apply them.
+    """Ratings of a case.
 
     Raises
     ------
     InputError
         If the follower has no roller.
     """
-    states, roller, tool = machines(case), case.roller, case.largest_tool
+    states, roller = machines(case), case.roller
     machine, bearing = states[0], roller.bearing
     limits, guides, life = machine.limits, machine.guides, machine.limits[ROLLER_LIFE]
-    wear = None
+    cubed = None
     if bearing.C is not None and life is not None:
-        wear = bearing.C**3 * MILLION_TURNS / life
+        cubed = bearing.C**3 * MILLION_TURNS / life
     pressure, pressure_by = _least(pressure_allowables(machine, life_turns(states)))
     normal_force, normal_force_by = _least(force_limits(case))
     by_rating = normal_force_by == "roller_static"
     over = overspeed(states) / machine.gear_ratio
-    spin = bearing.speed_limit
     return Ratings(
         roller_radius=roller.radius,
         offset=machine.cam.offset,
+        limits={row: value for row in ROWS if (value := limits[row]) is not None},
         travel=_least(travel_limits(case))[0],
-        pressure_angle=limits[PRESSURE_ANGLE],
-        jam_index=limits[JAM_INDEX],
-        curvature_ratio=limits[CURVATURE_RATIO],
-        undercut_factor=limits[UNDERCUT_FACTOR],
-        hollow_radius=None if tool is None else TOOL_ALLOWANCE * tool,
-        curvature_rate=limits[CURVATURE_RATE],
-        cam_radius=limits[CAM_RADIUS],
+        hollow_radius=least_concave_radius(case),
         pressure=pressure,
         pressure_by=pressure_by,
         contact_width=machine.contact_width,
         contact_modulus=machine.contact_modulus,
-        contact_force_margin=limits[CONTACT_FORCE_MARGIN],
         overspeed=over,
-        jump=limits[JUMP],
         jump_speed=limits[JUMP_SPEED] * over,
         normal_force=normal_force,
         normal_force_by=normal_force_by or "roller_static",
         force_safety=limits[ROLLER_STATIC_SAFETY] if by_rating else 1.0,
         dynamic_rating=bearing.C,
-        life_force_cubed=wear,
-        roller_spin=None if spin is None else limits[ROLLER_SPEED_SHARE] * spin,
+        life_force_cubed=cubed,
+        roller_spin=allowed_spin(machine),
         guide_pressure=(guides.a.pressure_limit, guides.b.pressure_limit),
         guide_pv=(pv_limit(guides.a), pv_limit(guides.b)),
         guide_area=(guides.a.projected_area, guides.b.projected_area),
@@ -90,8 +75,8 @@ def ratings_of(case: Case) -> Ratings:
 def travel_limits(case: Case) -> dict[str, float]:
     """Greatest lift allowed by each check of the spring, m, by its id.
 
-    Where rate or preload is free the spring as wound is still to be chosen; only the given travel
-    bounds the lift.
+    Where rate or preload is free, the spring design is open and the spring travel alone limits
+    the lift.
     """
     spring, limits = case.spring, case.limits
     allowed = {}
@@ -130,13 +115,12 @@ def force_limits(case: Case) -> dict[str, float]:
     if bearing.radial_limit is not None:
         allowed["roller_radial"] = bearing.radial_limit
     if pin is not None and roller.pin_stress_per_newton is not None:
-        strength = limits[PIN_SHARE] * pin.material.yield_strength
-        allowed["roller_pin"] = strength / roller.pin_stress_per_newton
+        allowed["roller_pin"] = allowed_pin_stress(pin, limits) / roller.pin_stress_per_newton
     return allowed
 
 
 def _least(limits: dict[str, float]) -> tuple[float | None, str]:
-    """The least of some limits and its name."""
+    """Least limit and its name."""
     if not limits:
         return None, ""
     name = min(limits, key=lambda each: limits[each])

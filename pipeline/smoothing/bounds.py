@@ -1,31 +1,16 @@
-"""Bounds of a synthesis in the units of a drawing, and the ratings with a bound relaxed."""
+"""Bounds of the constraints in the unit of the drawing; ratings with one bound relaxed."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.case.limits import (
-    CAM_RADIUS,
-    CONTACT_FORCE_MARGIN,
-    CURVATURE_RATE,
-    CURVATURE_RATIO,
-    JAM_INDEX,
-    JUMP,
-    PRESSURE_ANGLE,
-    TOOL_RADIUS,
-    UNDERCUT_FACTOR,
-    AnyLimit,
-    utilisation_slope,
-)
+from camwright.pipeline.case.limits import TOOL_RADIUS, AnyLimit, utilisation_slope
 from camwright.pipeline.checks.cam_shape import TOOL_ALLOWANCE
+from camwright.pipeline.smoothing.constraints import CONSTRAINTS, FACTOR_MAX
 from camwright.pipeline.smoothing.scenario import Ratings
 
-FACTOR_MAX = 4.0
-_STEEPEST = np.radians(60.0)  # greatest pressure angle of a relaxation
 _PRESSURES = {
     "contact_pressure": "contact pressure at the endurance limit",
     "edge_pressure": "edge pressure at the endurance limit",
@@ -35,11 +20,11 @@ _PRESSURES = {
 }
 _FORCES = {
     "roller_static": "static load rating of the roller",
-    "roller_radial": "radial load limit of the roller's outer ring",
-    "roller_pin": "normal force that the roller pin bears",
+    "roller_radial": "maximum radial load of the roller's outer ring",
+    "roller_pin": "normal force at the maximum stress of the roller pin",
 }
 
-Eased = Callable[[Ratings, float], Ratings]
+Change = Callable[[Ratings, float], Ratings]
 
 
 @dataclass(frozen=True)
@@ -48,135 +33,143 @@ class Bound:
 
     Parameters
     ----------
-    words : str      what is bounded
+    words : str      bounded quantity
     value : float    in `unit`
     unit : str       "-": a pure number
-    slope : float    fall of the utilisation for one more unit where the bound is reached; below
-                     zero where a greater value takes room away
-    eased : callable   ratings, factor -> ratings with the bound times the factor; None: the
-                       bound is not relaxed
-    factor_max : float   of a relaxation
+    slope : float    decrease of the utilisation per unit of the bound, at the bound; negative
+                     where a greater value tightens the constraint
+    relaxed : callable   ratings, factor -> ratings with the bound times the factor; None: fixed
+    factor_max : float   maximum factor of a relaxation
     """
 
     words: str
     value: float
     unit: str
     slope: float
-    eased: Eased | None = field(default=None, repr=False, compare=False)
+    relaxed: Change | None = field(default=None, repr=False, compare=False)
     factor_max: float = FACTOR_MAX
 
 
 def bounds_of(ratings: Ratings) -> dict[str, Bound]:
-    """Bounds of a synthesis by the name of their constraint.
+    """Bounds of a synthesis by check.
 
-    The slope of the contact pressure is that of a utilisation that is all load; see `prices`.
+    The slope of the contact pressure is that of a utilisation proportional to the load; see
+    `prices`.
     """
-    steepest = _STEEPEST / (ratings.pressure_angle or _STEEPEST)
+    bounds = {name: bound for name, bound in _of_parts(ratings).items() if bound is not None}
+    for each in CONSTRAINTS:
+        row, value = each.row, each.value(ratings)
+        if row is None or value is None:
+            continue
+        unit = row.quantity.unit or "-"
+        shown, factor = in_unit(value, unit), min(each.factor_max, each.value_max / value)
+        slope, relaxed = utilisation_slope(row, shown), _with_limit(row) if factor else None
+        bounds[each.check] = Bound(row.title, shown, unit, slope, relaxed, factor)
+    return bounds
+
+
+def _of_parts(ratings: Ratings) -> dict[str, Bound | None]:
+    """Bounds set by parts and tools."""
     bounds = {
-        "pressure_angle": _of_limit(PRESSURE_ANGLE, ratings, "pressure_angle", steepest),
-        "jam_index": _of_limit(JAM_INDEX, ratings, "jam_index", FACTOR_MAX),
-        "jam_index_friction_max": _of_limit(JAM_INDEX, ratings, "jam_index"),
-        "curvature_rate": _of_limit(CURVATURE_RATE, ratings, "curvature_rate"),
-        "curvature_ratio": _of_limit(CURVATURE_RATIO, ratings, "curvature_ratio"),
-        "undercut": _of_limit(UNDERCUT_FACTOR, ratings, "undercut_factor"),
-        "cam_radius": _of_limit(CAM_RADIUS, ratings, "cam_radius", FACTOR_MAX),
-        "jump": _of_limit(JUMP, ratings, "jump"),
-        "contact_force_margin": _of_limit(CONTACT_FORCE_MARGIN, ratings, "contact_force_margin"),
-        "contact_at_overspeed": _of_limit(CONTACT_FORCE_MARGIN, ratings, "contact_force_margin"),
-        "spring_travel": _of_part("spring travel", "mm", ratings, "travel"),
-        "contact_pressure": _of_part(_PRESSURES[ratings.pressure_by], "MPa", ratings, "pressure"),
-        "roller_speed": _of_part("limiting speed of the roller", "rpm", ratings, "roller_spin"),
+        "spring_travel": _of_part(
+            "spring travel", "mm", ratings.travel,
+            lambda each, factor: replace(each, travel=_times(each.travel, factor)),
+        ),
+        "contact_pressure": _of_part(
+            _PRESSURES[ratings.pressure_by], "MPa", ratings.pressure,
+            lambda each, factor: replace(each, pressure=_times(each.pressure, factor)),
+        ),
+        "roller_speed": _of_part(
+            "limiting speed of the roller", "rpm", ratings.roller_spin,
+            lambda each, factor: replace(each, roller_spin=_times(each.roller_spin, factor)),
+        ),
         "roller_static": _of_part(
-            _FORCES[ratings.normal_force_by], "N", ratings, "normal_force", ratings.force_safety
+            _FORCES[ratings.normal_force_by], "N",
+            _times(ratings.normal_force, ratings.force_safety),
+            lambda each, factor: replace(each, normal_force=_times(each.normal_force, factor)),
         ),
         "roller_life": _roller_life(ratings),
         "concave_radius": _concave_radius(ratings),
         "jump_speed": _jump_speed(ratings),
-    }
+    }  # fmt: skip
     for place, side in enumerate("AB"):
-        pressure, product = ratings.guide_pressure[place], ratings.guide_pv[place]
-        bounds[f"guide_pressure_{side}"] = _of_guide(
-            f"bearing pressure of guide {side}", "MPa", pressure, "guide_pressure", place
-        )
-        bounds[f"guide_pv_{side}"] = _of_guide(
-            f"PV of guide {side}", "MPa m/s", product, "guide_pv", place
-        )
-    return {name: bound for name, bound in bounds.items() if bound is not None}
+        bounds |= _of_guide(ratings, place, side)
+    return bounds
 
 
-def _of_limit(
-    limit: AnyLimit, ratings: Ratings, name: str, factor_max: float = 0.0
-) -> Bound | None:
-    """The bound of a row of the table of limits; relaxed where a greatest factor is given."""
-    value: float | None = getattr(ratings, name)
-    if value is None:
-        return None
-    unit = limit.quantity.unit or "-"
-    shown = in_unit(value, unit)
-    slope = utilisation_slope(limit, shown)
-    return Bound(limit.title, shown, unit, slope, _rated(name) if factor_max else None, factor_max)
-
-
-def _of_part(
-    words: str, unit: str, ratings: Ratings, name: str, safety: float = 1.0
-) -> Bound | None:
-    """The bound that a part sets; `safety` is the factor inside the rating."""
-    value: float | None = getattr(ratings, name)
-    if value is None:
-        return None
-    shown = in_unit(value * safety, unit)
-    return Bound(words, shown, unit, 1.0 / shown, _rated(name))
-
-
-def _of_guide(words: str, unit: str, value: float | None, name: str, place: int) -> Bound | None:
+def _of_part(words: str, unit: str, value: float | None, relaxed: Change) -> Bound | None:
     if value is None:
         return None
     shown = in_unit(value, unit)
-    return Bound(words, shown, unit, 1.0 / shown, _rated_side(name, place))
+    return Bound(words, shown, unit, 1.0 / shown, relaxed)
+
+
+def _of_guide(ratings: Ratings, place: int, side: str) -> dict[str, Bound | None]:
+    def with_pressure(each: Ratings, factor: float) -> Ratings:
+        return replace(each, guide_pressure=_side_times(each.guide_pressure, place, factor))
+
+    def with_pv(each: Ratings, factor: float) -> Ratings:
+        return replace(each, guide_pv=_side_times(each.guide_pv, place, factor))
+
+    pressure, pv = ratings.guide_pressure[place], ratings.guide_pv[place]
+    words = f"bearing pressure of guide {side}"
+    return {
+        f"guide_pressure_{side}": _of_part(words, "MPa", pressure, with_pressure),
+        f"guide_pv_{side}": _of_part(f"PV of guide {side}", "MPa m/s", pv, with_pv),
+    }
 
 
 def _roller_life(ratings: Ratings) -> Bound | None:
-    rating = ratings.dynamic_rating
-    if ratings.life_force_cubed is None or rating is None:
+    """Life grows with the cube of the rating."""
+    if ratings.life_force_cubed is None:
         return None
-    return Bound("dynamic load rating of the roller", rating, "N", 1.0 / rating, _longer_life)
+
+    def with_rating(each: Ratings, factor: float) -> Ratings:
+        cubed = _times(each.life_force_cubed, factor**3)
+        return replace(
+            each, life_force_cubed=cubed, dynamic_rating=_times(each.dynamic_rating, factor)
+        )
+
+    words = "dynamic load rating of the roller"
+    return _of_part(words, "N", ratings.dynamic_rating, with_rating)
 
 
 def _concave_radius(ratings: Ratings) -> Bound | None:
-    """The utilisation is -kappa (a R_tool - r): a larger tool takes room away."""
+    """Utilisation -kappa (a R_tool - r): it grows with the tool radius."""
     hollow = ratings.hollow_radius
     if hollow is None or hollow <= ratings.roller_radius:
         return None
     unit = TOOL_RADIUS.quantity.unit
     shown, room = in_unit(hollow / TOOL_ALLOWANCE, unit), hollow - ratings.roller_radius
     slope = -TOOL_ALLOWANCE / in_unit(room, unit)
-    return Bound(TOOL_RADIUS.title, shown, unit, slope, _rated("hollow_radius"))
+
+    def with_radius(each: Ratings, factor: float) -> Ratings:
+        return replace(each, hollow_radius=_times(each.hollow_radius, factor))
+
+    return Bound(TOOL_RADIUS.title, shown, unit, slope, with_radius)
 
 
 def _jump_speed(ratings: Ratings) -> Bound | None:
-    """The utilisation, m w^2 s'' over the spring force, grows with the square of the speed."""
+    """Utilisation m w^2 s'' over the spring force: it grows with the square of the speed."""
     if ratings.jump_speed is None:
         return None
     shown = in_unit(ratings.jump_speed, "rpm")
     return Bound("cam speed without follower jump", shown, "rpm", -2.0 / shown)
 
 
-def _rated(name: str) -> Eased:
-    def eased(ratings: Ratings, factor: float) -> Ratings:
-        return Ratings(**(vars(ratings) | {name: getattr(ratings, name) * factor}))
+def _with_limit(row: AnyLimit) -> Change:
+    def change(ratings: Ratings, factor: float) -> Ratings:
+        return replace(ratings, limits={**ratings.limits, row: ratings.limits[row] * factor})
 
-    return eased
-
-
-def _rated_side(name: str, place: int) -> Eased:
-    def eased(ratings: Ratings, factor: float) -> Ratings:
-        both: tuple[float, float] = getattr(ratings, name)
-        sides = tuple(each * factor if k == place else each for k, each in enumerate(both))
-        return Ratings(**(vars(ratings) | {name: sides}))
-
-    return eased
+    return change
 
 
-def _longer_life(ratings: Ratings, factor: float) -> Ratings:
-    worn, rating = ratings.life_force_cubed or 0.0, ratings.dynamic_rating or 0.0
-    return replace(ratings, life_force_cubed=worn * factor**3, dynamic_rating=rating * factor)
+def _times(value: float | None, factor: float) -> float | None:
+    return None if value is None else value * factor
+
+
+def _side_times(
+    pair: tuple[float | None, float | None], place: int, factor: float
+) -> tuple[float | None, float | None]:
+    a, b = pair
+    return (_times(a, factor), b) if place == 0 else (a, _times(b, factor))

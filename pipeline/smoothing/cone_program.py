@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import clarabel
 import numpy as np
@@ -19,7 +18,7 @@ _ACCEPTED = ("Solved", "AlmostSolved")
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Linear limits of one name: level + slopes @ x <= slack; level (m,), slopes (m, n)."""
+    """Linear constraints of one limit: level + slopes @ x <= slack; level (m,), slopes (m, n)."""
 
     name: str
     level: Array
@@ -29,7 +28,7 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class Norm:
-    """A ripple that is charged, bounded or both: |level + slopes @ x|, (m,) and (m, n)."""
+    """A ripple |level + slopes @ x|, (m,) and (m, n): in the objective, bounded, or both."""
 
     level: Array
     slopes: Array
@@ -39,15 +38,15 @@ class Norm:
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """How far a step may go: |slopes @ x| <= bound; slopes (m, w) of the first unknowns."""
+    """Trust region |slopes @ x| <= bound; slopes (m, w) of the first unknowns."""
 
     slopes: Array
     bound: float
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
-    """Solution of a convex program: x, slack and multipliers by the name of the limit."""
+class ConeSolution:
+    """Solution of a convex program: unknowns x, slack and multipliers by limit."""
 
     step: Array
     ripple: float
@@ -57,7 +56,7 @@ class Answer:
 
 
 class Cones:
-    """A convex program of `size` unknowns x: a linear and quadratic cost, limits added in turn.
+    """Convex program of `size` unknowns x: linear and quadratic cost, constraints.
 
     References
     ----------
@@ -71,12 +70,10 @@ class Cones:
         self._linear: list[tuple[csr_array, Array]] = []
         self._cones: list[tuple[csr_array, Array, int]] = []
 
-    def columns(self, matrix: Any, start: int) -> csr_array:
-        """A matrix (m, w) of the unknowns from `start` on, as one of them all, (m, size)."""
-        found = csr_array(matrix)
-        return csr_array(
-            (found.data, found.indices + start, found.indptr), shape=(found.shape[0], self.size)
-        )
+    def columns(self, matrix: csr_array, start: int) -> csr_array:
+        """Matrix (m, size) of all unknowns from one (m, w) of those from `start` on."""
+        parts = (matrix.data, matrix.indices + start, matrix.indptr)
+        return csr_array(parts, shape=(matrix.shape[0], self.size))
 
     def charge(self, slopes: ArrayLike, start: int = 0) -> None:
         """Add slopes (w,) @ x to the cost."""
@@ -113,7 +110,7 @@ class Cones:
         self._cones.append((stacked[order], side[order], 3))
 
     def solved(self) -> tuple[Array, Array, float] | None:
-        """x, the multipliers of the linear limits in turn, and the cost; None without an answer."""
+        """x, multipliers of the linear constraints in order, cost; None if not solved."""
         blocks = [block for block, _ in self._linear] + [block for block, _, _ in self._cones]
         sides = [side for _, side in self._linear] + [side for _, side, _ in self._cones]
         linear = sum(side.size for _, side in self._linear)
@@ -125,13 +122,13 @@ class Cones:
         settings.max_threads = 1
         matrix = csc_array(vstack(blocks, format="csc"))
         matrix.sum_duplicates()
-        found = clarabel.DefaultSolver(
+        result = clarabel.DefaultSolver(
             csc_array(np.triu(self._quadratic)), self.cost, matrix, np.concatenate(sides),
             cones, settings,
         ).solve()  # fmt: skip
-        if str(found.status) not in _ACCEPTED:
+        if str(result.status) not in _ACCEPTED:
             return None
-        return np.asarray(found.x), np.asarray(found.z)[:linear], float(found.obj_val)
+        return np.asarray(result.x), np.asarray(result.z)[:linear], float(result.obj_val)
 
 
 def solved(
@@ -143,21 +140,21 @@ def solved(
     penalty: float,
     ripple_weight: float = 1.0,
     reach: Reach | None = None,
-) -> Answer | None:
+) -> ConeSolution | None:
     """Least ripple_weight max(weight |norm|) + x'Hx/2 + h'x + penalty (sum of slacks).
 
     Parameters
     ----------
-    norms : sequence of Norm   the worst of them is charged; those with a ceiling stay below it
-    rows : sequence of Rows    rows of one name share one slack, so that its penalty is exact
+    norms : sequence of Norm   the greatest is minimised; those with a ceiling stay below it
+    rows : sequence of Rows    rows of one limit share one slack: its penalty is exact
     curvature, slope : arrays (n, n), (n,)   H, positive semidefinite, and h
     box : array (2, n)         least and greatest x
     penalty : float            of a unit of slack
-    reach : Reach              what else bounds the step; None: the box alone
+    reach : Reach              trust region within the box; None: the box alone
 
     Returns
     -------
-    Answer or None   None when the program is not solved, as where the hard limits conflict
+    ConeSolution or None   None when not solved, as with conflicting hard constraints
 
     References
     ----------
@@ -188,11 +185,11 @@ def solved(
             program.norm_at_most(norm.slopes * norm.weight, norm.level * norm.weight, size)
         if norm.ceiling is not None:
             program.norm_at_most(norm.slopes, norm.level, program.size - 1, norm.ceiling)
-    found = program.solved()
-    if found is None:
+    result = program.solved()
+    if result is None:
         return None
-    values, duals, objective = found
-    return Answer(
+    values, duals, objective = result
+    return ConeSolution(
         step=values[:size],
         ripple=float(values[size]),
         slack={name: float(values[size + 1 + k]) for k, name in enumerate(names)},
@@ -202,10 +199,11 @@ def solved(
 
 
 def _multipliers(rows: Sequence[Rows], duals: Array) -> dict[str, Array]:
-    found: dict[str, Array] = {}
+    multipliers: dict[str, Array] = {}
     start = 0
     for row in rows:
         part = duals[start : start + row.level.size]
-        found[row.name] = np.concatenate([found.get(row.name, np.zeros(0)), part])
+        earlier = multipliers.get(row.name, np.zeros(0))
+        multipliers[row.name] = np.concatenate([earlier, part])
         start += row.level.size
-    return found
+    return multipliers

@@ -1,24 +1,46 @@
-"""Demands over limits of a cam, point by point and differentiable, as the checks see them.
+"""Constraints of a synthesis: utilisation of each limit by cam angle, differentiable.
 
-Every demand is one that the checks judge too, by the same function, taken with complex numbers,
-so that one complex step gives its derivative to round-off. A value of 1 is the limit. Of a demand
-that has to be at least its limit the value is the shortfall, which stays smooth where the share
-of the limit in use does not; a test holds each against its check.
+The demands are those of the checks, by the same functions of complex numbers: a complex step gives
+the derivative to round-off. A constraint is met at a utilisation of at most 1. Where a demand must
+be at least its limit, the utilisation is 1 plus the shortfall, which is smooth where the quotient
+of limit and demand is not.
+
+A constraint is declared once, in `SHAPE` or `LOADS`. One on a row of the table of limits takes
+value, title, unit and slope from the row.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import inf
+from typing import Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import curvature_slope, magnitude, speed_and_curvature
+from camwright.pipeline.case.limits import (
+    CAM_RADIUS,
+    CONTACT_FORCE_MARGIN,
+    CURVATURE_RATE,
+    CURVATURE_RATIO,
+    JAM_INDEX,
+    JUMP,
+    PRESSURE_ANGLE,
+    UNDERCUT_FACTOR,
+    AnyLimit,
+    Limit,
+    OpenLimit,
+)
 from camwright.pipeline.checks import demands
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.follower_forces import levers
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, rolling_share, wear
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+
+FACTOR_MAX = 4.0
+"""Maximum factor of a relaxation."""
 
 
 class Jet(NamedTuple):
@@ -31,7 +53,7 @@ class Jet(NamedTuple):
 
 
 def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
-    """Lift at which the spring holds the energy, with three derivatives, from those of E.
+    """Lift and three derivatives from the stored energy and its derivatives, J/rad^k.
 
     F_s = sqrt(P^2 + 2 k E), s = 2 E / (F_s + P), and E' = F_s s' differentiated.
     """
@@ -48,7 +70,7 @@ def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
 
 
 class Motion(NamedTuple):
-    """What the geometry makes of a jet: velocity of the roller's centre and its path."""
+    """Velocity of the roller centre along and across the follower axis, m/rad; pitch curve."""
 
     along: Array
     across: Array
@@ -57,21 +79,21 @@ class Motion(NamedTuple):
 
     @property
     def tangent(self) -> Array:
-        """Of the pressure angle."""
+        """Tangent of the pressure angle."""
         return self.along / self.across
 
 
 def motion(jet: Jet, variables: DesignVariables, offset: float) -> Motion:
-    """Pitch curve of a translating follower at each point; see `PitchCurve`."""
+    """Motion of the roller centre of a translating follower; see `PitchCurve`."""
     along = jet.slope - offset
     across = np.sqrt(variables.prime_radius**2 - offset**2) + jet.lift
     return Motion(along, across, *speed_and_curvature(along, across, jet.slope, jet.bend))
 
 
 class Forces(NamedTuple):
-    """Forces of one scenario, N, and what guides A and B bear over the side force.
+    """Forces of one scenario, N; factors of the side force on guides A and B.
 
-    lever is that of point supports; push and rub are of the guides as they are.
+    lever: reactions of point supports; push: of the guides; rub: normal load of their friction.
     """
 
     spring: Array
@@ -89,8 +111,12 @@ def forces(
 ) -> Forces:
     """Follower forces with implicit guide friction; see `follower_loads`.
 
-    Unlike there they are not held at zero where the contact is lost nor short of a jam, so that
-    a design beyond these places still has a way back.
+    Unlike there, the forces are not clipped at loss of contact and at jamming: the search needs
+    their slope beyond both.
+
+    Parameters
+    ----------
+    highest : float   maximum lift, m
     """
     spring = (
         variables.preload * scenario.preload_factor
@@ -116,7 +142,7 @@ def forces(
 
 
 class Mean(NamedTuple):
-    """The power of a mean over the turn; terms (n,) at equal angles."""
+    """Power of a mean over the turn; terms (n,) at equally spaced angles."""
 
     terms: Array
     power: float = 1.0
@@ -127,123 +153,256 @@ class Mean(NamedTuple):
         return np.array([max(float(np.mean(self.terms)), 0.0) ** self.power])
 
 
-def shape_utilisations(jet: Jet, variables: DesignVariables, ratings: Ratings) -> dict[str, Array]:
-    """Limits on the shape of the cam, whatever it carries; each (n,)."""
-    path = motion(jet, variables, ratings.offset)
-    bend = ratings.roller_radius * path.curvature
-    found: dict[str, Array] = {}
-    if ratings.travel is not None:
-        found["spring_travel"] = jet.lift / ratings.travel
-    if ratings.pressure_angle is not None:
-        found["pressure_angle"] = magnitude(np.arctan(path.tangent)) / ratings.pressure_angle
-    if ratings.curvature_ratio is not None:
-        found["curvature_ratio"] = bend * ratings.curvature_ratio
-    if ratings.undercut_factor is not None:
-        found["undercut"] = bend / (1.0 - ratings.undercut_factor)
-    if ratings.hollow_radius is not None and ratings.hollow_radius > ratings.roller_radius:
-        found["concave_radius"] = -path.curvature * (ratings.hollow_radius - ratings.roller_radius)
-    if ratings.curvature_rate is not None:
-        change = curvature_slope(path.along, path.across, jet.slope, jet.bend, jet.jerk)
-        found["curvature_rate"] = magnitude(change / (1.0 - bend) ** 2) / ratings.curvature_rate
-    if ratings.cam_radius is not None:
-        inset = ratings.roller_radius / path.speed
-        reach = demands.contour_radius(path.along, path.across, ratings.offset, inset)
-        found["cam_radius"] = reach / ratings.cam_radius
-    return found
+class Shape(NamedTuple):
+    """Unloaded cam at n cam angles."""
+
+    jet: Jet
+    path: Motion
+    ratings: Ratings
+
+    @property
+    def bend(self) -> Array:
+        """Roller radius times curvature of the pitch curve: 1 at a cusp."""
+        return self.ratings.roller_radius * self.path.curvature
+
+
+class Loads(NamedTuple):
+    """Cam in one scenario at n cam angles.
+
+    spin: of the roller, rad/s; side: side force on the stem, N; preload of the scenario, N.
+    """
+
+    jet: Jet
+    path: Motion
+    ratings: Ratings
+    scenario: Scenario
+    force: Forces
+    spin: Array
+    side: Array
+    preload: float
+
+
+State = TypeVar("State", Shape, Loads)
+
+
+@dataclass(frozen=True)
+class Constraint(Generic[State]):
+    """A limit that the synthesis keeps.
+
+    Parameters
+    ----------
+    check : str              id of the check of the same demand
+    limit : Limit or callable   row of the table of limits; or ratings -> limit, SI, of a limit
+                             that a part sets. A value of None: not constrained
+    utilisation : callable   cam, limit -> (n,), or a `Mean` of the turn; None: does not apply
+    factor_max : float       maximum factor on a row's limit where limits conflict; 0: fixed
+    value_max : float        maximum value of a row's limit where limits conflict, SI
+    """
+
+    check: str
+    limit: AnyLimit | Callable[[Ratings], float | None]
+    utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
+    factor_max: float = 0.0
+    value_max: float = inf
+
+    @property
+    def row(self) -> AnyLimit | None:
+        """Row of the table of limits; None: a part sets the limit."""
+        return self.limit if isinstance(self.limit, Limit | OpenLimit) else None
+
+    def value(self, ratings: Ratings) -> float | None:
+        """Limit, SI; None: not constrained."""
+        if isinstance(self.limit, Limit | OpenLimit):
+            return ratings.limits.get(self.limit)
+        return self.limit(ratings)
+
+
+def shape_utilisations(
+    jet: Jet, variables: DesignVariables, ratings: Ratings
+) -> Mapping[str, Array | Mean]:
+    """Utilisations of the limits on the shape of the cam, by check; each (n,)."""
+    return _utilisations(SHAPE, Shape(jet, motion(jet, variables, ratings.offset), ratings))
 
 
 def load_utilisations(
     jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
-) -> dict[str, Array | Mean]:
-    """Limits on what the cam carries in one scenario; each (n,), or a `Mean` of the turn.
-
-    The stress limit is r kappa + N / F_lim <= 1, which is p0 <= p_allowed: the pressure of a
-    line contact and the undercut depend on the same factor 1 - r kappa.
-    """
+) -> Mapping[str, Array | Mean]:
+    """Utilisations of the limits on the loads of one scenario; each (n,), or a `Mean`."""
     path = motion(jet, variables, ratings.offset)
-    load = forces(jet, path, highest, variables, scenario)
-    found = _contact_utilisations(jet, load, path, variables, ratings, scenario)
-    if ratings.jam_index is not None:
-        found["jam_index"] = demands.jam_outward(jet.slope, load.jam) / ratings.jam_index
-        if scenario.friction_worst is not None:
-            first, second = scenario.friction_worst
-            factor = (first * load.lever[0] + second * load.lever[1]) * scenario.correction.jam
-            worst = demands.jam_outward(jet.slope, factor * magnitude(path.tangent))
-            found["jam_index_friction_max"] = worst / ratings.jam_index
-    found |= _roller_utilisations(load, path, ratings, scenario)
-    return found | _bush_utilisations(load, path, jet, ratings, scenario)
-
-
-def _contact_utilisations(
-    jet: Jet,
-    load: Forces,
-    path: Motion,
-    variables: DesignVariables,
-    ratings: Ratings,
-    scenario: Scenario,
-) -> dict[str, Array | Mean]:
-    found: dict[str, Array | Mean] = {}
-    preload = variables.preload * scenario.preload_factor
-    if ratings.pressure is not None:
-        flat = peak_pressure_square(
-            load.normal / ratings.contact_width,
-            1.0 / ratings.roller_radius,
-            ratings.contact_modulus,
-        )
-        share = scenario.correction.contact**2 * flat / ratings.pressure**2
-        found["contact_pressure"] = ratings.roller_radius * path.curvature + share
-    margin = ratings.contact_force_margin
-    if margin is not None:
-        found["contact_force_margin"] = 1.0 + margin - load.normal / preload
-    if margin is not None and ratings.overspeed is not None:
-        thrown = scenario.mass * ratings.overspeed**2 * jet.bend
-        left = demands.force_left(load.spring, thrown, preload)
-        found["contact_at_overspeed"] = 1.0 + margin - left
-    if ratings.jump is not None:
-        found["jump"] = demands.unloading(load.inertia, load.spring) / ratings.jump
-    if ratings.jump_speed is not None:
-        thrown = scenario.mass * ratings.jump_speed**2 * jet.bend
-        found["jump_speed"] = demands.unloading(thrown, load.spring)
-    return found
-
-
-def _roller_utilisations(
-    load: Forces, path: Motion, ratings: Ratings, scenario: Scenario
-) -> dict[str, Array | Mean]:
-    spin = scenario.cam_speed * rolling_share(path.speed, ratings.roller_radius)
-    found: dict[str, Array | Mean] = {}
-    if ratings.normal_force is not None:
-        found["roller_static"] = load.normal / ratings.normal_force
-    if ratings.roller_spin is not None:
-        found["roller_speed"] = magnitude(spin) / ratings.roller_spin
-    if ratings.life_force_cubed is not None:
-        # life = (C / P_m)^3 1e6 turns / mean spin, and P_m^3 mean spin is this mean
-        worn = wear(load.normal, spin) / ratings.life_force_cubed
-        found["roller_life"] = Mean(worn, 1.0 / BALL_LIFE_EXPONENT)
-    return found
-
-
-def _bush_utilisations(
-    load: Forces, path: Motion, jet: Jet, ratings: Ratings, scenario: Scenario
-) -> dict[str, Array | Mean]:
-    side = load.axial * path.tangent
-    velocity = scenario.cam_speed * jet.slope
-    found: dict[str, Array | Mean] = {}
-    for place, name in enumerate("AB"):
-        area = ratings.guide_area[place]
-        limit, product = ratings.guide_pressure[place], ratings.guide_pv[place]
-        if limit is not None:
-            pressure = demands.bush_pressure(side * load.push[place], area)
-            found[f"guide_pressure_{name}"] = pressure / limit
-        if product is not None:
-            spent = demands.bush_pv(side * load.rub[place], velocity, area)
-            found[f"guide_pv_{name}"] = Mean(spent / product)
-    return found
+    force = forces(jet, path, highest, variables, scenario)
+    loads = Loads(
+        jet,
+        path,
+        ratings,
+        scenario,
+        force,
+        spin=scenario.cam_speed * rolling_share(path.speed, ratings.roller_radius),
+        side=force.axial * path.tangent,
+        preload=variables.preload * scenario.preload_factor,
+    )
+    return _utilisations(LOADS, loads)
 
 
 def delivered_torque(
     jet: Jet, highest: float, variables: DesignVariables, scenario: Scenario, offset: float
 ) -> Array:
-    """Cam torque F_a s' with friction and inertia inside, N m, (n,)."""
+    """Cam torque F_a s', friction and inertia included, N m, (n,)."""
     load = forces(jet, motion(jet, variables, offset), highest, variables, scenario)
     return load.axial * jet.slope
+
+
+def _utilisations(
+    constraints: tuple[Constraint[State], ...], state: State
+) -> Mapping[str, Array | Mean]:
+    uses: dict[str, Array | Mean] = {}
+    for each in constraints:
+        limit = each.value(state.ratings)
+        use = None if limit is None else each.utilisation(state, limit)
+        if use is not None:
+            uses[each.check] = use
+    return uses
+
+
+def _concave_radius(cam: Shape, hollow: float) -> Array | None:
+    """No constraint where the roller is larger: it cannot roll in a smaller hollow."""
+    room = hollow - cam.ratings.roller_radius
+    return -cam.path.curvature * room if room > 0.0 else None
+
+
+def _curvature_rate(cam: Shape, limit: float) -> Array:
+    jet, path = cam.jet, cam.path
+    change = curvature_slope(path.along, path.across, jet.slope, jet.bend, jet.jerk)
+    return magnitude(change / (1.0 - cam.bend) ** 2) / limit
+
+
+def _cam_radius(cam: Shape, limit: float) -> Array:
+    inset = cam.ratings.roller_radius / cam.path.speed
+    along, across = cam.path.along, cam.path.across
+    return demands.contour_radius(along, across, cam.ratings.offset, inset) / limit
+
+
+def _contact_pressure(at: Loads, limit: float) -> Array:
+    """r kappa + N / F_lim <= 1, equivalent to p0 <= limit.
+
+    The pressure of a line contact and the undercut depend on the same factor 1 - r kappa.
+    """
+    ratings = at.ratings
+    line_load = at.force.normal / ratings.contact_width
+    flat = peak_pressure_square(line_load, 1.0 / ratings.roller_radius, ratings.contact_modulus)
+    share: Array = at.scenario.correction.contact**2 * flat / limit**2
+    return ratings.roller_radius * at.path.curvature + share
+
+
+def _inertia(at: Loads, cam_speed: float) -> Array:
+    """Inertia force at a cam speed, rad/s, N."""
+    return at.scenario.mass * cam_speed**2 * at.jet.bend
+
+
+def _contact_at_overspeed(at: Loads, limit: float) -> Array | None:
+    if at.ratings.overspeed is None:
+        return None
+    thrown = _inertia(at, at.ratings.overspeed)
+    return 1.0 + limit - demands.force_left(at.force.spring, thrown, at.preload)
+
+
+def _jam_index_friction_max(at: Loads, limit: float) -> Array | None:
+    if at.scenario.friction_worst is None:
+        return None
+    friction_a, friction_b = at.scenario.friction_worst
+    lever_a, lever_b = at.force.lever
+    factor = (friction_a * lever_a + friction_b * lever_b) * at.scenario.correction.jam
+    return demands.jam_outward(at.jet.slope, factor * magnitude(at.path.tangent)) / limit
+
+
+def _roller_life(at: Loads, limit: float) -> Mean:
+    """Of L10 = (C / P_m)^3 1e6 turns / mean spin, where P_m^3 mean spin is the mean of N^3 |n|."""
+    terms: Array = wear(at.force.normal, at.spin)
+    return Mean(terms / limit, 1.0 / BALL_LIFE_EXPONENT)
+
+
+def _guide_pressure(side: Literal["A", "B"]) -> Constraint[Loads]:
+    place = "AB".index(side)
+
+    def utilisation(at: Loads, limit: float) -> Array:
+        reaction = at.side * at.force.push[place]
+        return demands.guide_pressure(reaction, at.ratings.guide_area[place]) / limit
+
+    return Constraint(
+        f"guide_pressure_{side}", lambda ratings: ratings.guide_pressure[place], utilisation
+    )
+
+
+def _guide_pv(side: Literal["A", "B"]) -> Constraint[Loads]:
+    place = "AB".index(side)
+
+    def utilisation(at: Loads, limit: float) -> Mean:
+        load, velocity = at.side * at.force.rub[place], at.scenario.cam_speed * at.jet.slope
+        return Mean(demands.guide_pv(load, velocity, at.ratings.guide_area[place]) / limit)
+
+    return Constraint(f"guide_pv_{side}", lambda ratings: ratings.guide_pv[place], utilisation)
+
+
+SHAPE: tuple[Constraint[Shape], ...] = (
+    Constraint(
+        "spring_travel", lambda ratings: ratings.travel, lambda cam, limit: cam.jet.lift / limit
+    ),
+    Constraint(
+        "pressure_angle",
+        PRESSURE_ANGLE,
+        lambda cam, limit: magnitude(np.arctan(cam.path.tangent)) / limit,
+        factor_max=inf,
+        value_max=np.radians(60.0),
+    ),
+    Constraint("curvature_ratio", CURVATURE_RATIO, lambda cam, limit: cam.bend * limit),
+    Constraint("undercut", UNDERCUT_FACTOR, lambda cam, limit: cam.bend / (1.0 - limit)),
+    Constraint("concave_radius", lambda ratings: ratings.hollow_radius, _concave_radius),
+    Constraint("curvature_rate", CURVATURE_RATE, _curvature_rate),
+    Constraint("cam_radius", CAM_RADIUS, _cam_radius, factor_max=FACTOR_MAX),
+)
+"""Limits on the shape of the cam."""
+
+LOADS: tuple[Constraint[Loads], ...] = (
+    Constraint("contact_pressure", lambda ratings: ratings.pressure, _contact_pressure),
+    Constraint(
+        "contact_force_margin",
+        CONTACT_FORCE_MARGIN,
+        lambda at, limit: 1.0 + limit - at.force.normal / at.preload,
+    ),
+    Constraint("contact_at_overspeed", CONTACT_FORCE_MARGIN, _contact_at_overspeed),
+    Constraint(
+        "jump", JUMP, lambda at, limit: demands.unloading(at.force.inertia, at.force.spring) / limit
+    ),
+    Constraint(
+        "jump_speed",
+        lambda ratings: ratings.jump_speed,
+        lambda at, limit: demands.unloading(_inertia(at, limit), at.force.spring),
+    ),
+    Constraint(
+        "jam_index",
+        JAM_INDEX,
+        lambda at, limit: demands.jam_outward(at.jet.slope, at.force.jam) / limit,
+        factor_max=FACTOR_MAX,
+    ),
+    Constraint("jam_index_friction_max", JAM_INDEX, _jam_index_friction_max),
+    Constraint(
+        "roller_static",
+        lambda ratings: ratings.normal_force,
+        lambda at, limit: at.force.normal / limit,
+    ),
+    Constraint(
+        "roller_speed",
+        lambda ratings: ratings.roller_spin,
+        lambda at, limit: magnitude(at.spin) / limit,
+    ),
+    Constraint("roller_life", lambda ratings: ratings.life_force_cubed, _roller_life),
+    _guide_pressure("A"),
+    _guide_pv("A"),
+    _guide_pressure("B"),
+    _guide_pv("B"),
+)
+"""Limits on the loads of the cam in one scenario."""
+
+CONSTRAINTS: tuple[Constraint[Shape] | Constraint[Loads], ...] = (*SHAPE, *LOADS)
+
+ROWS: tuple[AnyLimit, ...] = tuple(dict.fromkeys(each.row for each in CONSTRAINTS if each.row))
+"""Rows of the table of limits that the synthesis keeps."""

@@ -1,13 +1,13 @@
-r"""The convex part of a synthesis: friction and inertia left out, solved to its global optimum.
+r"""Convex part of a synthesis, without friction and inertia, solved to its global optimum.
 
-Without them the cam torque is E', so that the ripple is convex in the coefficients. With
-q = P^2 + 2 k E the travel is linear in them, and the pressure angle asks for
+Without them the cam torque is E' and the ripple convex in the coefficients. With
+q = P^2 + 2 k E the limit of the travel is linear in them, and that of the pressure angle is
 
     |E'| <= tan(alpha) F_s r = tan(alpha) ((r0 - P/k) sqrt(q) + q/k),
 
-whose right side is concave where r0 >= P/k: with sigma <= sqrt(q) in place of the root it is a
-second-order cone, and tight where it binds. A normal force within N follows from
-q + (E'/r0)^2 <= N^2, which asks a little more than is needed, as the radius is at least r0.
+with a concave right side where r0 >= P/k: with sigma <= sqrt(q) in place of the root it is a
+second-order cone, exact where it is active. A normal force of at most N follows from
+q + (E'/r0)^2 <= N^2, conservative as the radius is at least r0.
 """
 
 from __future__ import annotations
@@ -18,16 +18,23 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
+from camwright.pipeline.case.limits import PRESSURE_ANGLE
 from camwright.pipeline.smoothing.cone_program import Cones
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
-from camwright.pipeline.smoothing.ripple import ripple_of, triangle
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.synthesis_problem import COARSE_POINTS, RESERVE, Problem, thinned
+from camwright.pipeline.smoothing.synthesis_problem import (
+    COARSE_POINTS,
+    RESERVE,
+    Problem,
+    ripple_of,
+    thinned,
+    triangle,
+)
 
 
 @dataclass(frozen=True, eq=False)
 class Core:
-    """The answer of the convex part: coefficients, J, and the ripple it leaves without friction."""
+    """Optimum of the convex part: coefficients, J, and residual ripple without friction."""
 
     coefficients: Array
     ripple: float
@@ -38,11 +45,11 @@ def convex_start(problem: Problem) -> Core | None:
 
     Parameters
     ----------
-    problem : Problem   its spring and base radius as they are; a grid of at most 240 points
+    problem : Problem   at its spring and prime radius, on at most 240 points
 
     Returns
     -------
-    Core or None   None where the problem is not convex (r0 < P/k, an offset) or has no solution
+    Core or None   None if the problem is not convex (r0 < P/k, an offset) or not solved
 
     References
     ----------
@@ -59,11 +66,11 @@ def convex_start(problem: Problem) -> Core | None:
         if item.weight > 0
     )
     search = Search(replace(problem, scenarios=turns, points=points, seed=None))
-    found = _program(search).solved()
-    if found is None:
+    result = _program(search).solved()
+    if result is None:
         return None
     count = problem.coefficients
-    return Core(readonly(search.scale * found[0][:count]), float(found[0][count]))
+    return Core(readonly(search.scale * result[0][:count]), float(result[0][count]))
 
 
 def _program(search: Search) -> Cones:
@@ -86,8 +93,9 @@ def _program(search: Search) -> Cones:
     # q / P^2 = 1 + growth, and sigma / P is the unknown
     growth = (2.0 * variables.rate / variables.preload**2) * energy
     sigma = program.columns(csr_array(np.eye(points)), count + 1)
-    if ratings.pressure_angle is not None:
-        steep = np.tan(ratings.pressure_angle * (1.0 - RESERVE)) * variables.preload
+    steepest = ratings.limits.get(PRESSURE_ANGLE)
+    if steepest is not None:
+        steep = np.tan(steepest * (1.0 - RESERVE)) * variables.preload
         by_root = variables.prime_radius - variables.preload / variables.rate
         room = steep * (by_root * sigma + (variables.preload / variables.rate) * growth)
         for side in (1.0, -1.0):
@@ -101,7 +109,7 @@ def _program(search: Search) -> Cones:
 
 
 def _ripple(search: Search, program: Cones) -> None:
-    """The greatest weighted ripple, and the jerk of the energy in place of the lift's."""
+    """Add the greatest weighted ripple, and the jerk of the energy in place of that of the lift."""
     problem = search.problem
     count = problem.coefficients
     slope = basis_matrix(search.turn.theta, count, 1).toarray() * search.scale

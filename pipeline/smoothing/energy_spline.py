@@ -1,7 +1,8 @@
-"""Stored energy over one cam turn as a periodic quintic B-spline, and where a design starts."""
+"""Stored energy over one cam turn as a periodic quintic B-spline; exact start of a search."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -18,6 +19,7 @@ from camwright.geometry.errors import InputError
 DEGREE = 5
 LEAST_COEFFICIENTS = 12
 _FIT_ANGLES = 1440
+ORDERS = 4  # E, E', E'', E'''
 
 
 @lru_cache(maxsize=1)
@@ -30,7 +32,7 @@ def _pieces() -> Array:
 
 
 def basis_matrix(theta: ArrayLike, count: int, derivative: int = 0) -> csr_array:
-    """Array, or derivatives, of the periodic quintic B-splines, (n, count), six a row.
+    """Periodic quintic B-splines or their derivatives at cam angles, (n, count), six a row.
 
     Parameters
     ----------
@@ -53,7 +55,7 @@ def basis_matrix(theta: ArrayLike, count: int, derivative: int = 0) -> csr_array
 
 
 def basis_rows(theta: ArrayLike, count: int, derivative: int = 0) -> tuple[Array, NDArray[np.intp]]:
-    """The six entries that are not zero of each row of `basis_matrix`, and their columns."""
+    """Non-zero entries of each row of `basis_matrix`, (n, 6), and their columns."""
     if not count >= LEAST_COEFFICIENTS:
         raise InputError("smoothing.coefficients", count, f">= {LEAST_COEFFICIENTS}")
     if derivative not in range(DEGREE):
@@ -70,8 +72,32 @@ def basis_rows(theta: ArrayLike, count: int, derivative: int = 0) -> tuple[Array
     return values / part**derivative, columns
 
 
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """B-splines at cam angles (m,), rad: columns (m, 6), entries (order, m, 6)."""
+
+    theta: Array
+    columns: NDArray[np.intp]
+    entries: Array
+
+    @classmethod
+    def at(cls, theta: Array, count: int) -> Grid:
+        """Grid of `count` splines at cam angles theta (m,), rad."""
+        rows = [basis_rows(theta, count, order) for order in range(ORDERS)]
+        return cls(theta, rows[0][1], np.stack([values for values, _ in rows]))
+
+    def energy(self, coefficients: Array) -> tuple[Array, ...]:
+        """E, E', E'', E''' at the angles, J/rad^k, each (m,)."""
+        local = coefficients[self.columns]
+        return tuple(np.sum(entry * local, axis=1) for entry in self.entries)
+
+    def chained(self, local: Array) -> Array:
+        """Derivatives (m, 6) by the coefficients, from those (4, m) by E, E', E'', E'''."""
+        return np.asarray(np.einsum("km,kmj->mj", local, self.entries))
+
+
 def fitted_energy(cam_torque: ArrayLike, count: int) -> Array:
-    """Coefficients (count,) of the spline whose slope fits the torque best, least value zero.
+    """Coefficients (count,), J, of the energy whose derivative fits the torque; its minimum is 0.
 
     Parameters
     ----------
@@ -81,7 +107,7 @@ def fitted_energy(cam_torque: ArrayLike, count: int) -> Array:
     Raises
     ------
     InputError
-        If the torque has a mean: what is stored in a turn must be given back in it.
+        If the torque has a mean: the energy would not close over the turn.
     """
     torque = finite("cam_torque", cam_torque)
     if not abs(torque.mean()) <= MEAN_TOLERANCE * float(np.abs(torque).max()):
@@ -91,15 +117,15 @@ def fitted_energy(cam_torque: ArrayLike, count: int) -> Array:
     theta = uniform_turn(torque.size)
     energy, _ = stored_energy(theta, torque)
     slope, level = basis_matrix(theta, count, 1), basis_matrix(theta, count)
-    # the slope alone leaves the constant free; a little of the energy itself holds it
+    # the slope leaves the constant undetermined: a small weight on the energy fixes it
     weight = 1e-6
     normal = (slope.T @ slope + weight * (level.T @ level)).tocsc()
-    found = spsolve(normal, slope.T @ torque + weight * (level.T @ energy))
-    return readonly(found - lowest(found))
+    coefficients = spsolve(normal, slope.T @ torque + weight * (level.T @ energy))
+    return readonly(coefficients - lowest(coefficients))
 
 
 def lowest(coefficients: Array) -> float:
-    """Least energy of the spline, J, on a grid fine beside its knots."""
+    """Minimum of the energy, J, on a grid finer than the knots."""
     theta = uniform_turn(max(_FIT_ANGLES, 16 * coefficients.size))
     return float((basis_matrix(theta, coefficients.size) @ coefficients).min())
 
@@ -127,7 +153,7 @@ def exact_start(
     pressure_angle: float,
     energy_max: float,
 ) -> Array:
-    """The exact energy, raised until the pressure angle holds: nothing is smoothed away.
+    """Coefficients of the energy of the unsmoothed torque, raised until the pressure angle holds.
 
     Parameters
     ----------
@@ -136,12 +162,12 @@ def exact_start(
     rate, preload : float     of the spring, N/m and N, > 0
     prime_radius : float       of the pitch curve, m, > 0
     pressure_angle : float    limit, rad
-    energy_max : float        what the spring may hold beyond its preload, J; may be infinite
+    energy_max : float        maximum stored energy beyond the preload, J; may be infinite
 
     Returns
     -------
-    array (count,)   coefficients, J; where the travel leaves no room for the rise the angle
-                     asks for, the energy that uses all of the travel, scaled down to fit it
+    array (count,)   J; where `energy_max` is less than the rise requires, the energy with its
+                     maximum at `energy_max`
 
     Raises
     ------

@@ -1,10 +1,10 @@
-"""The synthesis and the finite elements, in turn: what the one answers corrects the other."""
+"""Correction of the synthesis, which uses closed forms, by the finite elements of its cam."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple, NotRequired, TypedDict
 
 import numpy as np
 
@@ -13,21 +13,104 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.smoothing.multistart import Starts
+from camwright.pipeline.smoothing.infeasibility import ConflictRecord
+from camwright.pipeline.smoothing.multistart import Starts, StartsRecord
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Correction
-from camwright.pipeline.smoothing.shadow_prices import prices
+from camwright.pipeline.smoothing.shadow_prices import PriceRecord, prices
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
-SETTLED = 0.01  # utilisation that finite elements may still move, of the limit
-_LOADED = 0.05  # of the greatest: below it a ratio of two small numbers says nothing
-_RUBBING = 1e-6  # the same of friction, which also acts where the guides carry little
-_USED = 0.5  # of a limit: one that is used less may move as it likes
+SETTLED = 0.01  # of a limit: maximum change of a utilisation at convergence
+_LOADED = 0.05  # of the maximum: least load of a meaningful ratio
+_RUBBING = 1e-6  # the same for friction, which also acts at low guide loads
+_USED = 0.5  # utilisation below which a limit does not count
 
 
-def corrections_of(cycles: Sequence[Cycle]) -> dict[str, Correction]:
-    """Finite elements over closed forms at every angle of each load case, 1 where unloaded."""
-    return {cycle.load_case: _correction(cycle) for cycle in cycles}
+class SynthesisRecord(TypedDict):
+    """JSON record of a synthesis; ``infeasible`` where its limits conflict."""
+
+    feasible: bool
+    converged: bool
+    steps: int
+    ripple_left: float
+    initial_energy_J: float
+    spring_rate_N_per_mm: float
+    preload_N: float
+    prime_radius_mm: float
+    phase_deg: float
+    reserve: float
+    starts: StartsRecord | None
+    corrections: dict[str, dict[str, list[float]]]
+    utilisation: dict[str, float]
+    prices: list[PriceRecord]
+    infeasible: NotRequired[ConflictRecord]
+
+
+class LimitShift(NamedTuple):
+    """Change of a utilisation by finite elements, of the limit that changes most."""
+
+    limit: str
+    before: float
+    after: float
+
+    @property
+    def size(self) -> float:
+        """Absolute change, of the limit."""
+        return abs(self.after - self.before)
+
+    def relaxation(self, earlier: LimitShift | None) -> float:
+        """Relaxation factor of the new corrections, below 1 where the shifts alternate.
+
+        A sequence that alternates by a constant factor converges there (Aitken).
+        """
+        if earlier is None or earlier.limit != self.limit or earlier.size == 0.0:
+            return 1.0
+        ratio = (self.after - self.before) / (earlier.after - earlier.before)
+        return 1.0 / (1.0 - ratio) if -1.0 <= ratio < 0.0 else 1.0
+
+    @property
+    def sentence(self) -> str:
+        """The change in words."""
+        if not self.limit:
+            return "finite elements change no utilisation above one half"
+        values = f"from {self.before:.4g} to {self.after:.4g} of its limit"
+        return f"finite elements change {self.limit} {values}"
+
+
+def corrected(
+    problem: Problem, design: Design, cycles: Sequence[Cycle], earlier: LimitShift | None
+) -> tuple[LimitShift, Problem]:
+    """Shift of the utilisations by the solved cycles, and the corrected problem.
+
+    The corrected problem starts from the design.
+
+    Parameters
+    ----------
+    cycles : sequence        of the design, one a load case
+    earlier : LimitShift     of the round before; None in the first
+    """
+    corrections = {cycle.load_case: _correction(cycle) for cycle in cycles}
+    after = _with_corrections(problem, corrections)
+    shift = _shift(design, problem, after)
+    share = shift.relaxation(earlier)
+    scenarios = tuple(
+        replace(new, correction=old.correction.towards(new.correction, share))
+        for old, new in zip(problem.scenarios, after.scenarios, strict=True)
+    )
+    relaxed = replace(
+        after, scenarios=scenarios, seed=design.coefficients, variables=design.variables
+    )
+    return shift, relaxed
+
+
+def settled(shift: LimitShift, checks: Sequence[Check]) -> bool:
+    """Whether finite elements and synthesis agree.
+
+    To 1 % of each limit; to the reserve of the synthesis where a check fails that a gentler lift
+    can pass.
+    """
+    fails = any(check.blocks and check.lift_can_help for check in checks)
+    return shift.size < (RESERVE if fails else SETTLED)
 
 
 def _correction(cycle: Cycle) -> Correction:
@@ -43,94 +126,37 @@ def _correction(cycle: Cycle) -> Correction:
     )
 
 
-def _ratio(found: Array, closed: Array, least: float = _LOADED) -> Array:
-    found, closed = np.abs(found), np.abs(closed)
-    loaded = np.isfinite(found) & (closed > least * closed.max())
-    return np.where(loaded, found, 1.0) / np.where(loaded, closed, 1.0)
+def _ratio(solved: Array, closed: Array, least: float = _LOADED) -> Array:
+    """Solved over closed-form result (n,), 1 where unloaded."""
+    solved, closed = np.abs(solved), np.abs(closed)
+    loaded = np.isfinite(solved) & (closed > least * closed.max())
+    return np.where(loaded, solved, 1.0) / np.where(loaded, closed, 1.0)
 
 
-def with_corrections(problem: Problem, corrections: Mapping[str, Correction]) -> Problem:
-    """The problem with what finite elements answered; a corner takes that of its load case."""
-
-    def named(name: str) -> Correction | None:
-        return corrections.get(name.split(",")[0])
-
+def _with_corrections(problem: Problem, corrections: Mapping[str, Correction]) -> Problem:
+    """The problem with new corrections; a tolerance corner takes that of its load case."""
     scenarios = tuple(
-        replace(item, correction=named(item.name) or item.correction) for item in problem.scenarios
+        replace(each, correction=corrections.get(each.name.split(",")[0], each.correction))
+        for each in problem.scenarios
     )
     return replace(problem, scenarios=scenarios)
 
 
-class Moved(NamedTuple):
-    """The limit that finite elements moved most, of those above one half: from and to."""
-
-    limit: str
-    before: float
-    after: float
-
-    @property
-    def share(self) -> float:
-        """How far, of the limit."""
-        return abs(self.after - self.before)
-
-    def swing(self, earlier: Moved | None) -> float:
-        """Share of new corrections to take over, where the trial before moved the other way.
-
-        A sequence that goes back and forth by a constant factor has its limit there (Aitken).
-        """
-        if earlier is None or earlier.limit != self.limit or earlier.share == 0.0:
-            return 1.0
-        ratio = (self.after - self.before) / (earlier.after - earlier.before)
-        return 1.0 / (1.0 - ratio) if -1.0 <= ratio < 0.0 else 1.0
-
-    @property
-    def sentence(self) -> str:
-        if not self.limit:
-            return "finite elements move no limit that is used by half"
-        way = f"from {self.before:.4g} to {self.after:.4g} of its limit"
-        return f"finite elements move {self.limit} {way}"
-
-
-def moved(design: Design, problem: Problem, corrections: Mapping[str, Correction]) -> Moved:
-    """How far new corrections move the utilisation of any limit that is above one half."""
-    states = [
-        Search(replace(each, seed=design.coefficients)).state(design.coefficients, design.variables)
-        for each in (problem, with_corrections(problem, corrections))
+def _shift(design: Design, before: Problem, after: Problem) -> LimitShift:
+    """Greatest change of a utilisation above one half between two problems."""
+    utilisations = [
+        Search(replace(each, seed=design.coefficients))
+        .state(design.coefficients, design.variables)
+        .utilisation
+        for each in (before, after)
     ]
-    before, after = (state.utilisation for state in states)
-    found = [Moved(name, before[name], after[name]) for name in before]
-    used = [each for each in found if max(each.before, each.after) > _USED]
-    return max(used, key=lambda each: each.share, default=Moved("", 0.0, 0.0))
+    shifts = [LimitShift(name, use, utilisations[1][name]) for name, use in utilisations[0].items()]
+    used = [each for each in shifts if max(each.before, each.after) > _USED]
+    return max(used, key=lambda each: each.size, default=LimitShift("", 0.0, 0.0))
 
 
-def settled(moved: Moved, checks: Sequence[Check]) -> bool:
-    """Whether finite elements and synthesis agree, to 1 %; where a limit fails by the lift,
-    as well as the synthesis's own reserve can tell.
-    """
-    fails = any(check.blocks and check.lift_can_help for check in checks)
-    return moved.share < (RESERVE if fails else SETTLED)
-
-
-def refined_problem(
-    problem: Problem, design: Design, corrections: Mapping[str, Correction], share: float = 1.0
-) -> Problem:
-    """What to solve next: the limits as finite elements see them, from the design at hand.
-
-    Parameters
-    ----------
-    corrections : mapping   by load case
-    share : float           of the way from the corrections so far to these
-    """
-    after = with_corrections(problem, corrections)
-    scenarios = tuple(
-        replace(new, correction=old.correction.towards(new.correction, share))
-        for old, new in zip(problem.scenarios, after.scenarios, strict=True)
-    )
-    return replace(after, scenarios=scenarios, seed=design.coefficients, variables=design.variables)
-
-
-def corrections_record(problem: Problem) -> dict[str, dict[str, list[float]]]:
-    """Least and greatest of what finite elements answered over closed forms, by load case."""
+def _corrections_record(problem: Problem) -> dict[str, dict[str, list[float]]]:
+    """Least and greatest correction by load case."""
     return {
         item.name: {
             each.name: [float(getattr(item.correction, each.name).min()),
@@ -149,13 +175,15 @@ def redrawn(case: Case, design: Design) -> Case:
     return case.model_copy(update={"spring": spring, "cam": cam})
 
 
-def design_record(design: Design, problem: Problem, starts: Starts | None = None) -> dict[str, Any]:
-    """What ``trial.json`` keeps of a synthesis.
+def design_record(
+    design: Design, problem: Problem, starts: Starts | None = None
+) -> SynthesisRecord:
+    """Record of a synthesis in ``trial.json``.
 
     Parameters
     ----------
-    problem : Problem   the design answers, with the corrections it was given
-    starts : Starts     how far several starts agree; None where one goes on from a trial before
+    problem : Problem   of the design, with its corrections
+    starts : Starts     of the first trial; None for a design started from the trial before
     """
     least = float(design.lift().lowest.value)
     variables = design.variables
@@ -172,7 +200,7 @@ def design_record(design: Design, problem: Problem, starts: Starts | None = None
         "phase_deg": in_unit(variables.phase, "deg"),
         "reserve": RESERVE,
         "starts": None if starts is None else starts.as_record(),
-        "corrections": corrections_record(problem),
+        "corrections": _corrections_record(problem),
         "utilisation": dict(sorted(design.utilisation.items(), key=lambda item: -item[1])),
         "prices": prices(design, problem) if design.feasible else [],
     }

@@ -1,4 +1,4 @@
-"""Derivatives by complex steps of functions of lift and design variables."""
+"""Derivatives of functions of lift and design variables by complex steps."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _STEP = 1e-30
 
 
 class Gradient(NamedTuple):
-    """A value and its partial derivatives by E, E', E'', E''' of each point and by the rest.
+    """Value (n,) and its partial derivatives.
 
-    value (n,), local (4, n), shared (4, n): by the greatest lift, k, P, r0. For a `Mean` value
-    is (1,), shared (4, 1), and local has the share of each point.
+    local (4, n): by E, E', E'', E''' of each point; shared (4, n): by the maximum lift, k, P, r0.
+    For a `Mean`, value is (1,), shared (4, 1), and local the contribution of each point.
     """
 
     value: Array
@@ -38,33 +38,33 @@ def differentiated(
     variables: DesignVariables,
     freed: bool,
 ) -> dict[str, Gradient]:
-    """Value of a function of the jets with all its derivatives.
+    """Values of a function of the lift with all derivatives, by name.
 
     Parameters
     ----------
-    function : callable   jet, greatest lift, variables -> values by name
-    energy : four arrays (n,)   E, E', E'', E'''
-    highest : float       greatest lift of the turn, m
+    function : callable   jet, maximum lift, variables -> values by name
+    energy : four arrays (n,)   E, E', E'', E''', J/rad^k
+    highest : float       maximum lift, m
     variables : DesignVariables
-    freed : bool          derivatives by k, P, r0 are asked for; else they are zero
+    freed : bool          with the derivatives by k, P, r0; else they are zero
 
     References
     ----------
     Squire and Trapp, SIAM Review 40 (1998) 110: the complex step has no cancellation.
     """
 
-    def sides(parts: tuple[Array, ...], top: float, given: DesignVariables) -> dict[str, Array]:
-        found = function(lift_jet(parts, given), top, given)
-        return {name: np.imag(_terms(value)) / _STEP for name, value in found.items()}
+    def slopes(parts: tuple[Array, ...], top: float, at: DesignVariables) -> dict[str, Array]:
+        values = function(lift_jet(parts, at), top, at)
+        return {name: np.imag(_terms(value)) / _STEP for name, value in values.items()}
 
     directions = [
-        sides((*energy[:k], _stepped(energy[k]), *energy[k + 1 :]), highest, variables)
+        slopes((*energy[:k], _stepped(energy[k]), *energy[k + 1 :]), highest, variables)
         for k in range(len(energy))
     ]
-    directions.append(sides(energy, _stepped(highest), variables))
+    directions.append(slopes(energy, _stepped(highest), variables))
     for name in FREED if freed else ():
         other = replace(variables, **{name: _stepped(getattr(variables, name))})
-        directions.append(sides(energy, highest, other))
+        directions.append(slopes(energy, highest, other))
     values = function(lift_jet(energy, variables), highest, variables)
     return {
         name: _gradient(value, [direction[name] for direction in directions], len(energy))
@@ -73,7 +73,7 @@ def differentiated(
 
 
 def _stepped(value: Number) -> Number:
-    """A value with the imaginary step, under the type of the real one it stands for."""
+    """Value plus the imaginary step, typed as the real value."""
     stepped: Number = np.add(value, 1j * _STEP)
     return stepped
 
@@ -82,10 +82,10 @@ def _terms(value: Array | Mean) -> Array:
     return value.terms if isinstance(value, Mean) else value
 
 
-def _gradient(value: Array | Mean, sides: list[Array], orders: int) -> Gradient:
-    none = np.zeros_like(sides[0])
-    local = np.stack(sides[:orders])
-    shared = np.stack([*sides[orders:], *[none] * (orders + 1 + len(FREED) - len(sides))])
+def _gradient(value: Array | Mean, slopes: list[Array], orders: int) -> Gradient:
+    none = np.zeros_like(slopes[0])
+    local = np.stack(slopes[:orders])
+    shared = np.stack([*slopes[orders:], *[none] * (orders + 1 + len(FREED) - len(slopes))])
     if not isinstance(value, Mean):
         return Gradient(np.asarray(value, dtype=float), local, shared)
     mean = float(np.mean(value.terms))

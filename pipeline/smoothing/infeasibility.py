@@ -1,61 +1,68 @@
-"""When no cam keeps all limits: which of them conflict, and what would make room."""
+"""Conflicting limits of a synthesis, and the relaxations that make it feasible."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
-from camwright.pipeline.smoothing.bounds import FACTOR_MAX, Eased, bounds_of
+from camwright.pipeline.smoothing import bounds
+from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.constraints import FACTOR_MAX
 from camwright.pipeline.smoothing.synthesis_problem import Problem, coarsened
 
 _BISECTIONS = 5
-_IN_HAND = 1.02  # a relaxation is given with this much beyond the least one found
-_NEARLY = 0.8
+_MARGIN = 1.02  # factor of a relaxation over the least feasible one
+_FORCE_SHARE = 0.8  # of the necessary force: a larger roller lowers it
 
 Change = Callable[[Problem, float], Problem]
 
 
 @dataclass(frozen=True)
 class Relaxation:
-    """One change that makes room: from and to in `unit`; cost is the factor of the change."""
+    """One feasible change, `before` to `after` in `unit`; `factor` is its size."""
 
     what: str
-    given: float
-    asked: float
+    before: float
+    after: float
     unit: str
     factor: float
     change: Change = field(repr=False, compare=False)
 
     @property
     def sentence(self) -> str:
+        """The change in words."""
         unit = f" {self.unit}" if self.unit != "-" else ""
-        return f"{self.what}: {self.asked:.4g}{unit} instead of {self.given:.4g}{unit}"
+        return f"{self.what}: {self.after:.4g}{unit} instead of {self.before:.4g}{unit}"
 
-    def applied(self, problem: Problem) -> Problem:
-        """The problem as the relaxation would have it."""
-        return self.change(problem, self.factor)
+
+class ConflictRecord(TypedDict):
+    """JSON record of conflicting limits and of the relaxations, the smallest first."""
+
+    conflict: list[str]
+    relaxations: list[dict[str, str | float]]
 
 
 @dataclass(frozen=True)
 class Infeasibility:
-    """Limits of which every smaller set can be kept, and single changes that free them."""
+    """Smallest set of conflicting limits, and the relaxations, the smallest first."""
 
     conflict: tuple[str, ...]
     relaxations: tuple[Relaxation, ...]
 
-    def as_record(self) -> dict[str, Any]:
+    def as_record(self) -> ConflictRecord:
+        """The JSON record."""
         return {
             "conflict": list(self.conflict),
             "relaxations": [
-                {"what": r.what, "from": r.given, "to": r.asked, "unit": r.unit,
-                 "factor": r.factor, "sentence": r.sentence}
-                for r in self.relaxations
+                {"what": each.what, "from": each.before, "to": each.after, "unit": each.unit,
+                 "factor": each.factor, "sentence": each.sentence}
+                for each in self.relaxations
             ],
         }  # fmt: skip
 
@@ -64,89 +71,89 @@ class Infeasibility:
         """One line for the statement of a run."""
         names = ", ".join(self.conflict) or "the limits taken together"
         ways = "; or ".join(item.sentence for item in self.relaxations[:3])
-        return f"no cam keeps together: {names}" + (f"; what would do: {ways}" if ways else "")
+        return f"no cam keeps together: {names}" + (f"; feasible with {ways}" if ways else "")
 
 
 @dataclass(frozen=True)
-class _Row:
-    """One change to try: words, value as shown, unit, and by what factor at most.
-
-    direction -1: a smaller value makes room.
-    """
+class _Candidate:
+    """A change to try. direction -1: a smaller value relaxes the problem."""
 
     what: str
-    given: float
+    value: float
     unit: str
     change: Change
     direction: int = 1
-    most: float = FACTOR_MAX
+    factor_max: float = FACTOR_MAX
 
 
 def infeasibility(problem: Problem, rollers: Iterable[tuple[str, Problem]] = ()) -> Infeasibility:
-    """Smallest set of conflicting limits, and relaxations that are found feasible.
+    """Smallest set of conflicting limits, and feasible relaxations.
 
-    The set is what a deletion filter leaves: each limit in turn is dropped and stays out where
-    the others still conflict. Each relaxation is the least factor, by bisection, at which a cam
-    is found; the cheapest comes first. Where a limit of the roller is in the set, the first
-    roller of a catalogue that leaves room for a cam is one of them.
+    A deletion filter determines the set: each limit in turn is dropped, and stays out where the
+    rest still conflict. The factor of each relaxation is the least feasible one, by bisection.
+    Where a limit of the roller is in the set, the first feasible roller of a catalogue is one of
+    the relaxations.
 
     Parameters
     ----------
-    problem : Problem   of which no feasible design was found
-    rollers : iterable  name and problem of the rollers there are, the smallest first
+    problem : Problem   without a feasible design
+    rollers : iterable  name and problem of alternative rollers, the smallest first
 
     References
     ----------
     Chinneck and Dravnieks, ORSA J. Computing 3 (1991) 157: the deletion filter.
     """
     coarse = coarsened(problem)
-    asked = synthesise(coarse, ripple_weight=0.0)
-    candidates = sorted(asked.utilisation, key=lambda name: asked.utilisation[name])
-    out = coarse.left_out
+    nearest = synthesise(coarse, ripple_weight=0.0)
+    least_used_first = sorted(nearest.utilisation, key=lambda name: nearest.utilisation[name])
+    left_out = coarse.left_out
     conflict = []
-    for name in candidates:
-        if _possible(replace(coarse, left_out=out | {name})):
+    for name in least_used_first:
+        if _feasible(replace(coarse, left_out=left_out | {name})):
             conflict.append(name)
         else:
-            out = out | {name}
-    # The candidates came from the least used: the most used is named first.
-    found = [_least(coarse, row) for row in _rows(problem, conflict)]
-    kept = [item for item in found if item is not None]
+            left_out = left_out | {name}
+    conflict.reverse()
+    tried = [_smallest(coarse, each) for each in _candidates(problem, conflict)]
+    relaxations = [item for item in tried if item is not None]
     if any(name.startswith("roller") for name in conflict):
-        kept += _from_catalogue(problem, rollers, kept)
+        relaxations += _from_catalogue(problem, rollers, relaxations)
     if TORQUE_REDUCTION.id in conflict:
-        kept += _less_reduction(coarse)
-    return Infeasibility(
-        tuple(reversed(conflict)), tuple(sorted(kept, key=lambda item: item.factor))
-    )
+        relaxations += _less_reduction(coarse)
+    return Infeasibility(tuple(conflict), tuple(sorted(relaxations, key=lambda item: item.factor)))
 
 
-def _possible(problem: Problem) -> bool:
-    """Whether a cam is found. What is asked of the ripple is compared with the least one:
+def _feasible(problem: Problem) -> bool:
+    """Whether a cam keeps all limits.
 
-    as a limit it would hold the search up among the limits that conflict with it.
+    A limit on the ripple is compared with the least ripple: as a constraint it would slow the
+    search among the limits that conflict with it.
     """
     weights = {item.weight for item in problem.scenarios if item.weight > 0}
     torque_alone = problem.speed_weight == 0.0 and problem.torque_weight == 1.0
     if problem.ceiling is None or weights != {1.0} or not torque_alone:
         return synthesise(problem, ripple_weight=0.0).feasible
-    best = synthesise(replace(problem, left_out=problem.left_out | {TORQUE_REDUCTION.id}))
+    best = synthesise(_without_reduction(problem))
     return best.feasible and best.ripple <= problem.ceiling
 
 
-def _rows(problem: Problem, conflict: list[str]) -> list[_Row]:
-    """Every single change that may make room: bounds of the set, then spring and prime radius."""
-    rows = [
-        _Row(
+def _without_reduction(problem: Problem) -> Problem:
+    return replace(problem, left_out=problem.left_out | {TORQUE_REDUCTION.id})
+
+
+def _candidates(problem: Problem, conflict: list[str]) -> list[_Candidate]:
+    """Single changes to try: bounds of the conflict, then spring and prime radius."""
+    candidates = [
+        _Candidate(
             bound.words,
             bound.value,
             bound.unit,
-            _eased(bound.eased),
+            _with_ratings(bound.relaxed),
             1 if bound.slope > 0.0 else -1,
             bound.factor_max,
         )
         for name, bound in bounds_of(problem.ratings).items()
-        if name in conflict and bound.eased is not None
+        if name in conflict and bound.relaxed is not None
     ]
     for name, what, unit, direction in (
         ("rate", "spring rate", "N/mm", -1),
@@ -155,78 +162,78 @@ def _rows(problem: Problem, conflict: list[str]) -> list[_Row]:
     ):
         if name not in problem.freed:
             value = in_unit(getattr(problem.variables, name), unit)
-            rows.append(_Row(what, value, unit, _built(name), direction))
-    return rows
+            candidates.append(_Candidate(what, value, unit, _with_variable(name), direction))
+    return candidates
 
 
-def _eased(eased: Eased) -> Change:
-    return lambda given, factor: replace(given, ratings=eased(given.ratings, factor))
+def _with_ratings(relaxed: bounds.Change) -> Change:
+    return lambda problem, factor: replace(problem, ratings=relaxed(problem.ratings, factor))
 
 
-def _built(name: str) -> Change:
-    def change(given: Problem, factor: float) -> Problem:
-        value = getattr(given.variables, name) * factor
-        return replace(given, variables=replace(given.variables, **{name: value}))
+def _with_variable(name: str) -> Change:
+    def change(problem: Problem, factor: float) -> Problem:
+        value = getattr(problem.variables, name) * factor
+        return replace(problem, variables=replace(problem.variables, **{name: value}))
 
     return change
 
 
-def _least(problem: Problem, row: _Row) -> Relaxation | None:
-    """The least factor that leaves room for a cam, a little in hand; None up to the most."""
-    low, high = 1.0, row.most
-    if high <= _IN_HAND or not _possible(row.change(problem, high**row.direction)):
+def _smallest(problem: Problem, tried: _Candidate) -> Relaxation | None:
+    """Smallest feasible change, a margin included; None up to the maximum factor."""
+    low, high = 1.0, tried.factor_max
+    if high <= _MARGIN or not _feasible(tried.change(problem, high**tried.direction)):
         return None
     for _ in range(_BISECTIONS):
         middle = float(np.sqrt(low * high))
-        if _possible(row.change(problem, middle**row.direction)):
+        if _feasible(tried.change(problem, middle**tried.direction)):
             high = middle
         else:
             low = middle
-    factor = high * _IN_HAND
+    factor = high * _MARGIN
 
-    def change(given: Problem, cost: float) -> Problem:
-        return row.change(given, cost**row.direction)
+    def change(other: Problem, size: float) -> Problem:
+        return tried.change(other, size**tried.direction)
 
-    asked = row.given * factor**row.direction
-    return Relaxation(row.what, row.given, asked, row.unit, factor, change)
+    after = tried.value * factor**tried.direction
+    return Relaxation(tried.what, tried.value, after, tried.unit, factor, change)
 
 
 def _from_catalogue(
-    problem: Problem, rollers: Iterable[tuple[str, Problem]], found: list[Relaxation]
+    problem: Problem, rollers: Iterable[tuple[str, Problem]], relaxations: list[Relaxation]
 ) -> list[Relaxation]:
-    """The first roller of a catalogue with which there is a cam.
+    """First roller of a catalogue with a feasible cam.
 
-    Those that bear much less than was found to be needed are passed over: a larger roller may
-    do with a little less, as it leans less on the cam.
+    Rollers rated far below the necessary force are skipped. The threshold is below that force,
+    as a larger roller lowers the pressure angle.
     """
-    given = problem.ratings.normal_force
-    if given is None:
+    force = problem.ratings.normal_force
+    if force is None:
         return []
     needed = max(
-        [_NEARLY * r.asked for r in found if r.unit == "N" and r.given == given], default=given
+        [_FORCE_SHARE * r.after for r in relaxations if r.unit == "N" and r.before == force],
+        default=force,
     )
     for name, other in rollers:
-        borne = other.ratings.normal_force
-        if borne is not None and borne >= needed and _possible(coarsened(other)):
+        rated = other.ratings.normal_force
+        if rated is not None and rated >= needed and _feasible(coarsened(other)):
             what = f"roller {name} of the catalogue, normal force"
-            return [Relaxation(what, given, borne, "N", borne / given, _instead(other))]
+            return [Relaxation(what, force, rated, "N", rated / force, _replaced_by(other))]
     return []
 
 
-def _instead(other: Problem) -> Change:
-    return lambda _given, _factor: other
+def _replaced_by(other: Problem) -> Change:
+    return lambda _problem, _factor: other
 
 
 def _less_reduction(problem: Problem) -> list[Relaxation]:
-    """The reduction that the other limits leave room for."""
-    floor = problem.torque_reduction
-    best = synthesise(replace(problem, left_out=problem.left_out | {TORQUE_REDUCTION.id}))
-    if floor is None or not best.feasible:
+    """Torque ripple reduction feasible within the other limits."""
+    required, best = problem.torque_reduction, synthesise(_without_reduction(problem))
+    if required is None or not best.feasible:
         return []
-    asked = 1.0 - best.ripple * _IN_HAND
+    reduction = 1.0 - best.ripple * _MARGIN
 
-    def change(given: Problem, _: float) -> Problem:
-        return replace(given, torque_reduction=asked)
+    def change(other: Problem, _: float) -> Problem:
+        return replace(other, torque_reduction=reduction)
 
-    factor = (1.0 - asked) / (1.0 - floor)
-    return [Relaxation(TORQUE_REDUCTION.title, floor, asked, "-", factor, change)]
+    factor = (1.0 - reduction) / (1.0 - required)
+    return [Relaxation(TORQUE_REDUCTION.title, required, reduction, "-", factor, change)]

@@ -1,4 +1,4 @@
-"""A place of a search and the linear models there."""
+"""State of a search, and the linear models of its functions there."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from camwright.pipeline.smoothing.synthesis_problem import RESERVE
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A place in the search: coefficients, variables, and all that depends on them."""
+    """Coefficients, J, and variables, with ripple, jerk term and utilisations."""
 
     coefficients: Array
     variables: DesignVariables
@@ -26,14 +26,14 @@ class State:
     utilisation: dict[str, float]
 
     def merit(self, penalty: float, ripple_weight: float) -> float:
-        """What the descent lowers: ripple, jerk, and how far each limit is passed."""
+        """Merit function: ripple, jerk and penalised violations."""
         over = sum(max(0.0, value - 1.0 + RESERVE) for value in self.utilisation.values())
         return ripple_weight * self.ripple + self.jerk + penalty * over
 
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """A limit near a state: level (m,), entries (m, w) in the columns (m, w) of the unknowns."""
+    """Linear model of a limit: level (m,), entries (m, w) in the columns (m, w) of x."""
 
     name: str
     level: Array
@@ -42,25 +42,26 @@ class Linear:
     elastic: bool = True
 
     def at(self, step: Array) -> Array:
-        """The model at a step, (m,)."""
+        """Value after a step, (m,)."""
         return np.asarray(self.level + np.sum(self.entries * step[self.columns], axis=1))
 
     def highest(self, reach: Array) -> Array:
-        """The most that the model can come to while each unknown moves by its reach, (m,)."""
+        """Greatest value for steps of at most `reach` in each unknown, (m,)."""
         return np.asarray(self.level + np.sum(np.abs(self.entries) * reach[self.columns], axis=1))
 
     def matrix(self, chosen: NDArray[np.bool_], size: int) -> csr_array:
-        """The entries of some rows, (rows, size)."""
+        """Chosen rows as a sparse matrix, (rows, size)."""
         entries, columns = self.entries[chosen], self.columns[chosen]
         starts = np.arange(len(entries) + 1) * self.entries.shape[1]
         return csr_array((entries.ravel(), columns.ravel(), starts), shape=(len(entries), size))
 
     def rows(self, chosen: NDArray[np.bool_], size: int) -> Rows:
+        """Chosen rows as constraints of a program."""
         return Rows(self.name, self.level[chosen], self.matrix(chosen, size), self.elastic)
 
 
 class Model(NamedTuple):
-    """A synthesis near a state: ripples, limits, and the jerk's curvature and slope."""
+    """Models at a state: ripples, limits; Hessian and slope of the jerk term."""
 
     norms: list[Norm]
     limits: list[Linear]
@@ -69,7 +70,7 @@ class Model(NamedTuple):
 
 
 class Summit(NamedTuple):
-    """The greatest lift, m, and its derivatives by the coefficients and by k, P, r0."""
+    """Maximum lift, m, and its derivatives by the coefficients and by k, P, r0."""
 
     lift: float
     entries: Array

@@ -1,10 +1,10 @@
-"""Several starts of a synthesis: whether they end at one optimum, and the best of them."""
+"""Synthesis from several starts: best design, agreement of the optima."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 from scipy.sparse.linalg import spsolve
@@ -15,53 +15,65 @@ from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import Design, Problem, coarsened
 
-AGREE = 0.01  # of the ripple left: designs that differ by less are one
-NOTHING_LEFT = 1e-3  # of the engine's ripple: below it no design is better than another
+AGREE = 0.01  # relative difference of the residual ripple of equal designs
+NEGLIGIBLE = 1e-3  # of the engine's ripple: residual ripples below it are equal
 _SEED = 1989
+
+
+class StartsRecord(TypedDict):
+    """JSON record of `Starts`."""
+
+    tried: int
+    ripple_left: list[float | None]
+    spread_percent: float
+    agree: bool
+    sentence: str
 
 
 @dataclass(frozen=True)
 class Starts:
-    """Ripple left by each start's coarse design; None where it keeps not all limits.
+    """Residual ripple of the coarse design of each start; None where a limit is not kept.
 
-    The first start is the synthesis's own, the others are random.
+    The first start is that of the problem, the others are random.
     """
 
     ripples: tuple[float | None, ...]
 
     @property
     def kept(self) -> tuple[float, ...]:
-        """Of the designs that keep all limits."""
+        """Residual ripples of the designs within all limits."""
         return tuple(ripple for ripple in self.ripples if ripple is not None)
 
     @property
     def spread(self) -> float:
-        """Greatest over least ripple left, less one; of ripples that matter."""
+        """Greatest over least residual ripple, less 1; negligible ripples count as equal."""
         if not self.kept:
             return 0.0
-        return max(self.kept) / max(min(self.kept), NOTHING_LEFT) - 1.0
+        return max(self.kept) / max(min(self.kept), NEGLIGIBLE) - 1.0
 
     @property
     def agree(self) -> bool:
-        """Whether all starts keep the limits and end within 1 % of the same ripple."""
+        """Whether all starts keep the limits and their ripples differ by at most 1 %."""
         return len(self.kept) == len(self.ripples) and self.spread <= AGREE
 
     @property
     def sentence(self) -> str:
+        """The agreement in words."""
         tried, kept = len(self.ripples), len(self.kept)
         if tried == 1:
-            return "one start was tried, so that nothing is known of other optima"
+            return "one start: other optima are not excluded"
         if not kept:
-            return f"none of {tried} starts finds a cam within all limits"
+            return f"no start of {tried} leads to a cam within all limits"
         if self.agree:
             return f"{tried} starts agree on the ripple within {100 * max(self.spread, 1e-5):.2g} %"
-        lost = f"{tried - kept} find no cam within all limits; " if kept < tried else ""
+        lost = f"{tried - kept} lead to no cam within all limits; " if kept < tried else ""
         return (
-            f"{tried} starts do not agree: {lost}the ripple they leave differs by "
-            f"{100 * self.spread:.2g} %, so that the best of them is not known to be the best"
+            f"{tried} starts do not agree: {lost}their residual ripples differ by "
+            f"{100 * self.spread:.2g} %, and the best of them may be no global optimum"
         )
 
-    def as_record(self) -> dict[str, Any]:
+    def as_record(self) -> StartsRecord:
+        """The JSON record."""
         return {
             "tried": len(self.ripples),
             "ripple_left": list(self.ripples),
@@ -71,32 +83,31 @@ class Starts:
         }
 
 
-def explored(problem: Problem, count: int, seed: int = _SEED) -> tuple[Design, Starts]:
-    """The best design that several starts lead to, and how far they agree.
+def explored(problem: Problem, count: int) -> tuple[Design, Starts]:
+    """Best design from several starts, and their agreement.
 
-    The starts are compared on a coarser turn. The design is that from the problem's own start,
-    unless a random one leads to less ripple by more than `AGREE`.
+    The starts are compared at fewer cam angles. The design is that from the start of the problem,
+    unless a random start has less ripple by more than `AGREE`.
 
     Parameters
     ----------
     problem : Problem
-    count : int          starts, the problem's own among them
-    seed : int           of the random ones
+    count : int          number of starts, that of the problem included
     """
     coarse = coarsened(problem)
-    random = np.random.default_rng(seed)
-    asked = [coarse, *(_random(coarse, random) for _ in range(count - 1))]
-    designs = [synthesise(each) for each in asked] if count > 1 else []
+    random = np.random.default_rng(_SEED)
+    starts = [coarse, *(_random(coarse, random) for _ in range(count - 1))]
+    designs = [synthesise(each) for each in starts] if count > 1 else []
     own = synthesise(problem)
-    found = [own]
+    candidates = [own]
     better = _best(designs)
     if better is not None and (
         not designs[0].feasible or better.ripple * (1.0 + AGREE) < designs[0].ripple
     ):
         fine = refined(better.coefficients, problem.coefficients)
-        found.append(synthesise(replace(problem, seed=fine, variables=better.variables)))
-    ripples = tuple(each.ripple if each.feasible else None for each in designs or found)
-    return _best(found) or own, Starts(ripples)
+        candidates.append(synthesise(replace(problem, seed=fine, variables=better.variables)))
+    ripples = tuple(each.ripple if each.feasible else None for each in designs or candidates)
+    return _best(candidates) or own, Starts(ripples)
 
 
 def _best(designs: Sequence[Design]) -> Design | None:
@@ -105,7 +116,7 @@ def _best(designs: Sequence[Design]) -> Design | None:
 
 
 def _random(problem: Problem, random: np.random.Generator) -> Problem:
-    """The problem from a smooth random energy and, of what is freed, a random variables."""
+    """The problem with a smooth random energy and random free variables to start from."""
     size = float(np.abs(Search(problem).exact).max())
     count = problem.coefficients
     order = np.arange(1, count // 4)
@@ -123,7 +134,7 @@ def _random(problem: Problem, random: np.random.Generator) -> Problem:
 
 
 def refined(coefficients: Array, count: int) -> Array:
-    """Coefficients (count,) of the same energy on finer splines, by least squares."""
+    """Coefficients (count,) of an energy on finer splines, by least squares."""
     theta = uniform_turn(8 * count)
     level = basis_matrix(theta, count)
     energy = basis_matrix(theta, coefficients.size) @ coefficients

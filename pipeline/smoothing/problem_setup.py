@@ -1,4 +1,4 @@
-"""From a case to the synthesis it asks for: its limits, its load cases, what it frees."""
+"""Synthesis problem of a case: limits, load cases, tolerance corners, free variables."""
 
 from __future__ import annotations
 
@@ -15,41 +15,36 @@ from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.smoothing.allowables import ratings_of
-from camwright.pipeline.smoothing.constrained_synthesis import Problem
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
+from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 POINTS = 720
 
 
-def problem_of(
-    case: Case, torques: Mapping[str, Torque], corrections: Mapping[str, Correction] | None = None
-) -> Problem:
-    """The constrained synthesis of a case.
+def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
+    """Constrained synthesis of a case.
 
     Parameters
     ----------
-    torques : mapping       engine torque by load case
-    corrections : mapping   finite elements over closed forms by load case; none: 1
+    torques : mapping   engine torque by load case
 
     Raises
     ------
     InputError
-        If the case has no engine.
+        If the case has no engine, no load case whose ripple counts, or a free preload beside
+        that of a load case.
     """
     if not torques:
-        raise InputError("smoothing.kind", "constrained", "another one for a given lift")
+        raise InputError("smoothing.kind", "constrained", "a smoother: the case has no engine")
     if not any(state.ripple_weight > 0 for state in case.load_cases):
         raise InputError("load_case.ripple_weight", 0.0, "> 0 in one load case")
     smoothing = case.smoothing
     if "preload" in smoothing.free and any(s.preload is not None for s in case.load_cases):
-        raise InputError("smoothing.free", "preload", "no load case with a preload of its own")
-    known = corrections or {}
+        raise InputError("smoothing.free", "preload", "a preload common to all load cases")
     scenarios = [
         scenario
         for each in machines(case)
-        for scenario in _scenarios(
-            case, each, torques.get(each.load_case), known.get(each.load_case)
-        )
+        for scenario in _scenarios(case, each, torques.get(each.load_case))
     ]
     names = {
         "spring_rate": "rate",
@@ -78,11 +73,9 @@ def problem_of(
     )
 
 
-def _scenarios(
-    case: Case, machine: Machine, torque: Torque | None, correction: Correction | None
-) -> list[Scenario]:
-    """The load case itself and, where the case wants corners, its tolerances."""
-    values = np.zeros(POINTS)  # a cam that stands still has no torque to balance
+def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scenario]:
+    """The load case and, where the case includes them, its tolerance corners."""
+    values = np.zeros(POINTS)  # at rest the engine has no torque
     if torque is not None:
         values = torque.without_mean().resampled(POINTS).total
     friction = machine.friction
@@ -99,7 +92,7 @@ def _scenarios(
         preload_factor=machine.spring.preload / case.spring.preload,
         weight=0.0 if torque is None else machine.ripple_weight,
         friction_worst=friction.greatest if friction.bounded else None,
-        correction=correction or Correction.none(POINTS),
+        correction=Correction.none(POINTS),
     )
     if not case.smoothing.corners:
         return [nominal]
@@ -107,11 +100,9 @@ def _scenarios(
 
 
 def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Scenario]:
-    """Every combination of spring and friction at the ends of their tolerances; mass and phase
-    at theirs, one at a time.
-    """
+    """All combinations of the tolerances of spring and friction; mass and phase one at a time."""
     spring, tolerances = case.spring, case.tolerances
-    # Both guides in the same oil.
+    # Both guides share their lubrication.
     frictions = dict.fromkeys((friction.least, friction.greatest))
     ends = product(_ends(spring.rate_tolerance), _ends(spring.preload_tolerance), frictions)
     corners = [

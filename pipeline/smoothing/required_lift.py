@@ -1,4 +1,4 @@
-"""Torque that the cam takes, and the lift that delivers it."""
+"""Required cam torque, and the lift that delivers it."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
 
 def cam_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | None = None) -> Lift:
-    """The lift that the case gives, or the one that its smoothed engine torque requires.
+    """Lift of the case file, or the one required by the smoothed engine torque.
 
     Parameters
     ----------
-    torques : mapping     engine torque by load case; that of the design load case counts
+    torques : mapping     engine torque by load case; the design load case is used
     smoother : Smoother   None: that of the case
     """
     if case.lift is not None:
@@ -30,13 +30,13 @@ def cam_lift(case: Case, torques: Mapping[str, Torque], smoother: Smoother | Non
 
 
 def required_torque(case: Case, torque: Torque, smoother: Smoother) -> Array:
-    """Crank torque (n,) about its mean that the cam takes, N m: smoothed, times compensation."""
+    """Crank torque (n,) to compensate, N m: smoothed ripple times compensation."""
     share = smoothed(torque.without_mean().total, smoother)
     return np.asarray(case.mechanism.compensation * share)
 
 
 def required_lift(case: Case, torque: Torque, smoother: Smoother) -> Lift:
-    """Lift whose spring stores and returns the required torque.
+    """Lift whose spring stores and returns the work of the required torque.
 
     Parameters
     ----------

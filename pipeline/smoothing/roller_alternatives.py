@@ -1,4 +1,4 @@
-"""The synthesis of a case with each roller of the catalogue, for a case that has no answer."""
+"""Synthesis problems of an infeasible case with the rollers of the catalogue."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 
 def roller_problems(
-    case: Case, torques: Mapping[str, Torque], asked: Problem
+    case: Case, torques: Mapping[str, Torque], original: Problem
 ) -> Iterator[tuple[str, Problem]]:
-    """Name and problem of every roller that fits into the case, the smallest first.
+    """Name and problem of each roller that fits into the case, the smallest first.
 
     Parameters
     ----------
-    asked : Problem   of the case; its corrections are taken over
+    original : Problem   of the case; its corrections are applied to the alternatives
 
     Raises
     ------
     InputError
-        For cards beside the case that cannot be read.
+        If cards in the folder of the case cannot be read.
     """
     folder = _folder(case)
     rollers = catalogue_of(folder).rollers
-    corrections = {item.name: item.correction for item in asked.scenarios}
+    corrections = {item.name: item.correction for item in original.scenarios}
     for name in sorted(rollers, key=lambda name: (rollers[name].outer_diameter, rollers[name].C0)):
         try:
             problem = problem_of(with_roller(case, name, rollers[name], folder), torques)
@@ -44,7 +44,7 @@ def roller_problems(
 
 
 def _folder(case: Case) -> Path | None:
-    """Where the case lies, with the cards beside it; None for a case that is no file."""
+    """Folder of the case file and its cards; None for a case built in Python."""
     try:
         return case.path("")
     except InputError:

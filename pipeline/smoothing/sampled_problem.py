@@ -1,4 +1,4 @@
-"""The functions of one synthesis on one set of angles, and their linear models."""
+"""Functions of a synthesis problem at sampled cam angles, and their linear models."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, uniform_turn
-from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
 from camwright.pipeline.smoothing.cone_program import Norm
 from camwright.pipeline.smoothing.constraints import (
     Jet,
@@ -20,20 +20,24 @@ from camwright.pipeline.smoothing.constraints import (
     load_utilisations,
     shape_utilisations,
 )
-from camwright.pipeline.smoothing.energy_spline import basis_matrix, exact_start
+from camwright.pipeline.smoothing.energy_spline import Grid, basis_matrix, exact_start
 from camwright.pipeline.smoothing.gradients import FREED, Function, Gradient, differentiated
-from camwright.pipeline.smoothing.grid import Grid
 from camwright.pipeline.smoothing.linear_model import Linear, Model, State, Summit
-from camwright.pipeline.smoothing.ripple import ripple_of, torque_ripple, triangle
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
-from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
+from camwright.pipeline.smoothing.synthesis_problem import (
+    RESERVE,
+    Problem,
+    ripple_of,
+    torque_ripple,
+    triangle,
+)
 
 INITIAL_ENERGY = "initial_energy"
 LEAST_ENERGY = "least_energy"
 
 
 class Search:
-    """The functions of one problem on one grid; angles may be added between the points."""
+    """Functions of one problem on a uniform grid, with extra angles between its points."""
 
     def __init__(self, problem: Problem, extra: Array | None = None) -> None:
         self.problem = problem
@@ -44,7 +48,7 @@ class Search:
         self.start = self.exact if problem.seed is None else problem.seed
         self.scale = max(float(np.abs(self.exact).max()), 1e-9)
         exact = lift_jet(self.turn.energy(self.exact), problem.variables)
-        # A step whose energy bends as much as the exact one's has the length 1 by this matrix.
+        # Scaled so that the second derivative of the exact energy has the norm 1.
         bend = basis_matrix(self.turn.theta, count, 2) * self.scale
         size = float(np.linalg.norm(bend @ self.exact)) / self.scale or 1.0
         self.bend = np.asarray(np.linalg.qr(bend.toarray() / size, mode="r"))
@@ -52,7 +56,7 @@ class Search:
 
     @property
     def size(self) -> int:
-        """Number of unknowns: coefficients, then what is freed."""
+        """Number of unknowns: coefficients, then free variables."""
         return self.problem.coefficients + len(self.problem.freed)
 
     def _exact(self) -> Array:
@@ -61,21 +65,21 @@ class Search:
         torque = problem.gear_ratio * first.torque
         ratings = problem.ratings
         travel = np.inf if ratings.travel is None else ratings.travel * (1.0 - RESERVE)
-        found = exact_start(
+        exact = exact_start(
             torque - torque.mean(),
             problem.coefficients,
             rate=variables.rate,
             preload=variables.preload,
             prime_radius=variables.prime_radius,
-            pressure_angle=ratings.pressure_angle or np.pi / 3,
+            pressure_angle=ratings.limits.get(PRESSURE_ANGLE, np.pi / 3),
             energy_max=variables.preload * travel + 0.5 * variables.rate * travel**2,
         )
         rise = float(np.clip(0.0, problem.energy[0] - 1e-12, problem.energy[1]))
-        least = float(self.turn.energy(found)[0].min())
-        return found if least <= problem.energy[1] else found - least + rise
+        least = float(self.turn.energy(exact)[0].min())
+        return exact if least <= problem.energy[1] else exact - least + rise
 
     def _summit_angle(self, coefficients: Array) -> float:
-        """Where the lift is greatest, between the points too, rad."""
+        """Cam angle of maximum lift, refined between the points, rad."""
         theta = self.turn.theta
         energy = self.turn.energy(coefficients)[0]
         k = int(np.argmax(energy))
@@ -91,7 +95,7 @@ class Search:
         return angle
 
     def highest(self, coefficients: Array, variables: DesignVariables) -> float:
-        """Greatest lift, between the points too, m."""
+        """Maximum lift, refined between the points, m."""
         peak = Grid.at(np.array([self._summit_angle(coefficients)]), coefficients.size)
         return float(lift_jet(peak.energy(coefficients), variables).lift[0])
 
@@ -104,7 +108,7 @@ class Search:
         )
 
     def _scenarios(self, grid: Grid, variables: DesignVariables) -> list[Scenario]:
-        """The scenarios with their corrections at the angles of a grid."""
+        """Scenarios with their corrections at the angles of a grid."""
         theta = grid.theta + float(variables.phase)
         return [
             replace(item, correction=item.correction.at(theta)) for item in self.problem.scenarios
@@ -118,32 +122,32 @@ class Search:
     def utilisations(
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
-        """Every limit on a grid: (n,) or, for means, one number; the worst of the scenarios."""
+        """Utilisations on a grid, (n,), or (1,) for means; the greatest of the scenarios."""
         jet = lift_jet(grid.energy(coefficients), variables)
         top = self.highest(coefficients, variables)
-        found: dict[str, Array] = {}
+        uses: dict[str, Array] = {}
         for function in self._functions(grid, variables):
             for name, value in function(jet, top, variables).items():
                 if name not in self.problem.left_out:
                     use = value.value if isinstance(value, Mean) else value
-                    found[name] = np.maximum(found[name], use) if name in found else use
-        return found
+                    uses[name] = np.maximum(uses[name], use) if name in uses else use
+        return uses
 
     def state(self, coefficients: Array, variables: DesignVariables) -> State:
-        """All that the merit of a place depends on."""
-        found = self.utilisations(coefficients, variables, self.turn)
-        most = {name: float(np.max(value)) for name, value in found.items()}
+        """State at coefficients, J, and variables."""
+        uses = self.utilisations(coefficients, variables, self.turn)
+        most = {name: float(np.max(value)) for name, value in uses.items()}
         if self.extra.theta.size:
             more = self.utilisations(coefficients, variables, self.extra)
             for name, value in more.items():
-                if found[name].size > 1:  # a mean of these angles would be none of the turn
+                if uses[name].size > 1:  # a mean over the extra angles is none over the turn
                     most[name] = max(most[name], float(np.max(value)))
         energy = self.turn.energy(coefficients)
         if np.isfinite(self.problem.energy[1]):
             over = float(energy[0].min()) - self.problem.energy[1]
             most[INITIAL_ENERGY] = 1.0 - RESERVE + over / self.scale
         ripple = 0.0
-        for item, left in self.left(coefficients, variables):
+        for item, left in self.residual_torque(coefficients, variables):
             ripple = max(
                 ripple, item.weight * float(np.linalg.norm(ripple_of(self.problem, item, left)))
             )
@@ -154,57 +158,58 @@ class Search:
         jerk = self._jerk_scale * lift_jet(energy, variables).jerk
         return State(coefficients, variables, ripple, 0.5 * float(jerk @ jerk), most)
 
-    def left(self, coefficients: Array, variables: DesignVariables) -> list[tuple[Scenario, Array]]:
-        """Each scenario whose ripple counts, and the crank torque (n,) left to it, N m."""
+    def residual_torque(
+        self, coefficients: Array, variables: DesignVariables
+    ) -> list[tuple[Scenario, Array]]:
+        """Crank torque with the cam (n,), N m, of each scenario whose ripple counts."""
         jet = lift_jet(self.turn.energy(coefficients), variables)
         top = self.highest(coefficients, variables)
-        problem, found = self.problem, []
+        problem, residuals = self.problem, []
         for item in self._scenarios(self.turn, variables):
             if item.weight > 0:
                 torque = delivered_torque(jet, top, variables, item, problem.ratings.offset)
-                asked = item.torque_at(float(variables.phase))[0]
-                found.append((item, asked - torque / problem.gear_ratio))
-        return found
+                engine = item.torque_at(float(variables.phase))[0]
+                residuals.append((item, engine - torque / problem.gear_ratio))
+        return residuals
 
     def model(self, state: State) -> Model:
-        """Linear and quadratic models of ripple, limits and jerk near a state."""
+        """Linear models of ripple and limits, quadratic model of the jerk, at a state."""
         summit = self._summit(state.coefficients, state.variables)
         energy = self.turn.energy(state.coefficients)
-        found = differentiated(_jerk, energy, 0.0, state.variables, bool(self.problem.freed))[
-            "jerk"
-        ]
-        jerk = self._jerk_scale * self._dense(found, state, summit)
+        freed = bool(self.problem.freed)
+        gradient = differentiated(_jerk, energy, 0.0, state.variables, freed)["jerk"]
+        jerk = self._jerk_scale * self._dense(gradient, state, summit)
         return Model(
             norms=self._norms(state, summit),
             limits=self._limits(state, summit),
             curvature=jerk.T @ jerk,
-            slope=jerk.T @ (self._jerk_scale * found.value),
+            slope=jerk.T @ (self._jerk_scale * gradient.value),
         )
 
     def _norms(self, state: State, summit: Summit) -> list[Norm]:
         problem, variables = self.problem, state.variables
         energy = self.turn.energy(state.coefficients)
         weighted = [item for item in self._scenarios(self.turn, variables) if item.weight > 0]
-        found = []
+        norms = []
         for item in weighted:
             torque = partial(_torque, item, problem.ratings.offset)
             freed = bool(problem.freed)
             gradient = differentiated(torque, energy, summit.lift, variables, freed)["torque"]
-            asked, turning = item.torque_at(float(variables.phase))
-            left = asked - gradient.value / problem.gear_ratio
+            engine, by_phase = item.torque_at(float(variables.phase))
+            left = engine - gradient.value / problem.gear_ratio
             slopes = -self._dense(gradient, state, summit) / problem.gear_ratio
             if "phase" in problem.freed:
-                slopes[:, problem.coefficients + list(problem.freed).index("phase")] += turning
+                slopes[:, problem.coefficients + list(problem.freed).index("phase")] += by_phase
             columns = np.column_stack([slopes, left])
             charged = triangle(ripple_of(problem, item, columns))
             if problem.speed_weight == 0.0 and problem.torque_weight == 1.0:
-                found.append(Norm(*charged, item.weight, problem.ceiling))
+                norms.append(Norm(*charged, item.weight, problem.ceiling))
                 continue
-            found.append(Norm(*charged, item.weight))
+            norms.append(Norm(*charged, item.weight))
             if problem.ceiling is not None:
                 bounded = triangle(torque_ripple(item, columns))
-                found.append(Norm(*bounded, weight=0.0, ceiling=problem.ceiling))
-        return found
+                norms.append(Norm(*bounded, weight=0.0, ceiling=problem.ceiling))
+        return norms
 
     def _dense(self, gradient: Gradient, state: State, summit: Summit) -> Array:
         model = self._linear("", gradient, self.turn, state, summit)
@@ -214,7 +219,7 @@ class Search:
     def _linear(
         self, name: str, gradient: Gradient, grid: Grid, state: State, summit: Summit
     ) -> Linear:
-        """The model of one limit by the scaled unknowns: coefficients, then what is freed."""
+        """Linear model of one limit in the scaled unknowns: coefficients, then free variables."""
         own = grid.chained(gradient.local)
         columns: NDArray[np.intp] = grid.columns
         height = gradient.value.size
@@ -237,7 +242,7 @@ class Search:
         return Linear(name, level, np.hstack(entries), np.hstack(places))
 
     def _limits(self, state: State, summit: Summit) -> list[Linear]:
-        problem, found = self.problem, []
+        problem, models = self.problem, []
         for grid in (self.turn, self.extra):
             if not grid.theta.size:
                 continue
@@ -247,24 +252,24 @@ class Search:
                     function, energy, summit.lift, state.variables, bool(problem.freed)
                 )
                 for name, gradient in gradients.items():
-                    asked = name not in problem.left_out
-                    if asked and not (gradient.mean and grid is self.extra):
-                        found.append(self._linear(name, gradient, grid, state, summit))
-        return found + self._least_energy(state)
+                    kept = name not in problem.left_out
+                    if kept and not (gradient.mean and grid is self.extra):
+                        models.append(self._linear(name, gradient, grid, state, summit))
+        return models + self._least_energy(state)
 
     def _least_energy(self, state: State) -> list[Linear]:
         low, high = self.problem.energy
         energy = self.turn.energy(state.coefficients)[0]
         entries, columns = self.turn.entries[0], self.turn.columns
-        found = [Linear(LEAST_ENERGY, (low - energy) / self.scale, -entries, columns, False)]
+        models = [Linear(LEAST_ENERGY, (low - energy) / self.scale, -entries, columns, False)]
         if np.isfinite(high):
             k = int(np.argmin(energy))
             level = (energy[[k]] - high) / self.scale
-            found.append(Linear(INITIAL_ENERGY, level, entries[[k]], columns[[k]]))
-        return found
+            models.append(Linear(INITIAL_ENERGY, level, entries[[k]], columns[[k]]))
+        return models
 
-    def moved(self, state: State, step: Array) -> tuple[Array, DesignVariables]:
-        """Coefficients and variables a step away."""
+    def after(self, state: State, step: Array) -> tuple[Array, DesignVariables]:
+        """Coefficients, J, and variables after a step in the scaled unknowns."""
         count, variables = self.problem.coefficients, state.variables
         for name, part in zip(self.problem.freed, step[count:], strict=True):
             value = getattr(variables, name) + _unit(name, variables) * float(part)
@@ -272,7 +277,7 @@ class Search:
         return state.coefficients + self.scale * step[:count], variables
 
     def box(self, state: State, trust: float) -> Array:
-        """Least and greatest step within the trust region and the ranges, (2, size)."""
+        """Least and greatest step within trust region and ranges, (2, size)."""
         count = self.problem.coefficients
         low, high = np.full(self.size, -trust), np.full(self.size, trust)
         for number, (name, (least, greatest)) in enumerate(self.problem.freed.items()):
@@ -283,7 +288,7 @@ class Search:
 
 
 def _unit(name: str, variables: DesignVariables) -> float:
-    """What a step of one is of a freed quantity: all of it, or a radian."""
+    """Unit of a step of a free variable: its value, or 1 rad."""
     return 1.0 if name == "phase" else float(getattr(variables, name))
 
 

@@ -1,19 +1,21 @@
-"""Variables, ratings, load cases and finite-element corrections of a synthesis."""
+"""Design variables, ratings, scenarios and finite-element corrections of a synthesis."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
+from camwright.pipeline.case.limits import AnyLimit
 
 
 @dataclass(frozen=True)
 class DesignVariables:
-    """What a synthesis may free: spring rate N/m, preload N, prime radius m, phase rad.
+    """Design variables: spring rate, N/m; preload, N; prime radius, m; phase, rad.
 
-    The phase is how far the cam is turned ahead on its shaft against the spline of its energy.
+    The phase is the angle by which the cam leads the spline of its energy on the shaft.
     """
 
     rate: float
@@ -24,31 +26,37 @@ class DesignVariables:
 
 @dataclass(frozen=True)
 class Ratings:
-    """Limits and fixed sizes, SI; None leaves a limit out. See `pipeline.checks`.
+    """Limits and fixed dimensions of a synthesis, SI; a limit of None is not kept.
 
-    curvature_rate is of the contour, 1/(m rad). pressure is the least of the limits on p0 and
-    pressure_by the check it comes from, likewise normal_force; overspeed and jump_speed are the
-    cam speeds, rad/s, at which a force must be left and none may be missing. force_safety is what
-    the roller's rating was divided by to give normal_force, dynamic_rating that of its life, N.
+    Parameters
+    ----------
+    limits : mapping           value by row of the table of limits; a row left out is not kept
+    travel : float             maximum lift allowed by the spring, m
+    hollow_radius : float      minimum concave radius of the contour, m
+    pressure : float           least of the limits on the contact pressure, Pa; pressure_by is the
+                               check it comes from
+    contact_width : float      m
+    contact_modulus : float    E*, Pa
+    overspeed : float          cam speed at which the contact force margin is kept, rad/s
+    jump_speed : float         cam speed below which the follower does not jump, rad/s
+    normal_force : float       least of the limits on the normal force, N; normal_force_by is the
+                               check it comes from, force_safety its factor on the static rating
+    dynamic_rating : float     C of the roller bearing, N
+    life_force_cubed : float   limit of the mean of N^3 |n| over the turn, N^3 rad/s
+    roller_spin : float        rad/s
+    guide_pressure, guide_pv, guide_area : pairs   of guides A and B, Pa, Pa m/s, m^2
     """
 
     roller_radius: float
     offset: float = 0.0
+    limits: Mapping[AnyLimit, float] = field(default_factory=dict)
     travel: float | None = None
-    pressure_angle: float | None = None
-    jam_index: float | None = None
-    curvature_ratio: float | None = None
-    undercut_factor: float | None = None
     hollow_radius: float | None = None
-    curvature_rate: float | None = None
-    cam_radius: float | None = None
     pressure: float | None = None
     pressure_by: str = "contact_pressure"
     contact_width: float = 1.0
     contact_modulus: float = 1.0
-    contact_force_margin: float | None = None
     overspeed: float | None = None
-    jump: float | None = None
     jump_speed: float | None = None
     normal_force: float | None = None
     normal_force_by: str = "roller_static"
@@ -63,10 +71,10 @@ class Ratings:
 
 @dataclass(frozen=True, eq=False)
 class Correction:
-    """What finite elements answer over closed forms at the cam angles of a turn, each (n,).
+    """Finite-element result over closed form at n equally spaced cam angles, each (n,).
 
-    Of the contact pressure, of the reactions and the rubbing loads of guides A and B, and of the
-    jam index at the greatest friction.
+    Of the contact pressure, the reactions and the normal loads of guides A and B, and the jam
+    index at maximum friction.
     """
 
     contact: Array
@@ -82,7 +90,7 @@ class Correction:
         return cls(one, one, one, one, one, one)
 
     def towards(self, other: Correction, share: float) -> Correction:
-        """A share of the way to another one, at its angles."""
+        """Linear interpolation to another correction, at the angles of that one."""
         if share == 1.0:
             return other
         own = self.at(uniform_turn(other.contact.size))
@@ -94,7 +102,7 @@ class Correction:
         )
 
     def at(self, theta: Array) -> Correction:
-        """The same at other angles, straight lines between."""
+        """Corrections at cam angles theta (m,), rad, interpolated linearly."""
         own = np.arange(self.contact.size) * (FULL_TURN / self.contact.size)
         return Correction(
             *(
@@ -106,17 +114,17 @@ class Correction:
 
 @dataclass(frozen=True, eq=False)
 class Scenario:
-    """One load case, or one corner of its tolerances.
+    """One load case, or one tolerance corner of it.
 
     Parameters
     ----------
     cam_speed : float        rad/s
     torque : array (n,)      engine torque at n equal cam angles, of zero mean, crank N m
-    weight : float           of its ripple among those of the others; 0: limits only
+    weight : float           of its ripple in the objective; 0: limits only
     mass, viscous_damping, guide_spacing, overhang : float   of the follower, SI
     friction_a, friction_b : float
-    friction_worst : two floats   greatest of guides A and B, for their jamming; None: not known
-    rate_factor, preload_factor : float   the spring as mounted over the spring as drawn
+    friction_worst : two floats   maximum friction of guides A and B; None: not known
+    rate_factor, preload_factor : float   spring of the scenario over the nominal spring
     correction : Correction
     """
 
@@ -136,7 +144,7 @@ class Scenario:
     correction: Correction = field(default_factory=lambda: Correction.none(8))
 
     def torque_at(self, phase: float) -> tuple[Array, Array]:
-        """Torque of the engine, N m, and its slope per radian, `phase` (rad of cam) further on."""
+        """Engine torque, N m, and its derivative, N m/rad, advanced by `phase`, rad of cam."""
         spectrum = np.fft.rfft(self.torque)
         order = 1j * np.arange(spectrum.size)
         if self.torque.size % 2 == 0:

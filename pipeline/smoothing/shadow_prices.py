@@ -1,8 +1,8 @@
-"""Shadow prices: ripple that one more unit of a bound would take away."""
+"""Shadow prices: change of the torque ripple per unit of a bound."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,22 +12,34 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.smoothing.bounds import Bound, bounds_of
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
-BINDING = 2e-3  # below the reserve by less than this share of a limit: it binds
+BINDING = 2e-3  # of a limit: a constraint this near to its reserve is active
 
 
-def prices(design: Design, problem: Problem) -> list[dict[str, Any]]:
-    """One record for each limit that costs ripple, the dearest first.
+class PriceRecord(TypedDict):
+    """JSON record of a shadow price."""
 
-    The price is the crank-torque ripple (std, N m) that one more unit of the limit would take
-    away, to first order: the multiplier times what a unit takes off the utilisation. Of the
-    contact's utilisation r kappa + N/F_lim only the second part falls with the pressure allowed,
-    by its square; it is taken as it is on the mean where the limit binds. Where a limit binds is
-    given as ranges of cam angle; a mean over the turn binds everywhere and nowhere.
+    limit: str
+    words: str
+    value: float
+    unit: str
+    ripple_per_unit_Nm: float
+    ripple_per_percent_Nm: float
+    binds_at_deg: list[tuple[float, float]]
+    sentence: str
+
+
+def prices(design: Design, problem: Problem) -> list[PriceRecord]:
+    """Shadow prices of the active limits, highest first.
+
+    The price is the decrease of the crank-torque ripple (std, N m) per unit of the limit, to
+    first order: the multiplier times the slope of the utilisation. Of the utilisation of the
+    contact pressure, r kappa + N/F_lim, only the second part depends on the limit, by its square;
+    its mean over the active angles is taken. A mean over the turn has no active angles.
 
     Parameters
     ----------
     design : Design     with its multipliers
-    problem : Problem   it answers
+    problem : Problem   of the design
 
     References
     ----------
@@ -35,14 +47,14 @@ def prices(design: Design, problem: Problem) -> list[dict[str, Any]]:
     """
     bounds = bounds_of(problem.ratings)
     before = max(float(np.std(item.torque)) for item in problem.scenarios if item.weight > 0)
-    found = []
+    records: list[PriceRecord] = []
     for name, multiplier in design.multipliers.items():
         known = bounds.get(name, Bound(name.replace("_", " "), 1.0, "-", 1.0))
         slope = known.slope
         if name == "contact_pressure":
             slope *= 2.0 * _load_share(design, problem)
         price = multiplier * before * slope
-        found.append(
+        records.append(
             {
                 "limit": name,
                 "words": known.words,
@@ -54,13 +66,13 @@ def prices(design: Design, problem: Problem) -> list[dict[str, Any]]:
                 "sentence": _sentence(known, price),
             }
         )
-    return sorted(found, key=lambda record: -record["ripple_per_percent_Nm"])
+    return sorted(records, key=lambda record: -record["ripple_per_percent_Nm"])
 
 
 def limits_in_use(design: Design) -> tuple[Array, dict[str, Array]]:
-    """Cam angles (n,), rad, rising, and the share in use of each limit at them, by its name.
+    """Cam angles (n,), rad, ascending, and the utilisation of each limit at them, by check.
 
-    The most used first. A limit on a mean of the turn has the same share at every angle.
+    The greatest first. A limit on a mean over the turn has the same utilisation at every angle.
     """
     theta = next(iter(design.strip.values()))[0]
     angles = np.mod(theta + float(design.variables.phase), FULL_TURN)
@@ -71,7 +83,7 @@ def limits_in_use(design: Design) -> tuple[Array, dict[str, Array]]:
 
 
 def _load_share(design: Design, problem: Problem) -> float:
-    """N / F_lim of the contact's utilisation, on the mean where it binds."""
+    """N / F_lim of the contact pressure, mean over the active angles."""
     theta, use = design.strip["contact_pressure"]
     binds = _binding(use)
     if not binds.any():
@@ -96,7 +108,7 @@ def _binding(use: Array) -> NDArray[np.bool_]:
 
 
 def _ranges(theta: Array, use: Array) -> list[tuple[float, float]]:
-    """Where a limit binds, as ranges of cam angle, deg."""
+    """Active ranges of cam angle, deg."""
     tight = _binding(use)
     if not tight.any() or np.ptp(use) == 0.0:
         return []

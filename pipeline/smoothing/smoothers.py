@@ -23,24 +23,24 @@ KINDS = ("none", "moving_average", "gaussian", "harmonic", "savitzky_golay", "sm
 
 @dataclass(frozen=True)
 class Smoother:
-    """A linear, zero-phase filter on the engine cycle, with one knob.
+    """Linear zero-phase filter of one engine cycle of torque, with an adjustable strength.
 
     `strength` stretches the filter along the crank angle: at 2 a moving average of 60 deg
-    becomes one of 120 deg, a cut at harmonic 24 one at harmonic 12. It moves continuously,
-    because the filter is applied to the harmonics of the cycle and not to samples; a moving
-    average of an odd count alone steps, by 1/points in a harmonic at its points' resolution.
+    becomes one of 120 deg, a cut-off at harmonic 24 one at harmonic 12. The filter acts on the
+    harmonics of the cycle, not on samples, and is continuous in the strength; the moving average
+    of an odd count alone has steps, of 1/points, in a harmonic at the spacing of its points.
 
     Parameters
     ----------
     kind : str          one of `KINDS`
     points : int        moving average, Savitzky-Golay: values averaged
     spacing : float     moving average, Savitzky-Golay: crank angle between values, rad
-    width : float       gaussian: crank angle, rad, of the box with the same variance
-    harmonics : float   harmonic: harmonics of the cycle that are kept
-    taper : float       harmonic: 0 cuts hard; else the half-width of the cosine edge as a share
+    width : float       gaussian: width, rad of crank, of the box of equal variance
+    harmonics : float   harmonic: cut-off harmonic of the cycle
+    taper : float       harmonic: half-width of the cosine edge over the cut-off; 0: sharp
     degree : int        Savitzky-Golay: degree of the fitted polynomial
-    cutoff : float      smoothing spline: crank angle, rad, of the wave that it halves
-    strength : float    1 as given; above 1 gentler on the cam
+    cutoff : float      smoothing spline: wavelength, rad of crank, of the transfer factor 1/2
+    strength : float    1: as in the case; above 1 wider
 
     Raises
     ------
@@ -82,17 +82,17 @@ class Smoother:
 
     @classmethod
     def from_case(cls, smoothing: Smoothing) -> Smoother:
-        """The smoother of a case."""
+        """Smoother of a case."""
         names = ("kind", "points", "spacing", "width", "harmonics", "taper", "degree", "cutoff")
         return cls(**{name: getattr(smoothing, name) for name in names})
 
     def stretched(self, strength: float) -> Smoother:
-        """The same smoother at another strength."""
+        """Smoother at another strength."""
         return replace(self, strength=float(strength))
 
     @property
     def angular_width(self) -> float:
-        """Crank angle (rad) over which the torque is spread; `width_in_words` says how meant."""
+        """Width of the filter, rad of crank; `width_in_words` defines it by kind."""
         widths = {
             "none": 0.0,
             "moving_average": self.points * self.spacing,
@@ -105,12 +105,12 @@ class Smoother:
 
     @property
     def curvature_weight(self) -> float:
-        """w of the smoothing spline, rad^4: it lowers the square of what it misses plus w T''^2."""
+        """w of the smoothing spline, rad^4, which minimises (T - T_0)^2 + w T''^2."""
         return (self.cutoff * self.strength / (2.0 * np.pi)) ** 4
 
     @property
     def width_in_words(self) -> str:
-        """What the filter does and what its angular width stands for."""
+        """The filter and its angular width in words."""
         degrees = np.rad2deg(self.angular_width)
         spacing = np.rad2deg(self.spacing * self.strength)
         words = {
@@ -128,7 +128,7 @@ class Smoother:
         return words[self.kind]
 
     def transfer(self, harmonic: ArrayLike) -> Array:
-        """Factor on each harmonic of the cycle, real, within -1 and 1, and 1 at zero.
+        """Transfer factor of each harmonic of the cycle, real, from -1 to 1, and 1 at zero.
 
         Parameters
         ----------
@@ -139,11 +139,11 @@ class Smoother:
 
 
 def smoothed(torque: ArrayLike, smoother: Smoother) -> Array:
-    """Torque after smoothing, on the same angles.
+    """Smoothed torque at the same angles.
 
     Parameters
     ----------
-    torque : array (..., n)   uniform over one engine cycle, the end left out, N m
+    torque : array (..., n)   N m, equally spaced over one engine cycle, the end excluded
     smoother : Smoother
 
     Returns
@@ -172,18 +172,18 @@ def _moving_average(smoother: Smoother, order: Array) -> Array:
     if smoother.points % 2 == 0:
         weights[-1] /= 2.0  # an even count is centred by two half values at its ends
     averaged = np.cos(phase[..., None] * np.arange(reach + 1)) @ weights
-    # The papers' average acts on samples, which carry nothing above half their own rate.
+    # The averages of the papers act on samples, which have no waves above half their rate.
     return np.where(phase <= np.pi * (1.0 + 1e-12), averaged, 0.0)
 
 
 def _savitzky_golay(smoother: Smoother, order: Array) -> Array:
-    # The fit to a continuous window: a polynomial in Legendre's basis, read at its middle.
+    # Fit to a continuous window: a polynomial in the Legendre basis, at the middle.
     argument = 0.5 * smoother.points * smoother.spacing * order * (2.0 * np.pi / CYCLE)
-    found = np.zeros_like(order)
+    factor = np.zeros_like(order)
     for even in range(0, smoother.degree + 1, 2):
         middle = float(eval_legendre(even, 0.0)) * (-1.0) ** (even // 2)
-        found += (2 * even + 1) * middle * spherical_jn(even, argument)
-    return found
+        factor += (2 * even + 1) * middle * spherical_jn(even, argument)
+    return factor
 
 
 def _gaussian(smoother: Smoother, order: Array) -> Array:

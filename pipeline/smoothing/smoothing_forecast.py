@@ -1,4 +1,4 @@
-"""What closed forms foresee for a gentler smoother, corrected by the trials already made."""
+"""Forecast of the checks of a wider smoother, corrected by the trials so far."""
 
 from __future__ import annotations
 
@@ -15,120 +15,121 @@ from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.smoothing.smoothers import Smoother
 
-Predict = Callable[[Smoother], Sequence[Check]]
+Forecast = Callable[[Smoother], Sequence[Check]]
 Score = tuple[bool, int, float]
 
-MARGIN = 0.005  # share of a limit kept in hand when a candidate is aimed at it
+MARGIN = 0.005  # of the limit, between a forecast demand and its limit
+TOLERANCE = 0.02  # relative difference of strength of two distinct trials
 COARSE_STEP = 1.2  # ratio of neighbouring strengths in the first sweep
 FINE_STEPS = 10  # in each of the two intervals beside the best of the first sweep
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """A trial as the feedback sees it."""
+    """Smoother and checks of a trial."""
 
     smoother: Smoother
     checks: tuple[Check, ...]
 
 
 def keeps_torque(checks: Sequence[Check]) -> bool:
-    """Whether the torque reduction holds, or is not asked for; a missing number does not."""
+    """Whether the torque reduction passes or is not required; a missing number fails."""
     return all(c.status in ("pass", "waived") for c in checks if c.id == TORQUE_REDUCTION.id)
 
 
 def score(checks: Sequence[Check]) -> Score:
-    """Less is better: torque reduction lost, must-haves failing, worst utilisation of those.
+    """Torque reduction lost, number of failed must-have checks, their worst utilisation.
 
-    A missing number counts among the failing; that it is missing says nothing of how badly.
+    The least score is the best. A missing number counts as failed, without a utilisation.
     """
     failing = [check for check in checks if check.blocks]
     known = [check.utilisation for check in failing if check.utilisation is not None]
     return (not keeps_torque(checks), len(failing), max(known, default=0.0))
 
 
-def plan(
-    attempts: Sequence[Attempt], predict: Predict, tolerance: float, widest: float
+def best_candidate(
+    attempts: Sequence[Attempt], forecast: Forecast, widest: float
 ) -> Smoother | None:
-    """The gentlest change that is foreseen to pass; else the smoother foreseen as the best.
+    """Narrowest smoother forecast to pass; else the one with the best forecast.
 
-    What is foreseen at a strength is the nearest trial, each demand moved by the difference
-    the closed forms see. Strengths are swept from that of the first trial up to the widest
-    window, coarsely and then finely beside the winner; nothing is assumed of their order.
+    The forecast at a strength is the nearest trial plus the difference of the closed forms.
+    Strengths are swept from that of the first trial up to the widest window, coarsely, then
+    finely beside the best; the score need not be monotonic.
 
     Parameters
     ----------
-    attempts : sequence   the trials so far
-    predict : callable    smoother -> checks; may raise a CamError where no cam exists
-    tolerance : float     strengths nearer than this share to a trial are not worth another
-    widest : float        angular width not to exceed, rad of crank
+    attempts : sequence   trials so far
+    forecast : callable   smoother -> checks; may raise a CamError where no cam exists
+    widest : float        maximum angular width, rad of crank
 
     Returns
     -------
-    Smoother or None      None when nothing better than the best trial is foreseen
+    Smoother or None      None when no forecast is better than the best trial
     """
     first = attempts[0].smoother
-    looked_at = tuple((item, _ahead(predict, item.smoother)) for item in attempts)
-    known = tuple(pair for pair in looked_at if pair[1])
+    pairs = ((item, _forecast_checks(forecast, item.smoother)) for item in attempts)
+    known = tuple((item, checks) for item, checks in pairs if checks)
     reach = math.log(max(widest / first.angular_width, 1.0))
     count = 1 + math.ceil(reach / math.log(COARSE_STEP))
     coarse = first.strength * np.exp(np.linspace(0.0, reach, count))
-    seen = {float(s): _foreseen(first.stretched(s), known, predict) for s in coarse}
-    place = int(np.searchsorted(coarse, _least(seen)))
+    scores = {float(s): _score(first.stretched(s), known, forecast) for s in coarse}
+    place = int(np.searchsorted(coarse, _best(scores)))
     beside = coarse[max(place - 1, 0) : place + 2]
     for low, high in pairwise(beside):
         for s in np.geomspace(low, high, FINE_STEPS, endpoint=False)[1:]:
-            seen[float(s)] = _foreseen(first.stretched(s), known, predict)
-    chosen = _least(seen)
-    if seen[chosen][0]:
-        return None  # whatever it helps, it would be paid for with the torque
+            scores[float(s)] = _score(first.stretched(s), known, forecast)
+    chosen = _best(scores)
+    if scores[chosen][0]:
+        return None  # the torque reduction would be lost
     # A pass is worth a small step, a little less of a failure is not.
-    near = 0.25 * tolerance if seen[chosen][1] == 0 else tolerance
+    near = 0.25 * TOLERANCE if scores[chosen][1] == 0 else TOLERANCE
     steps = [abs(math.log(chosen / item.smoother.strength)) for item in attempts]
-    gains = seen[chosen] < min(score(item.checks) for item in attempts)
+    gains = scores[chosen] < min(score(item.checks) for item in attempts)
     return first.stretched(chosen) if gains and min(steps) > near else None
 
 
-def _least(seen: Mapping[float, Score]) -> float:
+def _best(scores: Mapping[float, Score]) -> float:
     """The strength with the least score; of equals the least strength."""
-    return min(seen, key=lambda strength: (seen[strength], strength))
+    return min(scores, key=lambda strength: (scores[strength], strength))
 
 
-def _ahead(predict: Predict, smoother: Smoother) -> Mapping[str, Check]:
-    """Foreseen checks by id; none where no cam exists."""
+def _forecast_checks(forecast: Forecast, smoother: Smoother) -> Mapping[str, Check]:
+    """Forecast checks by id; none where no cam exists."""
     try:
-        return {check.id: check for check in predict(smoother)}
+        return {check.id: check for check in forecast(smoother)}
     except CamError:
         return {}
 
 
-def _foreseen(
+def _score(
     smoother: Smoother,
     known: Sequence[tuple[Attempt, Mapping[str, Check]]],
-    predict: Predict,
+    forecast: Forecast,
 ) -> Score:
-    ahead = _ahead(predict, smoother)
-    if not ahead:
+    """Score of the forecast checks of a smoother; known: trials and their own forecasts."""
+    candidate = _forecast_checks(forecast, smoother)
+    if not candidate:
         return (True, sys.maxsize, math.inf)
-    if not known:  # no trial so far had a cam to learn from
-        return score([_in_hand(check) for check in ahead.values()])
-    attempt, behind = min(
+    if not known:  # no trial so far had a cam
+        return score([_with_margin(check) for check in candidate.values()])
+    nearest, own = min(
         known, key=lambda pair: abs(math.log(pair[0].smoother.strength / smoother.strength))
     )
-    return score([_moved(check, ahead, behind) for check in attempt.checks])
+    return score([_corrected(check, candidate, own) for check in nearest.checks])
 
 
-def _moved(check: Check, ahead: Mapping[str, Check], behind: Mapping[str, Check]) -> Check:
-    """A trial's check as foreseen elsewhere; as it was where nobody foresees it."""
-    there, here = ahead.get(check.id), behind.get(check.id)
+def _corrected(check: Check, candidate: Mapping[str, Check], own: Mapping[str, Check]) -> Check:
+    """A trial's check plus the difference of two forecasts; unchanged without a forecast."""
+    there, here = candidate.get(check.id), own.get(check.id)
     if there is None or here is None:
         return check
     if check.demand is None or there.demand is None or here.demand is None:
         return replace(check, demand=None)
-    return _in_hand(replace(check, demand=check.demand + there.demand - here.demand))
+    return _with_margin(replace(check, demand=check.demand + there.demand - here.demand))
 
 
-def _in_hand(check: Check) -> Check:
-    """The check with a margin of its limit kept in hand."""
+def _with_margin(check: Check) -> Check:
+    """The check with its demand moved towards the limit by the margin."""
     if check.demand is None or check.limit is None:
         return check
     side = 1.0 if check.sense == "at_most" else -1.0

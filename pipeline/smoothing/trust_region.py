@@ -1,4 +1,4 @@
-"""From a start to the best design near it: convex programs within a trust region."""
+"""Descent from a start to a local optimum: convex programs within a trust region."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.smoothing.cone_program import Answer, Reach, solved
+from camwright.pipeline.smoothing.cone_program import ConeSolution, Reach, solved
 from camwright.pipeline.smoothing.linear_model import Model, State
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import FEASIBLE, RESERVE
@@ -17,26 +17,26 @@ PENALTY, _PENALTY_MAX = 20.0, 2e3
 _STEPS_MAX = 60
 _CONVERGED = 2e-6
 _TRUST, _TRUST_LEAST = 0.3, 1e-7
-# Rows of a limit that a program begins with, and joins by: this near to the limit.
-_NEAR, _JOINS = 0.05, 0.01
-_MISSED = 1e-9
+# Distance from the limit of the rows in the first program, and of those added to it.
+_NEAR, _ADDED = 0.05, 0.01
+_VIOLATED = 1e-9
 
 
 class Descent(NamedTuple):
-    """Where a descent ended, the last program it kept, its steps, and whether it converged."""
+    """End of a descent: state, last accepted program, number of steps."""
 
     state: State
-    answer: Answer | None
+    program: ConeSolution | None
     steps: int
     converged: bool
 
 
 def descended(search: Search, ripple_weight: float) -> Descent:
-    """The design that a search comes to from its start.
+    """Local optimum of a search from its start.
 
     Parameters
     ----------
-    ripple_weight : float   0 asks for any cam within the limits
+    ripple_weight : float   0: any cam within the limits
 
     References
     ----------
@@ -48,27 +48,27 @@ def descended(search: Search, ripple_weight: float) -> Descent:
     for step in range(1, _STEPS_MAX + 1):
         model = search.model(state)
         while True:
-            # The box alone would let short waves grow that no ripple of the speed sees.
+            # The box alone does not bound short waves, which a speed ripple does not contain.
             reach = Reach(search.bend, trust)
-            answer = _answered(model, search.box(state, trust), reach, penalty, ripple_weight)
-            if answer is None:
+            program = _solved(model, search.box(state, trust), reach, penalty, ripple_weight)
+            if program is None:
                 trust *= 0.3
                 if trust < _TRUST_LEAST:
                     return Descent(state, last, step, False)
                 continue
-            there = search.state(*search.moved(state, answer.step))
+            there = search.state(*search.after(state, program.step))
             now = state.merit(penalty, ripple_weight)
-            foreseen = now - answer.objective - state.jerk
-            gained = now - there.merit(penalty, ripple_weight)
-            if foreseen <= _CONVERGED:
+            predicted = now - program.objective - state.jerk
+            actual = now - there.merit(penalty, ripple_weight)
+            if predicted <= _CONVERGED:
                 if penalty < _PENALTY_MAX and not _within(state):
                     penalty *= 10.0
                     trust = max(trust, 0.1)
                     continue
-                return Descent(there if gained > 0 else state, answer, step, True)
-            share = gained / foreseen
+                return Descent(there if actual > 0 else state, program, step, True)
+            share = actual / predicted
             if share > 0.05:
-                state, last = there, answer
+                state, last = there, program
                 trust = min(trust * (2.0 if share > 0.7 else 1.0 if share > 0.25 else 0.5), 1.0)
                 break
             trust *= 0.35
@@ -81,14 +81,14 @@ def _within(state: State) -> bool:
     return all(value <= 1.0 - RESERVE + FEASIBLE for value in state.utilisation.values())
 
 
-def _answered(
+def _solved(
     model: Model, box: Array, bend: Reach, penalty: float, ripple_weight: float
-) -> Answer | None:
-    """The program of all rows that matter within the box, found by taking in those it misses."""
+) -> ConeSolution | None:
+    """Solution with all rows that can be active in the box; violated rows are added in turn."""
     reach, size = np.abs(box).max(axis=0), box.shape[1]
-    matter = [limit.highest(reach) >= 0.0 for limit in model.limits]
+    active = [limit.highest(reach) >= 0.0 for limit in model.limits]
     chosen = [
-        useful & (limit.level >= -_NEAR) for useful, limit in zip(matter, model.limits, strict=True)
+        useful & (limit.level >= -_NEAR) for useful, limit in zip(active, model.limits, strict=True)
     ]
     while True:
         rows = [
@@ -96,22 +96,25 @@ def _answered(
             for limit, taken in zip(model.limits, chosen, strict=True)
             if taken.any()
         ]
-        answer = solved(
+        program = solved(
             model.norms, rows, model.curvature, model.slope, box, penalty, ripple_weight, bend
         )
-        if answer is None or not _taken_in(model, answer, matter, chosen):
-            return answer
+        if program is None or not _violated_rows_added(model, program, active, chosen):
+            return program
 
 
-def _taken_in(
-    model: Model, answer: Answer, matter: list[NDArray[np.bool_]], chosen: list[NDArray[np.bool_]]
+def _violated_rows_added(
+    model: Model,
+    program: ConeSolution,
+    active: list[NDArray[np.bool_]],
+    chosen: list[NDArray[np.bool_]],
 ) -> bool:
-    """Whether the answer passes a row left out; such rows and those near them join the chosen."""
-    grown = False
+    """Add the rows that a solution violates, and those near them; whether there are any."""
+    added = False
     for place, limit in enumerate(model.limits):
-        over = limit.at(answer.step) - answer.slack.get(limit.name, 0.0)
-        missed = matter[place] & ~chosen[place]
-        if (over[missed] > _MISSED).any():
-            chosen[place] = chosen[place] | (matter[place] & (over > -_JOINS))
-            grown = True
-    return grown
+        over = limit.at(program.step) - program.slack.get(limit.name, 0.0)
+        left_out = active[place] & ~chosen[place]
+        if (over[left_out] > _VIOLATED).any():
+            chosen[place] = chosen[place] | (active[place] & (over > -_ADDED))
+            added = True
+    return added

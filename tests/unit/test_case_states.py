@@ -10,7 +10,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import CREEP, Corner, machine, machines
-from camwright.pipeline.checks import guide_bushes, jump_and_jamming, roller_bearing
+from camwright.pipeline.checks import guide_strength, jump_and_jamming, roller_bearing
 from camwright.pipeline.checks.jump_and_jamming import contact_force_margin
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.tiers import Tier
@@ -201,7 +201,7 @@ def test_at_rest_alone_no_speed_dependent_check_is_missing(loads):
         return check(solution).as_record()["demand"]
 
     assert demand(jump_and_jamming.jump) == pytest.approx(0.0, abs=1e-10)
-    assert demand(guide_bushes.guide_pv_a) == pytest.approx(0.0, abs=1e-3)
+    assert demand(guide_strength.guide_pv_a) == pytest.approx(0.0, abs=1e-3)
     assert demand(roller_bearing.roller_speed) == pytest.approx(0.0, abs=1e-1)
     assert demand(roller_bearing.roller_life) > 1e3
     assert demand(jump_and_jamming.jump_speed) == pytest.approx(3318.0, rel=0.01)

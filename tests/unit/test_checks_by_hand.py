@@ -10,7 +10,7 @@ from trial_variants import cycle_with, with_case, with_cycle, with_limits, with_
 from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.checks import (
     contact_strength,
-    guide_bushes,
+    guide_strength,
     jump_and_jamming,
     manufacture,
     roller_bearing,
@@ -88,7 +88,7 @@ def test_guide_gap_by_hand():
 
 def test_guide_length_by_hand():
     """80 mm apart, 20 mm long, 30 mm over at full lift and 40 mm at none."""
-    assert guide_bushes.guide_length(made.solution()).demand == pytest.approx(100.0 / 40.0)
+    assert guide_strength.guide_length(made.solution()).demand == pytest.approx(100.0 / 40.0)
 
 
 def test_force_on_the_roller_by_hand():

@@ -38,7 +38,7 @@ from camwright.pipeline.checks import (
     solution_verification,
     torque_balance,
 )
-from camwright.pipeline.checks import guide_bushes as guides
+from camwright.pipeline.checks import guide_strength as guides
 from camwright.pipeline.checks.check import Check, binding, verdict
 from camwright.pipeline.checks.extremes import greatest, least
 from camwright.pipeline.checks.registry import (

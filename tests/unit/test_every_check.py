@@ -16,7 +16,12 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import solution_verification as verification
 from camwright.pipeline.checks.check import verdict
-from camwright.pipeline.checks.registry import CHECKS, MADE_FROM_OTHERS
+from camwright.pipeline.checks.registry import (
+    CHECKS,
+    TOLERANCE_CORNERS,
+    UNSIGNED,
+    WAIVERS_WITHOUT_EFFECT,
+)
 from camwright.pipeline.follower.guide_reactions import guide_reactions
 from camwright.pipeline.preview import preview_case
 
@@ -125,7 +130,9 @@ def test_every_check_is_tried():
     """A check cannot be added without its limits, NaN, missing data and hand calculation."""
     assert set(BY_ID) == set(TRIED) | BY_ITSELF
     assert len(CHECKS) == len(BY_ID)
-    assert {declared.id for declared in MADE_FROM_OTHERS} == MADE_LATER
+    assert {
+        declared.id for declared in (TOLERANCE_CORNERS, UNSIGNED, WAIVERS_WITHOUT_EFFECT)
+    } == MADE_LATER
 
 
 def test_a_signed_case_raises_no_check_that_is_not_tried():

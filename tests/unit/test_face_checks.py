@@ -68,7 +68,7 @@ def test_checks_of_a_roller_do_not_apply_to_a_face_nor_the_other_way():
 def test_a_face_is_called_a_face():
     solution = faced()
     second = cam_shape.second_contact(solution)
-    assert second.title == "Interference of the face away from its contact"
+    assert second.title == "Interference of the face outside the contact"
     assert second.demand == 0.0
     assert "no roughness of the face" not in surface_durability.film_ratio(solution).note
     assert "no roughness of the face" in surface_durability.film_ratio(faced(roughness=None)).note

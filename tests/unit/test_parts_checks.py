@@ -17,7 +17,7 @@ from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import (
     camshaft_strength,
-    guide_bushes,
+    guide_strength,
     jump_and_jamming,
     part_strength,
     spring_strength,
@@ -76,10 +76,10 @@ def declared_in(module):
 PARTS = (
     jump_and_jamming.jam_index_friction_max,
     jump_and_jamming.elastic_contact,
-    guide_bushes.guide_edge_pressure_a,
-    guide_bushes.guide_edge_pressure_b,
-    guide_bushes.guide_temperature_a,
-    guide_bushes.guide_temperature_b,
+    guide_strength.guide_edge_pressure_a,
+    guide_strength.guide_edge_pressure_b,
+    guide_strength.guide_temperature_a,
+    guide_strength.guide_temperature_b,
     *declared_in(part_strength),
     *declared_in(spring_strength),
     *declared_in(wear_and_grease),
@@ -225,7 +225,7 @@ def test_temperature_with_a_heat_path(bare):
     material = replace(guides.a.material, temperature_limit=353.15)
     guide = replace(guides.a, thermal_resistance=2.0, material=material)
     hot = harmonic(bare.case.model_copy(update={"guides": replace(guides, a=guide)}))
-    check = guide_bushes.guide_temperature_a(hot)
+    check = guide_strength.guide_temperature_a(hot)
     power = max(c.parts.heat_a.mean_power for c in hot.cycles)
     assert check.demand == pytest.approx(20.0 + 2.0 * power, rel=1e-9)
     assert check.limit == pytest.approx(80.0)

@@ -17,12 +17,17 @@ from camwright.pipeline.case.renamed_keys import renamed_names, with_new_keys
 from camwright.pipeline.case.requirements_section import FreeName
 from camwright.pipeline.case.section import section_of
 from camwright.pipeline.case.template import template
-from camwright.pipeline.checks.registry import CHECKS, MADE_FROM_OTHERS
+from camwright.pipeline.checks.registry import (
+    CHECKS,
+    TOLERANCE_CORNERS,
+    UNSIGNED,
+    WAIVERS_WITHOUT_EFFECT,
+)
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.results.workshop_files import WORKSHOP
 
 NAMES = renamed_names()
-CHECK_IDS = {each.id for each in (*CHECKS, *MADE_FROM_OTHERS)}
+CHECK_IDS = {each.id for each in (*CHECKS, TOLERANCE_CORNERS, UNSIGNED, WAIVERS_WITHOUT_EFFECT)}
 
 ROWS = {
     "[limits]": '{share} = 0.25\n{gap} = "2 mm"',

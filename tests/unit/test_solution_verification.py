@@ -8,7 +8,7 @@ import pytest
 from made_check import made_check
 from trial_variants import with_benchmark, with_certificate
 
-from camwright.pipeline.checks import guide_bushes
+from camwright.pipeline.checks import guide_strength
 from camwright.pipeline.checks import solution_verification as verification
 from camwright.pipeline.checks.contact_strength import contact_pressure
 from camwright.pipeline.checks.error_bars import with_error_bars
@@ -87,7 +87,7 @@ def test_benchmarks_are_solved_here(monkeypatch, tmp_path):
 
 def test_error_bar_of_a_guide_is_that_of_its_reaction():
     solution = made.solution()
-    guide = replace(guide_bushes.guide_pv_a(solution), demand=2.0)
+    guide = replace(guide_strength.guide_pv_a(solution), demand=2.0)
     mesh = made_check("mesh_reaction", 0.005, 0.03, unit="%")
     # Half a per cent of the mesh, and what rounding leaves.
     assert with_error_bars(solution, [guide, mesh])[0].error == pytest.approx(0.01)

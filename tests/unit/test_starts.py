@@ -15,7 +15,7 @@ def test_starts_that_do_not_agree_say_so():
     found = Starts((0.1, 0.12, None))
     assert not found.agree
     assert "do not agree" in found.sentence
-    assert "1 find no cam" in found.sentence and "20 %" in found.sentence
+    assert "1 lead to no cam" in found.sentence and "20 %" in found.sentence
 
 
 def test_nothing_left_is_nothing_to_differ_by():
@@ -25,11 +25,11 @@ def test_nothing_left_is_nothing_to_differ_by():
 def test_no_start_within_the_limits():
     found = Starts((None, None))
     assert not found.agree
-    assert found.sentence == "none of 2 starts finds a cam within all limits"
+    assert found.sentence == "no start of 2 leads to a cam within all limits"
 
 
 def test_one_start_tells_nothing_of_others():
-    assert "nothing is known" in Starts((0.1,)).sentence
+    assert "not excluded" in Starts((0.1,)).sentence
 
 
 def test_record_has_what_the_sentence_says():

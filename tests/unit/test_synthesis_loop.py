@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from made_check import made_check
 
-from camwright.pipeline.smoothing.fe_correction import SETTLED, Moved, settled
+from camwright.pipeline.smoothing.fe_correction import SETTLED, LimitShift, settled
 from camwright.pipeline.smoothing.scenario import Correction
 
 
-def moved(before, after, limit="guide_pv_A"):
-    return Moved(limit, before, after)
+def shift(before, after, limit="guide_pv_A"):
+    return LimitShift(limit, before, after)
 
 
 def test_first_corrections_are_taken_over_whole():
-    assert moved(0.9, 0.95).swing(None) == 1.0
-    assert moved(0.9, 0.95).swing(moved(0.9, 0.95, "jump")) == 1.0
-    assert moved(0.9, 0.95).swing(moved(0.9, 0.9)) == 1.0
+    assert shift(0.9, 0.95).relaxation(None) == 1.0
+    assert shift(0.9, 0.95).relaxation(shift(0.9, 0.95, "jump")) == 1.0
+    assert shift(0.9, 0.95).relaxation(shift(0.9, 0.9)) == 1.0
 
 
 def test_swinging_corrections_end_where_a_geometric_series_does():
@@ -23,12 +23,12 @@ def test_swinging_corrections_end_where_a_geometric_series_does():
     q, start = 0.6, 0.2
     first = 1 - q * start
     second = 1 - q * first
-    share = moved(first, second).swing(moved(start, first))
+    share = shift(first, second).relaxation(shift(start, first))
     assert first + share * (second - first) == pytest.approx(1 / (1 + q), abs=1e-12)
 
 
 def test_a_series_that_goes_one_way_is_left_alone():
-    assert moved(0.95, 0.97).swing(moved(0.9, 0.95)) == 1.0
+    assert shift(0.95, 0.97).relaxation(shift(0.9, 0.95)) == 1.0
 
 
 def check(demand, lift_can_help=True):
@@ -46,7 +46,7 @@ def check(demand, lift_can_help=True):
     ],
 )
 def test_trials_end_where_nothing_moves_that_the_lift_can_help(share, checks, ends):
-    assert settled(moved(0.9, 0.9 + share), checks) is ends
+    assert settled(shift(0.9, 0.9 + share), checks) is ends
 
 
 def test_part_of_the_way_from_one_correction_to_another():
@@ -58,5 +58,5 @@ def test_part_of_the_way_from_one_correction_to_another():
 
 
 def test_sentence_names_the_limit_and_both_shares():
-    assert "guide_pv_A from 0.9 to 0.95" in moved(0.9, 0.95).sentence
-    assert "no limit" in Moved("", 0.0, 0.0).sentence
+    assert "guide_pv_A from 0.9 to 0.95" in shift(0.9, 0.95).sentence
+    assert "no utilisation" in LimitShift("", 0.0, 0.0).sentence

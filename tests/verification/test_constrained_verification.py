@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque, spring_deflection, stored_energy
@@ -14,14 +15,15 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.follower.follower_forces import follower_loads
-from camwright.pipeline.smoothing.constrained_synthesis import RESERVE, Problem, synthesise
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.infeasibility import infeasibility
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.shadow_prices import prices
 from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
 
 CASES = Path(__file__).parents[2] / "cases"
-RATINGS = Ratings(
+RATINGS = rated(
     roller_radius=0.008, travel=0.045, pressure_angle=np.pi / 6, jam_index=0.5,
     curvature_ratio=1.5, undercut_factor=0.3, contact_force_margin=0.2, jump=1.0,
 )  # fmt: skip
@@ -45,7 +47,7 @@ def idle(published):
 
 
 def problem(idle, **ratings):
-    return Problem((idle,), replace(RATINGS, **ratings), DesignVariables(24.2e3, 242.0, 0.05))
+    return Problem((idle,), rated(RATINGS, **ratings), DesignVariables(24.2e3, 242.0, 0.05))
 
 
 @pytest.fixture(scope="module")
@@ -132,7 +134,7 @@ def test_lift_closes_and_scales_with_the_spring(idle):
 
 def test_energy_without_limits_is_the_exact_one(idle):
     light = replace(idle, mass=0.0, friction_a=0.0, friction_b=0.0)
-    design = synthesise(replace(problem(light), ratings=Ratings(roller_radius=0.008)))
+    design = synthesise(replace(problem(light), ratings=rated(roller_radius=0.008)))
     energy, _ = stored_energy(uniform_turn(720), 2 * idle.torque)
     lift = spring_deflection(energy, 24.2e3, 242.0)
     # 96 splines miss the engine's torque by a half per mille
@@ -150,10 +152,10 @@ def test_conflict_is_named_and_a_relaxation_makes_room(idle):
     report = infeasibility(given)
     assert set(report.conflict) == {"roller_static", "torque_reduction"}
     roller = next(item for item in report.relaxations if item.unit == "N")
-    ratings = replace(given.ratings, normal_force=roller.asked)
+    ratings = replace(given.ratings, normal_force=roller.after)
     assert synthesise(replace(given, ratings=ratings)).feasible
     less = next(item for item in report.relaxations if item.what.startswith("torque"))
-    assert synthesise(replace(given, torque_reduction=less.asked)).feasible
+    assert synthesise(replace(given, torque_reduction=less.after)).feasible
 
 
 def test_price_of_the_roller_foresees_a_larger_one(idle, limited):

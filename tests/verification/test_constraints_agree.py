@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -27,7 +28,7 @@ from camwright.pipeline.smoothing.constraints import (
 )
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import INITIAL_ENERGY, LEAST_ENERGY, Search
-from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -210,7 +211,7 @@ RANGES = {
     "rate": (1e4, 4e4), "preload": (100.0, 400.0), "prime_radius": (0.03, 0.07),
     "phase": (-0.5, 0.5),
 }  # fmt: skip
-EVERY = Ratings(
+EVERY = rated(
     roller_radius=0.008, offset=0.003, travel=0.045, pressure_angle=np.pi / 6, jam_index=0.5,
     curvature_ratio=1.5, undercut_factor=0.3, hollow_radius=0.03, curvature_rate=300.0,
     cam_radius=0.08, pressure=1e9, contact_width=0.01, contact_modulus=1.2e11,
@@ -243,7 +244,7 @@ def test_gradients_match_differences(free):
     step[24:] *= 1e-2  # the rest moves as much for a hundredth of k, P and r0
 
     def beside(side):
-        return search.model(search.state(*search.moved(state, side * h * step))).limits
+        return search.model(search.state(*search.after(state, side * h * step))).limits
 
     seen = set()
     for limit, up, down in zip(search.model(state).limits, beside(1), beside(-1), strict=True):
@@ -271,7 +272,7 @@ def test_gradient_of_each_term_of_the_objective(free, term):
     state = search.state(search.start + 2.0, given.variables)
     step, h = np.random.default_rng(7).normal(size=24 + len(free)), 1e-5
     step[24:] *= 1e-2
-    up, down = (search.state(*search.moved(state, side * h * step)) for side in (1, -1))
+    up, down = (search.state(*search.after(state, side * h * step)) for side in (1, -1))
     model = search.model(state)
     if term == "jerk":
         slope, differences = model.slope @ step, (up.jerk - down.jerk) / (2 * h)

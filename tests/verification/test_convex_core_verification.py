@@ -5,13 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import NonlinearConstraint, minimize
+from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.pipeline.smoothing.constrained_synthesis import RESERVE, Problem, started
+from camwright.pipeline.case.limits import PRESSURE_ANGLE
+from camwright.pipeline.smoothing.constrained_synthesis import started
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem
 from camwright.pipeline.smoothing.trust_region import descended
 
 COUNT, POINTS = 14, 60
@@ -31,7 +34,7 @@ def problem(**ratings):
     torque = 14.0 * np.sin(2 * THETA) + 6.0 * np.cos(3 * THETA)
     still = Scenario("still", 0.0, torque, 0.0, 0.08, 0.03, 0.0, 0.0)
     return Problem(
-        (still,), Ratings(roller_radius=0.008, **ratings), DesignVariables(RATE, PRELOAD, BASE),
+        (still,), rated(roller_radius=0.008, **ratings), DesignVariables(RATE, PRELOAD, BASE),
         coefficients=COUNT, points=POINTS, jerk_weight=0.0,
     )  # fmt: skip
 
@@ -53,8 +56,8 @@ def room(given, c):
     lift = (np.sqrt(square) - PRELOAD) / RATE
     slope = SLOPE @ c
     found = [LEVEL @ c, (ratings.travel * held - lift) / ratings.travel]
-    if ratings.pressure_angle is not None:
-        steepest = np.tan(ratings.pressure_angle * held) * np.sqrt(square) * (BASE + lift)
+    if PRESSURE_ANGLE in ratings.limits:
+        steepest = np.tan(ratings.limits[PRESSURE_ANGLE] * held) * np.sqrt(square) * (BASE + lift)
         found += [(steepest - slope) / 10.0, (steepest + slope) / 10.0]
     if ratings.normal_force is not None:
         top = (ratings.normal_force * held) ** 2
@@ -117,8 +120,13 @@ def test_energy_held_at_zero_leaves_more_ripple():
     assert (LEVEL @ found.coefficients).min() == pytest.approx(0.0, abs=1e-6)
 
 
-@pytest.mark.parametrize("change", [{"variables": DesignVariables(RATE, PRELOAD, 0.009)},
-                                    {"ratings": Ratings(0.008, offset=0.002)}])  # fmt: skip
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"variables": DesignVariables(RATE, PRELOAD, 0.009)},
+        {"ratings": rated(roller_radius=8e-3, offset=2e-3)},
+    ],
+)
 def test_what_is_not_convex_has_no_convex_part(change):
     given = replace(problem(**LIMITS["angle"]), **change)
     assert convex_start(given) is None

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -12,7 +13,7 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import Jet, shape_utilisations
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.shadow_prices import limits_in_use, prices
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
@@ -22,7 +23,7 @@ def test_room_for_the_cam_is_that_of_its_contour(offset):
     theta = uniform_turn(360)
     lift = Lift(theta, 0.01 * (1 - np.cos(2 * theta)))
     radius = np.hypot(*RollerContour(PitchCurve(lift, 0.05, offset), 0.008).points(theta))
-    ratings = Ratings(roller_radius=0.008, offset=offset, cam_radius=0.06)
+    ratings = rated(roller_radius=0.008, offset=offset, cam_radius=0.06)
     jet, variables = Jet(*lift.derivatives(theta, 3)), DesignVariables(1e4, 1e2, 0.05)
     utilisations = shape_utilisations(jet, variables, ratings)
     np.testing.assert_allclose(0.06 * utilisations["cam_radius"], radius, rtol=1e-12)
@@ -30,7 +31,7 @@ def test_room_for_the_cam_is_that_of_its_contour(offset):
 
 TURN = uniform_turn(240)
 TORQUE = 8.0 * np.sin(2 * TURN) + 5.0 * np.cos(3 * TURN) + 2.0 * np.sin(5 * TURN + 0.5)
-RATINGS = Ratings(
+RATINGS = rated(
     roller_radius=0.016, travel=0.05, pressure_angle=np.radians(40.0), jam_index=0.8,
     curvature_ratio=1.2, undercut_factor=0.1, contact_width=0.014, contact_modulus=115e9,
     guide_area=(4e-4, 4e-4),
@@ -41,7 +42,7 @@ LIFE = 8e10  # N^3 rad/s
 def asked(**ratings):
     running = Scenario("idle", 78.5, TORQUE, 0.2, 0.08, 0.038, 0.06, 0.06)
     return Problem(
-        (running,), replace(RATINGS, **ratings), DesignVariables(24.2e3, 242.0, 0.056),
+        (running,), rated(RATINGS, **ratings), DesignVariables(24.2e3, 242.0, 0.056),
         coefficients=36, points=240,
     )  # fmt: skip
 
@@ -74,7 +75,7 @@ def test_price_is_the_difference_of_designs_solved_again(limit, given, unit):
     def ripple(factor):
         value = given[name]
         changed = (value[0] * factor, None) if isinstance(value, tuple) else value * factor
-        other = replace(problem, ratings=replace(problem.ratings, **{name: changed}))
+        other = replace(problem, ratings=rated(problem.ratings, **{name: changed}))
         return synthesise(replace(other, seed=design.coefficients)).ripple * np.std(TORQUE)
 
     gained = ripple(1.0 - share) - ripple(1.0 + share)
@@ -89,7 +90,7 @@ def test_price_is_the_difference_of_designs_solved_again(limit, given, unit):
 
 
 def test_what_is_said_of_a_limit_has_its_size_and_unit():
-    ratings = replace(RATINGS, normal_force=700.0, force_safety=1.5, hollow_radius=0.066,
+    ratings = rated(RATINGS, normal_force=700.0, force_safety=1.5, hollow_radius=0.066,
                       life_force_cubed=LIFE, dynamic_rating=9e3)  # fmt: skip
     bounds = bounds_of(ratings)
     assert bounds["roller_static"].value == pytest.approx(1050.0)  # the rating, its safety inside

@@ -8,25 +8,25 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from synthesis_ratings import rated
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.smoothing.constrained_synthesis import Problem, synthesise
-from camwright.pipeline.smoothing.energy_spline import exact_start, fitted_energy
-from camwright.pipeline.smoothing.grid import Grid
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.energy_spline import Grid, exact_start, fitted_energy
 from camwright.pipeline.smoothing.multistart import explored
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.smoothers import KINDS, Smoother, smoothed
-from camwright.pipeline.smoothing.synthesis_problem import coarsened
+from camwright.pipeline.smoothing.synthesis_problem import Problem, coarsened
 
 CASES = Path(__file__).parents[2] / "cases"
 RATE, PRELOAD, BASE = 24.2e3, 242.0, 0.05
 POINTS, COUNT = 90, 24
-LIMITS = Ratings(
+LIMITS = rated(
     roller_radius=0.008, travel=0.045, pressure_angle=np.pi / 6, jam_index=0.5,
     curvature_ratio=1.5, undercut_factor=0.3, contact_force_margin=0.2, jump=0.8,
     normal_force=1000.0, overspeed=150.0, jump_speed=200.0,

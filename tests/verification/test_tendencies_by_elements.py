@@ -15,7 +15,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import Corner, Machine, machines
 from camwright.pipeline.case.template import template
-from camwright.pipeline.checks import contact_strength, guide_bushes, jump_and_jamming
+from camwright.pipeline.checks import contact_strength, guide_strength, jump_and_jamming
 from camwright.pipeline.checks.check import Check, Declaration
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
@@ -109,7 +109,7 @@ def test_a_larger_preload_raises_friction_loss_and_least_contact_force() -> None
     least = [float(cycle(corner).loads.normal_force.min()) for corner in corners]
     assert np.all(np.diff(losses) > 0)
     assert np.all(np.diff(least) > 0)
-    pv = [judged(guide_bushes.guide_pv_a, corner).demand for corner in corners]
+    pv = [judged(guide_strength.guide_pv_a, corner).demand for corner in corners]
     assert np.all(np.diff(pv) > 0)
     # Over the preload itself the margin falls: the cam's own force grows by less.
     share = [judged(jump_and_jamming.contact_force_margin, corner).demand for corner in corners]

@@ -13,8 +13,8 @@ from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import ROLLER_STATIC_SAFETY
 from camwright.pipeline.smoothing.cone_program import Norm, Rows, solved
-from camwright.pipeline.smoothing.constraints import Scenario
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
+from camwright.pipeline.smoothing.scenario import Scenario
 from camwright.pipeline.smoothing.synthesis_problem import thinned
 
 RESERVE = 0.05  # relative ripple, for friction and inertia, which the bound neglects

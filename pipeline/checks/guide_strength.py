@@ -1,4 +1,4 @@
-"""The two guides of the stem: pressure, PV value, temperature, length."""
+"""Checks of the guides of the stem: pressure, PV value, temperature, length."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
@@ -21,20 +22,14 @@ from camwright.pipeline.follower.guide_reactions import Guide
 Side = Literal["A", "B"]
 
 
-def guide_of(cycle: Cycle, side: Side) -> Guide:
-    """Guide A or B of a load case."""
-    guides = cycle.machine.guides
-    return guides.a if side == "A" else guides.b
+def guide_of(machine: Machine, side: Side) -> Guide:
+    """Guide A or B."""
+    return machine.guides.a if side == "A" else machine.guides.b
 
 
 def heat_of(parts: PartLoads, side: Side) -> GuideHeat:
     """Friction heat of guide A or B."""
     return parts.heat_a if side == "A" else parts.heat_b
-
-
-def _guide(solution: Solution, side: Side) -> Guide:
-    guides = solution.machine.guides
-    return guides.a if side == "A" else guides.b
 
 
 def _reaction(cycle: Cycle, side: Side) -> Array:
@@ -44,7 +39,7 @@ def _reaction(cycle: Cycle, side: Side) -> Array:
 def _guide_pressure(side: Side) -> Declaration:
     @check(
         id=f"guide_pressure_{side}",
-        title=f"Bearing pressure in guide {side}",
+        title=f"Mean bearing pressure in guide {side}",
         unit="MPa",
         method="greatest reaction over diameter x length",
         lift_can_help=True,
@@ -52,11 +47,11 @@ def _guide_pressure(side: Side) -> Declaration:
         error="guides",
     )
     def pressure(solution: Solution) -> Demand:
-        """Greatest mean pressure in a guide, Pa."""
-        guide = _guide(solution, side)
+        """Maximum over the turn of the mean pressure in a guide, Pa."""
+        guide = guide_of(solution.machine, side)
         worst = greatest(
             solution.cycles,
-            lambda c: demands.bush_pressure(_reaction(c, side), guide.projected_area),
+            lambda c: demands.guide_pressure(_reaction(c, side), guide.projected_area),
         )
         missing = [] if guide.pressure_limit is not None else [_no_limit("pressure", side)]
         return Demand(
@@ -79,7 +74,7 @@ def _maker(guide: Guide) -> str:
 
 
 def _contributions(solution: Solution, side: Side, worst: Extreme) -> str:
-    """Contributions of point supports, of length and of clearance to the greatest pressure."""
+    """Contributions of point supports, length and clearance to the maximum pressure."""
     if solution.coarse:
         return ""
     cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
@@ -87,7 +82,7 @@ def _contributions(solution: Solution, side: Side, worst: Extreme) -> str:
     statics = guides.statics_a if side == "A" else guides.statics_b
     reaction = _reaction(cycle, side)
     k = int(np.argmax(np.abs(reaction)))
-    per_newton = np.sign(reaction[k]) / guide_of(cycle, side).projected_area
+    per_newton = np.sign(reaction[k]) / guide_of(cycle.machine, side).projected_area
     points, length, clearance = (
         shown(float(per_newton * each[k]), "MPa", 3)
         for each in (statics, share.by_length, share.by_clearance)
@@ -96,17 +91,17 @@ def _contributions(solution: Solution, side: Side, worst: Extreme) -> str:
 
 
 def mean_pv(cycle: Cycle, side: Side) -> float:
-    """Pressure times sliding speed in guide A or B, mean over the turn, Pa m/s."""
+    """PV value in guide A or B, mean over the turn, Pa m/s."""
     guides = cycle.guides
     load = guides.rubbing_load_a if side == "A" else guides.rubbing_load_b
-    area = guide_of(cycle, side).projected_area
-    return float(np.mean(demands.bush_pv(load, cycle.loads.velocity, area)))
+    area = guide_of(cycle.machine, side).projected_area
+    return float(np.mean(demands.guide_pv(load, cycle.loads.velocity, area)))
 
 
 def _pv_of_reaction(cycle: Cycle, side: Side) -> float:
-    """The same by the reaction, in which loads of opposite sides cancel though both rub."""
-    load, area = np.abs(_reaction(cycle, side)), guide_of(cycle, side).projected_area
-    return float(np.mean(demands.bush_pv(load, cycle.loads.velocity, area)))
+    """PV value by the net reaction, in which loads on opposite sides of the bore cancel, Pa m/s."""
+    load, area = np.abs(_reaction(cycle, side)), guide_of(cycle.machine, side).projected_area
+    return float(np.mean(demands.guide_pv(load, cycle.loads.velocity, area)))
 
 
 def _guide_pv(side: Side) -> Declaration:
@@ -114,15 +109,15 @@ def _guide_pv(side: Side) -> Declaration:
         id=f"guide_pv_{side}",
         title=f"PV value in guide {side}",
         unit="MPa m/s",
-        method="mean |R v| over the turn over diameter x length; R sums the loads of both sides"
+        method="mean |R v| over the turn over diameter x length; R: sum of the loads on both sides"
         " of the bore",
         lift_can_help=True,
         forecast=True,
         error="guides",
     )
     def pv(solution: Solution) -> Demand:
-        """Pressure times sliding speed in a guide, mean over the turn, Pa m/s."""
-        guide = _guide(solution, side)
+        """PV value in a guide, mean over the turn, Pa m/s."""
+        guide = guide_of(solution.machine, side)
         worst = worst_case(solution.cycles, lambda cycle: mean_pv(cycle, side))
         alone = worst_case(solution.cycles, lambda cycle: _pv_of_reaction(cycle, side))
         limit = pv_limit(guide)
@@ -135,7 +130,7 @@ def _guide_pv(side: Side) -> Declaration:
 
 
 def pv_limit(guide: Guide) -> float | None:
-    """PV limit of a guide, or that of nylon in its state of lubrication, Pa m/s."""
+    """PV limit of a guide, or of nylon by its lubrication, Pa m/s."""
     state = _graded_state(guide)
     return guide.pv_limit if state is None else NYLON_PV[state]
 
@@ -150,17 +145,17 @@ def _pv_source(guide: Guide) -> str:
 
 
 def _graded_state(guide: Guide) -> str | None:
-    """Lubrication whose graded limit holds; None where the guide has a limit of its own."""
+    """Lubrication of a nylon guide without a PV limit of its own; None for others."""
     graded = guide.pv_limit is None and _is_nylon(guide)
     return guide.lubrication if graded else None
 
 
 def _lubrication(guide: Guide, demand: float) -> list[str]:
-    """Least lubrication in which nylon carries a PV (Pa m/s); nothing of another material."""
+    """Least lubrication of nylon for a PV value, Pa m/s; empty for other materials."""
     if not _is_nylon(guide):
         return []
     states = [state.replace("_", " ") for state, limit in NYLON_PV.items() if demand <= limit]
-    return [f"nylon carries it {states[0]}" if states else "nylon carries it in no lubrication"]
+    return [f"permissible for nylon {states[0]}" if states else "above all PV limits of nylon"]
 
 
 def _is_nylon(guide: Guide) -> bool:
@@ -170,17 +165,17 @@ def _is_nylon(guide: Guide) -> bool:
 def _guide_edge_pressure(side: Side) -> Declaration:
     @check(
         id=f"guide_edge_pressure_{side}",
-        title=f"Edge pressure in guide {side}",
+        title=f"Guide edge pressure in guide {side} vs. yield strength",
         unit="MPa",
-        method="pin in a hole with clearance, bush in a rigid housing, where the beam's line"
-        " pressure is greatest; yield strength of the bush",
+        method="pin in a bore with clearance, bush in a rigid housing, at the greatest line load of"
+        " the beam",
         must_have=False,
         lift_can_help=True,
         error="guides",
     )
     def edge(solution: Solution) -> Demand:
-        """Greatest pressure of the stem in a bore, Pa."""
-        card = _guide(solution, side).material
+        """Maximum guide edge pressure, Pa."""
+        card = guide_of(solution.machine, side).material
         worst = greatest(solution.cycles, lambda cycle: _edge(cycle.parts, side))
         source = f"yield strength of {card.name}: {card.source}"
         return Demand(worst.value, card.yield_strength, worst, source=source)
@@ -197,14 +192,14 @@ def _guide_temperature(side: Side) -> Declaration:
         id=f"guide_temperature_{side}",
         title=f"Temperature of guide {side}",
         unit="degC",
-        method="friction heat through the bush's wall (or the thermal resistance given), an"
-        " estimate",
+        method="friction heat through the wall of the bush, or the thermal resistance of the case;"
+        " an estimate",
         must_have=False,
         lift_can_help=True,
     )
     def temperature(solution: Solution) -> Demand:
-        """Steady temperature of a bush, degC."""
-        guide = _guide(solution, side)
+        """Steady temperature of a guide, degC."""
+        guide = guide_of(solution.machine, side)
         card = guide.material
         worst = worst_case(solution.cycles, lambda c: celsius(heat_of(c.parts, side).temperature))
         limit = card.temperature_limit
@@ -225,7 +220,7 @@ def _guide_temperature(side: Side) -> Declaration:
 
 
 def _hottest(solution: Solution, side: Side, nominal: float) -> list[str]:
-    """Temperature at the greatest friction, where it exceeds the nominal one (degC)."""
+    """Temperature at maximum friction, if above the nominal one, degC."""
     ambient, hot = solution.machine.guides.ambient_temperature, []
     for cycle in solution.cycles:
         heat, worst = heat_of(cycle.parts, side), cycle.parts.friction.greatest
@@ -235,7 +230,7 @@ def _hottest(solution: Solution, side: Side, nominal: float) -> list[str]:
             rise = (heat.temperature - ambient) * power / heat.mean_power
             hot.append(celsius(ambient + rise))
     hottest = max(hot, default=np.nan)
-    return [f"{shown(hottest, 'degC', 3)} at the greatest friction"] if hottest > nominal else []
+    return [f"{shown(hottest, 'degC', 3)} at maximum friction"] if hottest > nominal else []
 
 
 guide_pressure_a, guide_pressure_b = _guide_pressure("A"), _guide_pressure("B")
@@ -247,13 +242,13 @@ guide_temperature_a, guide_temperature_b = _guide_temperature("A"), _guide_tempe
 @check(
     GUIDE_LENGTH,
     title="Guided length / maximum overhang",
-    method="outer ends of the two guides over the overhang at the least lift",
+    method="distance of the outer ends of the guides over the overhang at minimum lift",
     must_have=False,
     lift_can_help=True,
     moved_by_tolerance=False,
 )
 def guide_length(solution: Solution) -> Demand:
-    """Distance of the outer ends of the guides over the greatest overhang."""
+    """Distance of the outer ends of the guides over the maximum overhang."""
     machine, guides = solution.machine, solution.machine.guides
     overhang = machine.overhang_at_max_lift + solution.contour.pitch.lift.highest.value
     spread = guides.spacing + 0.5 * (guides.a.length + guides.b.length)
