@@ -12,6 +12,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import CamError
 from camwright.geometry.follower_path import FollowerPath
 from camwright.geometry.periodic_spline import periodic_quintic
+from camwright.pipeline.base.tables import CRANK_ANGLE, Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.engine.crankshaft import (
     CrankMotion,
@@ -52,14 +53,17 @@ class SpeedStudy:
     after: CrankMotion
     added_inertia: float
 
-    @property
-    def columns(self) -> Mapping[str, Array]:
-        """SI values of ``1_speed.csv``."""
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``1_speed.csv``."""
         return {
-            "crank_angle": self.before.theta,
-            "speed_before": self.before.speed,
-            "speed_inertia_alone": self.inertia_alone.speed,
-            "speed_after": self.after.speed,
+            CRANK_ANGLE: self.before.theta,
+            Column("speed_before", "rad/s", "Crank speed of the engine alone"): self.before.speed,
+            Column(
+                "speed_inertia_alone",
+                "rad/s",
+                "Crank speed with the inertia of the mechanism alone",
+            ): self.inertia_alone.speed,
+            Column("speed_after", "rad/s", "Crank speed with the cam"): self.after.speed,
         }
 
     def flywheel_masses(self, outer_radius: float) -> tuple[float, float]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
+from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.oil_film import (
@@ -38,18 +38,33 @@ class FilmHistory:
     def __post_init__(self) -> None:
         freeze(self, thickness=self.thickness)
 
-    def columns(self) -> Mapping[str, Array]:
-        """SI values by the names of the columns of ``5_cycle.csv``."""
-        found = {"film_thickness": self.thickness}
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``5_cycle.csv``."""
+        smooth = Column(
+            "film_thickness", "um", "Minimum film thickness of smooth surfaces", unknown=True
+        )
+        columns = {smooth: self.thickness}
         if self.ratio is not None:
-            found["lambda_ratio"] = self.ratio
-        if self.mixed is not None:
-            found |= {
-                "mixed_film": self.mixed.minimum,
-                "mixed_film_central": self.mixed.central,
-                "asperity_share": self.mixed.asperity_share,
+            ratio = Column(
+                "lambda_ratio", "", "Film thickness over combined roughness", unknown=True
+            )
+            columns[ratio] = self.ratio
+        if (mixed := self.mixed) is not None:
+            columns |= {
+                Column(
+                    "mixed_film", "um", "Minimum film thickness of rough surfaces", unknown=True
+                ): mixed.minimum,
+                Column(
+                    "mixed_film_central",
+                    "um",
+                    "Central film thickness of rough surfaces",
+                    unknown=True,
+                ): mixed.central,
+                Column(
+                    "asperity_share", "", "Share of the load on asperities", unknown=True
+                ): mixed.asperity_share,
             }
-        return found
+        return columns
 
     def record(self) -> dict[str, object]:
         """What the mixed film is worth, for ``trial.json``; empty where it is not asked for."""

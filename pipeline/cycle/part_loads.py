@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.contour import Contour
+from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
 from camwright.pipeline.contact.pin_in_hole import peak_pressure
@@ -77,36 +77,68 @@ class PartLoads:
             if isinstance(getattr(self, name), np.ndarray):
                 freeze(self, **{name: getattr(self, name)})
 
-    def columns(self) -> Mapping[str, Array]:
-        """SI values by the names of the columns of ``5_cycle.csv``."""
-        found = {
-            "bush_peak_A": self.bush_peak_a,
-            "bush_peak_B": self.bush_peak_b,
-            "rubbing_load_A": self.rubbing_load_a,
-            "rubbing_load_B": self.rubbing_load_b,
-            "friction_heat_A": self.heat_a.power,
-            "friction_heat_B": self.heat_b.power,
-            "viscous_force": self.viscous_force,
-            "normal_force_friction_min": self.friction.normal_force_min,
-            "normal_force_friction_max": self.friction.normal_force_max,
-            "jam_index_friction_max": self.friction.jam_index_max,
-            "elastic_contact_force": self.elastic.response.contact_force,
-            "elastic_deflection": self.elastic.deflection,
-            "bore_pressure": self.bore_pressure,
-            "key_pressure": self.key_pressure,
-            "shaft_bearing_1": self.shaft_bearing_1,
-            "shaft_bearing_2": self.shaft_bearing_2,
-            "spring_stress": self.spring_stress,
-            "spring_surge_force": self.surge_force,
-            "pin_stress": self.pin_stress,
-            "roller_speed": self.roller_spin,
-            "roller_acceleration": self.roller_spin_acceleration,
-            "ring_stress_amplitude": self.ring_amplitude,
-            "ring_stress_mean": self.ring_mean,
-            "ring_correction": self.ring_correction,
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``5_cycle.csv``, of the parts that the machine has."""
+        friction, elastic = self.friction, self.elastic
+        columns = {
+            Column(
+                "bush_peak_A", "MPa", "Maximum pressure of the stem in guide A"
+            ): self.bush_peak_a,
+            Column(
+                "bush_peak_B", "MPa", "Maximum pressure of the stem in guide B"
+            ): self.bush_peak_b,
+            Column(
+                "rubbing_load_A", "N", "Sum of the normal forces on both sides of guide A"
+            ): self.rubbing_load_a,
+            Column(
+                "rubbing_load_B", "N", "Sum of the normal forces on both sides of guide B"
+            ): self.rubbing_load_b,
+            Column("friction_heat_A", "W", "Friction power of guide A"): self.heat_a.power,
+            Column("friction_heat_B", "W", "Friction power of guide B"): self.heat_b.power,
+            Column("viscous_force", "N", "Viscous drag on the follower"): self.viscous_force,
+            Column(
+                "normal_force_friction_min", "N", "Normal force at minimum guide friction"
+            ): friction.normal_force_min,
+            Column(
+                "normal_force_friction_max", "N", "Normal force at maximum guide friction"
+            ): friction.normal_force_max,
+            Column(
+                "jam_index_friction_max", "", "Jam index at maximum guide friction, rise"
+            ): friction.jam_index_max,
+            Column(
+                "elastic_contact_force", "N", "Contact force with an elastic stem"
+            ): elastic.response.contact_force,
+            Column("elastic_deflection", "um", "Shortening of the stem"): elastic.deflection,
+            Column(
+                "bore_pressure", "MPa", "Normal force over projected area of the cam bore"
+            ): self.bore_pressure,
+            Column("key_pressure", "MPa", "Pressure on the flank of the key"): self.key_pressure,
+            Column("shaft_bearing_1", "N", "Load on camshaft bearing 1"): self.shaft_bearing_1,
+            Column("shaft_bearing_2", "N", "Load on camshaft bearing 2"): self.shaft_bearing_2,
+            Column("spring_stress", "MPa", "Shear stress of the spring wire"): self.spring_stress,
+            Column(
+                "spring_surge_force", "N", "Change of the spring force by surge"
+            ): self.surge_force,
+            Column("pin_stress", "MPa", "Bending stress of the roller pin"): self.pin_stress,
+            Column("roller_speed", "rpm", "Rotational speed of the roller"): self.roller_spin,
+            Column(
+                "roller_acceleration", "rad/s^2", "Angular acceleration of the roller"
+            ): self.roller_spin_acceleration,
+            Column(
+                "ring_stress_amplitude", "MPa", "Stress amplitude of the bearing's outer ring"
+            ): self.ring_amplitude,
+            Column(
+                "ring_stress_mean", "MPa", "Mean stress of the bearing's outer ring"
+            ): self.ring_mean,
+            Column(
+                "ring_correction",
+                "percent",
+                "Change of the maximum contact pressure from over a ball to between two balls",
+                unknown=True,
+            ): self.ring_correction,
         }
-        known = {name: values for name, values in found.items() if values is not None}
-        return known | dict(self.shares.columns())
+        known = {column: values for column, values in columns.items() if values is not None}
+        return known | self.shares.columns()
 
 
 def part_loads(

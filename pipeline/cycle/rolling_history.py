@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, freeze, uniform_turn
+from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.bore_stress import BoreStress, bore_stress
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -64,31 +65,59 @@ class RollingHistory:
         """NaN at every angle: of a contour that is no body."""
         return cls(np.full(count, np.nan), None, Envelope.unknown())
 
-    def columns(self) -> Mapping[str, Array]:
-        """SI values by the names of the columns of ``5_cycle.csv``."""
-        found = {"shear_range": self.shear_range}
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``5_cycle.csv``; a contour that encloses no body leaves them unknown."""
+
+        def column(name: str, unit: str, meaning: str) -> Column:
+            return Column(name, unit, meaning, unknown=True)
+
+        columns = {
+            column(
+                "shear_range", "MPa", "Maximum range of the orthogonal shear stress in the cam"
+            ): self.shear_range
+        }
         if self.traction_demand is not None:
-            found["traction_demand"] = self.traction_demand
+            demand = column(
+                "traction_demand", "", "Traction coefficient that rolling without slip requires"
+            )
+            columns[demand] = self.traction_demand
         if self.sliding is not None:
-            found |= self.sliding.columns()
-        if self.bore is not None:
-            found |= {
-                "bore_stress": self.bore.von_mises,
-                "bore_stress_at_edge": self.bore.at_edge,
-                "bore_stress_off_edges": self.bore.away_from_edges,
+            columns |= self.sliding.columns()
+        if (bore := self.bore) is not None:
+            columns |= {
+                column(
+                    "bore_stress", "MPa", "Maximum von Mises stress at the bore"
+                ): bore.von_mises,
+                column(
+                    "bore_stress_at_edge", "", "1 where that maximum is at an edge of the keyway"
+                ): bore.at_edge.astype(float),
+                column(
+                    "bore_stress_off_edges",
+                    "MPa",
+                    "Maximum von Mises stress at the bore away from the keyway edges",
+                ): bore.away_from_edges,
             }
-        if self.contact is not None:
-            skid = self.contact.utilisation
-            found |= {
-                "creepage": self.contact.creepage,
-                "slip": self.contact.slip,
-                "skid": np.where(np.isfinite(skid), skid, np.nan),
+        if (contact := self.contact) is not None:
+            share = contact.utilisation
+            columns |= {
+                column("creepage", "", "Creep speed over rolling speed"): contact.creepage,
+                column("slip", "m/s", "Slip speed of the roller surface"): contact.slip,
+                column(
+                    "skid", "", "Traction that rolling requires over the friction limit"
+                ): np.where(np.isfinite(share), share, np.nan),
             }
         if self.tau_max is not None and self.von_mises is not None:
-            found |= {"tau_max_rolling": self.tau_max, "von_mises_rolling": self.von_mises}
+            columns |= {
+                column(
+                    "tau_max_rolling", "MPa", "Maximum in-plane shear stress with traction"
+                ): self.tau_max,
+                column(
+                    "von_mises_rolling", "MPa", "Maximum von Mises stress with traction"
+                ): self.von_mises,
+            }
         if self.film is not None:
-            found |= self.film.columns()
-        return found
+            columns |= self.film.columns()
+        return columns
 
 
 def rolling_history(

@@ -27,10 +27,9 @@ def force_at(cycle: Table, load_case: str, theta: float) -> float:
     InputError
         If there is no such load case, or no load at the angle.
     """
-    rows = cycle.where("load_case", load_case)
+    rows = cycle.of_load_case(load_case)
     if not len(rows):
-        known = ", ".join(dict.fromkeys(cycle["load_case"].tolist()))
-        raise InputError("--load-case", load_case, f"one of {known}")
+        raise InputError("--load-case", load_case, f"one of {', '.join(cycle.load_cases)}")
     angle = np.degrees(theta % FULL_TURN)
     force = float(np.interp(angle, rows["cam_angle_deg"], rows["normal_force_N"], period=360.0))
     if not force > 0:

@@ -30,7 +30,7 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError, ResultError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import json_text, read_json, write_atomic
-from camwright.pipeline.base.tables import Column, table
+from camwright.pipeline.base.tables import Values, table
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import load_case_file
 from camwright.pipeline.results import run_reader, signoff
@@ -99,36 +99,33 @@ class RunFolder:
 
     # --- the files, in the order of the road
 
-    def write_torque(self, crank_angle: ArrayLike, torques: Mapping[str, ArrayLike]) -> None:
-        """``1_torque.csv``: crank angle (rad) and torques (N m) by name, ``total`` first."""
-        columns = (*run_reader.CRANK, *(Column(name, "N m") for name in torques))
-        self._write_table("1_torque.csv", columns, {"crank_angle": crank_angle, **torques})
+    def write_torque(self, values: Values) -> None:
+        """``1_torque.csv``."""
+        self._write_table("1_torque.csv", values)
 
-    def write_speed(self, values: Mapping[str, ArrayLike]) -> None:
-        """``1_speed.csv`` from SI values by the names of `results.SPEED`."""
-        self._write_table("1_speed.csv", run_reader.SPEED, values)
+    def write_speed(self, values: Values) -> None:
+        """``1_speed.csv``."""
+        self._write_table("1_speed.csv", values)
 
-    def write_lift(self, trial: int, values: Mapping[str, ArrayLike]) -> None:
-        """``2_lift.csv`` from SI values by the names of `results.LIFT`."""
-        self._write_table(f"trial_{trial}/2_lift.csv", run_reader.LIFT, values)
+    def write_lift(self, trial: int, values: Values) -> None:
+        """``2_lift.csv``."""
+        self._write_table(f"trial_{trial}/2_lift.csv", values)
 
-    def write_limits(self, trial: int, cam_angle: ArrayLike, uses: Mapping[str, ArrayLike]) -> None:
-        """``2_limits.csv``: cam angle (rad) and the share in use of each limit by its name."""
-        columns = (*run_reader.CAM, *(Column(name, "") for name in uses))
-        name = f"trial_{trial}/{run_reader.LIMITS_FILE}"
-        self._write_table(name, columns, {"cam_angle": cam_angle, **uses})
+    def write_limits(self, trial: int, values: Values) -> None:
+        """``2_limits.csv``."""
+        self._write_table(f"trial_{trial}/{run_reader.LIMITS_FILE}", values)
 
-    def write_contour(self, trial: int, values: Mapping[str, ArrayLike]) -> None:
-        """``3_contour.csv`` from SI values by the names of `results.CONTOUR`."""
-        self._write_table(f"trial_{trial}/3_contour.csv", run_reader.CONTOUR, values)
+    def write_contour(self, trial: int, values: Values) -> None:
+        """``3_contour.csv``."""
+        self._write_table(f"trial_{trial}/3_contour.csv", values)
 
     def mesh_path(self, trial: int) -> Path:
         """Where ``4_mesh.msh`` belongs; its folder is there."""
         return self._file(f"trial_{trial}/4_mesh.msh")
 
-    def write_cycle(self, trial: int, values: Mapping[str, ArrayLike]) -> None:
-        """``5_cycle.csv`` from SI values by the names of `results.CYCLE`, all load cases."""
-        self._write_table(f"trial_{trial}/5_cycle.csv", run_reader.CYCLE, values)
+    def write_cycle(self, trial: int, values: Values) -> None:
+        """``5_cycle.csv``, all load cases."""
+        self._write_table(f"trial_{trial}/5_cycle.csv", values)
 
     def write_pressure(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
         """``5_pressure.npz``: contact pressure at every position of every load case."""
@@ -303,10 +300,8 @@ class RunFolder:
             raise ResultError(f"{path}: {error.strerror or error}") from None
         return path
 
-    def _write_table(
-        self, name: str, columns: Iterable[Column], values: Mapping[str, ArrayLike]
-    ) -> None:
-        write_atomic(self._file(name), table(columns, values).to_csv())
+    def _write_table(self, name: str, values: Values) -> None:
+        write_atomic(self._file(name), table(values).to_csv())
 
 
 @dataclass(frozen=True)
@@ -349,7 +344,7 @@ def drawn_cam(run: Path) -> tuple[Case, Contour]:
     """The case of a run and the contour of its last trial."""
     found = run_reader.load_run(run)
     case = load_case_file(run / "case.toml")
-    values = 1e-3 * np.asarray(found.final.lift["lift_mm"], dtype=float)
+    values = 1e-3 * found.final.lift["lift_mm"]
     return case, case.contour(Lift(uniform_turn(values.size), values))
 
 

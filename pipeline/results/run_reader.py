@@ -14,7 +14,7 @@ from typing import Any
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import hash_inputs, read_json, read_text, sha256_of
-from camwright.pipeline.base.tables import Column, Table, read_table
+from camwright.pipeline.base.tables import Table, read_table
 
 SCHEMA = 1
 HEADLINE = (
@@ -32,64 +32,7 @@ _CHECK_KEYS = ("id", "title", "demand", "limit", "unit", "utilisation", "status"
                "cam_angle_deg", "source", "method")  # fmt: skip
 
 
-def _columns(text: str) -> tuple[Column, ...]:
-    """Columns from ``name [unit]`` lines.
-
-    ``?`` marks one that may be left out, ``~`` one whose cells may be empty (NaN): the contact
-    of a contour that is no body is not known.
-    """
-    found = []
-    for line in text.split(";"):
-        name, _, unit = line.strip().partition(" ")
-        marks = name[len(name.rstrip("?~")) :]
-        found.append(Column(name.rstrip("?~"), unit.strip(" []"), "?" in marks, "~" in marks))
-    return tuple(found)
-
-
-CRANK = (Column("crank_angle", "deg"),)
-CAM = (Column("cam_angle", "deg"),)
-SPEED = _columns(
-    "crank_angle [deg]; speed_before [rad/s]; speed_inertia_alone [rad/s]; speed_after [rad/s]"
-)
 LIMITS_FILE = "2_limits.csv"
-LIFT = _columns(
-    "cam_angle [deg]; crank_angle [deg]; lift [mm]; lift_d1 [mm/rad]; lift_d2 [mm/rad^2];"
-    "lift_d3 [mm/rad^3]"
-)
-CONTOUR = _columns(
-    "cam_angle [deg]; pitch_x [mm]; pitch_y [mm]; contour_x [mm]; contour_y [mm]; normal_x;"
-    "normal_y; pressure_angle [deg]; pitch_radius [mm]; contour_radius_of_curvature [mm]"
-)
-CYCLE = _columns(
-    "load_case; cam_angle [deg]; crank_angle [deg]; lift [mm]; pressure_angle [deg];"
-    "pitch_radius [mm]; contour_radius_of_curvature [mm]; normal_force [N]; line_load~ [N/mm];"
-    "p0_hertz~ [MPa]; p0_fe~ [MPa]; p0_difference~ [percent]; half_width_hertz~ [mm];"
-    "half_width_fe~ [mm]; tau_max~ [MPa]; tau_depth~ [mm]; von_mises~ [MPa]; von_mises_depth~ [mm];"
-    "reaction_A [N]; reaction_B [N]; reaction_A_statics [N]; reaction_B_statics [N];"
-    "spring_force [N]; inertia_force [N]; axial_force [N]; tangential_force [N];"
-    "friction_A [N]; friction_B [N]; jam_index; velocity [m/s]; cam_torque [N m];"
-    "torque_before?~ [N m]; torque_after?~ [N m]; residual_equilibrium~; residual_complementarity~;"
-    "residual_guide_force; residual_guide_moment;"
-    "traction_demand?~; creepage?~; slip?~ [m/s]; skid?~; film_thickness?~ [um]; lambda_ratio?~;"
-    "mixed_film?~ [um]; mixed_film_central?~ [um]; asperity_share?~;"
-    "tau_max_rolling?~ [MPa]; von_mises_rolling?~ [MPa];"
-    "shear_range?~ [MPa]; bore_stress?~ [MPa]; bore_stress_at_edge?~;"
-    "bore_stress_off_edges?~ [MPa];"
-    "jam_index_statics?; cam_speed? [rad/s]; residual_friction?; normal_force_statics? [N];"
-    "stem_slope_A? [deg]; stem_slope_B? [deg]; roller_deflection? [um];"
-    "reaction_by_length? [N]; reaction_by_clearance? [N];"
-    "normal_force_by_length? [N]; normal_force_by_clearance? [N];"
-    "bush_peak_A? [MPa]; bush_peak_B? [MPa]; rubbing_load_A? [N]; rubbing_load_B? [N];"
-    "friction_heat_A? [W]; friction_heat_B? [W]; viscous_force? [N];"
-    "normal_force_friction_min? [N]; normal_force_friction_max? [N]; jam_index_friction_max?;"
-    "elastic_contact_force? [N]; elastic_deflection? [um]; bore_pressure? [MPa];"
-    "key_pressure? [MPa]; shaft_bearing_1? [N]; shaft_bearing_2? [N]; spring_stress? [MPa];"
-    "spring_surge_force? [N]; pin_stress? [MPa];"
-    "ring_stress_range? [MPa]; ring_stress_amplitude? [MPa]; ring_stress_mean? [MPa];"
-    "roller_speed? [rpm]; roller_acceleration? [rad/s^2];"
-    "ring_correction?~ [percent]; tau_any_plane?~ [MPa];"
-    "place_on_face? [mm]; sliding_speed? [m/s]; face_pv?~ [MPa m/s]; face_friction_power? [W]"
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,7 +201,7 @@ def _read_trial(run: Path, number: int) -> TrialRecord:
         path=path,
         lift=read_table(path / "2_lift.csv"),
         contour=read_table(path / "3_contour.csv"),
-        cycle=read_table(path / "5_cycle.csv", CYCLE),
+        cycle=read_table(path / "5_cycle.csv"),
         checks=tuple(_read_checks(path / "6_checks.json")),
         record=MappingProxyType(record),
         limits=read_table(limits) if limits.is_file() else None,

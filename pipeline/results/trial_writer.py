@@ -11,6 +11,7 @@ from camwright.pipeline.results.run_records import (
     contour_columns,
     cycle_columns,
     lift_columns,
+    limit_columns,
     pressure_arrays,
     trial_record,
 )
@@ -32,7 +33,7 @@ class TrialWriter:
         folder, number, case = self._folder, trial.number, trial.case
         folder.write_lift(number, lift_columns(case, trial.lift))
         if trial.limits_in_use is not None:
-            folder.write_limits(number, *trial.limits_in_use)
+            folder.write_limits(number, limit_columns(*trial.limits_in_use))
         folder.write_contour(number, contour_columns(case, trial.contour))
         if (mesh := trial.mesh) is not None:
             bodies = {"cam": mesh.cam, mesh.name: mesh.follower}

@@ -5,6 +5,7 @@ from dataclasses import replace
 import made_trial as made
 import numpy as np
 import pytest
+from small_run import named
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -31,7 +32,6 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.follower.guide_reactions import guide_reactions
-from camwright.pipeline.results import run_reader
 
 SPRING = """
 [spring.design]
@@ -232,7 +232,7 @@ def test_temperature_with_a_heat_path(bare):
 
 
 def test_columns_of_all_parts(full):
-    columns = full.cycles[0].columns()
+    columns = named(full.cycles[0].columns())
     for name in ("bush_peak_A", "spring_stress", "pin_stress", "shaft_bearing_2", "key_pressure"):
         assert np.isfinite(columns[name]).all()
     force = full.cycles[0].loads.normal_force
@@ -275,7 +275,7 @@ def test_friction_that_the_guides_do_not_have_fails_the_balance(bare):
 def test_columns_of_a_turn_close(bare):
     """What one row says of friction, force, heat and shares adds up: 1e-9 of the greatest."""
     cycle, guides = bare.cycles[0], bare.case.guides
-    rows = table(run_reader.CYCLE, cycle.columns())
+    rows = table(cycle.columns())
     v, rubs = rows["velocity_m_per_s"], rows["friction_A_N"] + rows["friction_B_N"]
 
     def same(one, other):
