@@ -27,7 +27,7 @@ GROUPS = (
     ("Limits", ("limits",)),
     ("Contact", ("pressure", "half-width", "stress")),
     ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
-    ("Parts", ("bushes", "elastic", "roller", "film", "parts")),
+    ("Parts", ("edge-pressure", "elastic", "roller", "film", "parts")),
 )
 LARGEST_RADIUS_MM = 150.0
 HARD_STOP_DEG = 45.0
@@ -162,7 +162,7 @@ def _balance(turn: Turn) -> str:
     if hole is None:
         return f"{unbalance}; {balance.get('hole_note') or 'no counter-hole is necessary'}."
     x, y, radius, drilled = hole
-    rest = max(float(balance["unbalance_left_g_mm"]), 0.0)
+    rest = max(float(balance["residual_unbalance_g_mm"]), 0.0)
     rest = 0.0 if rest < 1e-6 * float(balance["unbalance_g_mm"]) else rest
     return (
         f"{unbalance}; with a hole of {quantity(2 * radius, 'mm')} diameter at ({number(x)},"
@@ -181,7 +181,7 @@ def _roller_outline(turn: Turn, at: int) -> Array | None:
 
 def _face_outline(turn: Turn, at: int) -> Array | None:
     """Block of the face (2, 5), mm, at a row of the contour; None if its size is unknown."""
-    c, place = turn.contour, turn.columns["place_on_face_mm"][turn.worst]
+    c, place = turn.contour, turn.columns["face_contact_offset_mm"][turn.worst]
     width, thick = (turn.length("follower", "face", key) for key in ("width", "thickness"))
     if width is None or thick is None:
         return None
@@ -202,7 +202,7 @@ def _face(turn: Turn) -> Figure | None:
         turn, "face", "Contact on the face",
         "Position of the contact from the stem axis, sliding speed of the cam along the face, mean "
         "contact pressure times sliding speed.",
-        Panel("position", "mm", curves_of(turn, ("place_on_face_mm", "")), edges, height=0.9),
+        Panel("position", "mm", curves_of(turn, ("face_contact_offset_mm", "")), edges, height=0.9),
         Panel("sliding", "m/s", curves_of(turn, ("sliding_speed_m_per_s", "")), height=0.7),
         Panel("p v", "MPa m/s", curves_of(turn, ("face_pv_MPam_per_s", "")), pv, height=0.7),
     )  # fmt: skip
@@ -232,9 +232,12 @@ def _radii(turn: Turn) -> Figure | None:
     if roller and ratio:
         limits += (LimitLine(ratio * roller, "minimum pitch radius"),)
     curves = []
-    wanted = [("pitch_radius_mm", "pitch curve"), ("contour_radius_of_curvature_mm", "contour")]
+    wanted = [
+        ("pitch_radius_of_curvature_mm", "pitch curve"),
+        ("contour_radius_of_curvature_mm", "contour"),
+    ]
     for (column, label), colour in zip(wanted, SERIES, strict=False):
-        if column in turn.columns and (turn.rolls or column != "pitch_radius_mm"):
+        if column in turn.columns and (turn.rolls or column != "pitch_radius_of_curvature_mm"):
             curves.append(Curve(label, broken(turn.columns[column], LARGEST_RADIUS_MM), colour))
     return angle_figure(
         turn, "radii", "Radii of curvature",

@@ -295,14 +295,14 @@ def _trial(trial: TrialRecord) -> list[str | Status]:
     """A trial as a row."""
     record = trial.record
     rows = [row for row in report_tables.check_rows(trial.checks) if row.id in trial.binding]
-    width = record.get("angular_width_deg")
+    width = record.get("smoothing_width_deg")
     failing = [f"{row.title} ({row.utilisation})" for row in rows if row.status.id == "fail"]
     unknown = sum(row.status.id == "not_evaluated" for row in rows)
     held = [*failing, *([f"{unknown} not evaluated"] if unknown else [])]
     word = "pass" if trial.verdict == "pass" else "fail"
     return [
-        str(trial.number), str(record.get("smoothing") or record.get("smoother") or DASH),
-        report_tables.number(record.get("strength"), 3),
+        str(trial.number), str(record.get("smoothing_description") or DASH),
+        report_tables.number(record.get("smoothing_strength"), 3),
         report_tables.quantity(width, "deg") if width is not None else DASH,
         titled(str(record.get("why") or ""), trial.checks), Status(word, word),
         "; ".join(held) or "none",

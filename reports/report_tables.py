@@ -38,20 +38,20 @@ HEADLINES = {
     "torque_std_after_Nm": ("Torque ripple after, standard deviation", "N m"),
     "torque_p2p_before_Nm": ("Torque before, peak to peak", "N m"),
     "torque_p2p_after_Nm": ("Torque after, peak to peak", "N m"),
-    "torque_mean_removed_Nm": ("Mean torque, removed", "N m"),
+    "torque_mean_Nm": ("Mean engine torque", "N m"),
     "lift_max_mm": ("Maximum lift", "mm"),
     "pressure_angle_max_deg": ("Maximum pressure angle", "deg"),
-    "pitch_radius_min_mm": ("Minimum convex radius of the pitch curve", "mm"),
+    "pitch_radius_of_curvature_min_mm": ("Minimum convex radius of the pitch curve", "mm"),
     "normal_force_min_N": ("Minimum normal force", "N"),
     "normal_force_max_N": ("Maximum normal force", "N"),
     "p0_max_MPa": ("Peak contact pressure p0, finite elements", "MPa"),
     "p0_hertz_max_MPa": ("Peak contact pressure p0, Hertz", "MPa"),
     "half_width_max_mm": ("Maximum contact half-width", "mm"),
     "von_mises_max_MPa": ("Maximum von Mises stress", "MPa"),
-    "reaction_A_max_N": ("Maximum reaction, guide A", "N"),
-    "reaction_B_max_N": ("Maximum reaction, guide B", "N"),
+    "guide_reaction_A_max_N": ("Maximum reaction, guide A", "N"),
+    "guide_reaction_B_max_N": ("Maximum reaction, guide B", "N"),
     "friction_loss_J_per_cam_turn": ("Friction loss per cam turn", "J"),
-    "fe_vs_hertz_p0_max_percent": ("Maximum difference of p0, finite elements to Hertz", "%"),
+    "p0_difference_max_percent": ("Maximum difference of p0, finite elements to Hertz", "%"),
     "residual_equilibrium_max": ("Maximum relative equilibrium residual", ""),
 }
 LEAST_ERROR = 1e-4
@@ -329,10 +329,12 @@ def tiles(headline: Record) -> list[Tile]:
     rows = (
         ("Peak contact pressure", "p0_max_MPa", "MPa", "Hertz {} MPa", "p0_hertz_max_MPa"),
         ("Maximum normal force", "normal_force_max_N", "N", "minimum {} N", "normal_force_min_N"),
-        ("Lift", "lift_max_mm", "mm", "minimum convex pitch radius {} mm", "pitch_radius_min_mm"),
+        ("Lift", "lift_max_mm", "mm",
+         "minimum convex pitch radius {} mm", "pitch_radius_of_curvature_min_mm"),
         ("Maximum pressure angle", "pressure_angle_max_deg", "deg", "", ""),
-        ("Maximum reaction, guide A", "reaction_A_max_N", "N", "guide B {} N", "reaction_B_max_N"),
-    )
+        ("Maximum reaction, guide A", "guide_reaction_A_max_N", "N",
+         "guide B {} N", "guide_reaction_B_max_N"),
+    )  # fmt: skip
     for title, key, unit, below, other in rows:
         if headline.get(key) is not None:
             second = headline.get(other)

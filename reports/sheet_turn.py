@@ -80,7 +80,7 @@ class Turn:
     @property
     def rolls(self) -> bool:
         """Whether the follower is a roller; otherwise a flat face."""
-        return "place_on_face_mm" not in self.columns
+        return "face_contact_offset_mm" not in self.columns
 
     @property
     def follower_name(self) -> str:

@@ -62,7 +62,7 @@ class Balance:
             "mass_g": 1e3 * self.unbalance.mass,
             "unbalance_g_mm": self.unbalance.product / _GRAM_MILLIMETRE,
             "unbalance_angle_deg": float(np.degrees(self.unbalance.angle) % 360.0),
-            "unbalance_left_g_mm": self.left.product / _GRAM_MILLIMETRE,
+            "residual_unbalance_g_mm": self.left.product / _GRAM_MILLIMETRE,
             "hole_diameter_mm": None if hole is None else 2e3 * hole.radius,
             "hole_x_mm": None if hole is None else 1e3 * float(hole.centre[0]),
             "hole_y_mm": None if hole is None else 1e3 * float(hole.centre[1]),

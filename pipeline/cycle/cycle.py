@@ -23,7 +23,7 @@ from camwright.pipeline.follower.guide_reactions import GuideReactions
 
 LIFT = Column("lift", "mm", "Lift")
 PRESSURE_ANGLE = Column("pressure_angle", "deg", "Pressure angle")
-PITCH_RADIUS = Column("pitch_radius", "mm", "Radius of curvature of the pitch curve")
+PITCH_RADIUS = Column("pitch_radius_of_curvature", "mm", "Radius of curvature of the pitch curve")
 CONTOUR_RADIUS = Column("contour_radius_of_curvature", "mm", "Radius of curvature of the contour")
 
 
@@ -128,30 +128,34 @@ class Cycle:
             contact_column(
                 "von_mises_depth", "mm", "Depth of that von Mises stress"
             ): contact.von_mises_depth,
-            Column("reaction_A", "N", "Reaction of guide A"): guides.reaction_a,
-            Column("reaction_B", "N", "Reaction of guide B"): guides.reaction_b,
+            Column("guide_reaction_A", "N", "Reaction of guide A"): guides.reaction_a,
+            Column("guide_reaction_B", "N", "Reaction of guide B"): guides.reaction_b,
             Column(
-                "reaction_A_statics", "N", "Reaction of guide A as a point support"
+                "guide_reaction_A_statics", "N", "Reaction of guide A as a point support"
             ): guides.statics_a,
             Column(
-                "reaction_B_statics", "N", "Reaction of guide B as a point support"
+                "guide_reaction_B_statics", "N", "Reaction of guide B as a point support"
             ): guides.statics_b,
+            Column(
+                "guide_normal_load_A", "N", "Sum of the normal forces on both sides of guide A"
+            ): guides.rubbing_load_a,
+            Column(
+                "guide_normal_load_B", "N", "Sum of the normal forces on both sides of guide B"
+            ): guides.rubbing_load_b,
             Column("spring_force", "N", "Spring force"): loads.spring_force,
             Column("inertia_force", "N", "Inertia force of the follower"): loads.inertia_force,
             Column(
                 "axial_force", "N", "Contact force in the direction of the stem"
             ): loads.axial_force,
-            Column(
-                "tangential_force", "N", "Contact force across the stem"
-            ): loads.tangential_force,
-            Column("friction_A", "N", "Friction force of guide A"): loads.friction_force_a,
-            Column("friction_B", "N", "Friction force of guide B"): loads.friction_force_b,
+            Column("side_force", "N", "Contact force across the stem"): loads.tangential_force,
+            Column("guide_friction_A", "N", "Friction force of guide A"): loads.friction_force_a,
+            Column("guide_friction_B", "N", "Friction force of guide B"): loads.friction_force_b,
             Column("jam_index", "", "Guide friction over axial force"): loads.jam_index,
             Column(
                 "jam_index_statics", "", "Jam index with point supports as guides"
             ): loads.jam_index_statics,
             Column("cam_speed", "rad/s", "Angular speed of the cam"): turn.cam_speed,
-            Column("velocity", "m/s", "Velocity of the follower"): loads.velocity,
+            Column("follower_velocity", "m/s", "Velocity of the follower"): loads.velocity,
             Column("cam_torque", "N m", "Torque that drives the cam"): loads.cam_torque,
             contact_column(
                 "residual_equilibrium", "", "Contact pressure against line load, relative"
@@ -171,7 +175,7 @@ class Cycle:
             Column("stem_slope_A", "deg", "Slope of the stem in guide A"): guides.slope_a,
             Column("stem_slope_B", "deg", "Slope of the stem in guide B"): guides.slope_b,
             Column(
-                "roller_deflection", "um", "Transverse deflection of the stem at the contact"
+                "stem_end_deflection", "um", "Transverse deflection of the stem at the contact"
             ): guides.roller_deflection,
         }
         # An engine at rest has no torque in its load case.
@@ -186,7 +190,9 @@ class Cycle:
         # The maximum lies in another plane only where the Poisson ratio is small. The peaks of the
         # two fields are fitted separately and agree within 0.3 % where they are one.
         if (contact.tau_any_plane > 1.01 * contact.tau_max).any():
-            shear = contact_column("tau_any_plane", "MPa", "Maximum shear stress over all planes")
+            shear = contact_column(
+                "tau_max_all_planes", "MPa", "Maximum shear stress over all planes"
+            )
             columns[shear] = contact.tau_any_plane
         if contact.tier is not None:
             columns |= self.rolling.columns()

@@ -12,7 +12,7 @@ from camwright.geometry.errors import ContactError
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.pin_in_hole import Conforming, pin_in_hole
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.part_loads import bush_pair
+from camwright.pipeline.cycle.part_loads import guide_bodies
 from camwright.pipeline.follower.guide_reactions import Guide
 
 ANGLES = 721
@@ -27,8 +27,8 @@ _LOADS, _LEAST = 8, 0.01
 _SHARES = np.sin(np.linspace(0.0, 0.5 * np.pi, 65))  # densest where the pressure falls
 
 
-def bush_arrays(cycles: Sequence[Cycle]) -> Mapping[str, Any]:
-    """Arrays of ``5_bushes.npz``.
+def guide_arrays(cycles: Sequence[Cycle]) -> Mapping[str, Any]:
+    """Arrays of ``5_guides.npz``.
 
     Returns
     -------
@@ -105,9 +105,9 @@ def bore_pressure(machine: Machine, guide: Guide, pushes: Array) -> Array:
 
 
 def _slice(machine: Machine, guide: Guide, load: float) -> Conforming:
-    pin, bush = bush_pair(machine, guide)
+    pin, bore = guide_bodies(machine, guide)
     radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
-    return pin_in_hole(load, radius, clearance, pin, bush, _KNOTS)
+    return pin_in_hole(load, radius, clearance, pin, bore, _KNOTS)
 
 
 def _shape(found: Conforming) -> Array:

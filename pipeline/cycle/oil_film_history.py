@@ -46,22 +46,25 @@ class FilmHistory:
         columns = {smooth: self.thickness}
         if self.ratio is not None:
             ratio = Column(
-                "lambda_ratio", "", "Film thickness over combined roughness", unknown=True
+                "film_thickness_ratio", "", "Film thickness over combined roughness", unknown=True
             )
             columns[ratio] = self.ratio
         if (mixed := self.mixed) is not None:
             columns |= {
                 Column(
-                    "mixed_film", "um", "Minimum film thickness of rough surfaces", unknown=True
+                    "film_thickness_mixed",
+                    "um",
+                    "Minimum film thickness of rough surfaces",
+                    unknown=True,
                 ): mixed.minimum,
                 Column(
-                    "mixed_film_central",
+                    "film_thickness_mixed_central",
                     "um",
                     "Central film thickness of rough surfaces",
                     unknown=True,
                 ): mixed.central,
                 Column(
-                    "asperity_share", "", "Share of the load on asperities", unknown=True
+                    "asperity_load_share", "", "Share of the load on asperities", unknown=True
                 ): mixed.asperity_share,
             }
         return columns
@@ -71,9 +74,9 @@ class FilmHistory:
         if self.mixed is None:
             return {}
         known = np.isfinite(self.mixed.minimum)
-        least = _UM * float(self.mixed.minimum[known].min()) if known.any() else None
+        minimum = _UM * float(self.mixed.minimum[known].min()) if known.any() else None
         return {
-            "least_um": least,
+            "minimum_um": minimum,
             "positions_refused": int((~known & np.isfinite(self.thickness)).sum()),
             "refusal": self.refusal,
             "source": self.mixed.source,

@@ -41,17 +41,15 @@ from camwright.pipeline.follower.spring import surge_force
 class PartLoads:
     """One turn; arrays (n,) SI, None where the case does not describe the part.
 
-    bush_peak_* are the pressures of the stem in the bore where the line pressure is greatest.
+    guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest.
     shares tell why the guides answer otherwise than point supports.
     ring_amplitude and ring_mean are of the stress along a bearing's outer ring at its groove as
     it turns under the load; ring_correction is the share by which the contact's peak pressure
     changes from a contact over a ball, for which it stands, to one between two balls.
     """
 
-    bush_peak_a: Array
-    bush_peak_b: Array
-    rubbing_load_a: Array
-    rubbing_load_b: Array
+    guide_edge_pressure_a: Array
+    guide_edge_pressure_b: Array
     heat_a: GuideHeat
     heat_b: GuideHeat
     friction: FrictionBounds
@@ -82,19 +80,13 @@ class PartLoads:
         friction, elastic = self.friction, self.elastic
         columns = {
             Column(
-                "bush_peak_A", "MPa", "Maximum pressure of the stem in guide A"
-            ): self.bush_peak_a,
+                "guide_edge_pressure_A", "MPa", "Maximum pressure of the stem in guide A"
+            ): self.guide_edge_pressure_a,
             Column(
-                "bush_peak_B", "MPa", "Maximum pressure of the stem in guide B"
-            ): self.bush_peak_b,
-            Column(
-                "rubbing_load_A", "N", "Sum of the normal forces on both sides of guide A"
-            ): self.rubbing_load_a,
-            Column(
-                "rubbing_load_B", "N", "Sum of the normal forces on both sides of guide B"
-            ): self.rubbing_load_b,
-            Column("friction_heat_A", "W", "Friction power of guide A"): self.heat_a.power,
-            Column("friction_heat_B", "W", "Friction power of guide B"): self.heat_b.power,
+                "guide_edge_pressure_B", "MPa", "Maximum pressure of the stem in guide B"
+            ): self.guide_edge_pressure_b,
+            Column("guide_friction_power_A", "W", "Friction power of guide A"): self.heat_a.power,
+            Column("guide_friction_power_B", "W", "Friction power of guide B"): self.heat_b.power,
             Column("viscous_force", "N", "Viscous drag on the follower"): self.viscous_force,
             Column(
                 "normal_force_friction_min", "N", "Normal force at minimum guide friction"
@@ -106,15 +98,15 @@ class PartLoads:
                 "jam_index_friction_max", "", "Jam index at maximum guide friction, rise"
             ): friction.jam_index_max,
             Column(
-                "elastic_contact_force", "N", "Contact force with an elastic stem"
+                "contact_force_elastic_stem", "N", "Contact force with an elastic stem"
             ): elastic.response.contact_force,
-            Column("elastic_deflection", "um", "Shortening of the stem"): elastic.deflection,
+            Column("stem_shortening", "um", "Shortening of the stem"): elastic.deflection,
             Column(
                 "bore_pressure", "MPa", "Normal force over projected area of the cam bore"
             ): self.bore_pressure,
             Column("key_pressure", "MPa", "Pressure on the flank of the key"): self.key_pressure,
-            Column("shaft_bearing_1", "N", "Load on camshaft bearing 1"): self.shaft_bearing_1,
-            Column("shaft_bearing_2", "N", "Load on camshaft bearing 2"): self.shaft_bearing_2,
+            Column("shaft_bearing_load_1", "N", "Load on camshaft bearing 1"): self.shaft_bearing_1,
+            Column("shaft_bearing_load_2", "N", "Load on camshaft bearing 2"): self.shaft_bearing_2,
             Column("spring_stress", "MPa", "Shear stress of the spring wire"): self.spring_stress,
             Column(
                 "spring_surge_force", "N", "Change of the spring force by surge"
@@ -131,7 +123,7 @@ class PartLoads:
                 "ring_stress_mean", "MPa", "Mean stress of the bearing's outer ring"
             ): self.ring_mean,
             Column(
-                "ring_correction",
+                "p0_change_between_balls",
                 "percent",
                 "Change of the maximum contact pressure from over a ball to between two balls",
                 unknown=True,
@@ -158,10 +150,8 @@ def part_loads(
     motion, pair = _roller_motion(machine, contour, loads), machine.guides
     pin = None if machine.roller is None else machine.roller.pin_stress_per_newton
     return PartLoads(
-        bush_peak_a=_bush_peak(machine, pair.a, guides.line_pressure_max_a),
-        bush_peak_b=_bush_peak(machine, pair.b, guides.line_pressure_max_b),
-        rubbing_load_a=guides.rubbing_load_a,
-        rubbing_load_b=guides.rubbing_load_b,
+        guide_edge_pressure_a=_edge_pressure(machine, pair.a, guides.line_pressure_max_a),
+        guide_edge_pressure_b=_edge_pressure(machine, pair.b, guides.line_pressure_max_b),
         heat_a=_heat(machine, 0, guides.rubbing_load_a, loads.velocity),
         heat_b=_heat(machine, 1, guides.rubbing_load_b, loads.velocity),
         friction=friction,
@@ -192,15 +182,15 @@ def part_loads(
     )
 
 
-def bush_pair(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:
+def guide_bodies(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:
     """Stem and bore of a guide as the bodies of a pin in a hole."""
     stem, bush = machine.stem, guide.material
     return Pin(stem.elastic_modulus, stem.poisson_ratio), Bush(bush.E, bush.nu, 2.0 * WALL_SHARE)
 
 
-def _bush_peak(machine: Machine, guide: Guide, line_pressure: Array) -> Array:
+def _edge_pressure(machine: Machine, guide: Guide, line_pressure: Array) -> Array:
     radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
-    peak, _ = peak_pressure(line_pressure, radius, clearance, *bush_pair(machine, guide))
+    peak, _ = peak_pressure(line_pressure, radius, clearance, *guide_bodies(machine, guide))
     return peak
 
 

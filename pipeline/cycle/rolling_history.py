@@ -101,18 +101,20 @@ class RollingHistory:
             share = contact.utilisation
             columns |= {
                 column("creepage", "", "Creep speed over rolling speed"): contact.creepage,
-                column("slip", "m/s", "Slip speed of the roller surface"): contact.slip,
+                column("slip_speed", "m/s", "Slip speed of the roller surface"): contact.slip,
                 column(
-                    "skid", "", "Traction that rolling requires over the friction limit"
+                    "traction_utilisation",
+                    "",
+                    "Traction that rolling requires over the friction limit",
                 ): np.where(np.isfinite(share), share, np.nan),
             }
         if self.tau_max is not None and self.von_mises is not None:
             columns |= {
                 column(
-                    "tau_max_rolling", "MPa", "Maximum in-plane shear stress with traction"
+                    "tau_max_with_traction", "MPa", "Maximum in-plane shear stress with traction"
                 ): self.tau_max,
                 column(
-                    "von_mises_rolling", "MPa", "Maximum von Mises stress with traction"
+                    "von_mises_with_traction", "MPa", "Maximum von Mises stress with traction"
                 ): self.von_mises,
             }
         if self.film is not None:
@@ -224,11 +226,11 @@ def _worst(turn: RollingHistory) -> dict[str, Any]:
     if turn.contact is not None:
         loss = turn.contact.loss
         record["sliding_loss_J_per_cam_turn"] = loss if np.isfinite(loss) else None
-        record["skidding_share"] = float(turn.contact.skidding.mean())
+        record["gross_slip_share"] = float(turn.contact.skidding.mean())
     if turn.sliding is not None:
         record["sliding_loss_J_per_cam_turn"] = turn.sliding.loss
     if turn.film is not None and turn.film.mixed is not None:
-        record["mixed_film"] = turn.film.record()
+        record["film_thickness_mixed"] = turn.film.record()
     return record
 
 

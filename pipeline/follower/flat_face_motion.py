@@ -86,7 +86,9 @@ class FaceSliding:
     def columns(self) -> dict[Column, Array]:
         """Columns of ``5_cycle.csv``."""
         return {
-            Column("place_on_face", "mm", "Offset of the contact from the stem axis"): self.place,
+            Column(
+                "face_contact_offset", "mm", "Offset of the contact from the stem axis"
+            ): self.place,
             Column("sliding_speed", "m/s", "Sliding speed of the cam on the face"): self.speed,
             Column(
                 "face_pv", "MPa m/s", "Mean contact pressure times sliding speed", unknown=True

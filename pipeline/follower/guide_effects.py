@@ -55,10 +55,14 @@ class GuideShares:
         reaction, force = self.reaction_a, self.normal_force
         return {
             Column(
-                "reaction_by_length", "N", "Change of a guide reaction by the length of the guides"
+                "guide_reaction_by_length",
+                "N",
+                "Change of a guide reaction by the length of the guides",
             ): reaction.by_length,
             Column(
-                "reaction_by_clearance", "N", "Change of a guide reaction by the guide clearance"
+                "guide_reaction_by_clearance",
+                "N",
+                "Change of a guide reaction by the guide clearance",
             ): reaction.by_clearance,
             Column(
                 "normal_force_statics", "N", "Normal force with point supports as guides"

@@ -131,9 +131,9 @@ class RunFolder:
         """``5_pressure.npz``: contact pressure at every position of every load case."""
         write_atomic(self._file(f"trial_{trial}/5_pressure.npz"), _npz(arrays))
 
-    def write_bushes(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
-        """``5_bushes.npz``: pressure along the guides at every position, and round the bores."""
-        write_atomic(self._file(f"trial_{trial}/5_bushes.npz"), _npz(arrays))
+    def write_guides(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
+        """``5_guides.npz``: pressure along the guides at every position, and round the bores."""
+        write_atomic(self._file(f"trial_{trial}/5_guides.npz"), _npz(arrays))
 
     def write_envelope(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
         """``5_envelope.npz``: greatest stresses of a turn in a band under the contour."""

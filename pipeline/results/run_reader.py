@@ -19,11 +19,11 @@ from camwright.pipeline.base.tables import Table, read_table
 SCHEMA = 1
 HEADLINE = (
     *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),
-    *("lift_max_mm", "pressure_angle_max_deg", "pitch_radius_min_mm"),
+    *("lift_max_mm", "pressure_angle_max_deg", "pitch_radius_of_curvature_min_mm"),
     *("normal_force_min_N", "normal_force_max_N"),
     *("p0_max_MPa", "p0_hertz_max_MPa", "half_width_max_mm", "von_mises_max_MPa"),
-    *("reaction_A_max_N", "reaction_B_max_N", "friction_loss_J_per_cam_turn"),
-    *("fe_vs_hertz_p0_max_percent", "residual_equilibrium_max"),
+    *("guide_reaction_A_max_N", "guide_reaction_B_max_N", "friction_loss_J_per_cam_turn"),
+    *("p0_difference_max_percent", "residual_equilibrium_max"),
 )
 STATUSES = ("pass", "fail", "not_evaluated", "waived")
 _REQUIRED = ("schema", "case", "input_sha256", "versions", "timings_s", "trials", "verdict",

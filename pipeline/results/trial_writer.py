@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from camwright.meshes.mesh_files import write_msh
-from camwright.pipeline.cycle.guide_pressure import bush_arrays
+from camwright.pipeline.cycle.guide_pressure import guide_arrays
 from camwright.pipeline.cycle.rolling_history import envelope_arrays
 from camwright.pipeline.cycle.solution import ContactStore
 from camwright.pipeline.results.run_folder import RunFolder
@@ -42,7 +42,7 @@ class TrialWriter:
             folder.write_envelope(number, envelope_arrays(turns))
         folder.write_cycle(number, cycle_columns(trial.cycles))
         folder.write_pressure(number, pressure_arrays(trial.cycles))
-        folder.write_bushes(number, bush_arrays(trial.cycles))
+        folder.write_guides(number, guide_arrays(trial.cycles))
         self.judge(trial)
 
     def judge(self, trial: Trial) -> None:

@@ -81,7 +81,7 @@ def write_trial(folder: RunFolder, checks: list[Mapping[str, Any]], number: int 
     folder.write_contour(number, values(CONTOUR))
     folder.write_cycle(number, values(CYCLE))
     folder.write_checks(number, checks)
-    folder.write_trial(number, {"smoother": {"kind": "none"}, "widths": np.arange(2.0)})
+    folder.write_trial(number, {"smoothing_kind": "none", "widths": np.arange(2.0)})
 
 
 def write_run(out: Path, case: Case | None = None, status: str = "pass") -> Path:

@@ -20,6 +20,7 @@ from camwright.pipeline.case.template import template
 from camwright.pipeline.checks.registry import CHECKS, MADE_FROM_OTHERS
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.results.workshop_files import WORKSHOP
+from camwright.reports import guide_pressure_figure
 
 NAMES = renamed_names()
 CHECK_IDS = {each.id for each in (*CHECKS, *MADE_FROM_OTHERS)}
@@ -231,4 +232,4 @@ def test_renamed_values_keys_of_wires_and_files_are_those_of_today() -> None:
     fields = section_of(HelicalSpring).model_fields
     assert set(NAMES["wires"].values()) <= set(fields)
     assert not set(NAMES["wires"]) & set(fields)
-    assert NAMES["files"] == {"shop/": f"{WORKSHOP}/"}
+    assert NAMES["files"] == {"shop/": f"{WORKSHOP}/", "5_bushes.npz": guide_pressure_figure.FILE}

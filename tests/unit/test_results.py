@@ -48,14 +48,19 @@ def test_cycle_columns_are_the_promised_ones() -> None:
         "crank_angle_deg",
         "lift_mm",
         "pressure_angle_deg",
-        "pitch_radius_mm",
+        "pitch_radius_of_curvature_mm",
         "contour_radius_of_curvature_mm",
         "normal_force_N",
         "line_load_N_per_mm",
     ]
     for header in ("p0_hertz_MPa", "p0_fe_MPa", "p0_difference_percent", "half_width_fe_mm"):
         assert header in headers
-    for header in ("velocity_m_per_s", "cam_torque_Nm", "jam_index", "bush_peak_A_MPa"):
+    for header in (
+        "follower_velocity_m_per_s",
+        "cam_torque_Nm",
+        "jam_index",
+        "guide_edge_pressure_A_MPa",
+    ):
         assert header in headers
     assert len(set(headers)) == len(headers)
     assert [column.header for column in files["2_lift.csv"]][3:] == [
