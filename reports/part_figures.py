@@ -83,16 +83,14 @@ def _jamming(turn: Turn) -> Figure | None:
 
 
 def _speed(turn: Turn) -> Figure | None:
-    velocity = turn.columns.get("follower_velocity_m_per_s")
-    if velocity is None:
-        return None
+    velocity = turn.columns["follower_velocity_m_per_s"]
     curves: list[Curve] = []
     limits: list[LimitLine] = []
     for name, colour in (("A", "blue"), ("B", "vermillion")):
         length = turn.length("guides", name.lower(), "length")
         diameter = turn.length("guides", name.lower(), "diameter")
-        load = turn.columns.get(f"guide_normal_load_{name}_N")
-        if length and diameter and load is not None:
+        load = turn.columns[f"guide_normal_load_{name}_N"]
+        if length and diameter:
             pv = np.abs(load * velocity) / (length * diameter)
             curves.append(Curve(f"guide {name}", pv, colour))
             limits += turn.limit(f"mean PV limit {name}", "MPa m/s", f"guide_pv_{name}")

@@ -98,7 +98,7 @@ def envelope_pictures(material: Material) -> Sequence[Picture]:
         envelope = stress_map.read_envelope(file, material.turn.load_case)
     except ResultError as error:
         return (Picture(title, note=f"The stress map is not available: {error}."),)
-    contour = material.run.final.contour.columns
+    contour = material.run.final.contour
     shape = (
         contour["cam_angle_deg"],
         np.stack([contour["contour_x_mm"], contour["contour_y_mm"]]),

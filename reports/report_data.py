@@ -48,13 +48,11 @@ def governing_turn(run: Run, case: Record) -> Turn:
     names = final.cycle.load_cases
     if not names:
         raise ResultError(f"{final.path}: the cycle has no rows")
-    by_name = {name: final.cycle.of_load_case(name).columns for name in names}
+    by_name = {name: final.cycle.of_load_case(name) for name in names}
     drawn = governing_load_case(final.checks, names)
     return Turn(
-        by_name[drawn], tuple(by_name.values()), final.lift.columns, final.contour.columns,
-        None if run.torque is None else run.torque.columns, final.checks, case, drawn,
-        None if run.speed is None else run.speed.columns, final.record.get("balance") or {},
-        None if final.limits is None else final.limits.columns,
+        by_name[drawn], tuple(by_name.values()), final.lift, final.contour, run.torque,
+        final.checks, case, final.record["balance"], drawn, run.speed, final.limits,
     )  # fmt: skip
 
 

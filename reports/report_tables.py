@@ -215,10 +215,10 @@ class CheckRow:
 
 def utilisation(check: Record) -> float | None:
     """Utilisation of a check record; null with status `fail` means infinite (JSON has none)."""
-    value = check.get("utilisation")
+    value = check["utilisation"]
     if isinstance(value, (int, float)) and not isinstance(value, bool) and not isnan(value):
         return float(value)
-    return inf if check.get("status") == "fail" else None
+    return inf if check["status"] == "fail" else None
 
 
 def sorted_checks(checks: Sequence[Record]) -> list[Record]:
@@ -227,7 +227,7 @@ def sorted_checks(checks: Sequence[Record]) -> list[Record]:
     def order(check: Record) -> tuple[bool, float, str]:
         value = utilisation(check)
         size = -inf if value is None else value
-        return check.get("status") != "not_evaluated", -size, str(check.get("id"))
+        return check["status"] != "not_evaluated", -size, str(check["id"])
 
     return sorted(checks, key=order)
 
@@ -237,23 +237,23 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
     rows = []
     for check in sorted_checks(checks):
         value = utilisation(check)
-        status = str(check.get("status", "not_evaluated"))
+        status = str(check["status"])
         status_words = STATUS.get(status, words(status))
-        unit = str(check.get("unit") or "")
-        sense = "≥" if check.get("sense") == "at_least" else "≤"
-        limit = quantity(check.get("limit"), unit)
-        angle = check.get("cam_angle_deg")
+        unit = str(check["unit"])
+        sense = "≥" if check["sense"] == "at_least" else "≤"
+        limit = quantity(check["limit"], unit)
+        angle = check["cam_angle_deg"]
         rows.append(CheckRow(
-            id=str(check.get("id", "")), title=str(check.get("title", "")),
+            id=str(check["id"]), title=str(check["title"]),
             status=Status(status, status_words),
-            demand=quantity(check.get("demand"), unit),
+            demand=quantity(check["demand"], unit),
             limit=limit if limit == DASH else f"{sense}\N{NO-BREAK SPACE}{limit}",
             utilisation=_ratio(value), bar=_bar(value),
             where=quantity(angle, "deg") if isinstance(angle, (int, float)) else "",
-            load_case=str(check.get("load_case") or ""),
-            source=str(check.get("source") or ""), method=str(check.get("method") or ""),
-            note=str(check.get("note") or ""), waiver=_waiver(check.get("waiver")),
-            must_have=bool(check.get("must_have", True)),
+            load_case=str(check["load_case"] or ""),
+            source=str(check["source"]), method=str(check["method"]),
+            note=str(check["note"]), waiver=_waiver(check["waiver"]),
+            must_have=bool(check["must_have"]),
             error=_error(check, unit), corner=": ".join(worst_corner(check) or ()),
         ))  # fmt: skip
     return rows
@@ -261,7 +261,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
 
 def _error(check: Record, unit: str) -> str:
     """Error bar of a demand, in its unit; empty below the last digit shown."""
-    error, demand = (_finite(check.get(name)) for name in ("error", "demand"))
+    error, demand = (_finite(check[name]) for name in ("error", "demand"))
     if error is None or demand is None or not error or error < LEAST_ERROR * abs(demand):
         return ""
     scale = SHOWN_AS[unit][1] if unit in SHOWN_AS else 1.0
@@ -277,11 +277,11 @@ def worst_corner(check: Record) -> tuple[str, str] | None:
 
     None if the check has none, or if its demand equals the nominal one in all digits shown.
     """
-    unit, demand = str(check.get("unit") or ""), check.get("corner_demand")
-    if not check.get("corner") or demand is None:
+    unit, demand = str(check["unit"]), check["corner_demand"]
+    if not check["corner"] or demand is None:
         return None
     there = quantity(demand, unit)
-    return None if there == quantity(check.get("demand"), unit) else (str(check["corner"]), there)
+    return None if there == quantity(check["demand"], unit) else (str(check["corner"]), there)
 
 
 def _bar(value: float | None) -> float | None:

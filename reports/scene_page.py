@@ -84,7 +84,7 @@ def read_turn_view(folder: Path) -> TurnView:
     Raises
     ------
     ResultError
-        If the file is missing, as in runs of earlier versions, or unreadable.
+        If the file is missing, as under a contour that encloses no body, or unreadable.
     """
     path = folder / TURN
     if not path.is_file():
@@ -128,7 +128,7 @@ def scene(material: Material, view: TurnView) -> Json:
     width = turn.length("cam", "width") or 5.0
     stem = turn.length("follower", "stem_diameter") or 0.6 * width
     lab = view.lab_origin()
-    rows = material.run.final.cycle.of_load_case(view.load_case).columns
+    rows = material.run.final.cycle.of_load_case(view.load_case)
     bodies = {"flank": _flank(material, view, width), "cam": _cam(view, width).as_record(_DIGITS)}
     bodies["bore"] = ring(view.bore, width).as_record(_DIGITS)
     bodies["follower"] = _follower(material, view, width, stem).as_record(_DIGITS)

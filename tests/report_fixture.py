@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial import Delaunay
 
+from camwright.pipeline.results.run_reader import SCHEMA
+
 RATE, PRELOAD, PRIME_RADIUS, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044
 MODULUS, MASS, SPEED = 113.2e9, 0.175, 78.54
 BORE, HUB = 0.010, 0.0025
@@ -241,6 +243,7 @@ def check(**record: Any) -> dict[str, Any]:
         "unit": "", "load_case": "idle", "cam_angle_deg": 192.0, "sense": "at_most", "note": "",
         "source": "Norton, Cam Design and Manufacturing Handbook (2009)", "must_have": True,
         "method": "closed form, refined between samples", "waiver": None, "status": "pass",
+        "error": None, "corner": None, "corner_demand": None, "evidence": False,
     }  # fmt: skip
     return base | record
 
@@ -476,6 +479,7 @@ def write_run(
             "smoothing_kind": "moving_average", "smoothing_strength": float(number),
             "smoothing_description": f"moving average of {12 * number} values 5 deg apart",
             "smoothing_width_deg": 60.0 * number, "closure_mm": 2e-10,
+            "prices": None,
             "contact_method": "finite elements joined to the half-plane",
             "balance": {
                 "mass_g": 280.0, "unbalance_g_mm": 900.0, "unbalance_angle_deg": 40.0,
@@ -495,11 +499,13 @@ def write_run(
     ]  # fmt: skip
     before, after = cycle["torque_before_Nm"], cycle["torque_after_Nm"]
     (folder / "run.json").write_text(json.dumps({
-        "schema": 1, "case": "gx120", "input_sha256": "5f" * 32,
+        "schema": SCHEMA, "case": "gx120", "input_sha256": "5f" * 32,
         "versions": {"camwright": "0.1.0", "python": "3.11.9", "numpy": np.__version__},
         "timings_s": {"torque": 0.4, "lift": 0.1, "contour": 0.6, "mesh": 12.0, "cycle": 231.0,
                       "checks": 0.1, "report": 11.0, "total": 288.0},
         "statement": "no smoothing that keeps the torque reduction lets roller_static pass",
+        "platform": "Linux x86_64", "prices": None, "benchmarks": None, "speed": None,
+        "consistency": [], "files": {},
         "trials": 2, "verdict": "fail" if failed else "pass", "binding": failed,
         "headline": {
             "torque_std_before_Nm": float(before.std()), "torque_std_after_Nm": float(after.std()),

@@ -71,6 +71,10 @@ class Table:
     def __contains__(self, header: str) -> bool:
         return header in self.columns
 
+    def get(self, header: str) -> Array | None:
+        """A column that not every run has; None without it."""
+        return self.columns.get(header)
+
     def __len__(self) -> int:
         return len(next(iter(self.columns.values()), ()))
 

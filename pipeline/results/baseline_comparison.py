@@ -59,13 +59,13 @@ def _change(old: Record | None, new: Record | None) -> dict[str, Any]:
 
 def _is_error(record: Record) -> bool:
     """Whether a demand is itself the error of a number: told where its verdict changes."""
-    return bool(record.get("evidence")) and record["unit"] in ("-", "%")
+    return bool(record["evidence"]) and record["unit"] in ("-", "%")
 
 
 def _error(record: Record | None) -> float:
     if record is None or record["demand"] is None:
         return 0.0
-    known = record.get("error")
+    known = record["error"]
     return float(known if known is not None else UNKNOWN_ERROR * abs(record["demand"]))
 
 

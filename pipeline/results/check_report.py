@@ -70,7 +70,7 @@ def _counts(record: Record, fail_on: str) -> bool:
     status = record["status"]
     if fail_on == "never" or status in ("pass", "waived"):
         return False
-    if record.get("must_have", True) or fail_on == "any":
+    if record["must_have"] or fail_on == "any":
         return True
     return fail_on == "open" and status == "not_evaluated"
 
@@ -86,14 +86,14 @@ def rows(records: Iterable[Record]) -> list[tuple[str, ...]]:
     return [
         (
             record["title"],
-            with_error(record["demand"], record.get("error")),
+            with_error(record["demand"], record["error"]),
             number(record["limit"]),
             record["unit"],
             share(record["utilisation"]),
             share(None if record["utilisation"] is None else 1.0 - record["utilisation"]),
             place(record),
             corner(record),
-            record["status"] + ("" if record.get("must_have", True) else " (optional)"),
+            record["status"] + ("" if record["must_have"] else " (optional)"),
         )
         for record in sorted(records, key=rank)
     ]
@@ -121,10 +121,10 @@ def table(records: Iterable[Record]) -> Table:
 def remarks(records: Iterable[Record]) -> list[str]:
     """What a reader must know besides the table: waivers, numbers to verify, open inputs."""
     records = sorted(records, key=rank)
-    waived = [f"waived: {r['id']}: {r['waiver']}" for r in records if r.get("waiver")]
+    waived = [f"waived: {r['id']}: {r['waiver']}" for r in records if r["waiver"]]
     verify = [r["id"] for r in records if "verify" in r["source"]]
     still_open = [
-        f"not evaluated: {r['id']}: {r.get('note') or 'a number is missing'}"
+        f"not evaluated: {r['id']}: {r['note'] or 'a number is missing'}"
         for r in records
         if r["status"] == "not_evaluated"
     ]
@@ -143,7 +143,7 @@ def binding_lines(records: Iterable[Record], binding: Sequence[str]) -> list[str
 
 def place(record: Record) -> str:
     """Load case and angle where a check is decided."""
-    angle = record.get("cam_angle_deg")
+    angle = record["cam_angle_deg"]
     words = [record["load_case"]] if record["load_case"] else []
     words += [] if angle is None else [f"{angle:.1f} deg"]
     return " ".join(words)
@@ -151,9 +151,9 @@ def place(record: Record) -> str:
 
 def corner(record: Record) -> str:
     """The tolerance corner that governs, and the demand there."""
-    if not record.get("corner"):
+    if not record["corner"]:
         return ""
-    return f"{record['corner']}: {number(record.get('corner_demand'))}"
+    return f"{record['corner']}: {number(record['corner_demand'])}"
 
 
 def number(value: float | None) -> str:
@@ -195,7 +195,7 @@ def junit(records: Iterable[Record], name: str, fail_on: str) -> str:
         elif record["id"] in skipped:
             ET.SubElement(case, "skipped", message=text)
         else:
-            waiver = record.get("waiver")
+            waiver = record["waiver"]
             words = f"{text}; {_for_xml(str(waiver))}" if waiver else text
             ET.SubElement(case, "system-out").text = words
     ET.indent(suite)

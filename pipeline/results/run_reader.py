@@ -1,12 +1,12 @@
-"""A finished run as it lies on disk: tables, checks, summary. `run_folder` writes it.
+"""A finished run read from its folder: tables, checks, summary. `run_folder` writes it.
 
-Reading needs no solver and no case parser, so that a run of long ago can be reported again.
+Reading needs no solver and no case parser.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -16,7 +16,8 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import hash_inputs, read_json, read_text, sha256_of
 from camwright.pipeline.base.tables import Table, read_table
 
-SCHEMA = 1
+SCHEMA = 2
+"""Number of the form of a run folder; a folder of another form is refused."""
 HEADLINE = (
     *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),
     *("lift_max_mm", "pressure_angle_max_deg", "pitch_radius_of_curvature_min_mm"),
@@ -26,12 +27,19 @@ HEADLINE = (
     *("p0_difference_max_percent", "residual_equilibrium_max"),
 )
 STATUSES = ("pass", "fail", "not_evaluated", "waived")
-_REQUIRED = ("schema", "case", "input_sha256", "versions", "timings_s", "trials", "verdict",
-             "binding", "headline")  # fmt: skip
-_CHECK_KEYS = ("id", "title", "demand", "limit", "unit", "utilisation", "status", "load_case",
-               "cam_angle_deg", "source", "method")  # fmt: skip
-
-
+_REQUIRED = (
+    *("schema", "case", "input_sha256", "versions", "platform", "timings_s", "trials", "verdict"),
+    *("binding", "statement", "headline", "prices", "benchmarks", "speed", "consistency", "files"),
+)
+_TRIAL_KEYS = (
+    *("number", "why", "smoothing_kind", "smoothing_strength", "smoothing_width_deg"),
+    *("smoothing_description", "prices", "contact_method", "balance", "mesh", "certificate"),
+)
+_CHECK_KEYS = (
+    *("id", "title", "demand", "limit", "unit", "utilisation", "status", "load_case"),
+    *("cam_angle_deg", "source", "method", "sense", "must_have", "waiver", "note", "error"),
+    *("corner", "corner_demand", "evidence"),
+)
 LIMITS_FILE = "2_limits.csv"
 
 
@@ -50,13 +58,13 @@ class TrialRecord:
 
     @property
     def verdict(self) -> str:
-        """`pass` when every must-have passes or is waived; no checks, no pass."""
-        return "fail" if not self.checks or self.binding else "pass"
+        """``pass`` when every must-have check passes or is waived; without checks ``fail``."""
+        return verdict_of(self.checks)
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """Must-have checks that fail or are not evaluated."""
-        return _binding(self.checks)
+        """Ids of the must-have checks that fail or are not evaluated."""
+        return binding_of(self.checks)
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,9 +107,7 @@ def load_run(path: str | Path) -> Run:
         trials=tuple(_read_trial(path, k + 1) for k in range(summary["trials"])),
         speed=read_table(speed) if speed.exists() else None,
     )
-    if run.verdict != summary["verdict"]:
-        said, found = summary["verdict"], run.verdict
-        raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {found}")
+    _require_verdict(path, summary, run.verdict)
     return run
 
 
@@ -114,20 +120,17 @@ def read_verdict(path: Path) -> dict[str, Any]:
         If something is missing or unreadable, or if summary and checks disagree.
     """
     summary = read_summary(path)
-    checks = tuple(_read_checks(path / f"trial_{summary['trials']}" / "6_checks.json"))
-    found = "fail" if not checks or _binding(checks) else "pass"
-    if found != summary["verdict"]:
-        said = summary["verdict"]
-        raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {found}")
+    checks = read_checks(path / f"trial_{summary['trials']}")
+    _require_verdict(path, summary, verdict_of(checks))
     return {
         "case": summary["case"],
         "input_sha256": summary["input_sha256"],
-        "verdict": found,
-        "binding": list(_binding(checks)),
+        "verdict": summary["verdict"],
+        "binding": list(binding_of(checks)),
         "trials": summary["trials"],
-        "statement": summary.get("statement", ""),
+        "statement": summary["statement"],
         "headline": summary["headline"],
-        "consistency": summary.get("consistency") or [],
+        "consistency": summary["consistency"],
         "checks": [dict(record) for record in checks],
     }
 
@@ -137,7 +140,7 @@ def verify_run(path: Path) -> None:
     summary = read_summary(path)
     if input_sha256(path) != summary["input_sha256"]:
         raise ResultError(f"{path}: case.toml or inputs/ are not those of the run")
-    for name, digest in summary.get("files", {}).items():
+    for name, digest in summary["files"].items():
         file = path / name
         if not file.is_file() or sha256_of(file) != digest:
             state = "was changed" if file.is_file() else "is missing"
@@ -152,14 +155,18 @@ def read_summary(path: Path) -> dict[str, Any]:
     if not file.is_file():
         raise ResultError(f"{path}: holds no finished run (run.json is missing)")
     summary = read_json(file)
-    missing = [key for key in _REQUIRED if not isinstance(summary, dict) or key not in summary]
-    if missing:
-        raise ResultError(f"{file}: lacks {', '.join(missing)}")
-    if summary["schema"] != SCHEMA:
-        raise ResultError(f"{file}: schema {summary['schema']}, must be {SCHEMA}")
+    require_schema(file, summary)
+    _require(file, summary, _REQUIRED)
     if not isinstance(summary["trials"], int) or summary["trials"] < 1:
         raise ResultError(f"{file}: trials = {summary['trials']}, must be a count >= 1")
     return summary
+
+
+def require_schema(file: Path, record: Any) -> None:
+    """Refuse a record that another form of run folder holds."""
+    schema = record.get("schema", SCHEMA) if isinstance(record, dict) else SCHEMA
+    if schema != SCHEMA:
+        raise ResultError(f"{file}: schema = {schema}, must be {SCHEMA}: run the case again")
 
 
 def input_sha256(path: Path) -> str:
@@ -182,19 +189,28 @@ def file_hashes(path: Path) -> dict[str, str]:
     }
 
 
-def _binding(checks: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+def binding_of(checks: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+    """Ids of the must-have checks that fail or are not evaluated."""
     return tuple(
         check["id"]
         for check in checks
-        if check.get("must_have", True) and check["status"] not in ("pass", "waived")
+        if check["must_have"] and check["status"] not in ("pass", "waived")
     )
+
+
+def verdict_of(checks: Collection[Mapping[str, Any]]) -> str:
+    """``pass`` when every must-have check passes or is waived; without checks ``fail``."""
+    return "fail" if not checks or binding_of(checks) else "pass"
+
+
+def _require_verdict(path: Path, summary: Mapping[str, Any], verdict: str) -> None:
+    said = summary["verdict"]
+    if said != verdict:
+        raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {verdict}")
 
 
 def _read_trial(run: Path, number: int) -> TrialRecord:
     path = run / f"trial_{number}"
-    record = read_json(path / "trial.json")
-    if not isinstance(record, dict):
-        raise ResultError(f"{path / 'trial.json'}: must be an object")
     limits = path / LIMITS_FILE
     return TrialRecord(
         number=number,
@@ -202,25 +218,45 @@ def _read_trial(run: Path, number: int) -> TrialRecord:
         lift=read_table(path / "2_lift.csv"),
         contour=read_table(path / "3_contour.csv"),
         cycle=read_table(path / "5_cycle.csv"),
-        checks=tuple(_read_checks(path / "6_checks.json")),
-        record=MappingProxyType(record),
+        checks=read_checks(path),
+        record=MappingProxyType(read_trial_record(path)),
         limits=read_table(limits) if limits.is_file() else None,
     )
 
 
-def _read_checks(path: Path) -> Iterator[Mapping[str, Any]]:
-    records = read_json(path)
+def read_trial_record(trial: Path) -> dict[str, Any]:
+    """Contents of ``trial.json`` in the folder of a trial."""
+    file = trial / "trial.json"
+    record: dict[str, Any] = read_json(file)
+    _require(file, record, _TRIAL_KEYS)
+    return record
+
+
+def read_checks(trial: Path) -> tuple[Mapping[str, Any], ...]:
+    """Records of ``6_checks.json`` in the folder of a trial.
+
+    Raises
+    ------
+    ResultError
+        If a record lacks a key, has an unknown status, or passes against its numbers.
+    """
+    file = trial / "6_checks.json"
+    records = read_json(file)
     if not isinstance(records, list):
-        raise ResultError(f"{path}: must be a list of checks")
+        raise ResultError(f"{file}: must be a list of checks")
     for record in records:
-        missing = [key for key in _CHECK_KEYS if not isinstance(record, dict) or key not in record]
-        if missing:
-            raise ResultError(f"{path}: a check lacks {', '.join(missing)}")
+        _require(file, record, _CHECK_KEYS, "a check ")
         if record["status"] not in STATUSES:
-            raise ResultError(f"{path}: {record['id']}: status {record['status']} is unknown")
+            raise ResultError(f"{file}: {record['id']}: status {record['status']} is unknown")
         if record["status"] == "pass" and not _holds(record):
-            raise ResultError(f"{path}: {record['id']} is marked pass, its numbers say otherwise")
-        yield MappingProxyType(record)
+            raise ResultError(f"{file}: {record['id']} is marked pass, its numbers say otherwise")
+    return tuple(MappingProxyType(record) for record in records)
+
+
+def _require(file: Path, record: Any, keys: Iterable[str], what: str = "") -> None:
+    missing = [key for key in keys if not isinstance(record, dict) or key not in record]
+    if missing:
+        raise ResultError(f"{file}: {what}lacks {', '.join(missing)}")
 
 
 def _holds(record: Mapping[str, Any]) -> bool:
@@ -228,7 +264,7 @@ def _holds(record: Mapping[str, Any]) -> bool:
     demand, limit = record["demand"], record["limit"]
     if not all(isinstance(number, (int, float)) for number in (demand, limit)):
         return False
-    return bool(demand >= limit if record.get("sense") == "at_least" else demand <= limit)
+    return bool(demand >= limit if record["sense"] == "at_least" else demand <= limit)
 
 
 def _hidden(file: Path, folder: Path) -> bool:

@@ -11,11 +11,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from camwright.pipeline.base.files import json_text, read_json
+from camwright.pipeline.base.files import json_text, read_json, write_atomic
 from camwright.pipeline.results import run_reader
 
 NAME = "signoff.json"
-SCHEMA = 1
 PRESENTATION = ("figures", "exports", "inspection")
 """Folders of what is drawn from the results, or measured later, and may come and go."""
 PRESENTATION_SUFFIXES = (".html", ".png", ".svg", ".pdf")
@@ -55,42 +54,34 @@ def record(path: Path) -> dict[str, Any]:
     """
     summary = run_reader.read_summary(path)
     trial = path / f"trial_{summary['trials']}"
-    made, checks = (
-        read_json(trial / "trial.json"),
-        read_json(trial / "6_checks.json"),
-    )
-    stops = [
-        c["id"]
-        for c in checks
-        if c.get("must_have", True) and c["status"] not in ("pass", "waived")
-    ]
+    made, checks = run_reader.read_trial_record(trial), run_reader.read_checks(trial)
     corners = path / "corners.json"
     return {
-        "schema": SCHEMA,
+        "schema": run_reader.SCHEMA,
         "case": summary["case"],
         "case_sha256": run_reader.input_sha256(path),
         "code": {name: summary["versions"].get(name) for name in ("camwright", "source")},
         "environment": {
-            "platform": summary.get("platform", ""),
+            "platform": summary["platform"],
             "versions": summary["versions"],
         },
-        "verdict": "fail" if stops or not checks else "pass",
-        "binding": stops,
+        "verdict": run_reader.verdict_of(checks),
+        "binding": list(run_reader.binding_of(checks)),
         "not_evaluated": [c["id"] for c in checks if c["status"] == "not_evaluated"],
         "waivers": [
             {"check": c["id"], "waiver": c["waiver"], "status": c["status"]}
             for c in checks
-            if c.get("waiver")
+            if c["waiver"]
         ],
         "trial": summary["trials"],
         "headline": summary["headline"],
         "figures": [_figure(check) for check in checks],
         "evidence": {
-            "mesh": made.get("mesh"),
-            "certificate": made.get("certificate", []),
-            "contact_method": made.get("contact_method"),
-            "benchmarks": summary.get("benchmarks"),
-            "corners": read_json(corners).get("tried") if corners.is_file() else None,
+            "mesh": made["mesh"],
+            "certificate": made["certificate"],
+            "contact_method": made["contact_method"],
+            "benchmarks": summary["benchmarks"],
+            "corners": read_json(corners)["tried"] if corners.is_file() else None,
             "statements": _statements(checks),
         },
         "limitations": list(LIMITATIONS),
@@ -111,8 +102,6 @@ def _statements(checks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 def write(path: Path) -> dict[str, Any]:
     """Write the record into the folder of a run that is otherwise complete."""
-    from camwright.pipeline.base.files import write_atomic
-
     whole = record(path)
     write_atomic(path / NAME, json_text(whole) + "\n")
     return whole
@@ -127,6 +116,7 @@ def changes(path: Path) -> list[str]:
         If there is no record, or it cannot be read.
     """
     signed = read_json(path / NAME)
+    run_reader.require_schema(path / NAME, signed)
     known = signed.get("files") if isinstance(signed, dict) else None
     if not isinstance(known, Mapping):
         return [f"{NAME}: holds no hashes"]
@@ -196,4 +186,4 @@ def _files(path: Path) -> Iterator[tuple[str, Path]]:
 def _figure(check: Mapping[str, Any]) -> dict[str, Any]:
     names = ["id", "demand", "error", "limit", "unit", "utilisation", "status", "load_case"]
     names += ["cam_angle_deg", "source", "method", "corner", "corner_demand"]
-    return {name: check.get(name) for name in names}
+    return {name: check[name] for name in names}

@@ -24,6 +24,12 @@ CYCLE = (LOAD_CASE, CAM_ANGLE, CRANK_ANGLE, Column("lift", "mm"), Column("normal
          Column("p0_fe", "MPa", unknown=True), Column("von_mises", "MPa", unknown=True),
          Column("torque_before", "N m", unknown=True),
          Column("torque_after", "N m", unknown=True))  # fmt: skip
+TRIAL = {
+    "number": 1, "why": "", "smoothing_kind": "none", "smoothing_strength": 1.0,
+    "smoothing_width_deg": None, "smoothing_description": "none", "prices": None,
+    "contact_method": "", "balance": {}, "mesh": None, "certificate": [],
+    "widths": np.arange(2.0),
+}  # fmt: skip
 TORQUE = (CRANK_ANGLE, Column("total", "N m"))
 
 
@@ -62,6 +68,12 @@ def check(status: str = "pass", **changes: Any) -> dict[str, Any]:
         "method": "refined between samples",
         "sense": "at_most",
         "must_have": True,
+        "waiver": None,
+        "note": "",
+        "error": None,
+        "corner": None,
+        "corner_demand": None,
+        "evidence": False,
     }
     return record | changes
 
@@ -72,7 +84,12 @@ def summary(verdict: str = "pass", trials: int = 1) -> dict[str, Any]:
         "trials": trials,
         "verdict": verdict,
         "binding": [] if verdict == "pass" else ["pressure_angle"],
+        "statement": "",
         "headline": dict.fromkeys(run_reader.HEADLINE, 1.0),
+        "prices": None,
+        "benchmarks": None,
+        "speed": None,
+        "consistency": [],
     }
 
 
@@ -81,7 +98,7 @@ def write_trial(folder: RunFolder, checks: list[Mapping[str, Any]], number: int 
     folder.write_contour(number, values(CONTOUR))
     folder.write_cycle(number, values(CYCLE))
     folder.write_checks(number, checks)
-    folder.write_trial(number, {"smoothing_kind": "none", "widths": np.arange(2.0)})
+    folder.write_trial(number, TRIAL)
 
 
 def write_run(out: Path, case: Case | None = None, status: str = "pass") -> Path:

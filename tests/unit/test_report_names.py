@@ -14,7 +14,7 @@ import report_fixture
 from every_option import full_case
 
 from camwright import reports
-from camwright.pipeline.base.tables import table
+from camwright.pipeline.base.tables import Table, table
 from camwright.pipeline.case.case_file import load_case_file
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.renamed_keys import renamed_names
@@ -125,8 +125,8 @@ def looked_up(trial: Trial, speed: Any) -> set[str]:
     """Names that the figures of a run look up in its tables."""
     names: set[str] = set()
 
-    def noted(values: Any) -> Recorder:
-        return Recorder(table(values).columns, names)
+    def noted(values: Any) -> Table:
+        return Table(Recorder(table(values).columns, names))
 
     torques, case = engine_torques(trial.case), tomllib.loads(trial.case.to_toml())
     cycle = noted(run_records.cycle_columns(trial.cycles[:1]))
@@ -138,8 +138,8 @@ def looked_up(trial: Trial, speed: Any) -> set[str]:
         noted(run_records.torque_columns(torques["idle"])) if torques else None,
         [check.as_record() for check in trial.checks],
         case,
+        run_records.trial_record(trial)["balance"],
         speed=noted(speed) if speed is not None else None,
-        balance=run_records.trial_record(trial)["balance"],
     )
     assert groups(turn)
     return names

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +27,8 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import json_text
 from camwright.pipeline.base.tables import CAM_ANGLE, LOAD_CASE, Column, read_table, table
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.results import run_reader
-from camwright.pipeline.results.run_folder import RunFolder
+from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.results.run_folder import RunFolder, drawn_cam
 from camwright.pipeline.results.run_records import column_table
 from camwright.pipeline.solver import solve
 
@@ -215,7 +216,7 @@ def test_a_pass_that_its_numbers_do_not_bear_out(tmp_path: Path, change: dict[st
         ("trial_1/6_checks.json", "[{}]", "a check lacks id"),
         ("trial_1/6_checks.json", "{}", "must be a list"),
         ("trial_1/6_checks.json", '[{"a": NaN}]', "not JSON"),
-        ("trial_1/trial.json", "[]", "must be an object"),
+        ("trial_1/trial.json", "[]", "lacks number"),
         ("trial_1/2_lift.csv", "\xff", "must be"),
     ],
 )
@@ -230,6 +231,28 @@ def test_broken_run_is_one_line(
     with pytest.raises(ResultError, match=message) as caught:
         run_reader.load_run(run)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "read",
+    [
+        run_reader.load_run,
+        run_reader.read_verdict,
+        run_reader.verify_run,
+        signoff.changes,
+        signoff.record,
+        drawn_cam,
+        lambda run: RunFolder(run, small_case()),
+    ],
+)
+def test_a_folder_of_another_schema_is_refused(
+    tmp_path: Path, read: Callable[[Path], object]
+) -> None:
+    run = write_run(tmp_path / "run")
+    for name in ("run.json", "signoff.json"):
+        (run / name).write_text(json.dumps({"schema": 1, "case": "small"}))
+    with pytest.raises(ResultError, match=r"\.json: schema = 1, must be 2: run the case again$"):
+        read(run)
 
 
 def test_no_folder() -> None:

@@ -158,7 +158,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Case, Contour]:
                  for k, v in small_run.values(small_run.CYCLE).items()}  # fmt: skip
         out.write_cycle(1, cycle)
         out.write_checks(1, [small_run.check()])
-        out.write_trial(1, {})
+        out.write_trial(1, small_run.TRIAL)
         out.finish(small_run.summary())
     return folder, case, made
 
