@@ -56,9 +56,8 @@ def _torque(turn: Turn) -> Figure | None:
     )  # fmt: skip
     if not curves:
         return None
-    cam = turn.columns.get("cam_torque_Nm")
-    if cam is not None:
-        curves += (Curve("cam torque at the crank", cam / turn.gear_ratio, "muted", dashed=True),)
+    cam = turn.columns["cam_torque_Nm"] / turn.gear_ratio
+    curves += (Curve("cam torque at the crank", cam, "muted", dashed=True),)
     return angle_figure(
         turn, "torque", "Crank torque",
         "Deviation of the crank torque from its mean, without and with the cam; guide friction and "

@@ -12,7 +12,6 @@ import hashlib
 import importlib.metadata
 import os
 import sys
-import tempfile
 import zipfile
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -23,6 +22,8 @@ from types import ModuleType
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import npz_bytes, write_atomic
 
 FOLDER, OFF = "CAMWRIGHT_CACHE", "CAMWRIGHT_NO_CACHE"
 LARGEST = 400_000_000  # bytes in all; what was not used for longest goes first
@@ -106,19 +107,10 @@ def _read(path: Path) -> dict[str, Array] | None:
 
 
 def _write(path: Path, arrays: Arrays) -> None:
-    """Put an entry in its place in one step; a folder that cannot be written is no error."""
-    temporary = None
-    with suppress(OSError):
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            handle, temporary = tempfile.mkstemp(".part", path.stem, path.parent)
-            with os.fdopen(handle, "wb") as file:
-                np.savez(file, allow_pickle=False, **arrays)
-            Path(temporary).replace(path)
-            _make_room(path)
-        except OSError:
-            if temporary is not None:
-                Path(temporary).unlink(missing_ok=True)
+    """Write an entry; a folder that cannot be written is no error."""
+    with suppress(OSError, ResultError):
+        write_atomic(path, npz_bytes(arrays, compressed=False))
+        _make_room(path)
 
 
 def _make_room(newest: Path) -> None:

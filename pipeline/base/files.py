@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import os
 import tempfile
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from camwright.geometry.errors import InputError, ResultError
 
@@ -128,5 +130,27 @@ def _no_constant(name: str) -> float:
     raise ValueError(f"{name} is not a number")
 
 
+def npz_bytes(arrays: Mapping[str, ArrayLike], *, compressed: bool = True) -> bytes:
+    """Arrays by name as a numpy archive; the same bytes for the same numbers."""
+    buffer = io.BytesIO()
+    named = {name: np.asarray(values) for name, values in arrays.items()}
+    (np.savez_compressed if compressed else np.savez)(buffer, allow_pickle=False, **named)
+    return buffer.getvalue()
+
+
+def files_in(folder: Path) -> Iterator[tuple[str, Path]]:
+    """Files under a folder by relative name, in order; those of a hidden part are left out."""
+    for file in sorted(folder.rglob("*")):
+        parts = file.relative_to(folder).parts
+        if file.is_file() and not any(part.startswith(".") for part in parts):
+            yield "/".join(parts), file
+
+
+def file_hashes(folder: Path, wanted: Callable[[str], bool]) -> dict[str, str]:
+    """SHA-256 of the files under a folder whose relative name is wanted, by that name."""
+    return {name: sha256_of(file) for name, file in files_in(folder) if wanted(name)}
+
+
 def sha256_of(path: Path) -> str:
+    """SHA-256 of a file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()

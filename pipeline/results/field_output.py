@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from camwright.meshes.mesh_files import write_sheet
+from camwright.pipeline.base.files import npz_bytes, write_atomic
 from camwright.pipeline.contact.certificate import solve_pair
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.rolling_envelope import Envelope
@@ -49,7 +50,7 @@ def write_fields(
     write_bodies(folder, pair, bodies, cycle, indices, chosen + 1, tell)
     write_patches(folder, pair, bodies, cycle, chosen + 1, tell)
     write_envelope(folder / ENVELOPE, pair, cycle.rolling.envelope, chosen + 1)
-    np.savez_compressed(folder / TURN, allow_pickle=False, **turn_view(pair, bodies, cycle))
+    write_atomic(folder / TURN, npz_bytes(turn_view(pair, bodies, cycle)))
 
 
 def hardest(cycles: Sequence[Cycle]) -> int:

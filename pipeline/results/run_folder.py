@@ -29,7 +29,7 @@ from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError, ResultError
 from camwright.geometry.lift import Lift
-from camwright.pipeline.base.files import json_text, read_json, write_atomic
+from camwright.pipeline.base.files import file_hashes, json_text, npz_bytes, read_json, write_atomic
 from camwright.pipeline.base.tables import Values, table
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import load_case_file
@@ -129,15 +129,15 @@ class RunFolder:
 
     def write_pressure(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
         """``5_pressure.npz``: contact pressure at every position of every load case."""
-        write_atomic(self._file(f"trial_{trial}/5_pressure.npz"), _npz(arrays))
+        write_atomic(self._file(f"trial_{trial}/5_pressure.npz"), npz_bytes(arrays))
 
     def write_guides(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
         """``5_guides.npz``: pressure along the guides at every position, and round the bores."""
-        write_atomic(self._file(f"trial_{trial}/5_guides.npz"), _npz(arrays))
+        write_atomic(self._file(f"trial_{trial}/5_guides.npz"), npz_bytes(arrays))
 
     def write_envelope(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
         """``5_envelope.npz``: greatest stresses of a turn in a band under the contour."""
-        write_atomic(self._file(f"trial_{trial}/5_envelope.npz"), _npz(arrays))
+        write_atomic(self._file(f"trial_{trial}/5_envelope.npz"), npz_bytes(arrays))
 
     def write_checks(self, trial: int, records: Iterable[Mapping[str, Any]]) -> None:
         """``6_checks.json``"""
@@ -178,7 +178,7 @@ class RunFolder:
             "versions": self.versions,
             "platform": signoff.environment(),
             **summary,
-            "files": run_reader.file_hashes(self.path),
+            "files": file_hashes(self.path, run_reader.is_result),
         }
         write_atomic(self.path / "run.json", json_text(whole) + "\n")
         return whole
@@ -313,7 +313,7 @@ class ContactFiles:
     def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None:
         """Keep a piece; `key` is the hash of all that decides it."""
         named = {f"a_{name}": a for name, a in arrays.items()} | {"key": np.array(key)}
-        write_atomic(self.folder / load_case / f"{index:06d}.npz", _npz(named))
+        write_atomic(self.folder / load_case / f"{index:06d}.npz", npz_bytes(named))
 
     def load(self, load_case: str, key: str) -> dict[int, dict[str, Array]]:
         """Pieces by index; those of another key are left out."""
@@ -369,14 +369,6 @@ def set_aside(out: Path, case: Case) -> Iterator[None]:
         if moved and not out.exists():
             aside.rename(out)
         shutil.rmtree(aside, ignore_errors=True)
-
-
-def _npz(arrays: Mapping[str, ArrayLike]) -> bytes:
-    """Arrays by name as numpy keeps them, the same bytes for the same numbers."""
-    buffer = io.BytesIO()
-    named: dict[str, Any] = {name: np.asarray(values) for name, values in arrays.items()}
-    np.savez_compressed(buffer, **named)
-    return buffer.getvalue()
 
 
 def _holds_only_a_run(out: Path) -> bool:

@@ -5,7 +5,6 @@ Reading needs no solver and no case parser.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -173,20 +172,17 @@ def input_sha256(path: Path) -> str:
     """Hash of the resolved case and its included files, as `Case.sha256` has it."""
     inputs = path / "inputs"
     kept = {
-        file.relative_to(path).as_posix(): file.read_bytes()
+        f"{inputs.name}/{file.name}": file.read_bytes()
         for file in (sorted(inputs.iterdir()) if inputs.is_dir() else ())
     }
     return hash_inputs(read_text(path / "case.toml"), kept)
 
 
-def file_hashes(path: Path) -> dict[str, str]:
-    """SHA-256 of the tables, checks and meshes of a run; pictures and pages can be redrawn."""
-    kept, later = (".csv", ".json", ".msh", ".npz"), ("run.json", "signoff.json")
-    return {
-        file.relative_to(path).as_posix(): sha256_of(file)
-        for file in sorted(path.rglob("*"))
-        if file.suffix in kept and file.name not in later and not _hidden(file, path)
-    }
+def is_result(name: str) -> bool:
+    """Whether a file of a run is a table, a record, a mesh or an array; the rest can be redrawn."""
+    file = Path(name)
+    made_last = ("run.json", "signoff.json")
+    return file.suffix in (".csv", ".json", ".msh", ".npz") and file.name not in made_last
 
 
 def binding_of(checks: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
@@ -265,7 +261,3 @@ def _holds(record: Mapping[str, Any]) -> bool:
     if not all(isinstance(number, (int, float)) for number in (demand, limit)):
         return False
     return bool(demand >= limit if record["sense"] == "at_least" else demand <= limit)
-
-
-def _hidden(file: Path, folder: Path) -> bool:
-    return any(re.match(r"\.", part) for part in file.relative_to(folder).parts)

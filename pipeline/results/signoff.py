@@ -5,13 +5,12 @@ It is drawn from the files of the run alone, so that anybody can draw it again.
 
 from __future__ import annotations
 
-import hashlib
 import platform
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from camwright.pipeline.base.files import json_text, read_json, write_atomic
+from camwright.pipeline.base.files import file_hashes, files_in, json_text, read_json, write_atomic
 from camwright.pipeline.results import run_reader
 
 NAME = "signoff.json"
@@ -87,7 +86,7 @@ def record(path: Path) -> dict[str, Any]:
         "limitations": list(LIMITATIONS),
         "singularities": list(SINGULARITIES),
         "files": hashes(path),
-        "presentation": [name for name, _ in _files(path) if is_presentation(name)],
+        "presentation": [name for name, _ in files_in(path) if is_presentation(name)],
     }
 
 
@@ -133,11 +132,7 @@ def changes(path: Path) -> list[str]:
 
 def hashes(path: Path) -> dict[str, str]:
     """SHA-256 of every input, result and field file; not of the record, nor of presentation."""
-    return {
-        name: hashlib.sha256(file.read_bytes()).hexdigest()
-        for name, file in _files(path)
-        if name != NAME and not is_presentation(name)
-    }
+    return file_hashes(path, lambda name: name != NAME and not is_presentation(name))
 
 
 def is_presentation(name: str) -> bool:
@@ -174,13 +169,6 @@ def _borne_out(signed: Any, drawn: Any) -> bool:
         same = len(signed) == len(drawn)
         return same and all(_borne_out(a, b) for a, b in zip(signed, drawn, strict=True))
     return bool(signed == drawn)
-
-
-def _files(path: Path) -> Iterator[tuple[str, Path]]:
-    for file in sorted(path.rglob("*")):
-        name = file.relative_to(path).as_posix()
-        if file.is_file() and not any(part.startswith(".") for part in Path(name).parts):
-            yield name, file
 
 
 def _figure(check: Mapping[str, Any]) -> dict[str, Any]:
