@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from math import inf, isclose, isfinite, isnan, log10, pi
 from typing import Any, TypeAlias
 
+from camwright.pipeline.base.files import Json
+
 Scalar: TypeAlias = str | float | None
-Json: TypeAlias = "str | float | Sequence[Json] | Mapping[str, Json] | None"
 Record: TypeAlias = Mapping[str, Any]
 """A JSON object or TOML table of a run's files."""
 

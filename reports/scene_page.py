@@ -12,12 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.base.files import Json, write_atomic
 from camwright.reports import stress_map
 from camwright.reports.interactive import script_safe_json, scripts
 from camwright.reports.page import environment
 from camwright.reports.report_data import Material
-from camwright.reports.report_tables import Json
 from camwright.reports.scene_solids import Solid, box, joined, pin, ring, rod, tube, unit_circle
 
 FILE = "scene.html"

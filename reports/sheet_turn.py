@@ -10,9 +10,10 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
+from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import Table
 from camwright.reports.figures import SERIES, AngleFigure, Curve, Figure, LimitLine, Panel
-from camwright.reports.report_tables import Json, Record, in_unit
+from camwright.reports.report_tables import Record, in_unit
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from camwright.pipeline.base.files import Json
 from camwright.reports.report_tables import (
     DASH,
-    Json,
     Record,
     Table,
     number,

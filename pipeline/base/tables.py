@@ -113,14 +113,14 @@ def table(values: Values) -> Table:
     """
     made: dict[str, Array] = {}
     rows_of: Texts | None = None
-    for column, given in values.items():
+    for column, cells in values.items():
         if column.header in made:
             raise ResultError(f"column {column.header} = twice, must be once")
         if column == LOAD_CASE:
-            rows_of = _fixed_texts(given)
+            rows_of = _fixed_texts(cells)
         else:
-            made[column.header] = _in_unit(column, np.asarray(given, dtype=float))
-    lengths = {name: len(cells) for name, cells in made.items()}
+            made[column.header] = _in_unit(column, np.asarray(cells, dtype=float))
+    lengths = {header: len(cells) for header, cells in made.items()}
     if rows_of is not None:
         lengths[LOAD_CASE.header] = len(rows_of)
     if len(set(lengths.values())) > 1:

@@ -29,11 +29,11 @@ CONTOUR_RADIUS = Column("contour_radius_of_curvature", "mm", "Radius of curvatur
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """A turn with its contact, and what follows from both.
+    """A turn with its contact; rolling and part loads are computed from both on first use.
 
     bodies are the meshed bodies of the contact; None in a preview, where the contact is that of
-    half-planes, and under a contour that is no body, where it is unknown. Rolling and part loads
-    are computed when first read. None inside them means that the machine has no such part.
+    half-planes, and for a contour that encloses no body, where it is unknown. None inside rolling
+    and part loads means that the machine has no such part.
     """
 
     turn: Turn
@@ -74,7 +74,7 @@ class Cycle:
 
     @cached_property
     def rolling(self) -> RollingHistory:
-        """Traction, creep, film, fatigue and bore stress over the turn; NaN for no body."""
+        """Traction, creep, film, fatigue and bore stress; NaN if the contour is no body."""
         if self.contact.tier is None:
             return RollingHistory.unknown(self.theta.size)
         return rolling_history(self.machine, self.pair, self.bodies, self.loads, self.contact)
@@ -83,7 +83,7 @@ class Cycle:
     def parts(self) -> PartLoads:
         """Loads of guides, stem, spring, pin, key and shaft over the turn.
 
-        Where an elastic follower leaves the cam, a preview does not follow its flights.
+        A preview does not compute the flights of an elastic follower that leaves the cam.
         """
         flights = self.contact.tier is not Tier.PREVIEW
         return part_loads(self.turn, self.contour, self.pair.width, flights=flights)

@@ -1,4 +1,4 @@
-"""The oil film between cam and follower along the turn, as the case asks for it."""
+"""Oil film between cam and follower over the turn."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
+from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -24,10 +25,11 @@ _UM = 1e6
 
 @dataclass(frozen=True, eq=False)
 class FilmHistory:
-    """Least film (n,) m of smooth surfaces and its lambda ratio (n,), where roughness is known.
+    """Minimum film thickness (n,), m, of smooth surfaces, over a turn.
 
-    mixed, where the case asks for it: rough surfaces by a regression of unverified source, NaN
-    where it refuses; refusal, its first words.
+    ratio (n,) is film thickness over combined roughness; None if a roughness is unknown. mixed is
+    the film of rough surfaces by a regression of unverified source, NaN outside its range; None if
+    the case states the smooth film. refusal is the reason at the first such position.
     """
 
     thickness: Array
@@ -69,8 +71,8 @@ class FilmHistory:
             }
         return columns
 
-    def record(self) -> dict[str, object]:
-        """What the mixed film is worth, for ``trial.json``; empty where it is not asked for."""
+    def record(self) -> dict[str, Json]:
+        """Record of the mixed film in ``trial.json``; empty without one."""
         if self.mixed is None:
             return {}
         known = np.isfinite(self.mixed.minimum)
@@ -111,6 +113,6 @@ def film_history(
 
 
 def _softer(machine: Machine) -> float:
-    """Brinell hardness of the softer surface; a case with a mixed film has both."""
+    """Brinell hardness of the softer surface; a mixed film requires both."""
     cards = (machine.cam.material, machine.follower.material)
     return min(card.hardness for card in cards if card.hardness is not None)

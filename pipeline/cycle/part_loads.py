@@ -1,4 +1,4 @@
-"""What guides, stem, spring, roller pin, key and shaft carry over one turn of a load case."""
+"""Loads of guides, stem, spring, roller pin, key and shaft over one turn of a load case."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ class PartLoads:
     """One turn; arrays (n,) SI, None where the case does not describe the part.
 
     guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest.
-    shares tell why the guides answer otherwise than point supports.
-    ring_amplitude and ring_mean are of the stress along a bearing's outer ring at its groove as
-    it turns under the load; ring_correction is the share by which the contact's peak pressure
-    changes from a contact over a ball, for which it stands, to one between two balls.
+    shares are the changes of reaction and contact force by length and clearance of the guides.
+    ring_amplitude and ring_mean are of the stress in the groove of the bearing's outer ring, which
+    rotates under the load; ring_correction is the relative change of the maximum contact pressure
+    from a contact over a ball, as solved, to one between two balls.
     """
 
     guide_edge_pressure_a: Array
@@ -141,7 +141,7 @@ def part_loads(
     Parameters
     ----------
     contact_width : float   of the line contact, m
-    flights : bool          follow an elastic follower where it leaves the cam
+    flights : bool          compute the flights of an elastic follower that leaves the cam
     """
     machine, loads, guides = turn.machine, turn.loads, turn.guides
     friction, shares = _friction_bounds(turn, contour)
@@ -183,7 +183,7 @@ def part_loads(
 
 
 def guide_bodies(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:
-    """Stem and bore of a guide as the bodies of a pin in a hole."""
+    """Stem and bore of a guide as pin and hole."""
     stem, bush = machine.stem, guide.material
     return Pin(stem.elastic_modulus, stem.poisson_ratio), Bush(bush.E, bush.nu, 2.0 * WALL_SHARE)
 
@@ -204,7 +204,7 @@ def _heat(machine: Machine, side: int, rubbing: Array, velocity: Array) -> Guide
 
 
 def _friction_bounds(turn: Turn, contour: Contour) -> tuple[FrictionBounds, GuideShares]:
-    """The turn at the bounds of friction, and its guides beside point supports."""
+    """The turn at the bounds of friction, and the changes against point supports."""
     machine, pitch, speed = turn.machine, contour.pitch, turn.machine.cam_speed
     system, stem, pair = machine.system, machine.stem, machine.guides
     knots = turn.guides.knots_a.size
@@ -221,7 +221,7 @@ def _friction_bounds(turn: Turn, contour: Contour) -> tuple[FrictionBounds, Guid
 
 
 def _key_pressure(machine: Machine, loads: Loads) -> Array | None:
-    """Pressure on the flank in the cam: the keyway's depth is half the key's height."""
+    """Pressure on the flank of the keyway, whose depth is half the height of the key."""
     cam = machine.cam
     key = cam.keyway
     if key is None:

@@ -16,7 +16,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.measured_contour import Inspection, inspected, real_contour
-from camwright.pipeline.base.files import json_text, write_atomic
+from camwright.pipeline.base.files import Json, json_text, write_atomic
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.tables import CAM_ANGLE, Column, Table, read_table, table
 from camwright.pipeline.case.case import Case
@@ -137,7 +137,7 @@ def write_inspection(run: Path, part: RealPart, tolerance: float) -> dict[str, A
     write_atomic(folder / "cycle.csv", table(cycle_columns(part.trial.cycles)).to_csv())
     records = [check.as_record() for check in part.trial.checks]
     write_atomic(folder / "checks.json", json_text(records) + "\n")
-    record = {
+    record: dict[str, Json] = {
         "phase_deg": float(np.degrees(fit.phase)),
         "size_um": 1e6 * fit.size,
         "deviation_min_um": 1e6 * float(fit.deviation.min()),
