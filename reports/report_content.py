@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from camwright.pipeline.base.files import Json
 from camwright.pipeline.results.run_reader import TrialRecord
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.figure_svg import Drawn, drawn_groups
@@ -384,9 +385,11 @@ def _versions(material: Material) -> Section:
 def _hashes(material: Material) -> list[tuple[str, str]]:
     """SHA-256 of input, source and meshes."""
     summary, mesh = material.run.summary, material.run.final.record["mesh"] or {}
-    meshes = mesh.get("sha256") if isinstance(mesh.get("sha256"), Mapping) else {}
-    digests = {"input": summary["input_sha256"], "source": summary["versions"].get("source")}
-    digests |= {f"mesh of the {body}": digest for body, digest in (meshes or {}).items()}
+    meshes = mesh.get("sha256")
+    digests: dict[str, Json] = {"input": summary["input_sha256"]}
+    digests["source"] = summary["versions"].get("source")
+    if isinstance(meshes, Mapping):
+        digests |= {f"mesh of the {body}": digest for body, digest in meshes.items()}
     return [(name, str(digest)) for name, digest in digests.items() if digest]
 
 

@@ -8,11 +8,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any
+from typing import Any, TypedDict
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import hash_inputs, read_json, read_text, sha256_of
+from camwright.pipeline.base.files import Json, hash_inputs, read_json, read_text, sha256_of
 from camwright.pipeline.base.tables import Table, read_table
 
 SCHEMA = 2
@@ -26,33 +25,99 @@ HEADLINE = (
     *("p0_difference_max_percent", "residual_equilibrium_max"),
 )
 STATUSES = ("pass", "fail", "not_evaluated", "waived")
-_REQUIRED = (
-    *("schema", "case", "input_sha256", "versions", "platform", "timings_s", "trials", "verdict"),
-    *("binding", "statement", "headline", "prices", "benchmarks", "speed", "consistency", "files"),
-)
-_TRIAL_KEYS = (
-    *("number", "why", "smoothing_kind", "smoothing_strength", "smoothing_width_deg"),
-    *("smoothing_description", "prices", "contact_method", "balance", "mesh", "certificate"),
-)
-_CHECK_KEYS = (
-    *("id", "title", "demand", "limit", "unit", "utilisation", "status", "load_case"),
-    *("cam_angle_deg", "source", "method", "sense", "must_have", "waiver", "note", "error"),
-    *("corner", "corner_demand", "evidence"),
-)
 LIMITS_FILE = "2_limits.csv"
+
+
+class TrialContents(TypedDict):
+    """Contents of ``trial.json``."""
+
+    number: int
+    why: str
+    smoothing_kind: str | None
+    smoothing_strength: float | None
+    smoothing_width_deg: float | None
+    smoothing_description: str
+    prices: Json
+    contact_method: str
+    balance: dict[str, Json]
+    mesh: dict[str, Json] | None
+    certificate: list[dict[str, Json]]
+
+
+class CheckRecord(TypedDict):
+    """A record of ``6_checks.json``, in `unit` and degrees; null: missing, or infinite."""
+
+    id: str
+    title: str
+    demand: float | None
+    limit: float | None
+    unit: str
+    utilisation: float | None
+    status: str
+    load_case: str
+    cam_angle_deg: float | None
+    source: str
+    method: str
+    sense: str
+    must_have: bool
+    waiver: str | None
+    note: str
+    error: float | None
+    corner: str | None
+    corner_demand: float | None
+    evidence: bool
+
+
+class Finding(TypedDict):
+    """An input beside the value that the other inputs imply."""
+
+    load_case: str
+    title: str
+    given: float
+    implied: float
+    unit: str
+    difference_percent: float | None
+    flagged: bool
+
+
+class SummaryOfAnyRun(TypedDict):
+    """Contents of ``run.json`` that every run has."""
+
+    schema: int
+    case: str
+    input_sha256: str
+    versions: dict[str, str]
+    platform: str
+    timings_s: dict[str, float]
+    trials: int
+    verdict: str
+    binding: list[str]
+    statement: str
+    headline: dict[str, float | None]
+    prices: Json
+    benchmarks: Json
+    speed: Json
+    consistency: list[Finding]
+    files: dict[str, str]
+
+
+class Summary(SummaryOfAnyRun, total=False):
+    """Contents of ``run.json``."""
+
+    valve_train: Json
 
 
 @dataclass(frozen=True, eq=False)
 class TrialRecord:
-    """One trip down the road: a lift, everything that follows from it, and what was checked."""
+    """A trial read from its folder: lift, contour, cycle, checks and record."""
 
     number: int
     path: Path
     lift: Table
     contour: Table
     cycle: Table
-    checks: tuple[Mapping[str, Any], ...]
-    record: Mapping[str, Any]
+    checks: tuple[CheckRecord, ...]
+    record: TrialContents
     limits: Table | None = None
 
     @property
@@ -68,22 +133,23 @@ class TrialRecord:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run folder read back; the last trial is the answer."""
+    """A run read from its folder; the last trial is the result."""
 
     path: Path
     case_text: str
-    summary: Mapping[str, Any]
+    summary: Summary
     torque: Table | None
     trials: tuple[TrialRecord, ...]
     speed: Table | None = None
 
     @property
     def final(self) -> TrialRecord:
+        """The last trial."""
         return self.trials[-1]
 
     @property
     def verdict(self) -> str:
-        """Drawn from the checks of the final trial, not from the summary."""
+        """Verdict by the checks of the final trial."""
         return self.final.verdict
 
 
@@ -93,7 +159,7 @@ def load_run(path: str | Path) -> Run:
     Raises
     ------
     ResultError
-        If something is missing or unreadable, or if two records disagree.
+        If a file is missing or unreadable, or if two records disagree.
     """
     path = Path(path)
     summary = read_summary(path)
@@ -111,12 +177,12 @@ def load_run(path: str | Path) -> Run:
 
 
 def read_verdict(path: Path) -> dict[str, Any]:
-    """What a finished run says of itself, no table read: summary and checks of the last trial.
+    """Summary of a finished run and checks of its last trial; no table is read.
 
     Raises
     ------
     ResultError
-        If something is missing or unreadable, or if summary and checks disagree.
+        If a file is missing or unreadable, or if summary and checks disagree.
     """
     summary = read_summary(path)
     checks = read_checks(path / f"trial_{summary['trials']}")
@@ -130,12 +196,12 @@ def read_verdict(path: Path) -> dict[str, Any]:
         "statement": summary["statement"],
         "headline": summary["headline"],
         "consistency": summary["consistency"],
-        "checks": [dict(record) for record in checks],
+        "checks": list(checks),
     }
 
 
 def verify_run(path: Path) -> None:
-    """Compare the files of a run with the hashes taken when it was finished."""
+    """Compare the files of a run with the hashes in ``run.json``; ResultError for a difference."""
     summary = read_summary(path)
     if input_sha256(path) != summary["input_sha256"]:
         raise ResultError(f"{path}: case.toml or inputs/ are not those of the run")
@@ -146,23 +212,23 @@ def verify_run(path: Path) -> None:
             raise ResultError(f"{file}: {state} since the run")
 
 
-def read_summary(path: Path) -> dict[str, Any]:
-    """The contents of ``run.json``."""
+def read_summary(path: Path) -> Summary:
+    """Contents of ``run.json``; ResultError for a folder that holds no run of this schema."""
     if not path.is_dir():
         raise ResultError(f"{path}: no such folder")
     file = path / "run.json"
     if not file.is_file():
         raise ResultError(f"{path}: holds no finished run (run.json is missing)")
-    summary = read_json(file)
+    summary: Summary = read_json(file)
     require_schema(file, summary)
-    _require(file, summary, _REQUIRED)
+    _require(file, summary, SummaryOfAnyRun.__annotations__)
     if not isinstance(summary["trials"], int) or summary["trials"] < 1:
         raise ResultError(f"{file}: trials = {summary['trials']}, must be a count >= 1")
     return summary
 
 
-def require_schema(file: Path, record: Any) -> None:
-    """Refuse a record that another form of run folder holds."""
+def require_schema(file: Path, record: Json | Summary) -> None:
+    """Refuse a record of another schema."""
     schema = record.get("schema", SCHEMA) if isinstance(record, dict) else SCHEMA
     if schema != SCHEMA:
         raise ResultError(f"{file}: schema = {schema}, must be {SCHEMA}: run the case again")
@@ -185,7 +251,7 @@ def is_result(name: str) -> bool:
     return file.suffix in (".csv", ".json", ".msh", ".npz") and file.name not in made_last
 
 
-def binding_of(checks: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+def binding_of(checks: Iterable[CheckRecord]) -> tuple[str, ...]:
     """Ids of the must-have checks that fail or are not evaluated."""
     return tuple(
         check["id"]
@@ -194,12 +260,12 @@ def binding_of(checks: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
     )
 
 
-def verdict_of(checks: Collection[Mapping[str, Any]]) -> str:
+def verdict_of(checks: Collection[CheckRecord]) -> str:
     """``pass`` when every must-have check passes or is waived; without checks ``fail``."""
     return "fail" if not checks or binding_of(checks) else "pass"
 
 
-def _require_verdict(path: Path, summary: Mapping[str, Any], verdict: str) -> None:
+def _require_verdict(path: Path, summary: Summary, verdict: str) -> None:
     said = summary["verdict"]
     if said != verdict:
         raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {verdict}")
@@ -215,20 +281,20 @@ def _read_trial(run: Path, number: int) -> TrialRecord:
         contour=read_table(path / "3_contour.csv"),
         cycle=read_table(path / "5_cycle.csv"),
         checks=read_checks(path),
-        record=MappingProxyType(read_trial_record(path)),
+        record=read_trial_record(path),
         limits=read_table(limits) if limits.is_file() else None,
     )
 
 
-def read_trial_record(trial: Path) -> dict[str, Any]:
+def read_trial_record(trial: Path) -> TrialContents:
     """Contents of ``trial.json`` in the folder of a trial."""
     file = trial / "trial.json"
-    record: dict[str, Any] = read_json(file)
-    _require(file, record, _TRIAL_KEYS)
+    record: TrialContents = read_json(file)
+    _require(file, record, TrialContents.__annotations__)
     return record
 
 
-def read_checks(trial: Path) -> tuple[Mapping[str, Any], ...]:
+def read_checks(trial: Path) -> tuple[CheckRecord, ...]:
     """Records of ``6_checks.json`` in the folder of a trial.
 
     Raises
@@ -237,27 +303,27 @@ def read_checks(trial: Path) -> tuple[Mapping[str, Any], ...]:
         If a record lacks a key, has an unknown status, or passes against its numbers.
     """
     file = trial / "6_checks.json"
-    records = read_json(file)
+    records: list[CheckRecord] = read_json(file)
     if not isinstance(records, list):
         raise ResultError(f"{file}: must be a list of checks")
     for record in records:
-        _require(file, record, _CHECK_KEYS, "a check ")
+        _require(file, record, CheckRecord.__annotations__, "a check ")
         if record["status"] not in STATUSES:
             raise ResultError(f"{file}: {record['id']}: status {record['status']} is unknown")
         if record["status"] == "pass" and not _holds(record):
             raise ResultError(f"{file}: {record['id']} is marked pass, its numbers say otherwise")
-    return tuple(MappingProxyType(record) for record in records)
+    return tuple(records)
 
 
-def _require(file: Path, record: Any, keys: Iterable[str], what: str = "") -> None:
+def _require(file: Path, record: Mapping[str, object], keys: Iterable[str], what: str = "") -> None:
     missing = [key for key in keys if not isinstance(record, dict) or key not in record]
     if missing:
         raise ResultError(f"{file}: {what}lacks {', '.join(missing)}")
 
 
-def _holds(record: Mapping[str, Any]) -> bool:
-    """Whether the numbers of a record bear out a pass; a missing one never does."""
+def _holds(record: CheckRecord) -> bool:
+    """Whether demand and limit of a record pass; a missing number never does."""
     demand, limit = record["demand"], record["limit"]
-    if not all(isinstance(number, (int, float)) for number in (demand, limit)):
+    if not isinstance(demand, (int, float)) or not isinstance(limit, (int, float)):
         return False
     return bool(demand >= limit if record["sense"] == "at_least" else demand <= limit)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, Cells, Column, Values
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
@@ -117,7 +117,7 @@ def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
 
 
 def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | None]:
-    """Figures of the final trial in millimetres, newtons and megapascals; null: not applicable."""
+    """Key figures of the final trial in mm, N and MPa; None where not applicable."""
     first, contour = trial.cycles[0], trial.contour
     design = torques.get(first.load_case)
 
@@ -153,7 +153,7 @@ def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | N
 
 
 def _residual_max(trial: Trial) -> float | None:
-    """Worst equilibrium residual of contact and guides; None where the contact is unknown."""
+    """Maximum equilibrium residual of contact and guides; None if the contact is unknown."""
 
     def worst(cycle: Cycle) -> float:
         parts = (
@@ -164,11 +164,11 @@ def _residual_max(trial: Trial) -> float | None:
         )
         return float(np.max([np.abs(part).max() for part in parts]))
 
-    greatest = float(np.max([worst(cycle) for cycle in trial.cycles]))
-    return greatest if np.isfinite(greatest) else None
+    residual = float(np.max([worst(cycle) for cycle in trial.cycles]))
+    return residual if np.isfinite(residual) else None
 
 
-def trial_record(trial: Trial) -> dict[str, Any]:
+def trial_record(trial: Trial) -> dict[str, Json]:
     """Contents of ``trial.json``: smoothing, reason, mesh, certificate, rolling."""
     smoothing, mesh, width = trial.smoothing, trial.mesh, trial.smoothing.angular_width
     machine, contact = trial.solution.machine, trial.cycles[0].contact
@@ -200,20 +200,22 @@ def trial_record(trial: Trial) -> dict[str, Any]:
 
 def crank_speed_record(
     torques: Mapping[str, Torque], trial: Trial, required: Array | None
-) -> tuple[dict[str, Any], Values | None]:
+) -> tuple[dict[str, Json], Values | None]:
     """Crank speed with and without the cam, and the consistency of the inputs.
 
     Parameters
     ----------
-    required : array (n,)   crank torque about its mean, N m, for which a smoother drew the lift in
-                            the design load case; None where none did
+    required : array (n,)   crank torque about its mean, N m, for which the lift is drawn in the
+                            design load case; None if no smoother of the torque drew it
 
     Returns
     -------
     record : dict       ``speed`` and ``consistency`` of ``run.json``
     columns : mapping   of ``1_speed.csv`` in the design load case; None without a crankshaft
     """
-    case, speed, findings = trial.case, {}, []
+    case = trial.case
+    speed: dict[str, Json] = {}
+    findings: list[Json] = []
     columns: Values | None = None
     running = [c for c in trial.cycles if c.load_case in torques and c.machine.speed > 0]
     for number, cycle in enumerate(running):
@@ -221,7 +223,7 @@ def crank_speed_record(
         torque, rubbing, study = torques[name], cycle.loads.rubbing, None
         try:
             study = study_of(machine, torque, pitch, rubbing)
-        except CamError as error:  # a crank that stalls contradicts the case, not the cam
+        except CamError as error:  # a crank that stalls
             speed[name] = {"refused": str(error)}
         if study is not None:
             speed[name] = _speed_record(study, trial.contour.radius_max().value)
@@ -239,7 +241,7 @@ def crank_speed_record(
     return {"speed": speed or None, "consistency": findings}, columns
 
 
-def _speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:
+def _speed_record(study: SpeedStudy, radius: float) -> dict[str, Json]:
     """Crank speed of one load case; radius (m) of the cam."""
     disc, rim = study.flywheel_masses(radius)
     return {
@@ -271,7 +273,7 @@ def _motion_record(motion: CrankMotion) -> dict[str, float]:
     }
 
 
-def certificate_record(point: CertificatePoint) -> dict[str, Any]:
+def certificate_record(point: CertificatePoint) -> dict[str, Json]:
     """One certified angle in millimetres and megapascals."""
     return {
         "cam_angle_deg": float(np.degrees(point.theta)),
@@ -289,7 +291,7 @@ def certificate_record(point: CertificatePoint) -> dict[str, Any]:
     }
 
 
-def _figure(figure: Convergence, cycle: float, scale: float) -> dict[str, Any]:
+def _figure(figure: Convergence, cycle: float, scale: float) -> dict[str, Json]:
     return {
         "cycle": scale * cycle,
         "meshes": [scale * value for value in figure.values],

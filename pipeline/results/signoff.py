@@ -1,6 +1,6 @@
-"""The sign-off record of a run: its figures with error bars, verdict, evidence, every file's hash.
+"""Sign-off record of a run: figures with error bars, verdict, evidence, hash of every file.
 
-It is drawn from the files of the run alone, so that anybody can draw it again.
+It follows from the files of the run alone and can be reproduced from them.
 """
 
 from __future__ import annotations
@@ -8,14 +8,21 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-from camwright.pipeline.base.files import file_hashes, files_in, json_text, read_json, write_atomic
+from camwright.pipeline.base.files import (
+    Json,
+    file_hashes,
+    files_in,
+    json_text,
+    read_json,
+    write_atomic,
+)
 from camwright.pipeline.results import run_reader
+from camwright.pipeline.results.run_reader import CheckRecord
 
 NAME = "signoff.json"
 PRESENTATION = ("figures", "exports", "inspection")
-"""Folders of what is drawn from the results, or measured later, and may come and go."""
+"""Folders of files that are drawn from the results or measured later; they are not signed."""
 PRESENTATION_SUFFIXES = (".html", ".png", ".svg", ".pdf")
 LIMITATIONS = (
     "Plane strain: the ends of the roller, its chamfers and a tilt of the axis raise the pressure"
@@ -40,10 +47,10 @@ STANDING_FOR = (
     ),
     *zip(SINGULARITIES, ("excluded_zone", "held_distance", "edge_pressure"), strict=True),
 )
-"""Each statement with the check that fails where it would mislead."""
+"""Each statement with the check that fails where the model is not valid."""
 
 
-def record(path: Path) -> dict[str, Any]:
+def record(path: Path) -> dict[str, Json]:
     """The sign-off record of the run in a folder.
 
     Raises
@@ -90,8 +97,8 @@ def record(path: Path) -> dict[str, Any]:
     }
 
 
-def _statements(checks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """What the figures leave out, each with its check and how that stands; null: none is made."""
+def _statements(checks: Sequence[CheckRecord]) -> list[Json]:
+    """Validity limits of the figures, each with its check and status; null: no such check."""
     status = {check["id"]: check["status"] for check in checks}
     return [
         {"statement": text, "check": name, "status": status.get(name)}
@@ -99,20 +106,18 @@ def _statements(checks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     ]
 
 
-def write(path: Path) -> dict[str, Any]:
+def write(path: Path) -> None:
     """Write the record into the folder of a run that is otherwise complete."""
-    whole = record(path)
-    write_atomic(path / NAME, json_text(whole) + "\n")
-    return whole
+    write_atomic(path / NAME, json_text(record(path)) + "\n")
 
 
 def changes(path: Path) -> list[str]:
-    """What differs from the sign-off record, one line a file; empty when nothing does.
+    """Differences from the sign-off record, one line a file; empty without any.
 
     Raises
     ------
     ResultError
-        If there is no record, or it cannot be read.
+        If the record is missing, unreadable or of another schema.
     """
     signed = read_json(path / NAME)
     run_reader.require_schema(path / NAME, signed)
@@ -120,23 +125,23 @@ def changes(path: Path) -> list[str]:
     if not isinstance(known, Mapping):
         return [f"{NAME}: holds no hashes"]
     now = hashes(path)
-    found = [f"{name}: is missing since the sign-off" for name in known if name not in now]
-    found += [f"{name}: was added since the sign-off" for name in now if name not in known]
-    found += [
+    differences = [f"{name}: is missing since the sign-off" for name in known if name not in now]
+    differences += [f"{name}: was added since the sign-off" for name in now if name not in known]
+    differences += [
         f"{name}: was changed since the sign-off"
         for name in known
         if name in now and now[name] != known[name]
     ]
-    return sorted(found) or _disagreements(signed, record(path))
+    return sorted(differences) or _disagreements(signed, record(path))
 
 
 def hashes(path: Path) -> dict[str, str]:
-    """SHA-256 of every input, result and field file; not of the record, nor of presentation."""
+    """SHA-256 of every input, result and field file, without the record and presentation."""
     return file_hashes(path, lambda name: name != NAME and not is_presentation(name))
 
 
 def is_presentation(name: str) -> bool:
-    """Whether a file is drawn from the results and may be drawn again."""
+    """Whether a file is drawn from the results and can be drawn again."""
     return name.startswith(tuple(f"{f}/" for f in PRESENTATION)) or name.endswith(
         PRESENTATION_SUFFIXES
     )
@@ -147,31 +152,41 @@ def environment() -> str:
     return f"{platform.system()} {platform.machine()}"
 
 
-def _disagreements(signed: Mapping[str, Any], drawn: Mapping[str, Any]) -> list[str]:
-    """Words of the record that its own files do not bear out.
+def _disagreements(signed: Mapping[str, Json], drawn: Mapping[str, Json]) -> list[str]:
+    """Entries of the record that differ from the files of the run.
 
-    What the program says of itself is of the version that signed, and no file of the run.
+    The limitations are those of the version that signed; they follow from no file of the run.
     """
     left_out = ("presentation", "files", "limitations", "singularities")
     words = [
-        name
-        for name in drawn
-        if name not in left_out and not _borne_out(signed.get(name), drawn[name])
+        name for name in drawn if name not in left_out and not _agree(signed.get(name), drawn[name])
     ]
     return [f"{NAME}: {name} is not what the files of the run say" for name in words]
 
 
-def _borne_out(signed: Any, drawn: Any) -> bool:
-    """Whether two values agree in all that was signed; a later version may say more."""
+def _agree(signed: Json, drawn: Json) -> bool:
+    """Whether all signed values agree; a later version may add entries."""
     if isinstance(signed, Mapping) and isinstance(drawn, Mapping):
-        return all(key in drawn and _borne_out(value, drawn[key]) for key, value in signed.items())
+        return all(key in drawn and _agree(value, drawn[key]) for key, value in signed.items())
     if isinstance(signed, list) and isinstance(drawn, list):
         same = len(signed) == len(drawn)
-        return same and all(_borne_out(a, b) for a, b in zip(signed, drawn, strict=True))
-    return bool(signed == drawn)
+        return same and all(_agree(a, b) for a, b in zip(signed, drawn, strict=True))
+    return signed == drawn
 
 
-def _figure(check: Mapping[str, Any]) -> dict[str, Any]:
-    names = ["id", "demand", "error", "limit", "unit", "utilisation", "status", "load_case"]
-    names += ["cam_angle_deg", "source", "method", "corner", "corner_demand"]
-    return {name: check[name] for name in names}
+def _figure(check: CheckRecord) -> dict[str, Json]:
+    return {
+        "id": check["id"],
+        "demand": check["demand"],
+        "error": check["error"],
+        "limit": check["limit"],
+        "unit": check["unit"],
+        "utilisation": check["utilisation"],
+        "status": check["status"],
+        "load_case": check["load_case"],
+        "cam_angle_deg": check["cam_angle_deg"],
+        "source": check["source"],
+        "method": check["method"],
+        "corner": check["corner"],
+        "corner_demand": check["corner_demand"],
+    }

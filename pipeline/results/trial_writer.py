@@ -19,13 +19,13 @@ from camwright.pipeline.results.trial import Trial
 
 
 class TrialWriter:
-    """Writes each trial of a run into its folder as soon as it is solved."""
+    """Writes each trial of a run into the run folder as soon as it is solved."""
 
     def __init__(self, folder: RunFolder) -> None:
         self._folder = folder
 
     def store(self, number: int) -> ContactStore:
-        """Pieces of the contact of a trial, kept in the folder until the run is complete."""
+        """Pieces of the contact of a trial, stored in the folder until the run is complete."""
         return self._folder.contact_store(number)
 
     def keep(self, trial: Trial) -> None:
@@ -46,6 +46,6 @@ class TrialWriter:
         self.judge(trial)
 
     def judge(self, trial: Trial) -> None:
-        """Write the checks and the record of a trial, again where it has been certified."""
+        """Write checks and record of a trial; again after its certificate."""
         self._folder.write_checks(trial.number, [check.as_record() for check in trial.checks])
         self._folder.write_trial(trial.number, trial_record(trial))

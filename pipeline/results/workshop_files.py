@@ -42,8 +42,8 @@ def write_workshop(
 ) -> None:
     """Write ``contour.csv``, ``contour.dxf``, ``cam.step``, ``cutter.csv``, ``inspection.csv``.
 
-    A file that the contour does not allow, such as the path of a tool larger than a hollow, is
-    left out and `note` is told why; all others are written.
+    A file that the contour does not allow, such as the path of a tool larger than the minimum
+    concave radius, is left out with a `note`; all others are written.
     """
     folder.mkdir(parents=True, exist_ok=True)
     outline, order = outline_of(case, contour), case.workshop_order
@@ -66,7 +66,7 @@ def write_workshop(
 
 
 def contour_table(contour: Contour, theta: Array) -> str:
-    """CSV of the contour and the lift behind it, a row per angle."""
+    """CSV of contour and lift, a row per angle."""
     x, y = contour.points(theta)
     normal = contour.normal(theta)
     lift = contour.pitch.lift.derivatives(theta, 3)
@@ -91,7 +91,7 @@ def contour_table(contour: Contour, theta: Array) -> str:
 
 
 def cutter_table(contour: Contour, tool_radius: float, theta: Array) -> str:
-    """CSV of the tool's centre in the cam frame."""
+    """CSV of the path of the tool centre in the cam frame."""
     path = cutter_path(contour, tool_radius, theta)
     return table(
         {
