@@ -11,9 +11,13 @@ import re
 from decimal import Decimal, InvalidOperation
 from functools import lru_cache
 from math import degrees, isfinite
-from typing import Any
+from typing import TYPE_CHECKING
 
 from camwright.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from pint import UnitRegistry
+    from pint.facets.plain import PlainUnit
 
 _NUMBER = r"[+-]?(?:\d[\d_]*(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?|[+-]?(?:nan|inf|infinity)"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*", re.IGNORECASE | re.DOTALL)
@@ -28,14 +32,14 @@ _LONGEST = 80
 
 
 @lru_cache(maxsize=1)
-def _registry() -> Any:
+def _registry() -> UnitRegistry[Decimal]:
     import pint  # half a second, and only a case file with unit strings needs it
 
     return pint.UnitRegistry(non_int_type=Decimal)
 
 
 @lru_cache(maxsize=512)
-def _unit(text: str) -> Any:
+def _unit(text: str) -> PlainUnit:
     """The pint unit of `text`; ValueError if it is none."""
     if not text:
         return _registry().dimensionless
@@ -49,7 +53,7 @@ def _unit(text: str) -> Any:
 
 
 @lru_cache(maxsize=512)
-def _si_unit(text: str) -> Any:
+def _si_unit(text: str) -> PlainUnit:
     """The coherent SI unit of the same dimension as `text`, the angle in rad."""
     unit = _unit(text)
     return _registry().Quantity(Decimal(1), unit).to_base_units().units
@@ -66,12 +70,13 @@ def same_dimension(unit: str, other: str) -> bool:
     return bool(one.dimensionality == two.dimensionality and _angle(one) == _angle(two))
 
 
-def _angle(unit: Any) -> int:
+def _angle(unit: PlainUnit) -> int:
     """Power of the plane angle in a unit; pint treats the angle as a pure number."""
     from pint.util import to_units_container
 
-    powers: Any = to_units_container(unit)
-    return int(sum(power for name, power in powers.items() if name.endswith(_ANGLES)))
+    powers = to_units_container(unit).items()
+    angles = [power for name, power in powers if name.endswith(_ANGLES)]
+    return int(sum(float(power) for power in angles if isinstance(power, (int, float, Decimal))))
 
 
 def parse(text: object, unit: str, field: str) -> float:

@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -164,17 +164,19 @@ class RunFolder:
     def figures(self) -> Path:
         return self._file("figures/x").parent
 
-    def write_summary(self, summary: Mapping[str, Any]) -> dict[str, Any]:
+    def write_summary(self, summary: Mapping[str, Json]) -> dict[str, Json]:
         """``run.json``, completed by schema, case, hashes and versions; may be written again.
 
         Parameters
         ----------
         summary : Mapping   the other entries of `run_reader.Summary`, and further ones
         """
-        missing = [name for name in run_reader.HEADLINE if name not in summary["headline"]]
+        headline = summary["headline"]
+        known = headline if isinstance(headline, Mapping) else {}
+        missing = [name for name in run_reader.HEADLINE if name not in known]
         if missing:
             raise ResultError(f"headline lacks {', '.join(missing)}")
-        whole = {
+        whole: dict[str, Json] = {
             "schema": run_reader.SCHEMA,
             "case": self.case.name,
             "input_sha256": self.case.sha256,
@@ -186,7 +188,7 @@ class RunFolder:
         write_atomic(self.path / "run.json", json_text(whole) + "\n")
         return whole
 
-    def finish(self, summary: Mapping[str, Any]) -> dict[str, Any]:
+    def finish(self, summary: Mapping[str, Json]) -> dict[str, Json]:
         """Write summary and sign-off record, and move the folder to its final path."""
         shutil.rmtree(self.path / _CHUNKS, ignore_errors=True)
         whole = self.write_summary(summary)

@@ -25,21 +25,21 @@ PRESENTATION = ("figures", "exports", "inspection")
 """Folders of files that are drawn from the results or measured later; they are not signed."""
 PRESENTATION_SUFFIXES = (".html", ".png", ".svg", ".pdf")
 LIMITATIONS = (
-    "Plane strain: the ends of the roller, its chamfers and a tilt of the axis raise the pressure"
-    " in ways two dimensions cannot see; the edge factor stands for them.",
-    "Linear elastic bodies: above first yield the stresses are those before shakedown, and no"
-    " plastic strain is known.",
-    "Frictionless contact under the certificate; traction enters by the closed form of sliding.",
-    "The roller is solid on a stiff hub unless balls and outer ring of its bearing are given; such"
-    " a ring is of one thickness, its balls have no clearance, and the contact is over a ball.",
+    "Plane strain: the higher pressure at the ends of the roller, at its chamfers and by a tilt of"
+    " the axis is not computed; the edge factor covers it.",
+    "Linear elastic bodies: above first yield the stresses are those before shakedown, and the"
+    " plastic strain is not computed.",
+    "Frictionless contact in the certificate; traction enters by the closed form of sliding.",
+    "The roller is solid on a rigid hub unless the case states balls and outer ring of its bearing;"
+    " such a ring has constant thickness, its balls have no clearance, the contact is over a ball.",
 )
 SINGULARITIES = (
-    "Corners of the keyway and the edges of the bore: stress there grows without bound as the"
-    " mesh is refined; excluded by distance, figures away from edges are given apart.",
-    "Places where bodies are held: excluded, none lies within ten half-widths of the contact.",
+    "Corners of the keyway and edges of the bore: the stress grows without bound as the mesh is"
+    " refined; excluded by distance, values away from the edges are listed separately.",
+    "Supports of the bodies: excluded, none is within ten half-widths of the contact.",
     "Ends of the roller: not in the plane model; covered by the edge factor.",
 )
-STANDING_FOR = (
+VALIDITY = (
     *zip(
         LIMITATIONS,
         ("edge_factor", "shakedown", "shakedown_traction", "roller_radial"),
@@ -101,8 +101,7 @@ def _statements(checks: Sequence[CheckRecord]) -> list[Json]:
     """Validity limits of the figures, each with its check and status; null: no such check."""
     status = {check["id"]: check["status"] for check in checks}
     return [
-        {"statement": text, "check": name, "status": status.get(name)}
-        for text, name in STANDING_FOR
+        {"statement": text, "check": name, "status": status.get(name)} for text, name in VALIDITY
     ]
 
 
