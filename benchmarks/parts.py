@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.cycle.part_loads import part_loads
@@ -40,7 +40,7 @@ def seconds(work: Callable[[], object]) -> float:
 
 def main() -> int:
     positions = int(sys.argv[1]) if len(sys.argv) > 1 else POSITIONS
-    case = load_case_file(ROOT / "cases" / "gx120.toml")
+    case = read_case(ROOT / "cases" / "gx120.toml")
     machine, torques = machines(case)[0], engine_torques(case)
     contour = case.contour(cam_lift(case, torques))
     random = np.random.default_rng(0)

@@ -22,10 +22,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 from browser_fixture import chromium
 
 from camwright.pipeline.base.progress import Silent
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.run import run_case
 from camwright.reports.page import PAGE
-from camwright.reports.sections import build
+from camwright.reports.sections import report
 
 ROOT = Path(__file__).resolve().parent.parent
 SECONDS, MEBIBYTES, MEGABYTES, OPEN_SECONDS = 40.0, 3072.0, 8.0, 2.0
@@ -49,8 +49,8 @@ def main() -> None:
         if (run / "run.json").is_file():
             shutil.copytree(run, copy)
         else:
-            case = load_case_file(ROOT / "cases" / "gx120.toml")
-            run_case(case, copy, positions=72, progress=Silent(), present=build)
+            case = read_case(ROOT / "cases" / "gx120.toml")
+            run_case(case, copy, positions=72, progress=Silent(), present=report)
         start = time.perf_counter()
         subprocess.run([sys.executable, "-m", "camwright", "report", str(copy)], check=True)
         told("report, by the clock", time.perf_counter() - start, "s", SECONDS)

@@ -7,19 +7,19 @@ import tempfile
 from pathlib import Path
 
 from camwright.pipeline.base.progress import Silent
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.run import run_case
-from camwright.reports.sections import build
+from camwright.reports.sections import report
 
 ROOT = Path(__file__).resolve().parent.parent
 
 
 def main() -> None:
     positions = int(sys.argv[1]) if len(sys.argv) > 1 else 72
-    case = load_case_file(ROOT / "cases" / "gx120.toml")
+    case = read_case(ROOT / "cases" / "gx120.toml")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "gx120"
-        summary = run_case(case, out, positions=positions, progress=Silent(), present=build)
+        summary = run_case(case, out, positions=positions, progress=Silent(), present=report)
     print(f"{case.name}, {positions} positions, {summary['trials']} trials")
     for stage, seconds in summary["timings_s"].items():
         print(f"{stage:>18} {seconds:8.2f} s")

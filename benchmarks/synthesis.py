@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from camwright.pipeline.base.progress import Silent
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.run import run_case
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
@@ -52,7 +52,7 @@ def dense_solution() -> float:
 
 def main() -> int:
     positions = int(sys.argv[1]) if len(sys.argv) > 1 else POSITIONS
-    case = load_case_file(ROOT / "cases" / "gx120-signed.toml")
+    case = read_case(ROOT / "cases" / "gx120-signed.toml")
     problem = problem_of(case, engine_torques(case))
     alone = replace(problem, scenarios=problem.scenarios[:1])
     unit, start = dense_solution(), cpu()

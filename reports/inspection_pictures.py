@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.base.tables import Table, read_table
-from camwright.pipeline.results.run_reader import load_run
+from camwright.pipeline.results.run_reader import read_run
 from camwright.reports.figure_svg import png
 
 _EXAGGERATED = 0.12
@@ -26,7 +26,7 @@ def draw(run: Path, tolerance_um: float) -> Path:
     """
     folder = run / "inspection"
     deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv")
-    nominal = load_run(run).final
+    nominal = read_run(run).final
     figure = Figure(figsize=(10, 8), layout="constrained")
     _deviation(figure.add_subplot(2, 2, 1), deviation, tolerance_um)
     _part(figure.add_subplot(2, 2, 2), nominal.contour, deviation)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.results.run_reader import Run, load_run
+from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.reports.report_tables import Record
 from camwright.reports.sheet_turn import Turn
 from camwright.reports.verdict_text import governing_load_case
@@ -37,7 +37,7 @@ def read_material(folder: Path) -> Material:
     ResultError
         If the folder does not hold a finished run.
     """
-    run = load_run(folder)
+    run = read_run(folder)
     case = _case(run)
     return Material(Path(folder), run, case, governing_turn(run, case))
 

@@ -539,4 +539,4 @@ def page_of(folder: Path) -> Path:
     """The page of a run folder, drawn with everything else that a report has."""
     from camwright.reports import sections
 
-    return sections.build(folder)["page"][0]
+    return sections.report(folder)["page"][0]

@@ -28,7 +28,7 @@ _CARD = TypeAdapter(Table[Material])
 _REFUSED = Material(E=1.0, nu=0.0, yield_strength=1.0, density=1.0, source="refused")
 
 
-def load_case_file(path: str | Path) -> Case:
+def read_case(path: str | Path) -> Case:
     """Read and check a case file.
 
     Raises

@@ -90,10 +90,10 @@ def _checked_run(folder: Path) -> dict[str, Any]:
 
 
 def _checked_case(path: Path) -> dict[str, Any]:
-    from camwright.pipeline.case.case_file import load_case_file
+    from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.preview import preview_case
 
-    case = load_case_file(path)
+    case = read_case(path)
     trial = preview_case(case)
     return {
         "case": case.name,

@@ -25,12 +25,12 @@ def compare(
     ] = None,
 ) -> int:
     """Every smoother on the same case, by closed forms: ripple left, forces, verdict."""
-    from camwright.pipeline.case.case_file import load_case_file
+    from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.case.load_case_torque import engine_torques
     from camwright.pipeline.studies.smoother_comparison import compared
     from camwright.reports import smoother_page
 
-    design = load_case_file(case)
+    design = read_case(case)
     found = list(compared(design, engine_torques(design)))
     rows = [{"smoother": one.smoother, "words": one.words, **one.record} for one in found]
     for row in rows:

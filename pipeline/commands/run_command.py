@@ -38,19 +38,19 @@ def run(
     no_cache: NoCacheOption = False,
 ) -> int:
     """Run a case: torque, lift, contour, mesh, contact, checks, report."""
-    from camwright.pipeline.case.case_file import load_case_file
+    from camwright.pipeline.case.case_file import read_case
 
     use_cache(not no_cache)
     if jobs is not None and not 1 <= jobs <= 256:
         raise InputError("--jobs", jobs, ">= 1 and <= 256")
-    design = load_case_file(case)
+    design = read_case(case)
     if positions is not None:
         design = design.with_positions(positions)
     if not (resume and _finished(out, design.sha256)):
         from camwright.pipeline.results.run_folder import set_aside
         from camwright.pipeline.run import run_case
         from camwright.pipeline.studies.papers.valve_train import valve_record
-        from camwright.reports.sections import build
+        from camwright.reports.sections import report
 
         old = set_aside(out, design) if replace else nullcontext()
         with old, progress_shown() as progress:
@@ -61,7 +61,7 @@ def run(
                 jobs=jobs,
                 resume=resume,
                 progress=progress,
-                present=build,
+                present=report,
                 also=valve_record,
             )
     from camwright.pipeline.results.run_reader import read_verdict
@@ -98,7 +98,7 @@ def report(
     names += ["pdf"] if pdf else []
     with progress_shown() as shown:
         shown.stage("report")
-        made = sections.build(folder, sections.chosen(names))
+        made = sections.report(folder, sections.chosen(names))
     for name, files in made.items():
         stdout.print(f"{name}: {_told(files)}", markup=False)
     if show:

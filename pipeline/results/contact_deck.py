@@ -103,7 +103,7 @@ def deck(run: Path, theta: float, path: Path, load_case: str | None = None) -> S
     InputError
         If the load case is unknown, or the follower is not loaded at the angle.
     """
-    cycle = run_reader.load_run(run).final.cycle
+    cycle = run_reader.read_run(run).final.cycle
     case, contour = drawn_cam(run)
     name = case.load_cases[0].name if load_case is None else load_case
     force = force_at(cycle, name, theta)

@@ -36,7 +36,7 @@ from camwright.pipeline.base.files import (
 )
 from camwright.pipeline.base.tables import Values, table
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.results import run_reader, signoff
 
 _STATE, _CHUNKS, _LOCK = ".state.json", ".chunks", ".lock"
@@ -347,8 +347,8 @@ def _differing(state: Json, case: Case, versions: Mapping[str, str]) -> str:
 
 def drawn_cam(run: Path) -> tuple[Case, Contour]:
     """The case of a run and the contour of its last trial."""
-    case = load_case_file(run / "case.toml")
-    values = 1e-3 * run_reader.load_run(run).final.lift["lift_mm"]
+    case = read_case(run / "case.toml")
+    values = 1e-3 * run_reader.read_run(run).final.lift["lift_mm"]
     return case, case.contour(Lift(uniform_turn(values.size), values))
 
 

@@ -153,7 +153,7 @@ class Run:
         return self.final.verdict
 
 
-def load_run(path: str | Path) -> Run:
+def read_run(path: str | Path) -> Run:
     """Read a run folder.
 
     Raises

@@ -147,7 +147,7 @@ def write_inspection(run: Path, part: RealPart, tolerance: float) -> dict[str, A
         "tolerance_um": 1e6 * tolerance,
         "within_tolerance": bool(np.abs(fit.deviation).max() <= 0.5 * tolerance),
         "waves_um": _waves(fit),
-        "nominal": _figures_of(run_reader.load_run(run).final.cycle),
+        "nominal": _figures_of(run_reader.read_run(run).final.cycle),
         "measured": _figures_of(read_table(folder / "cycle.csv")),
         "verdict": part.trial.verdict,
         "binding": list(part.trial.binding),

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from camwright.pipeline import cli
-from camwright.pipeline.results.run_reader import load_run
+from camwright.pipeline.results.run_reader import read_run
 
 CASE = Path(__file__).resolve().parents[2] / "cases" / "papers" / "petrescu_c.toml"
 
@@ -51,7 +51,7 @@ def folder(tmp_path_factory):
 
 
 def test_run_tells_of_a_face(folder):
-    run = load_run(folder)
+    run = read_run(folder)
     cycle = run.final.cycle
     slope = 6.0 * np.sin(np.radians(2.0 * cycle["cam_angle_deg"])) * (cycle["cam_angle_deg"] < 180)
     np.testing.assert_allclose(cycle["face_contact_offset_mm"], slope, atol=0.02)
@@ -121,7 +121,7 @@ def test_undercut_is_a_verdict_of_the_run(tmp_path, cam):
     (tmp_path / "cut.toml").write_text(cam())
     code, said = camwright("run", tmp_path / "cut.toml", "--out", tmp_path / "run")
     assert code == 0, said
-    run = load_run(tmp_path / "run")
+    run = read_run(tmp_path / "run")
     checks = {check["id"]: check for check in run.final.checks}
     assert run.verdict == "fail"
     for name in ("undercut", "self_intersection", "second_contact"):

@@ -10,7 +10,7 @@ import pytest
 from every_option import full_case
 
 from camwright.pipeline.base.progress import Silent
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.run import run_case
 
@@ -73,7 +73,7 @@ def test_the_method_says_how_the_roller_is_taken(run):
     """As a ring where balls and ring are given; else solid, and why."""
     record = json.loads((run / "trial_1" / "trial.json").read_text())
     assert "outer ring of its bearing on balls" in record["contact_method"]
-    case = load_case_file(run / "case.toml")
+    case = read_case(run / "case.toml")
     roller = machines(case)[0].follower
     assert record["contact_method"].endswith(roller.body_model)
     plain = replace(roller, bearing=replace(roller.bearing, ring=None))

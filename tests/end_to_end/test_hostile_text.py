@@ -66,7 +66,7 @@ def test_a_run_keeps_them_in_a_folder_of_any_name(tmp_path: Path) -> None:
         small_run.write_trial(folder, records())
         folder.finish(small_run.summary("fail") | {"binding": ["one_fail", "one_not_evaluated"]})
     assert list(out.parent.iterdir()) == [out]  # nothing beside it, nothing above it
-    found = run_reader.load_run(out)
+    found = run_reader.read_run(out)
     assert [check["title"] for check in found.final.checks] == [LONG] * 3
     assert signoff.changes(out) == []
 

@@ -7,7 +7,7 @@ import pytest
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.eccentric import Eccentric
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import cam_shape as checks
 from camwright.pipeline.contact.closed_form import closed_form_history
@@ -31,7 +31,7 @@ POSITIONS = 72
 
 @pytest.fixture(scope="module")
 def eccentric():
-    case = load_case_file(PAPERS / "eccentric.toml")
+    case = read_case(PAPERS / "eccentric.toml")
     contour = case.contour(cam_lift(case, {}))
     return case, contour, turns_of(machines(case), contour, case, {}, POSITIONS)[0]
 
@@ -93,7 +93,7 @@ def test_hertz_radius_is_constant_and_finite_elements_agree(eccentric):
 @pytest.mark.parametrize(("name", "stands"), [("b1", True), ("b2", True), ("b3", False),
                                               ("b4", False)])  # fmt: skip
 def test_third_and_fourth_valve_cam_fail_as_undercut(name, stands):
-    case = load_case_file(PAPERS / f"petrescu_{name}.toml")
+    case = read_case(PAPERS / f"petrescu_{name}.toml")
     contour = case.contour(cam_lift(case, {}))
     drawn = Solution(case, contour, machines(case), Tier.PREVIEW, None, ())
     check = checks.undercut(drawn)

@@ -217,4 +217,4 @@ def test_without_typst_it_says_what_to_install(
         importlib.util, "find_spec", lambda name: None if name == "typst" else real(name)
     )
     with pytest.raises(ResultError, match=r"typst: pip install 'camwright\[pdf\]'"):
-        sections.build(material.folder, sections.chosen(["pdf"]))
+        sections.report(material.folder, sections.chosen(["pdf"]))

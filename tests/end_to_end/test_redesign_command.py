@@ -16,7 +16,7 @@ from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.cards.substitution import Choice
-from camwright.pipeline.case.case_file import case_of, load_case_file, parse_case
+from camwright.pipeline.case.case_file import case_of, parse_case, read_case
 from camwright.pipeline.case.toml_text import to_toml
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.studies.redesign import part_search, redesign_study
@@ -44,7 +44,7 @@ def test_whole_catalogue_for_the_published_engine(tmp_path):
     assert len(points) >= 3
     for point in points:
         assert point["torque_reduction"] >= 0.4
-        assert load_case_file(tmp_path / "out" / point["file"]).roller.radius > 0.008
+        assert read_case(tmp_path / "out" / point["file"]).roller.radius > 0.008
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +98,7 @@ def test_points_are_a_front_of_feasible_cases(done):
 def test_a_point_is_what_its_case_file_gives(done):
     out, document = done
     point = document["points"][-1]
-    case = load_case_file(out / point["file"])
+    case = read_case(out / point["file"])
     checks = {check.id: check for check in preview_case(case).checks}
     # the same case by the same functions: nothing may differ
     assert checks["torque_reduction"].demand == pytest.approx(point["torque_reduction"], rel=1e-9)
@@ -147,13 +147,13 @@ def test_files_a_case_includes_go_with_its_points(tmp_path):
     angle = np.arange(0.0, 720.0, 5.0)
     rows = "".join(f"{a},{8 * np.sin(np.radians(a))}\n" for a in angle)
     (tmp_path / "torque.csv").write_text("crank_angle_deg,torque_Nm\n" + rows, encoding="utf-8")
-    given = tomllib.loads(load_case_file(CASES / "gx120.toml").to_toml())
+    given = tomllib.loads(read_case(CASES / "gx120.toml").to_toml())
     given["engine"] = {"kind": "table", "file": "torque.csv"}
     case = case_of(given, tmp_path)
     path = tmp_path / "own.toml"
     path.write_text(to_toml(case, {"torque.csv": "torque.csv"}), encoding="utf-8")
     parts, out = catalogue_of(None), tmp_path / "out"
-    asked = redesign_study.Search(load_case_file(path), tmp_path, parts, out, "v")
+    asked = redesign_study.Search(read_case(path), tmp_path, parts, out, "v")
     redesign_study._prepare(asked)
     text = asked.text(Choice(ROLLER, "60 x 42", "bronze"))
     point = parse_case(text, out)

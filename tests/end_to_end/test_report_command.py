@@ -92,7 +92,7 @@ def test_one_part_alone_writes_its_files_alone(run: Path) -> None:
 
 @pytest.mark.usefixtures("quick")
 def test_a_report_has_all_parts_but_those_to_ask_for(run: Path) -> None:
-    made = sections.build(run)
+    made = sections.report(run)
     assert {path.stem for path in made["figures"]} >= ALWAYS
     assert list(made) == [part.name for part in sections.PARTS if not part.on_request]
     assert not (run / printing.PDF).exists()

@@ -15,7 +15,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
@@ -24,7 +24,7 @@ from camwright.pipeline.cycle.solution import CONTACT
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.run import run_case
 from camwright.pipeline.smoothing.required_lift import cam_lift
-from camwright.reports.sections import build
+from camwright.reports.sections import report
 
 ROOT = Path(__file__).resolve().parents[2]
 POSITIONS = 180  # two pieces of the contact per trial
@@ -56,7 +56,7 @@ def small(folder: Path, **changes: str) -> Case:
         assert count == 1, key
     path = folder / "case.toml"
     path.write_text(text, encoding="utf-8")
-    return load_case_file(path)
+    return read_case(path)
 
 
 @pytest.fixture(scope="module")
@@ -65,16 +65,16 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, Path, dict
     folder = tmp_path_factory.mktemp("run")
     case, out = small(folder), folder / "out"
     with pytest.raises(KeyboardInterrupt):
-        run_case(case, out, progress=Recorder(stop_after=3), present=build)
+        run_case(case, out, progress=Recorder(stop_after=3), present=report)
     assert not out.exists()
-    return case, out, run_case(case, out, resume=True, jobs=1, progress=Silent(), present=build)
+    return case, out, run_case(case, out, resume=True, jobs=1, progress=Silent(), present=report)
 
 
 @pytest.fixture(scope="module")
 def straight(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same run without interruption."""
     folder = tmp_path_factory.mktemp("straight")
-    run_case(small(folder), folder / "out", jobs=1, progress=Silent(), present=build)
+    run_case(small(folder), folder / "out", jobs=1, progress=Silent(), present=report)
     return folder / "out"
 
 
@@ -106,7 +106,7 @@ def test_run_folder_holds_what_was_promised(
                  "trial_1/5_guides.npz", "scene.html"):  # fmt: skip
         assert (out / name).stat().st_size > 0, name
     assert not [entry.name for entry in out.iterdir() if entry.name.startswith(".")]
-    found = run_reader.load_run(out)
+    found = run_reader.read_run(out)
     cycle = found.final.cycle
     assert len(cycle) == POSITIONS
     assert {"torque_after_Nm", "shear_range_MPa", "bore_stress_MPa"} <= set(cycle.columns)
@@ -117,14 +117,14 @@ def test_case_file_in_the_folder_repeats_the_run(
     finished: tuple[Case, Path, dict[str, Any]],
 ) -> None:
     case, out, _ = finished
-    assert load_case_file(out / "case.toml").sha256 == case.sha256
+    assert read_case(out / "case.toml").sha256 == case.sha256
 
 
 def test_published_design_fails_where_it_must(
     finished: tuple[Case, Path, dict[str, Any]],
 ) -> None:
     _, out, summary = finished
-    found = run_reader.load_run(out)
+    found = run_reader.read_run(out)
     first = {check["id"]: check for check in found.trials[0].checks}
     for name in ("roller_static", "pressure_angle", "guide_pv_A", "shakedown"):
         assert first[name]["status"] == "fail", name
@@ -141,7 +141,7 @@ def test_published_design_fails_where_it_must(
 
 def test_columns_agree_with_one_another(finished: tuple[Case, Path, dict[str, Any]]) -> None:
     case, out, summary = finished
-    cycle = run_reader.load_run(out).final.cycle
+    cycle = run_reader.read_run(out).final.cycle
     # Hertz from the columns themselves: E* of steel on steel, 1/R = 1/r_r + 1/r_c.
     modulus = 210e3 / (2 * (1 - 0.3**2))
     radius = 1 / (1 / 8.0 + 1 / cycle["contour_radius_of_curvature_mm"])
@@ -175,10 +175,10 @@ def test_pressure_of_every_position_carries_the_load(
     finished: tuple[Case, Path, dict[str, Any]],
 ) -> None:
     _, out, _ = finished
-    cycle = run_reader.load_run(out).final.cycle
+    cycle = run_reader.read_run(out).final.cycle
     with np.load(out / "trial_1" / "5_pressure.npz") as stored:
         assert stored["pressure_MPa"].shape == stored["xi_mm"].shape
-    with np.load(run_reader.load_run(out).final.path / "5_pressure.npz") as stored:
+    with np.load(run_reader.read_run(out).final.path / "5_pressure.npz") as stored:
         carried = np.trapezoid(stored["pressure_MPa"], stored["xi_mm"], axis=1)
         assert (stored["pressure_MPa"] >= 0).all()
         # The end knots carry nothing, so straight lines between the knots hold it all.
@@ -190,7 +190,7 @@ def test_map_of_the_turn_agrees_with_the_angles(
 ) -> None:
     """Worst stress of the swept load within 1 % of that at the worst angle, and where it is."""
     _, out, _ = finished
-    trial = run_reader.load_run(out).final
+    trial = run_reader.read_run(out).final
     worst = json.loads((trial.path / "trial.json").read_text())["rolling"]
     (name,) = worst
     with np.load(trial.path / "5_envelope.npz") as stored:
@@ -222,7 +222,7 @@ def test_folder_of_another_case_is_refused(
     _, out, summary = finished
     other = small(tmp_path, preload='"250 N"')
     with pytest.raises(ResultError, match="holds the run of"):
-        run_case(other, out, progress=Silent(), present=build)
+        run_case(other, out, progress=Silent(), present=report)
     assert json.loads((out / "run.json").read_text()) == summary
 
 
@@ -230,13 +230,13 @@ def test_undercut_is_a_verdict(tmp_path: Path) -> None:
     case = small(tmp_path, radius='"20 mm"', prime_radius='"34 mm"')
     text = (tmp_path / "case.toml").read_text().replace('kind = "moving_average"', 'kind = "none"')
     (tmp_path / "case.toml").write_text(text)
-    case = load_case_file(tmp_path / "case.toml")
-    summary = run_case(case, tmp_path / "out", progress=Silent(), present=build)
+    case = read_case(tmp_path / "case.toml")
+    summary = run_case(case, tmp_path / "out", progress=Silent(), present=report)
     assert summary["verdict"] == "fail"
     assert "undercut" in summary["binding"]
     assert "contact_pressure" in summary["binding"], "an unknown contact must not pass"
     assert summary["headline"]["p0_max_MPa"] is None
-    found = run_reader.load_run(tmp_path / "out")
+    found = run_reader.read_run(tmp_path / "out")
     assert np.isnan(found.final.cycle["p0_fe_MPa"]).all()
     assert (tmp_path / "out" / "8_report.html").is_file()
 
@@ -257,10 +257,10 @@ def test_a_run_may_begin_at_the_lift(tmp_path: Path) -> None:
     assert engine is not None
     text = text.replace(engine.group(), '[lift]\nfile = "lift.csv"\n\n[mechanism]')
     (tmp_path / "case.toml").write_text(text)
-    case = load_case_file(tmp_path / "case.toml")
-    summary = run_case(case, tmp_path / "out", jobs=1, progress=Silent(), present=build)
+    case = read_case(tmp_path / "case.toml")
+    summary = run_case(case, tmp_path / "out", jobs=1, progress=Silent(), present=report)
     assert not (tmp_path / "out" / "1_torque.csv").exists()
     assert summary["headline"]["torque_std_before_Nm"] is None
-    cycle = run_reader.load_run(tmp_path / "out").final.cycle
+    cycle = run_reader.read_run(tmp_path / "out").final.cycle
     assert "torque_before_Nm" not in cycle
     np.testing.assert_allclose(cycle["pitch_radius_of_curvature_mm"], 1e3 * radius, rtol=1e-6)

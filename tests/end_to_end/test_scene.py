@@ -33,7 +33,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("scene") / "run"
     report_fixture.write_run(folder, POSITIONS, title=HOSTILE, field=False)
     turn_fixture.add_turn(folder, POSITIONS)
-    (made,) = sections.build(folder, sections.chosen(["scene"]))["scene"]
+    (made,) = sections.report(folder, sections.chosen(["scene"]))["scene"]
     return made
 
 
@@ -62,7 +62,7 @@ def test_a_report_has_a_scene_unless_told_otherwise() -> None:
 
 def test_a_run_without_its_turn_has_no_scene(tmp_path: Path) -> None:
     folder = report_fixture.write_run(tmp_path / "old", POSITIONS, field=False)
-    assert sections.build(folder, sections.chosen(["scene"]))["scene"] == []
+    assert sections.report(folder, sections.chosen(["scene"]))["scene"] == []
     assert not (folder / scene_page.FILE).exists()
     with pytest.raises(ResultError, match="run the case again"):
         read_turn_view(folder)

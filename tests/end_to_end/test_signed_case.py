@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from camwright.pipeline.base.progress import Silent
-from camwright.pipeline.case.case_file import load_case_file
-from camwright.pipeline.results.run_reader import load_run
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.results.run_reader import read_run
 from camwright.pipeline.run import run_case
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -15,7 +15,7 @@ CASES = Path(__file__).parents[2] / "cases"
 
 @pytest.mark.slow
 def test_signed_case_passes(tmp_path):
-    case = load_case_file(CASES / "gx120-signed.toml")
+    case = read_case(CASES / "gx120-signed.toml")
     assert {state.name for state in case.load_cases} == {"idle", "overspeed"}
     summary = run_case(case, tmp_path / "run", positions=180, progress=Silent())
     assert summary["verdict"] == "pass", summary["binding"]
@@ -27,7 +27,7 @@ def test_signed_case_passes(tmp_path):
     starts = trial["synthesis"]["starts"]
     assert starts["agree"] and starts["sentence"] in summary["statement"]
     assert set(trial["synthesis"]["corrections"]) == {"idle", "overspeed"}
-    limits = load_run(tmp_path / "run").final.limits
+    limits = read_run(tmp_path / "run").final.limits
     assert limits is not None
     dearest = summary["prices"][0]["limit"]
     assert limits[dearest].max() == pytest.approx(1.0, abs=3e-3)  # it binds, a reserve in hand

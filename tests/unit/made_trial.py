@@ -26,7 +26,7 @@ from camwright.meshes.mesh_quality import Quality
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Part
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import case_of, load_case_file
+from camwright.pipeline.case.case_file import case_of, read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.case.section import Section
@@ -79,7 +79,7 @@ def changed(base: Any, **values: Any) -> Any:
 
 @cache
 def _case() -> Case:
-    return load_case_file(CASE_FILE)
+    return read_case(CASE_FILE)
 
 
 def case(**sections: Any) -> Case:

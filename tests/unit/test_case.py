@@ -11,7 +11,7 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import CASE_BYTES, load_case_file, parse_case
+from camwright.pipeline.case.case_file import CASE_BYTES, parse_case, read_case
 from camwright.pipeline.case.limits import (
     CURVATURE_RATE,
     JAM_INDEX,
@@ -187,7 +187,7 @@ def test_broken_toml_is_one_line(text: str) -> None:
 def test_file_that_is_missing_too_large_or_not_text(tmp_path: Path) -> None:
     def message(path: Path) -> str:
         with pytest.raises(InputError) as caught:
-            load_case_file(path)
+            read_case(path)
         return str(caught.value)
 
     assert "must be an existing file" in message(tmp_path / "none.toml")
@@ -212,24 +212,24 @@ def with_table(folder: Path, name: str = "torque.csv") -> Path:
 def test_included_files_are_part_of_the_hash(tmp_path: Path) -> None:
     table = tmp_path / "torque.csv"
     table.write_text("angle_deg,torque_Nm\n0,1\n")
-    case = load_case_file(with_table(tmp_path))
+    case = read_case(with_table(tmp_path))
     assert case.included == {"inputs/torque.csv": table.read_bytes()}
     assert case.path("torque.csv") == tmp_path / "torque.csv"
     before = case.sha256
     table.write_text("angle_deg,torque_Nm\n0,2\n")
-    assert load_case_file(tmp_path / "case.toml").sha256 != before
+    assert read_case(tmp_path / "case.toml").sha256 != before
 
 
 def test_resolved_case_with_its_inputs_is_the_same_case(tmp_path: Path) -> None:
     (tmp_path / "data").mkdir()
     (tmp_path / "data" / "torque.csv").write_text("angle_deg,torque_Nm\n0,1\n")
-    case = load_case_file(with_table(tmp_path, "data/torque.csv"))
+    case = read_case(with_table(tmp_path, "data/torque.csv"))
     kept = tmp_path / "kept"
     for name, content in case.included.items():
         (kept / name).parent.mkdir(parents=True)
         (kept / name).write_bytes(content)
     (kept / "case.toml").write_text(case.to_toml(), encoding="utf-8")
-    assert load_case_file(kept / "case.toml").sha256 == case.sha256
+    assert read_case(kept / "case.toml").sha256 == case.sha256
 
 
 @pytest.mark.parametrize(
@@ -249,12 +249,12 @@ def test_includes_stay_in_the_folder(tmp_path: Path, name: str) -> None:
     folder.mkdir()
     (folder / "link.csv").symlink_to(tmp_path / "torque.csv")
     with pytest.raises(InputError, match="stays in the case file's folder"):
-        load_case_file(with_table(folder, name))
+        read_case(with_table(folder, name))
 
 
 def test_include_that_is_missing_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"engine\.file = .*none\.csv, must be an existing file"):
-        load_case_file(with_table(tmp_path, "none.csv"))
+        read_case(with_table(tmp_path, "none.csv"))
 
 
 def test_frozen() -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cards.spring_catalogue import CATALOGUE, SpringDemand, read_catalogue
-from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.template import template
 
 WIRE = """
@@ -81,12 +81,12 @@ def test_a_catalogue_beside_the_case(tmp_path):
     (tmp_path / "own.toml").write_text(WIRE + "".join(rows))
     path = tmp_path / "case.toml"
     path.write_text(case_text('catalogue = "own.toml"', 'travel_max = "25 mm"'))
-    case = load_case_file(path)
+    case = read_case(path)
     assert case.spring.design.wire_diameter == pytest.approx(5e-3)
     assert "light" in case.spring.design.source
     path.write_text(case_text('catalogue = "own.toml"', 'travel_max = "60 mm"'))
     with pytest.raises(InputError, match=r"spring\.catalogue = own\.toml.*light: goes solid"):
-        load_case_file(path)
+        read_case(path)
 
 
 @pytest.mark.parametrize(
@@ -116,7 +116,7 @@ def test_stays_in_the_folder_of_the_case(tmp_path, name):
     path = tmp_path / "case.toml"
     path.write_text(case_text(f"catalogue = '{name}'", 'travel_max = "25 mm"'))
     with pytest.raises(InputError, match="catalogue"):
-        load_case_file(path)
+        read_case(path)
 
 
 @pytest.mark.parametrize(
@@ -217,7 +217,7 @@ def test_an_empty_catalogue_has_no_spring(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(case_text('catalogue = "own.toml"', 'travel_max = "25 mm"'))
     with pytest.raises(InputError, match="must be not empty"):
-        load_case_file(path)
+        read_case(path)
 
 
 def test_refuses_a_huge_catalogue(tmp_path):

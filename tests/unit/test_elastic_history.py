@@ -9,7 +9,7 @@ from small_run import named
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.lift import Lift
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -26,7 +26,7 @@ POSITIONS = 72
 
 @pytest.fixture(scope="module")
 def gx120():
-    case = load_case_file(CASES / "gx120.toml")
+    case = read_case(CASES / "gx120.toml")
     theta = uniform_turn(720)
     lift = Lift(theta, 0.008 * (1 - np.cos(theta)) + 0.002 * (1 - np.cos(2 * theta)))
     return case, engine_torques(case)["idle"], case.contour(lift)

@@ -12,7 +12,7 @@ import pytest
 from check_registry import BY_ID, BY_ITSELF, MADE_LATER, TRIED, check
 
 from camwright.geometry.errors import CamError
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import solution_verification as verification
 from camwright.pipeline.checks.check import verdict
@@ -130,7 +130,7 @@ def test_every_check_is_tried():
 
 def test_a_signed_case_raises_no_check_that_is_not_tried():
     """The redesigned machine, as a case file describes it, in a preview."""
-    signed = load_case_file(SIGNED_CASE).with_positions(72)
+    signed = read_case(SIGNED_CASE).with_positions(72)
     names = {check.id for check in preview_case(signed).checks}
     assert names <= set(TRIED) | MADE_LATER
     assert len(names) > 50

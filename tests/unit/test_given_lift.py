@@ -5,7 +5,7 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift, lift_origin
 from camwright.pipeline.case.template import template
 
@@ -100,7 +100,7 @@ def table(folder, noise=""):
     (folder / "lift.csv").write_text("cam_angle_deg,lift_mm\n" + rows)
     path = folder / "given.toml"
     path.write_text(with_lift(f'[lift]\nfile = "lift.csv"\n{noise}'))
-    return load_case_file(path)
+    return read_case(path)
 
 
 def test_table_without_a_kind_is_followed_row_by_row(tmp_path):

@@ -10,7 +10,7 @@ from crank_traces import CYCLE, noisy_times, tooth_angles, voltage
 from small_run import named
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.load_case_torque import (
     engine_torque,
     engine_torques,
@@ -42,7 +42,7 @@ def measured(folder, engine, name, columns, header):
     rows = "\n".join(",".join(repr(float(v)) for v in row) for row in np.column_stack(columns))
     (folder / name).write_text(f"{header}\n{rows}\n", encoding="utf-8")
     (folder / "case.toml").write_text(case_text(engine), encoding="utf-8")
-    return load_case_file(folder / "case.toml")
+    return read_case(folder / "case.toml")
 
 
 def test_cylinder_pressure(tmp_path):
@@ -117,7 +117,7 @@ def test_two_gigabytes_are_refused_unread(tmp_path):
     with (tmp_path / "v.csv").open("wb") as file:
         file.truncate(2 * 2**30)
     with pytest.raises(InputError, match=r"engine\.file = .*v\.csv is larger, must be at most"):
-        load_case_file(tmp_path / "case.toml")
+        read_case(tmp_path / "case.toml")
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import Count, In, Part, marks_of
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.error_text import first_error
 from camwright.pipeline.case.section import section_of
 from camwright.pipeline.case.toml_text import tables_of
@@ -29,7 +29,7 @@ EVERY_PART = Path(__file__).parents[1] / "data" / "every_part.toml"
 
 @cache
 def case() -> Case:
-    return load_case_file(EVERY_PART)
+    return read_case(EVERY_PART)
 
 
 def parts_in(value: object) -> Iterator[Part]:

@@ -17,7 +17,7 @@ from camwright.pipeline.case.cards.catalogue import (
 )
 from camwright.pipeline.case.cards.spring_catalogue import SpringDemand
 from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_of, variant
-from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.limits import CAM_RADIUS
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -34,7 +34,7 @@ CHOICE = Choice("track_roller_35x16", "60 x 42", "ptfe_lined", 0.08)
 
 @pytest.fixture(scope="module")
 def case():
-    return load_case_file(CASES / "gx120.toml")
+    return read_case(CASES / "gx120.toml")
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from every_option import full_case
 
 from camwright import reports
 from camwright.pipeline.base.tables import Table, table
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.renamed_keys import renamed_names
 from camwright.pipeline.contact.tiers import Tier
@@ -83,7 +83,7 @@ def rolls() -> Trial:
 
 @pytest.fixture(scope="module")
 def slides() -> Trial:
-    case = load_case_file(CASES / "papers" / "petrescu_c.toml")
+    case = read_case(CASES / "papers" / "petrescu_c.toml")
     return previewed(case, case.contour(cam_lift(case, {})))
 
 

@@ -161,7 +161,7 @@ def test_rows_of_one_load_case(tmp_path: Path) -> None:
     [("pass", "pass"), ("waived", "pass"), ("fail", "fail"), ("not_evaluated", "fail")],
 )
 def test_verdict_comes_from_the_checks(tmp_path: Path, status: str, verdict: str) -> None:
-    run = run_reader.load_run(write_run(tmp_path / "run", status=status))
+    run = run_reader.read_run(write_run(tmp_path / "run", status=status))
     assert run.verdict == verdict
     assert run.final.binding == (() if verdict == "pass" else ("pressure_angle",))
     assert run.summary["case"] == "small"
@@ -173,7 +173,7 @@ def test_an_optional_check_does_not_fail_the_verdict(tmp_path: Path) -> None:
     with RunFolder(tmp_path / "run", small_case()) as folder:
         write_trial(folder, [check(), check("not_evaluated", id="film", must_have=False)])
         folder.finish(summary())
-    run = run_reader.load_run(tmp_path / "run")
+    run = run_reader.read_run(tmp_path / "run")
     assert run.verdict == "pass"
     assert run.torque is None
 
@@ -183,7 +183,7 @@ def test_no_checks_is_no_pass(tmp_path: Path) -> None:
         write_trial(folder, [])
         folder.finish(summary("pass"))
     with pytest.raises(ResultError, match=r"run\.json says pass, the checks .* fail"):
-        run_reader.load_run(tmp_path / "run")
+        run_reader.read_run(tmp_path / "run")
 
 
 @pytest.mark.parametrize(
@@ -201,7 +201,7 @@ def test_a_pass_that_its_numbers_do_not_bear_out(tmp_path: Path, change: dict[st
     path = run / "trial_1" / "6_checks.json"
     path.write_text(json.dumps([check() | change]))
     with pytest.raises(ResultError, match="its numbers say otherwise"):
-        run_reader.load_run(run)
+        run_reader.read_run(run)
 
 
 @pytest.mark.parametrize(
@@ -229,14 +229,14 @@ def test_broken_run_is_one_line(
     else:
         (run / name).write_text(content + "\n1,2\n" if name.endswith("csv") else content)
     with pytest.raises(ResultError, match=message) as caught:
-        run_reader.load_run(run)
+        run_reader.read_run(run)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
     "read",
     [
-        run_reader.load_run,
+        run_reader.read_run,
         run_reader.read_verdict,
         run_reader.verify_run,
         signoff.changes,
@@ -257,7 +257,7 @@ def test_a_folder_of_another_schema_is_refused(
 
 def test_no_folder() -> None:
     with pytest.raises(ResultError, match="no such folder"):
-        run_reader.load_run("nowhere")
+        run_reader.read_run("nowhere")
 
 
 @pytest.mark.parametrize("name", ["case.toml", "trial_1/5_cycle.csv", "1_torque.csv"])

@@ -45,7 +45,7 @@ def test_rerun_of_the_same_case_takes_the_place_of_the_first(tmp_path: Path) -> 
     out = write_run(tmp_path / "run")
     (out / "figures").mkdir()
     write_run(out, status="fail")
-    assert run_reader.load_run(out).verdict == "fail"
+    assert run_reader.read_run(out).verdict == "fail"
     assert not (out / "figures").exists()
     assert entries(tmp_path) == ["run"]
 
@@ -55,7 +55,7 @@ def test_failed_rerun_keeps_the_first(tmp_path: Path) -> None:
     with pytest.raises(ZeroDivisionError), RunFolder(out, small_case()):
         raise ZeroDivisionError
     assert entries(tmp_path) == ["run"]
-    assert run_reader.load_run(out).verdict == "pass"
+    assert run_reader.read_run(out).verdict == "pass"
 
 
 def test_what_nobody_expected_leaves_solved_trials_to_resume(tmp_path: Path) -> None:
@@ -81,7 +81,7 @@ def test_what_nobody_expected_before_any_contact_leaves_nothing(tmp_path: Path) 
 def test_an_empty_folder_will_do(tmp_path: Path) -> None:
     (tmp_path / "run").mkdir()
     write_run(tmp_path / "run")
-    assert run_reader.load_run(tmp_path / "run").verdict == "pass"
+    assert run_reader.read_run(tmp_path / "run").verdict == "pass"
 
 
 def test_refuses_the_run_of_another_case(tmp_path: Path) -> None:
@@ -113,7 +113,7 @@ def test_a_run_with_its_workshop_files_is_no_stranger(tmp_path: Path) -> None:
     (out / "workshop").mkdir()
     (out / "workshop" / "contour.csv").write_text("")
     write_run(out, status="fail")
-    assert run_reader.load_run(out).verdict == "fail"
+    assert run_reader.read_run(out).verdict == "fail"
 
 
 def test_refuses_what_stands_where_the_work_folder_goes(tmp_path: Path) -> None:
@@ -130,7 +130,7 @@ def test_two_runs_at_once(tmp_path: Path) -> None:
             RunFolder(tmp_path / "run", small_case())
         write_trial(first, [check()])
         first.finish(summary())
-    assert run_reader.load_run(tmp_path / "run").verdict == "pass"
+    assert run_reader.read_run(tmp_path / "run").verdict == "pass"
 
 
 def interrupted(out: Path) -> None:
@@ -243,10 +243,10 @@ def test_set_aside_makes_room_and_puts_back(tmp_path: Path) -> None:
     out = write_run(tmp_path / "run")
     with set_aside(out, other_case()):
         write_run(out, other_case(), status="fail")
-    assert run_reader.load_run(out).verdict == "fail"
+    assert run_reader.read_run(out).verdict == "fail"
     with pytest.raises(ZeroDivisionError), set_aside(out, small_case()):
         raise ZeroDivisionError
-    assert run_reader.load_run(out).verdict == "fail"
+    assert run_reader.read_run(out).verdict == "fail"
     with set_aside(out, small_case("large")), pytest.raises(ResultError):
         RunFolder(out, small_case("large"))
     assert entries(tmp_path) == ["run"]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.problem_setup import problem_of
 
@@ -21,7 +21,7 @@ def section(given, **changes):
 
 @pytest.fixture(scope="module")
 def case():
-    return load_case_file(CASES / "gx120-signed.toml")
+    return read_case(CASES / "gx120-signed.toml")
 
 
 @pytest.fixture(scope="module")

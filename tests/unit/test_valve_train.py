@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.tiers import Tier
@@ -114,7 +114,7 @@ def test_the_record_of_a_run_holds_module_and_rows_of_the_trial_s_own_turns():
 def test_a_case_that_does_not_ask_gets_nothing():
     bare = text("c").replace("[valve_train]", "#").replace("cam_mass", "#")
     assert valve_record(solved(bare)) == {"valve_train": None}
-    assert valve_cam(load_case_file(PAPERS / "eccentric.toml")) is None
+    assert valve_cam(read_case(PAPERS / "eccentric.toml")) is None
 
 
 @pytest.mark.parametrize(

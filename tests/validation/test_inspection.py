@@ -193,7 +193,7 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     checks = json.loads((folder / FOLDER / "checks.json").read_text(encoding="utf-8"))
     assert "certificate" in " ".join(check["id"] + check["method"] for check in checks)
     assert any("verdict on the part" in line for line in lines(record))
-    assert run_reader.load_run(folder).verdict == "pass"  # the run itself is left as it was
+    assert run_reader.read_run(folder).verdict == "pass"  # the run itself is left as it was
 
 
 def test_filled_sheet_reads_back(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.cycle.solution import turns_of
@@ -34,7 +34,7 @@ PAPERS = Path(__file__).resolve().parents[2] / "cases" / "papers"
 
 
 def case(name: str) -> Case:
-    return load_case_file(PAPERS / f"{name}.toml")
+    return read_case(PAPERS / f"{name}.toml")
 
 
 @pytest.mark.parametrize("name", ["c25_preload", "c25_half_torque"])

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque, spring_deflection, stored_energy
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.follower.follower_forces import follower_loads
@@ -29,7 +29,7 @@ RATINGS = Ratings(
 
 @pytest.fixture(scope="module")
 def published():
-    case = load_case_file(CASES / "gx120.toml")
+    case = read_case(CASES / "gx120.toml")
     return case, engine_torques(case)
 
 

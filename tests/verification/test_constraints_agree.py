@@ -10,7 +10,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.cam_shape import concave_radius
@@ -43,7 +43,7 @@ LOAD = ("contact_force_margin", "contact_at_overspeed", "jump", "jump_speed", "j
 @pytest.fixture(scope="module")
 def case():
     """The redesigned case with every limit a synthesis knows."""
-    signed = load_case_file(CASES / "gx120-signed.toml")
+    signed = read_case(CASES / "gx120-signed.toml")
     cam, roller, guides = signed.cam, signed.roller, signed.guides
     limits = {
         "tool_radius": 0.04, "cam_radius": 0.1, "curvature_rate": 300.0, "target_life": 3.6e6,

@@ -11,7 +11,7 @@ import pytest
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.follower_height import face_height
-from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.certificate import certificate_point
 from camwright.pipeline.contact.closed_form import closed_form_history
@@ -137,7 +137,7 @@ def test_certificate_and_cycle_agree(eccentric, at):
 
 def test_published_cam_gives_its_lift_back():
     """On the contour of the case: a face let down on it moves by the lift, to 1e-6."""
-    case = load_case_file(PAPERS / "petrescu_c.toml")
+    case = read_case(PAPERS / "petrescu_c.toml")
     contour = case.contour(cam_lift(case, {}))
     theta = np.linspace(0, 2 * np.pi, 97)[:-1] + 0.0123
     height = face_height(contour.polygon(20_000), theta) - contour.pitch.base_radius

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.arrays import uniform_turn
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.infeasibility import infeasibility
@@ -81,7 +81,7 @@ def test_the_limit_in_the_way_is_offered_to_be_moved(limit, ratings, what):
 def test_published_engine_behind_the_published_roller():
     """380 N, 242 N of preload, half of the ripple: not together, and a catalogue's roller does."""
     text = CASES / "gx120.toml"
-    case = load_case_file(text)
+    case = read_case(text)
     case = case.model_copy(
         update={
             "limits": case.limits.model_copy(update={"torque_reduction": 0.5}),

@@ -18,7 +18,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import load_case_file, parse_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Corner, Machine, machines
 from camwright.pipeline.case.template import template
@@ -112,7 +112,7 @@ def hardened_case() -> Case:
 @lru_cache(maxsize=2)
 def published(hardened: bool) -> dict[str, Check]:
     """The first trial of the published machine, its cam of plate or case-hardened."""
-    case = hardened_case() if hardened else load_case_file(GX120)
+    case = hardened_case() if hardened else read_case(GX120)
     return {check.id: check for check in preview_case(case.with_positions(180)).checks}
 
 
@@ -147,7 +147,7 @@ def test_a_hardened_cam_passes_its_own_checks_and_the_others_still_fail():
 @lru_cache(maxsize=1)
 def by_elements() -> Solution:
     """The published cam's first trial, solved by finite elements at few angles."""
-    case = load_case_file(GX120)
+    case = read_case(GX120)
     torques = engine_torques(case)
     contour = case.contour(cam_lift(case, torques))
     return solution(case, contour, torques=torques, positions=72)

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.constrained_synthesis import Problem, synthesise
 from camwright.pipeline.smoothing.energy_spline import exact_start, fitted_energy
@@ -113,7 +113,7 @@ def test_no_smoother_within_the_limits_leaves_less(seed):
 
 @pytest.fixture(scope="module")
 def signed():
-    case = load_case_file(CASES / "gx120-signed.toml")
+    case = read_case(CASES / "gx120-signed.toml")
     return coarsened(problem_of(case, engine_torques(case)))
 
 
@@ -204,7 +204,7 @@ def test_random_starts_agree():
 
 @pytest.mark.slow
 def test_twenty_random_starts_agree_on_the_redesigned_case():
-    case = load_case_file(CASES / "gx120-signed.toml")
+    case = read_case(CASES / "gx120-signed.toml")
     _, starts = explored(problem_of(case, engine_torques(case)), 20, seed=7)
     assert len(starts.ripples) == 20
     assert starts.agree, starts.sentence

@@ -16,7 +16,7 @@ from camwright.pipeline.base.worker_processes import pool, workers_for
 from camwright.pipeline.case.cards.catalogue import Catalogue, catalogue_of
 from camwright.pipeline.case.cards.substitution import Choice, variant
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import load_case_file
+from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.results.run_folder import versions
 from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -77,7 +77,7 @@ def redesign(
     """
     if against not in AGAINST:
         raise InputError("--against", against, " or ".join(AGAINST))
-    case, folder = load_case_file(case_file), case_file.resolve().parent
+    case, folder = read_case(case_file), case_file.resolve().parent
     if case.engine is None:
         raise InputError("engine", "missing", "given: a redesign balances its torque")
     search = Search(case, folder, catalogue_of(folder), out.absolute(), versions()["source"])
