@@ -18,7 +18,7 @@ from camwright.pipeline.iteration import Trials, trials_of
 from camwright.pipeline.results.field_output import write_fields
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_reader import Run, read_run
-from camwright.pipeline.results.run_records import crank_speed_record, headline
+from camwright.pipeline.results.run_records import crank_speed_record, headline, torque_columns
 from camwright.pipeline.results.trial import Trial
 from camwright.pipeline.results.trial_writer import TrialWriter
 from camwright.pipeline.results.workshop_files import WORKSHOP, write_workshop
@@ -64,9 +64,7 @@ def run_case(
         watch.stage("torque")
         torques = engine_torques(case)
         if torques:
-            design = torques[case.load_cases[0].name]
-            parts = {"total": design.total, **design.components}
-            folder.write_torque(design.theta_crank, parts)
+            folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
         trials = trials_of(case, torques, sink=writer, progress=watch)
         final = certify_trial(trials.trials[-1], jobs=jobs, progress=watch)
         final = _with_corners(folder, torques, final, watch)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.tables import Table
 from camwright.reports.figures import (
     SERIES,
     AngleFigure,
@@ -19,7 +20,7 @@ from camwright.reports.figures import (
 )
 from camwright.reports.part_figures import PART_FIGURES
 from camwright.reports.report_tables import number, quantity, words
-from camwright.reports.sheet_turn import Columns, Turn, angle_figure, curves_of
+from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
 
 GROUPS = (
     ("Torque", ("torque", "torque-components", "crank-speed")),
@@ -27,7 +28,7 @@ GROUPS = (
     ("Limits", ("limits",)),
     ("Contact", ("pressure", "half-width", "stress")),
     ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
-    ("Parts", ("bushes", "elastic", "roller", "film", "parts")),
+    ("Parts", ("edge-pressure", "elastic", "roller", "film", "parts")),
 )
 LARGEST_RADIUS_MM = 150.0
 HARD_STOP_DEG = 45.0
@@ -55,9 +56,8 @@ def _torque(turn: Turn) -> Figure | None:
     )  # fmt: skip
     if not curves:
         return None
-    cam = turn.columns.get("cam_torque_Nm")
-    if cam is not None:
-        curves += (Curve("cam torque at the crank", cam / turn.gear_ratio, "muted", dashed=True),)
+    cam = turn.columns["cam_torque_Nm"] / turn.gear_ratio
+    curves += (Curve("cam torque at the crank", cam, "muted", dashed=True),)
     return angle_figure(
         turn, "torque", "Crank torque",
         "Deviation of the crank torque from its mean, without and with the cam; guide friction and "
@@ -68,7 +68,7 @@ def _torque(turn: Turn) -> Figure | None:
 
 def _crank_speed(turn: Turn) -> Figure | None:
     speed = turn.speed
-    if speed is None or "crank_angle_deg" not in speed:
+    if speed is None:
         return None
     wanted = (
         ("speed_before_rad_per_s", "engine alone", "blue", False),
@@ -77,7 +77,7 @@ def _crank_speed(turn: Turn) -> Figure | None:
     )
     curves = tuple(
         Curve(label, speed[name], colour, dashed)
-        for name, label, colour, dashed in wanted if name in speed
+        for name, label, colour, dashed in wanted
     )  # fmt: skip
     return angle_figure(
         turn, "crank-speed", "Crank speed",
@@ -89,15 +89,15 @@ def _crank_speed(turn: Turn) -> Figure | None:
 
 
 def _components(turn: Turn) -> Figure | None:
-    if turn.torque is None or "crank_angle_deg" not in turn.torque:
+    if turn.torque is None:
         return None
-    parts = [c for c in turn.torque if c not in ("crank_angle_deg", "total_Nm")][: len(SERIES)]
+    whole = ("crank_angle_deg", "total_Nm")
+    parts = [name for name in turn.torque.columns if name not in whole][: len(SERIES)]
     curves = [
         Curve(words(name.removesuffix("_Nm"))[:24], turn.torque[name], colour)
         for name, colour in zip(parts, SERIES, strict=False)
     ]
-    if "total_Nm" in turn.torque:
-        curves.append(Curve("total", turn.torque["total_Nm"], "ink", dashed=bool(parts)))
+    curves.append(Curve("total", turn.torque["total_Nm"], "ink", dashed=bool(parts)))
     return angle_figure(
         turn, "torque-components", "Components of the engine torque",
         "Positive torque drives the crank. Crank angle 0 is the top dead centre of gas exchange, "
@@ -109,8 +109,6 @@ def _components(turn: Turn) -> Figure | None:
 
 def _lift(turn: Turn) -> Figure | None:
     columns = turn.lift
-    if "lift_mm" not in columns:
-        return None
     rows = (
         ("lift_mm", "s", "mm"), ("lift_d1_mm_per_rad", "s′", "mm/rad"),
         ("lift_d2_mm_per_rad2", "s″", "mm/rad²"), ("lift_d3_mm_per_rad3", "s‴", "mm/rad³"),
@@ -118,7 +116,6 @@ def _lift(turn: Turn) -> Figure | None:
     panels = [
         Panel(label, unit, (Curve("", columns[name], "blue"),), height=0.62)
         for name, label, unit in rows
-        if name in columns
     ]
     return angle_figure(
         turn, "lift", "Lift and its derivatives",
@@ -129,8 +126,6 @@ def _lift(turn: Turn) -> Figure | None:
 
 def _outline(turn: Turn) -> Figure | None:
     c = turn.contour
-    if "contour_x_mm" not in c:
-        return None
     theta = turn.columns["cam_angle_deg"][turn.worst]
     distance = np.abs((c["cam_angle_deg"] - theta + 180.0) % 360.0 - 180.0)
     width, depth = (turn.length("cam", "keyway", key) for key in ("width", "depth"))
@@ -150,19 +145,17 @@ def _outline(turn: Turn) -> Figure | None:
 
 
 def _balance(turn: Turn) -> str:
-    """Unbalance without and with the counter-hole; empty for runs of earlier versions."""
+    """Unbalance without and with the counter-hole."""
     balance = turn.balance
-    if not isinstance(balance.get("unbalance_g_mm"), (int, float)):
-        return ""
     unbalance = (
         f" Its unbalance is {quantity(float(balance['unbalance_g_mm']), 'g mm')}"
         f" at {quantity(balance['unbalance_angle_deg'], 'deg')}"
     )
     hole = turn.counter_hole
     if hole is None:
-        return f"{unbalance}; {balance.get('hole_note') or 'no counter-hole is necessary'}."
+        return f"{unbalance}; {balance['hole_note'] or 'no counter-hole is necessary'}."
     x, y, radius, drilled = hole
-    rest = max(float(balance["unbalance_left_g_mm"]), 0.0)
+    rest = max(float(balance["residual_unbalance_g_mm"]), 0.0)
     rest = 0.0 if rest < 1e-6 * float(balance["unbalance_g_mm"]) else rest
     return (
         f"{unbalance}; with a hole of {quantity(2 * radius, 'mm')} diameter at ({number(x)},"
@@ -181,7 +174,7 @@ def _roller_outline(turn: Turn, at: int) -> Array | None:
 
 def _face_outline(turn: Turn, at: int) -> Array | None:
     """Block of the face (2, 5), mm, at a row of the contour; None if its size is unknown."""
-    c, place = turn.contour, turn.columns["place_on_face_mm"][turn.worst]
+    c, place = turn.contour, turn.columns["face_contact_offset_mm"][turn.worst]
     width, thick = (turn.length("follower", "face", key) for key in ("width", "thickness"))
     if width is None or thick is None:
         return None
@@ -202,7 +195,7 @@ def _face(turn: Turn) -> Figure | None:
         turn, "face", "Contact on the face",
         "Position of the contact from the stem axis, sliding speed of the cam along the face, mean "
         "contact pressure times sliding speed.",
-        Panel("position", "mm", curves_of(turn, ("place_on_face_mm", "")), edges, height=0.9),
+        Panel("position", "mm", curves_of(turn, ("face_contact_offset_mm", "")), edges, height=0.9),
         Panel("sliding", "m/s", curves_of(turn, ("sliding_speed_m_per_s", "")), height=0.7),
         Panel("p v", "MPa m/s", curves_of(turn, ("face_pv_MPam_per_s", "")), pv, height=0.7),
     )  # fmt: skip
@@ -232,9 +225,12 @@ def _radii(turn: Turn) -> Figure | None:
     if roller and ratio:
         limits += (LimitLine(ratio * roller, "minimum pitch radius"),)
     curves = []
-    wanted = [("pitch_radius_mm", "pitch curve"), ("contour_radius_of_curvature_mm", "contour")]
+    wanted = [
+        ("pitch_radius_of_curvature_mm", "pitch curve"),
+        ("contour_radius_of_curvature_mm", "contour"),
+    ]
     for (column, label), colour in zip(wanted, SERIES, strict=False):
-        if column in turn.columns and (turn.rolls or column != "pitch_radius_mm"):
+        if turn.rolls or column != "pitch_radius_of_curvature_mm":
             curves.append(Curve(label, broken(turn.columns[column], LARGEST_RADIUS_MM), colour))
     return angle_figure(
         turn, "radii", "Radii of curvature",
@@ -297,17 +293,17 @@ def _limits_strip(turn: Turn) -> Figure | None:
     return limits_strip(turn.limits, turn.gear_ratio, strokes=turn.strokes)
 
 
-def limits_strip(limits: Columns | None, gear_ratio: float, *, strokes: bool) -> Figure | None:
+def limits_strip(limits: Table | None, gear_ratio: float, *, strokes: bool) -> Figure | None:
     """Utilisation over the turn of each limit that reaches half; None without a record.
 
     Parameters
     ----------
-    limits : mapping or None   columns of 2_limits.csv, by decreasing utilisation
+    limits : Table or None   2_limits.csv, by decreasing utilisation
     strokes : bool             whether the turn is a four-stroke cycle
     """
-    if limits is None or "cam_angle_deg" not in limits:
+    if limits is None:
         return None
-    uses = {name: use for name, use in limits.items() if name != "cam_angle_deg"}
+    uses = {name: use for name, use in limits.columns.items() if name != "cam_angle_deg"}
     shown = [name for name, use in uses.items() if use.size and float(np.max(use)) >= _SHOWN]
     panels = tuple(_strip(name, uses[name]) for name in shown[:_MOST])
     if not panels:

@@ -18,7 +18,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
 from camwright.reports.figure_svg import COLOURS, png, style
 
-FILE = "5_bushes.npz"
+FILE = "5_guides.npz"
 COLOUR_MAP = "viridis"
 _FIELDS = ("along_mm", "line_N_per_mm", "row", "slices_mm", "round_deg", "pressure_MPa")
 _DECADES = 3.0
@@ -27,7 +27,7 @@ _LOBE = 0.75  # of the bore's radius, in the cross-section
 
 
 @dataclass(frozen=True, eq=False)
-class Bush:
+class GuidePressure:
     """Pressure in one guide.
 
     along (k,) position from the middle of the guide, mm, away from the roller; angle (n,) deg and
@@ -57,7 +57,7 @@ class Bush:
         return int(np.argmax(np.nan_to_num(self.pressure).max(axis=1)))
 
 
-def read_bushes(path: Path, load_case: str) -> tuple[Bush, Bush]:
+def read_guides(path: Path, load_case: str) -> tuple[GuidePressure, GuidePressure]:
     """Guides A and B: line load of one load case, pressure at the worst angle of all load cases.
 
     Raises
@@ -75,7 +75,7 @@ def read_bushes(path: Path, load_case: str) -> tuple[Bush, Bush]:
     if not rows.any():
         raise ResultError(f"{path}: load case {load_case} is missing")
     a, b = (
-        Bush(
+        GuidePressure(
             side, one["along_mm"], angle[rows], one["line_N_per_mm"][rows], one["slices_mm"],
             one["round_deg"], one["pressure_MPa"], float(angle[int(one["row"])]),
             str(cases[int(one["row"])]),
@@ -84,52 +84,58 @@ def read_bushes(path: Path, load_case: str) -> tuple[Bush, Bush]:
     return a, b
 
 
-def drawn(bushes: tuple[Bush, Bush]) -> bytes:
+def drawn(guides: tuple[GuidePressure, GuidePressure]) -> bytes:
     """PNG of both guides."""
-    with style("bush-pressure"):
+    with style("guide-pressure"):
         canvas = Figure(figsize=(7.6, 5.4), layout="constrained")
         grid = canvas.add_gridspec(2, 3, width_ratios=(1.25, 1.25, 0.8))
-        for number, bush in enumerate(bushes):
-            _over_the_turn(canvas, canvas.add_subplot(grid[number, 0]), bush)
-            norm = Normalize(0.0, bush.peak if bush.peak > 0 else 1.0)
-            _unrolled(canvas, canvas.add_subplot(grid[number, 1]), bush, norm)
+        for number, guide in enumerate(guides):
+            _over_the_turn(canvas, canvas.add_subplot(grid[number, 0]), guide)
+            norm = Normalize(0.0, guide.peak if guide.peak > 0 else 1.0)
+            _unrolled(canvas, canvas.add_subplot(grid[number, 1]), guide, norm)
             polar = PolarAxes(canvas, grid[number, 2])
             canvas.add_subplot(polar)
-            _across(polar, bush, norm)
+            _across(polar, guide, norm)
         return png(canvas)
 
 
-def _over_the_turn(canvas: Figure, ax: Axes, bush: Bush) -> None:
-    fine = np.linspace(bush.along[0], bush.along[-1], _ROWS)
-    push = np.stack([np.interp(fine, bush.along, np.abs(line)) for line in bush.line], axis=1)
+def _over_the_turn(canvas: Figure, ax: Axes, guide: GuidePressure) -> None:
+    fine = np.linspace(guide.along[0], guide.along[-1], _ROWS)
+    push = np.stack([np.interp(fine, guide.along, np.abs(line)) for line in guide.line], axis=1)
     top = float(push.max()) or 1.0
     shown = ax.pcolormesh(
-        bush.angle, fine, np.maximum(push, top * 10**-_DECADES), cmap=COLOUR_MAP,
+        guide.angle, fine, np.maximum(push, top * 10**-_DECADES), cmap=COLOUR_MAP,
         shading="nearest", norm=LogNorm(top * 10**-_DECADES, top), rasterized=True,
     )  # fmt: skip
-    ax.axvline(bush.worst_angle, color="white", linewidth=0.9, dashes=(3, 3))
+    ax.axvline(guide.worst_angle, color="white", linewidth=0.9, dashes=(3, 3))
     ax.set(xlabel="cam angle, deg", ylabel="along the guide, mm", xlim=(0, 360),
            xticks=np.arange(0, 361, 90))  # fmt: skip
-    ax.set_title(f"guide {bush.name}: line load over the turn", fontsize=8.5, loc="left")
+    ax.set_title(f"guide {guide.name}: line load over the turn", fontsize=8.5, loc="left")
     bar = canvas.colorbar(shown, ax=ax, label="N/mm (logarithmic)", pad=0.01)
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bar.ax.yaxis.set_minor_locator(NullLocator())
 
 
-def _unrolled(canvas: Figure, ax: Axes, bush: Bush, norm: Normalize) -> None:
+def _unrolled(canvas: Figure, ax: Axes, guide: GuidePressure, norm: Normalize) -> None:
     """Pressure on the unrolled bore, cut on the unloaded side, around the loaded area."""
-    pressure = np.nan_to_num(bush.pressure)
-    angle = bush.round
-    if angle[int(np.argmax(pressure[bush.slice]))] ** 2 > 90.0**2:
+    pressure = np.nan_to_num(guide.pressure)
+    angle = guide.round
+    if angle[int(np.argmax(pressure[guide.slice]))] ** 2 > 90.0**2:
         half = angle.size // 2
         angle, pressure = angle + 180.0, np.roll(pressure[:, :-1], half, axis=1)
         pressure = np.hstack([pressure, pressure[:, :1]])
     shown = ax.pcolormesh(
-        angle, bush.slices, pressure, cmap=COLOUR_MAP, norm=norm, shading="nearest", rasterized=True
+        angle,
+        guide.slices,
+        pressure,
+        cmap=COLOUR_MAP,
+        norm=norm,
+        shading="nearest",
+        rasterized=True,
     )
     ax.set(xlabel="angle around the bore, deg", xlim=_pressed(angle, pressure.max(axis=0)),
-           ylim=_pressed(bush.slices, pressure.max(axis=1)))  # fmt: skip
-    ax.set_title(f"pressure at cam angle {bush.worst_angle:g}°", fontsize=8.5, loc="left")
+           ylim=_pressed(guide.slices, pressure.max(axis=1)))  # fmt: skip
+    ax.set_title(f"pressure at cam angle {guide.worst_angle:g}°", fontsize=8.5, loc="left")
     canvas.colorbar(shown, ax=ax, label="MPa", pad=0.01)
 
 
@@ -142,10 +148,10 @@ def _pressed(places: Array, pressure: Array) -> tuple[float, float]:
     return max(float(on[0]) - more, float(places[0])), min(float(on[-1]) + more, float(places[-1]))
 
 
-def _across(polar: PolarAxes, bush: Bush, norm: Normalize) -> None:
+def _across(polar: PolarAxes, guide: GuidePressure, norm: Normalize) -> None:
     """Pressure in the slice of maximum pressure, drawn outwards from the bore."""
     polar.set_theta_zero_location("N")
-    angle, pressure = np.radians(bush.round), np.nan_to_num(bush.pressure[bush.slice])
+    angle, pressure = np.radians(guide.round), np.nan_to_num(guide.pressure[guide.slice])
     reach = 1.0 + _LOBE * pressure / norm.vmax
     pieces = [
         [(angle[k], 1.0), (angle[k], reach[k]), (angle[k + 1], reach[k + 1]), (angle[k + 1], 1.0)]
@@ -166,5 +172,5 @@ def _across(polar: PolarAxes, bush: Bush, norm: Normalize) -> None:
     polar.tick_params(pad=-4)
     polar.spines["polar"].set_visible(False)
     polar.grid(visible=False)
-    polar.set_title(f"slice at {bush.slices[bush.slice]:.3g} mm", fontsize=8.5)
-    polar.text(0.0, 0.0, f"{bush.peak:.3g}\nMPa", ha="center", va="center", fontsize=9)
+    polar.set_title(f"slice at {guide.slices[guide.slice]:.3g} mm", fontsize=8.5)
+    polar.text(0.0, 0.0, f"{guide.peak:.3g}\nMPa", ha="center", va="center", fontsize=9)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.base.tables import Table, read_table
-from camwright.pipeline.results.run_reader import CYCLE, read_run
+from camwright.pipeline.results.run_reader import read_run
 from camwright.reports.figure_svg import png
 
 _EXAGGERATED = 0.12
@@ -25,17 +25,17 @@ def draw(run: Path, tolerance_um: float) -> Path:
     Path   the picture
     """
     folder = run / "inspection"
-    deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv", CYCLE)
+    deviation, real = read_table(folder / "deviation.csv"), read_table(folder / "cycle.csv")
     nominal = read_run(run).final
     figure = Figure(figsize=(10, 8), layout="constrained")
     _deviation(figure.add_subplot(2, 2, 1), deviation, tolerance_um)
     _part(figure.add_subplot(2, 2, 2), nominal.contour, deviation)
-    state = str(nominal.cycle["load_case"][0])
+    state = nominal.cycle.load_cases[0]
     for place, header, label in ((3, "normal_force_N", "normal force, N"),
                                  (4, "p0_fe_MPa", "peak contact pressure, MPa")):  # fmt: skip
         axes = figure.add_subplot(2, 2, place)
         for table, name, style in ((nominal.cycle, "drawing", "--"), (real, "measured", "-")):
-            rows = table.where("load_case", state)
+            rows = table.of_load_case(state)
             axes.plot(rows["cam_angle_deg"], rows[header], style, lw=1, label=name)
         axes.set(xlabel="cam angle, deg", ylabel=label, xlim=(0, 360))
         axes.legend()

@@ -18,6 +18,7 @@ import numpy as np
 from markupsafe import Markup
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.files import Json
 from camwright.reports.figures import (
     CAM_AXIS,
     CAM_STEP,
@@ -35,7 +36,6 @@ from camwright.reports.figures import (
     placed_limits,
     vertical_span,
 )
-from camwright.reports.report_tables import Json
 
 Spec = dict[str, Json]
 

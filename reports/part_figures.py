@@ -13,8 +13,8 @@ from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
 def _forces(turn: Turn) -> Figure | None:
     curves = curves_of(
         turn, ("spring_force_N", "spring"), ("inertia_force_N", "inertia"),
-        ("tangential_force_N", "side force"), ("friction_A_N", "friction A"),
-        ("friction_B_N", "friction B"), ("viscous_force_N", "viscous drag"),
+        ("side_force_N", "side force"), ("guide_friction_A_N", "friction A"),
+        ("guide_friction_B_N", "friction B"), ("viscous_force_N", "viscous drag"),
     )  # fmt: skip
     return angle_figure(
         turn, "forces", "Force components on the follower",
@@ -49,14 +49,14 @@ def _normal_force(turn: Turn) -> Figure | None:
 
 def _guides(turn: Turn) -> Figure | None:
     pairs = (
-        ("reaction_A_N", "A, finite elements"), ("reaction_A_statics_N", "A, statics"),
-        ("reaction_B_N", "B, finite elements"), ("reaction_B_statics_N", "B, statics"),
+        ("guide_reaction_A_N", "A, finite elements"), ("guide_reaction_A_statics_N", "A, statics"),
+        ("guide_reaction_B_N", "B, finite elements"), ("guide_reaction_B_statics_N", "B, statics"),
     )  # fmt: skip
     shares = (
-        ("reaction_by_length_N", "guide length, equal in A and B"),
-        ("reaction_by_clearance_N", "guide clearance"),
+        ("guide_reaction_by_length_N", "guide length, equal in A and B"),
+        ("guide_reaction_by_clearance_N", "guide clearance"),
     )  # fmt: skip
-    sides = (("rubbing_load_A_N", "A, both sides"), ("rubbing_load_B_N", "B, both sides"))
+    sides = (("guide_normal_load_A_N", "A, both sides"), ("guide_normal_load_B_N", "B, both sides"))
     return angle_figure(
         turn, "guides", "Guide reactions",
         "Reactions of a beam in elastic unilateral guides of finite length and of two point "
@@ -83,23 +83,21 @@ def _jamming(turn: Turn) -> Figure | None:
 
 
 def _speed(turn: Turn) -> Figure | None:
-    velocity = turn.columns.get("velocity_m_per_s")
-    if velocity is None:
-        return None
+    velocity = turn.columns["follower_velocity_m_per_s"]
     curves: list[Curve] = []
     limits: list[LimitLine] = []
     for name, colour in (("A", "blue"), ("B", "vermillion")):
         length = turn.length("guides", name.lower(), "length")
         diameter = turn.length("guides", name.lower(), "diameter")
-        load = turn.columns.get(f"rubbing_load_{name}_N", turn.columns.get(f"reaction_{name}_N"))
-        if length and diameter and load is not None:
+        load = turn.columns[f"guide_normal_load_{name}_N"]
+        if length and diameter:
             pv = np.abs(load * velocity) / (length * diameter)
             curves.append(Curve(f"guide {name}", pv, colour))
             limits += turn.limit(f"mean PV limit {name}", "MPa m/s", f"guide_pv_{name}")
     return angle_figure(
         turn, "speed", "Follower velocity and guide PV",
         "PV: guide force over projected area, times sliding speed.",
-        Panel("velocity", "m/s", curves_of(turn, ("velocity_m_per_s", "")), height=0.8),
+        Panel("velocity", "m/s", curves_of(turn, ("follower_velocity_m_per_s", "")), height=0.8),
         Panel("PV", "MPa m/s", tuple(curves), tuple(dict.fromkeys(limits)), height=0.9),
     )  # fmt: skip
 
@@ -120,29 +118,33 @@ def _roller(turn: Turn) -> Figure | None:
               height=0.7),
         Panel("traction", "", curves_of(turn, ("traction_demand", "")), limits, height=0.7),
         Panel("creepage", "", curves_of(turn, ("creepage", "")), height=0.6),
-        Panel("slip", "m/s", curves_of(turn, ("slip_m_per_s", "")), height=0.6),
+        Panel("slip", "m/s", curves_of(turn, ("slip_speed_m_per_s", "")), height=0.6),
     )  # fmt: skip
 
 
 def _film(turn: Turn) -> Figure | None:
     limits = turn.limit("limit", "", "film_ratio")
-    thickness = (("film_thickness_um", "smooth surfaces"), ("mixed_film_um", "rough surfaces"))
+    thickness = (
+        ("film_thickness_um", "smooth surfaces"),
+        ("film_thickness_mixed_um", "rough surfaces"),
+    )
     return angle_figure(
         turn, "film", "Oil film",
         "Minimum film thickness between cam and follower, and its ratio to the combined roughness.",
         Panel("film thickness", "um", curves_of(turn, *thickness)),
-        Panel("lambda ratio", "", curves_of(turn, ("lambda_ratio", "")), limits, height=0.7),
+        Panel("film thickness ratio", "", curves_of(turn, ("film_thickness_ratio", "")), limits,
+              height=0.7),
     )  # fmt: skip
 
 
-def _bushes(turn: Turn) -> Figure | None:
-    peaks = (("bush_peak_A_MPa", "guide A"), ("bush_peak_B_MPa", "guide B"))
-    heats = (("friction_heat_A_W", "guide A"), ("friction_heat_B_W", "guide B"))
+def _edge_pressure(turn: Turn) -> Figure | None:
+    peaks = (("guide_edge_pressure_A_MPa", "guide A"), ("guide_edge_pressure_B_MPa", "guide B"))
+    heats = (("guide_friction_power_A_W", "guide A"), ("guide_friction_power_B_W", "guide B"))
     limits = turn.limit("limit A", "MPa", "guide_edge_pressure_A") + turn.limit(
         "limit B", "MPa", "guide_edge_pressure_B"
     )
     return angle_figure(
-        turn, "bushes", "Edge pressure and friction heat of the guides",
+        turn, "edge-pressure", "Edge pressure and friction heat of the guides",
         "Peak pressure between stem and bore with clearance; friction heat of the forces on both "
         "sides of the bore.",
         Panel("peak pressure", "MPa", curves_of(turn, *peaks), limits, height=0.9),
@@ -152,7 +154,7 @@ def _bushes(turn: Turn) -> Figure | None:
 
 def _elastic(turn: Turn) -> Figure | None:
     forces = (
-        ("elastic_contact_force_N", "elastic stem, no friction"),
+        ("contact_force_elastic_stem_N", "elastic stem, no friction"),
         ("normal_force_friction_min_N", "minimum friction"),
         ("normal_force_friction_max_N", "maximum friction"),
     )
@@ -161,7 +163,7 @@ def _elastic(turn: Turn) -> Figure | None:
         "Contact force with an elastic stem at the computed cam speed, and with minimum and "
         "maximum guide friction.",
         Panel("contact force", "N", curves_of(turn, *forces)),
-        Panel("shortening", "um", curves_of(turn, ("elastic_deflection_um", "")), height=0.7),
+        Panel("shortening", "um", curves_of(turn, ("stem_shortening_um", "")), height=0.7),
         Panel("cam speed", "rad/s", curves_of(turn, ("cam_speed_rad_per_s", "")), height=0.6),
     )  # fmt: skip
 
@@ -172,7 +174,7 @@ def _parts(turn: Turn) -> Figure | None:
         ("ring_stress_amplitude_MPa", "outer ring, amplitude"),
         ("key_pressure_MPa", "key, pressure"), ("bore_pressure_MPa", "bore, pressure"),
     )  # fmt: skip
-    bearings = (("shaft_bearing_1_N", "bearing 1"), ("shaft_bearing_2_N", "bearing 2"))
+    bearings = (("shaft_bearing_load_1_N", "bearing 1"), ("shaft_bearing_load_2_N", "bearing 2"))
     return angle_figure(
         turn, "parts", "Spring, roller pin, outer ring, key and camshaft",
         "Stresses of the parts that the case describes.",
@@ -183,5 +185,6 @@ def _parts(turn: Turn) -> Figure | None:
 
 
 PART_FIGURES: tuple[Callable[[Turn], Figure | None], ...] = (
-    _forces, _normal_force, _guides, _jamming, _speed, _bushes, _elastic, _roller, _film, _parts,
+    _forces, _normal_force, _guides, _jamming, _speed, _edge_pressure, _elastic, _roller, _film,
+    _parts,
 )  # fmt: skip

@@ -17,12 +17,12 @@ import matplotlib as mpl
 from matplotlib.ft2font import FT2Font
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.base.files import Json, write_atomic
 from camwright.reports.figure_svg import COLOURS, Drawn
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_content import Report, report_content
 from camwright.reports.report_data import Material
-from camwright.reports.report_tables import Json, isolated, plain
+from camwright.reports.report_tables import isolated, plain
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

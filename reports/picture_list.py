@@ -89,7 +89,7 @@ def stress_pictures(material: Material) -> Sequence[Picture]:
 
 @lru_cache(maxsize=1)
 def envelope_pictures(material: Material) -> Sequence[Picture]:
-    """Maps of the maximum stress below the contour; none for runs of earlier versions."""
+    """Maps of the maximum stress below the contour; none for a contour that encloses no body."""
     file = material.run.final.path / stress_map.FILE
     if not file.exists():
         return ()
@@ -98,7 +98,7 @@ def envelope_pictures(material: Material) -> Sequence[Picture]:
         envelope = stress_map.read_envelope(file, material.turn.load_case)
     except ResultError as error:
         return (Picture(title, note=f"The stress map is not available: {error}."),)
-    contour = material.run.final.contour.columns
+    contour = material.run.final.contour
     shape = (
         contour["cam_angle_deg"],
         np.stack([contour["contour_x_mm"], contour["contour_y_mm"]]),
@@ -129,14 +129,14 @@ def envelope_pictures(material: Material) -> Sequence[Picture]:
 
 
 @lru_cache(maxsize=1)
-def bush_pictures(material: Material) -> Sequence[Picture]:
-    """Pressure in both guides; none for runs of earlier versions."""
+def guide_pictures(material: Material) -> Sequence[Picture]:
+    """Pressure in both guides; none for a contour that encloses no body."""
     file = material.run.final.path / guide_pressure_figure.FILE
     if not file.exists():
         return ()
     title = "Pressure in the guides"
     try:
-        guides = guide_pressure_figure.read_bushes(file, material.turn.load_case)
+        guides = guide_pressure_figure.read_guides(file, material.turn.load_case)
     except ResultError as error:
         return (Picture(title, note=f"The guide pressure is not available: {error}."),)
     peaks = ", ".join(
@@ -153,7 +153,7 @@ def bush_pictures(material: Material) -> Sequence[Picture]:
             "The slices are independent: load transfer between them at the sharp end of a bore is "
             "neglected.",
             f"Maps of the pressure in both guides; maximum {peaks}.",
-            "bush-pressure",
+            "guide-pressure",
             guide_pressure_figure.drawn(guides),
         ),
     )
@@ -162,7 +162,7 @@ def bush_pictures(material: Material) -> Sequence[Picture]:
 PICTURES: tuple[Callable[[Material], Sequence[Picture]], ...] = (
     stress_pictures,
     envelope_pictures,
-    bush_pictures,
+    guide_pictures,
 )
 """Pictures of the report, in this order."""
 

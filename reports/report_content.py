@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from camwright.pipeline.base.files import Json
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_reader import TrialRecord
 from camwright.reports import report_tables, verification_tables
@@ -162,7 +163,7 @@ def report_content(material: Material) -> Report:
     """Contents of the report of a run."""
     run = material.run
     final = run.final
-    statement = titled(str(run.summary.get("statement") or ""), final.checks)
+    statement = titled(str(run.summary["statement"]), final.checks)
     return Report(
         str(material.case.get("title") or run.summary["case"]), _facts(material),
         verdict(run.verdict, final.checks, final.binding, statement),
@@ -235,7 +236,7 @@ def _numbers(material: Material) -> Section:
     summary = material.run.summary
     headline = report_tables.headline_rows(summary["headline"])
     blocks = [Block(Pairs("Key figures", headline, 2))]
-    speed = verification_tables.crank_speed(summary.get("speed"))
+    speed = verification_tables.crank_speed(summary["speed"])
     blocks += _tables((speed, "Crank speed", ""))
     return Section("numbers", "Key figures", blocks, "Over one turn of the final trial.")
 
@@ -255,9 +256,7 @@ def _sheet(material: Material) -> Section:
 def _trials(material: Material) -> Section:
     run = material.run
     table = Table("Trials", TRIALS_HEAD, [_trial(trial) for trial in run.trials], 2, 2)
-    prices = verification_tables.prices(
-        run.summary.get("prices") or run.final.record.get("prices")
-    )  # fmt: skip
+    prices = verification_tables.prices(run.summary["prices"])
     lead = (
         "First-order change of the torque ripple at the crank when a limit is relaxed. Limits not "
         "listed are inactive."
@@ -274,28 +273,28 @@ def _trial(trial: TrialRecord) -> list[str | Status]:
     """A trial as a row."""
     record = trial.record
     rows = [row for row in report_tables.check_rows(trial.checks) if row.id in trial.binding]
-    width = record.get("angular_width_deg")
+    width = record["smoothing_width_deg"]
     failing = [f"{row.title} ({row.utilisation})" for row in rows if row.status.id == "fail"]
     unknown = sum(row.status.id == "not_evaluated" for row in rows)
     held = [*failing, *([f"{unknown} not evaluated"] if unknown else [])]
     word = "pass" if trial.verdict == "pass" else "fail"
     return [
-        str(trial.number), str(record.get("smoothing") or record.get("smoother") or DASH),
-        report_tables.number(record.get("strength"), 3),
+        str(trial.number), str(record["smoothing_description"]),
+        report_tables.number(record["smoothing_strength"], 3),
         report_tables.quantity(width, "deg") if width is not None else DASH,
-        titled(str(record.get("why") or ""), trial.checks), Status(word, word),
+        titled(str(record["why"]), trial.checks), Status(word, word),
         "; ".join(held) or "none",
     ]  # fmt: skip
 
 
 def _evidence(material: Material) -> Section:
     summary, final = material.run.summary, material.run.final
-    points = final.record.get("certificate") or ()
-    method = str(final.record.get("contact_method") or "")
+    points = final.record["certificate"]
+    method = str(final.record["contact_method"])
     certificate = verification_tables.certificate(points)
-    consistency, contradicted = verification_tables.consistency(summary.get("consistency"))
-    benchmarks = verification_tables.benchmarks(summary.get("benchmarks"))
-    mesh = {k: v for k, v in (final.record.get("mesh") or {}).items() if k != "sha256"}
+    consistency, contradicted = verification_tables.consistency(summary["consistency"])
+    benchmarks = verification_tables.benchmarks(summary["benchmarks"])
+    mesh = {k: v for k, v in (final.record["mesh"] or {}).items() if k != "sha256"}
     times = [(k, report_tables.quantity(v, "s", 3)) for k, v in summary["timings_s"].items()]
     blocks = [
         Block(
@@ -347,11 +346,10 @@ def _evidence(material: Material) -> Section:
 
 def _versions(material: Material) -> Section:
     summary = material.run.summary
-    hashed = len(summary.get("files") or ())
     kept = (
-        f" run.json lists the SHA-256 of {hashed} files of this run, signoff.json of all files; "
-        "camwright check --verify-record compares them." if hashed else ""
-    )  # fmt: skip
+        f" run.json lists the SHA-256 of {len(summary['files'])} files of this run, signoff.json "
+        "of all files; camwright check --verify-record compares them."
+    )
     versions = [(str(k), str(v)) for k, v in summary["versions"].items()]
     return Section(
         "versions", "Versions and hashes",
@@ -365,10 +363,12 @@ def _versions(material: Material) -> Section:
 
 def _hashes(material: Material) -> list[tuple[str, str]]:
     """SHA-256 of input, source and meshes."""
-    summary, mesh = material.run.summary, material.run.final.record.get("mesh") or {}
-    meshes = mesh.get("sha256") if isinstance(mesh.get("sha256"), Mapping) else {}
-    digests = {"input": summary["input_sha256"], "source": summary["versions"].get("source")}
-    digests |= {f"mesh of the {body}": digest for body, digest in (meshes or {}).items()}
+    summary, mesh = material.run.summary, material.run.final.record["mesh"] or {}
+    meshes = mesh.get("sha256")
+    digests: dict[str, Json] = {"input": summary["input_sha256"]}
+    digests["source"] = summary["versions"].get("source")
+    if isinstance(meshes, Mapping):
+        digests |= {f"mesh of the {body}": digest for body, digest in meshes.items()}
     return [(name, str(digest)) for name, digest in digests.items() if digest]
 
 
@@ -384,7 +384,6 @@ def residuals(turn: Turn) -> list[tuple[str, str]]:
     return [
         (words, report_tables.number(float(np.max(np.abs(turn.columns[name]))), 2))
         for name, words in names.items()
-        if name in turn.columns
     ]
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.reports.report_tables import Record
-from camwright.reports.sheet_turn import Columns, Turn
+from camwright.reports.sheet_turn import Turn
 from camwright.reports.verdict_text import governing_load_case
 
 FIGURES = "figures"
@@ -45,21 +45,15 @@ def read_material(folder: Path) -> Material:
 def governing_turn(run: Run, case: Record) -> Turn:
     """The governing load case of the final trial."""
     final = run.final
-    names = [str(name) for name in dict.fromkeys(final.cycle["load_case"].tolist())]
+    names = final.cycle.load_cases
     if not names:
         raise ResultError(f"{final.path}: the cycle has no rows")
-    by_name = {name: _numbers(final.cycle.where("load_case", name).columns) for name in names}
+    by_name = {name: final.cycle.of_load_case(name) for name in names}
     drawn = governing_load_case(final.checks, names)
     return Turn(
-        by_name[drawn], tuple(by_name.values()), final.lift.columns, final.contour.columns,
-        None if run.torque is None else run.torque.columns, final.checks, case, drawn,
-        None if run.speed is None else run.speed.columns, final.record.get("balance") or {},
-        None if final.limits is None else final.limits.columns,
+        by_name[drawn], tuple(by_name.values()), final.lift, final.contour, run.torque,
+        final.checks, case, final.record["balance"], drawn, run.speed, final.limits,
     )  # fmt: skip
-
-
-def _numbers(columns: Columns) -> Columns:
-    return {name: values for name, values in columns.items() if values.dtype.kind == "f"}
 
 
 def _case(run: Run) -> Record:

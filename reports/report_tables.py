@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from math import inf, isclose, isfinite, isnan, log10, pi
 from typing import Any, TypeAlias
 
+from camwright.pipeline.base.files import Json
+
 Scalar: TypeAlias = str | float | None
-Json: TypeAlias = "str | float | Sequence[Json] | Mapping[str, Json] | None"
 Record: TypeAlias = Mapping[str, Any]
 """A JSON object or TOML table of a run's files."""
 
@@ -38,20 +39,20 @@ HEADLINES = {
     "torque_std_after_Nm": ("Torque ripple after, standard deviation", "N m"),
     "torque_p2p_before_Nm": ("Torque before, peak to peak", "N m"),
     "torque_p2p_after_Nm": ("Torque after, peak to peak", "N m"),
-    "torque_mean_removed_Nm": ("Mean torque, removed", "N m"),
+    "torque_mean_Nm": ("Mean engine torque", "N m"),
     "lift_max_mm": ("Maximum lift", "mm"),
     "pressure_angle_max_deg": ("Maximum pressure angle", "deg"),
-    "pitch_radius_min_mm": ("Minimum convex radius of the pitch curve", "mm"),
+    "pitch_radius_of_curvature_min_mm": ("Minimum convex radius of the pitch curve", "mm"),
     "normal_force_min_N": ("Minimum normal force", "N"),
     "normal_force_max_N": ("Maximum normal force", "N"),
     "p0_max_MPa": ("Peak contact pressure p0, finite elements", "MPa"),
     "p0_hertz_max_MPa": ("Peak contact pressure p0, Hertz", "MPa"),
     "half_width_max_mm": ("Maximum contact half-width", "mm"),
     "von_mises_max_MPa": ("Maximum von Mises stress", "MPa"),
-    "reaction_A_max_N": ("Maximum reaction, guide A", "N"),
-    "reaction_B_max_N": ("Maximum reaction, guide B", "N"),
+    "guide_reaction_A_max_N": ("Maximum reaction, guide A", "N"),
+    "guide_reaction_B_max_N": ("Maximum reaction, guide B", "N"),
     "friction_loss_J_per_cam_turn": ("Friction loss per cam turn", "J"),
-    "fe_vs_hertz_p0_max_percent": ("Maximum difference of p0, finite elements to Hertz", "%"),
+    "p0_difference_max_percent": ("Maximum difference of p0, finite elements to Hertz", "%"),
     "residual_equilibrium_max": ("Maximum relative equilibrium residual", ""),
 }
 LEAST_ERROR = 1e-4
@@ -215,10 +216,10 @@ class CheckRow:
 
 def utilisation(check: Record) -> float | None:
     """Utilisation of a check record; null with status `fail` means infinite (JSON has none)."""
-    value = check.get("utilisation")
+    value = check["utilisation"]
     if isinstance(value, (int, float)) and not isinstance(value, bool) and not isnan(value):
         return float(value)
-    return inf if check.get("status") == "fail" else None
+    return inf if check["status"] == "fail" else None
 
 
 def sorted_checks(checks: Sequence[Record]) -> list[Record]:
@@ -227,7 +228,7 @@ def sorted_checks(checks: Sequence[Record]) -> list[Record]:
     def order(check: Record) -> tuple[bool, float, str]:
         value = utilisation(check)
         size = -inf if value is None else value
-        return check.get("status") != "not_evaluated", -size, str(check.get("id"))
+        return check["status"] != "not_evaluated", -size, str(check["id"])
 
     return sorted(checks, key=order)
 
@@ -237,23 +238,23 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
     rows = []
     for check in sorted_checks(checks):
         value = utilisation(check)
-        status = str(check.get("status", "not_evaluated"))
+        status = str(check["status"])
         status_words = STATUS.get(status, words(status))
-        unit = str(check.get("unit") or "")
-        sense = "≥" if check.get("sense") == "at_least" else "≤"
-        limit = quantity(check.get("limit"), unit)
-        angle = check.get("cam_angle_deg")
+        unit = str(check["unit"])
+        sense = "≥" if check["sense"] == "at_least" else "≤"
+        limit = quantity(check["limit"], unit)
+        angle = check["cam_angle_deg"]
         rows.append(CheckRow(
-            id=str(check.get("id", "")), title=str(check.get("title", "")),
+            id=str(check["id"]), title=str(check["title"]),
             status=Status(status, status_words),
-            demand=quantity(check.get("demand"), unit),
+            demand=quantity(check["demand"], unit),
             limit=limit if limit == DASH else f"{sense}\N{NO-BREAK SPACE}{limit}",
             utilisation=_ratio(value), bar=_bar(value),
             where=quantity(angle, "deg") if isinstance(angle, (int, float)) else "",
-            load_case=str(check.get("load_case") or ""),
-            source=str(check.get("source") or ""), method=str(check.get("method") or ""),
-            note=str(check.get("note") or ""), waiver=_waiver(check.get("waiver")),
-            must_have=bool(check.get("must_have", True)),
+            load_case=str(check["load_case"] or ""),
+            source=str(check["source"]), method=str(check["method"]),
+            note=str(check["note"]), waiver=_waiver(check["waiver"]),
+            must_have=bool(check["must_have"]),
             error=_error(check, unit), corner=": ".join(worst_corner(check) or ()),
         ))  # fmt: skip
     return rows
@@ -261,7 +262,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
 
 def _error(check: Record, unit: str) -> str:
     """Error bar of a demand, in its unit; empty below the last digit shown."""
-    error, demand = (_finite(check.get(name)) for name in ("error", "demand"))
+    error, demand = (_finite(check[name]) for name in ("error", "demand"))
     if error is None or demand is None or not error or error < LEAST_ERROR * abs(demand):
         return ""
     scale = SHOWN_AS[unit][1] if unit in SHOWN_AS else 1.0
@@ -277,11 +278,11 @@ def worst_corner(check: Record) -> tuple[str, str] | None:
 
     None if the check has none, or if its demand equals the nominal one in all digits shown.
     """
-    unit, demand = str(check.get("unit") or ""), check.get("corner_demand")
-    if not check.get("corner") or demand is None:
+    unit, demand = str(check["unit"]), check["corner_demand"]
+    if not check["corner"] or demand is None:
         return None
     there = quantity(demand, unit)
-    return None if there == quantity(check.get("demand"), unit) else (str(check["corner"]), there)
+    return None if there == quantity(check["demand"], unit) else (str(check["corner"]), there)
 
 
 def _bar(value: float | None) -> float | None:
@@ -329,10 +330,12 @@ def tiles(headline: Record) -> list[Tile]:
     rows = (
         ("Peak contact pressure", "p0_max_MPa", "MPa", "Hertz {} MPa", "p0_hertz_max_MPa"),
         ("Maximum normal force", "normal_force_max_N", "N", "minimum {} N", "normal_force_min_N"),
-        ("Lift", "lift_max_mm", "mm", "minimum convex pitch radius {} mm", "pitch_radius_min_mm"),
+        ("Lift", "lift_max_mm", "mm",
+         "minimum convex pitch radius {} mm", "pitch_radius_of_curvature_min_mm"),
         ("Maximum pressure angle", "pressure_angle_max_deg", "deg", "", ""),
-        ("Maximum reaction, guide A", "reaction_A_max_N", "N", "guide B {} N", "reaction_B_max_N"),
-    )
+        ("Maximum reaction, guide A", "guide_reaction_A_max_N", "N",
+         "guide B {} N", "guide_reaction_B_max_N"),
+    )  # fmt: skip
     for title, key, unit, below, other in rows:
         if headline.get(key) is not None:
             second = headline.get(other)

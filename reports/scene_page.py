@@ -12,12 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.base.files import Json, write_atomic
 from camwright.reports import stress_map
 from camwright.reports.interactive import script_safe_json, scripts
 from camwright.reports.page import environment
 from camwright.reports.report_data import Material
-from camwright.reports.report_tables import Json
 from camwright.reports.scene_solids import Solid, box, joined, pin, ring, rod, tube, unit_circle
 
 FILE = "scene.html"
@@ -84,7 +83,7 @@ def read_turn_view(folder: Path) -> TurnView:
     Raises
     ------
     ResultError
-        If the file is missing, as in runs of earlier versions, or unreadable.
+        If the file is missing, as under a contour that encloses no body, or unreadable.
     """
     path = folder / TURN
     if not path.is_file():
@@ -128,7 +127,7 @@ def scene(material: Material, view: TurnView) -> Json:
     width = turn.length("cam", "width") or 5.0
     stem = turn.length("follower", "stem_diameter") or 0.6 * width
     lab = view.lab_origin()
-    rows = material.run.final.cycle.where("load_case", view.load_case).columns
+    rows = material.run.final.cycle.of_load_case(view.load_case)
     bodies = {"flank": _flank(material, view, width), "cam": _cam(view, width).as_record(_DIGITS)}
     bodies["bore"] = ring(view.bore, width).as_record(_DIGITS)
     bodies["follower"] = _follower(material, view, width, stem).as_record(_DIGITS)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
-from camwright.reports.report_tables import Json
+from camwright.pipeline.base.files import Json
 
 _ROUND = 48
 

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base import units
+from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.tables import Table
 from camwright.reports.figures import SERIES, AngleFigure, Curve, Figure, LimitLine, Panel
-from camwright.reports.report_tables import Json, Record, in_unit
-
-Columns = Mapping[str, Array]
+from camwright.reports.report_tables import Record, in_unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,38 +22,38 @@ class Turn:
 
     Parameters
     ----------
-    columns : mapping     columns of 5_cycle.csv, rows of this load case
+    columns : Table       5_cycle.csv, rows of this load case
     others : tuple        the same of every load case, this one included
-    lift, contour : mapping    columns of 2_lift.csv and 3_contour.csv
-    torque : mapping or None   columns of 1_torque.csv
+    lift, contour : Table      2_lift.csv and 3_contour.csv
+    torque : Table or None     1_torque.csv
     checks : sequence     records of 6_checks.json
     case : mapping        case.toml as read
-    speed : mapping or None    columns of 1_speed.csv
-    balance : mapping     balance of trial.json; empty in runs of earlier versions
-    limits : mapping or None   columns of 2_limits.csv
+    balance : mapping     balance of trial.json
+    speed : Table or None      1_speed.csv
+    limits : Table or None     2_limits.csv
     """
 
-    columns: Columns
-    others: tuple[Columns, ...]
-    lift: Columns
-    contour: Columns
-    torque: Columns | None
+    columns: Table
+    others: tuple[Table, ...]
+    lift: Table
+    contour: Table
+    torque: Table | None
     checks: Sequence[Record]
     case: Record
+    balance: Record
     load_case: str = ""
-    speed: Columns | None = None
-    balance: Record = field(default_factory=dict)
-    limits: Columns | None = None
+    speed: Table | None = None
+    limits: Table | None = None
 
     @property
     def counter_hole(self) -> tuple[float, float, float, bool] | None:
         """Centre x, y and radius, mm, and whether it is drilled; None without a hole."""
         names = ("hole_x_mm", "hole_y_mm", "hole_diameter_mm")
-        values = [self.balance.get(name) for name in names]
+        values = [self.balance[name] for name in names]
         if not all(isinstance(value, (int, float)) for value in values):
             return None
         x, y, diameter = (float(value) for value in values if value is not None)
-        return x, y, 0.5 * diameter, bool(self.balance.get("hole_drilled"))
+        return x, y, 0.5 * diameter, bool(self.balance["hole_drilled"])
 
     @property
     def crank(self) -> Array:
@@ -72,15 +72,13 @@ class Turn:
     @property
     def worst(self) -> int:
         """Row of the maximum contact pressure."""
-        pressure = self.columns.get("p0_fe_MPa", self.columns.get("normal_force_N"))
-        if pressure is None or not np.isfinite(pressure).any():
-            return 0
-        return int(np.nanargmax(pressure))
+        pressure = self.columns["p0_fe_MPa"]
+        return int(np.nanargmax(pressure)) if np.isfinite(pressure).any() else 0
 
     @property
     def rolls(self) -> bool:
         """Whether the follower is a roller; otherwise a flat face."""
-        return "place_on_face_mm" not in self.columns
+        return "face_contact_offset_mm" not in self.columns
 
     @property
     def follower_name(self) -> str:
@@ -91,9 +89,8 @@ class Turn:
     def half_width(self) -> float:
         """Half-width at the maximum contact pressure, mm; of Hertz without finite elements."""
         for name in ("half_width_fe_mm", "half_width_hertz_mm"):
-            values = self.columns.get(name)
-            if values is not None and values[self.worst] > 0:
-                return float(values[self.worst])
+            if self.columns[name][self.worst] > 0:
+                return float(self.columns[name][self.worst])
         raise ResultError("5_cycle.csv: no half-width at the maximum contact pressure")
 
     def length(self, *path: str, unit: str = "mm") -> float | None:
@@ -109,15 +106,15 @@ class Turn:
     def bound(self, check_id: str) -> float | None:
         """Recorded limit of a check; None without one."""
         for check in self.checks:
-            if check.get("id") == check_id and isinstance(check.get("limit"), (int, float)):
+            if check["id"] == check_id and isinstance(check["limit"], (int, float)):
                 return float(check["limit"])
         return None
 
     def limit(self, label: str, unit: str, check_id: str) -> tuple[LimitLine, ...]:
         """Limit of a check as a line in the unit of a panel; empty if the dimension differs."""
         bound = self.bound(check_id)
-        of = next((c for c in self.checks if c.get("id") == check_id), {})
-        value = None if bound is None else in_unit(bound, str(of.get("unit", "")), unit)
+        unit_of = {str(check["id"]): str(check["unit"]) for check in self.checks}
+        value = None if bound is None else in_unit(bound, unit_of[check_id], unit)
         return () if value is None or not np.isfinite(value) else (LimitLine(value, label),)
 
 

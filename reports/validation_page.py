@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from camwright.pipeline.base.files import Json
 from camwright.reports.page import study_page
 from camwright.reports.report_content import Block, Section, Tabular
-from camwright.reports.report_tables import DASH, Cell, Json, Record, Status, Table, words
+from camwright.reports.report_tables import DASH, Cell, Record, Status, Table, words
 
 HEAD = (
     "row", "quantity", "kind", "published", "obtained", "difference", "unit", "verdict", "reason",

@@ -70,7 +70,7 @@ def verdict(
     The verdict is pass only if it is recorded so, there is a check, and no required check fails or
     is not evaluated.
     """
-    required = [c for c in checks if c.get("must_have", True)]
+    required = [c for c in checks if c["must_have"]]
     failed = [c for c in required if c["status"] == "fail"]
     missing = [c for c in required if c["status"] == "not_evaluated"]
     passed = recorded == "pass" and bool(checks) and not failed and not missing
@@ -107,7 +107,7 @@ def _sentence(
     waived = [c for c in required if c["status"] == "waived"]
     if waived:
         parts.append(f"{len(waived)} {_verb(len(waived), 'is', 'are')} waived")
-    optional = [c for c in checks if not c.get("must_have", True)]
+    optional = [c for c in checks if not c["must_have"]]
     exceeded = sum(c["status"] == "fail" for c in optional)
     unknown = sum(c["status"] == "not_evaluated" for c in optional)
     sentence = ", ".join(parts) + "."
@@ -120,7 +120,7 @@ def _sentence(
 
 def governing(checks: Sequence[Check]) -> str:
     """The required check of highest utilisation in a sentence; empty if none is evaluated."""
-    required = [c for c in sorted_checks(checks) if c.get("must_have", True)]
+    required = [c for c in sorted_checks(checks) if c["must_have"]]
     open_ones = [c for c in required if c["status"] in ("fail", "pass")]
     known = [c for c in open_ones if utilisation(c) is not None]
     if not known:
@@ -137,7 +137,7 @@ def governing(checks: Sequence[Check]) -> str:
 def governing_load_case(checks: Sequence[Check], names: Sequence[str]) -> str:
     """Load case of the governing check; the first one if it has none."""
     for check in sorted_checks(checks):
-        if check["status"] in ("fail", "pass") and check.get("load_case") in names:
+        if check["status"] in ("fail", "pass") and check["load_case"] in names:
             return str(check["load_case"])
     return names[0]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from camwright.pipeline.base.files import Json
 from camwright.reports.report_tables import (
     DASH,
-    Json,
     Record,
     Table,
     number,
@@ -61,9 +61,9 @@ def prices(records: Json) -> Table:
     return Table("Shadow prices of the limits", PRICES_HEAD, rows)
 
 
-def consistency(records: Json) -> tuple[Table, bool]:
+def consistency(records: Sequence[Record] | None) -> tuple[Table, bool]:
     """Inputs beside the values that other inputs imply, and whether any of them is flagged."""
-    compared = _records(records)
+    compared = records or ()
     rows = [
         [
             str(one["title"]), str(one["load_case"]), str(one.get("how", "")),

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial import Delaunay
 
+from camwright.pipeline.results.run_reader import SCHEMA
+
 RATE, PRELOAD, PRIME_RADIUS, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044
 MODULUS, MASS, SPEED = 113.2e9, 0.175, 78.54
 BORE, HUB = 0.010, 0.0025
@@ -195,43 +197,43 @@ def cycle_columns(t: dict[str, np.ndarray], g: dict[str, np.ndarray]) -> dict[st
     return {
         "cam_angle_deg": t["crank"] / 2, "crank_angle_deg": t["crank"],
         "lift_mm": t["lift"] * 1e3, "pressure_angle_deg": np.degrees(g["alpha"]),
-        "pitch_radius_mm": 1e3 / g["kappa"],
+        "pitch_radius_of_curvature_mm": 1e3 / g["kappa"],
         "contour_radius_of_curvature_mm": g["contour_radius"] * 1e3,
         "normal_force_N": normal, "line_load_N_per_mm": load / 1e3,
         "p0_hertz_MPa": p0 / 1e6, "p0_fe_MPa": p0_fe / 1e6, "p0_difference_percent": off,
         "half_width_hertz_mm": half * 1e3, "half_width_fe_mm": half * 1e3 * 0.999,
         "tau_max_MPa": 0.3026 * p0 / 1e6, "tau_depth_mm": 0.786 * half * 1e3,
         "von_mises_MPa": 0.5605 * p0 / 1e6, "von_mises_depth_mm": 0.7042 * half * 1e3,
-        "reaction_A_N": a * 0.985, "reaction_B_N": b * 0.97,
-        "reaction_A_statics_N": a, "reaction_B_statics_N": b,
+        "guide_reaction_A_N": a * 0.985, "guide_reaction_B_N": b * 0.97,
+        "guide_reaction_A_statics_N": a, "guide_reaction_B_statics_N": b,
         "spring_force_N": spring, "inertia_force_N": inertia, "axial_force_N": axial,
-        "tangential_force_N": side, "friction_A_N": friction_a, "friction_B_N": friction_b,
+        "side_force_N": side, "guide_friction_A_N": friction_a, "guide_friction_B_N": friction_b,
         "jam_index": 0.13 * np.abs(np.tan(g["alpha"])),
-        "velocity_m_per_s": omega * t["d1"], "cam_torque_Nm": axial * t["d1"],
+        "follower_velocity_m_per_s": omega * t["d1"], "cam_torque_Nm": axial * t["d1"],
         "torque_before_Nm": t["total"] - t["total"].mean(), "torque_after_Nm": after,
         "residual_equilibrium": noise, "residual_complementarity": noise / 3,
         "residual_guide_force": noise / 5, "residual_guide_moment": noise / 2,
-        "bush_peak_A_MPa": np.abs(a) / 20, "bush_peak_B_MPa": np.abs(b) / 10,
-        "rubbing_load_A_N": np.abs(a), "rubbing_load_B_N": np.abs(b),
-        "friction_heat_A_W": np.abs(friction_a * omega * t["d1"]),
-        "friction_heat_B_W": np.abs(friction_b * omega * t["d1"]),
+        "guide_edge_pressure_A_MPa": np.abs(a) / 20, "guide_edge_pressure_B_MPa": np.abs(b) / 10,
+        "guide_normal_load_A_N": np.abs(a), "guide_normal_load_B_N": np.abs(b),
+        "guide_friction_power_A_W": np.abs(friction_a * omega * t["d1"]),
+        "guide_friction_power_B_W": np.abs(friction_b * omega * t["d1"]),
         "normal_force_friction_min_N": 0.97 * normal, "normal_force_friction_max_N": 1.03 * normal,
-        "elastic_contact_force_N": 1.001 * normal, "elastic_deflection_um": normal / 150.0,
+        "contact_force_elastic_stem_N": 1.001 * normal, "stem_shortening_um": normal / 150.0,
         "normal_force_statics_N": 0.995 * normal, "normal_force_by_length_N": 0.02 * normal,
         "normal_force_by_clearance_N": -0.015 * normal,
-        "reaction_by_length_N": -0.1 * b, "reaction_by_clearance_N": 0.07 * b,
+        "guide_reaction_by_length_N": -0.1 * b, "guide_reaction_by_clearance_N": 0.07 * b,
         "jam_index_statics": 0.12 * np.abs(np.tan(g["alpha"])),
         "jam_index_friction_max": 0.2 * np.abs(np.tan(g["alpha"])),
         "cam_speed_rad_per_s": omega * (1 + 0.01 * np.cos(t["crank"] * np.pi / 360)),
         "viscous_force_N": np.zeros_like(normal), "spring_surge_force_N": 0.01 * spring,
         "residual_friction": noise / 4,
-        "key_pressure_MPa": axial * t["d1"] * 6.0, "shaft_bearing_1_N": 0.7 * normal,
-        "shaft_bearing_2_N": 0.5 * normal, "spring_stress_MPa": 0.8 * spring,
+        "key_pressure_MPa": axial * t["d1"] * 6.0, "shaft_bearing_load_1_N": 0.7 * normal,
+        "shaft_bearing_load_2_N": 0.5 * normal, "spring_stress_MPa": 0.8 * spring,
         "ring_stress_amplitude_MPa": 0.7 * normal, "bore_pressure_MPa": normal / 85.0,
         "roller_speed_rpm": 5500.0 + 900.0 * np.cos(g["alpha"]),
         "roller_acceleration_rad_per_s2": 2e4 * np.sin(g["alpha"]),
         "traction_demand": 1e-3 * np.abs(np.tan(g["alpha"])), "creepage": 1e-4 * normal / 500.0,
-        "film_thickness_um": 0.2 + 1e-4 * normal, "lambda_ratio": 0.5 + 1e-4 * normal,
+        "film_thickness_um": 0.2 + 1e-4 * normal, "film_thickness_ratio": 0.5 + 1e-4 * normal,
     }  # fmt: skip
 
 
@@ -241,6 +243,7 @@ def check(**record: Any) -> dict[str, Any]:
         "unit": "", "load_case": "idle", "cam_angle_deg": 192.0, "sense": "at_most", "note": "",
         "source": "Norton, Cam Design and Manufacturing Handbook (2009)", "must_have": True,
         "method": "closed form, refined between samples", "waiver": None, "status": "pass",
+        "error": None, "corner": None, "corner_demand": None, "evidence": False,
     }  # fmt: skip
     return base | record
 
@@ -466,20 +469,21 @@ def write_run(
             "contour_x_mm": g["contour"][0] * 1e3, "contour_y_mm": g["contour"][1] * 1e3,
             "normal_x": g["normal"][0], "normal_y": g["normal"][1],
             "pressure_angle_deg": cycle["pressure_angle_deg"],
-            "pitch_radius_mm": cycle["pitch_radius_mm"],
+            "pitch_radius_of_curvature_mm": cycle["pitch_radius_of_curvature_mm"],
             "contour_radius_of_curvature_mm": cycle["contour_radius_of_curvature_mm"],
         })  # fmt: skip
         write_columns(trial / "5_cycle.csv", cycle, (load_case,))
         (trial / "6_checks.json").write_text(json.dumps(records), encoding="utf-8")
         (trial / "trial.json").write_text(json.dumps({
             "number": number,
-            "smoother": "moving_average", "strength": float(number),
-            "smoothing": f"moving average of {12 * number} values 5 deg apart",
-            "angular_width_deg": 60.0 * number, "closure_mm": 2e-10,
+            "smoothing_kind": "moving_average", "smoothing_strength": float(number),
+            "smoothing_description": f"moving average of {12 * number} values 5 deg apart",
+            "smoothing_width_deg": 60.0 * number, "closure_mm": 2e-10,
+            "prices": None,
             "contact_method": "finite elements joined to the half-plane",
             "balance": {
                 "mass_g": 280.0, "unbalance_g_mm": 900.0, "unbalance_angle_deg": 40.0,
-                "unbalance_left_g_mm": 1e-9, "hole_diameter_mm": 14.0, "hole_x_mm": 26.0,
+                "residual_unbalance_g_mm": 1e-9, "hole_diameter_mm": 14.0, "hole_x_mm": 26.0,
                 "hole_y_mm": 21.8, "hole_drilled": number == 2, "hole_note": "",
             },
             "why": "the smoothing the case asks for" if number == 1 else "pressure_angle fails",
@@ -495,11 +499,13 @@ def write_run(
     ]  # fmt: skip
     before, after = cycle["torque_before_Nm"], cycle["torque_after_Nm"]
     (folder / "run.json").write_text(json.dumps({
-        "schema": 1, "case": "gx120", "input_sha256": "5f" * 32,
+        "schema": SCHEMA, "case": "gx120", "input_sha256": "5f" * 32,
         "versions": {"camwright": "0.1.0", "python": "3.11.9", "numpy": np.__version__},
         "timings_s": {"torque": 0.4, "lift": 0.1, "contour": 0.6, "mesh": 12.0, "cycle": 231.0,
                       "checks": 0.1, "report": 11.0, "total": 288.0},
         "statement": "no smoothing that keeps the torque reduction lets roller_static pass",
+        "platform": "Linux x86_64", "prices": None, "benchmarks": None, "speed": None,
+        "consistency": [], "files": {},
         "trials": 2, "verdict": "fail" if failed else "pass", "binding": failed,
         "headline": {
             "torque_std_before_Nm": float(before.std()), "torque_std_after_Nm": float(after.std()),
@@ -507,15 +513,16 @@ def write_run(
             "torque_p2p_after_Nm": float(np.ptp(after)),
             "lift_max_mm": float(cycle["lift_mm"].max()),
             "pressure_angle_max_deg": float(np.abs(cycle["pressure_angle_deg"]).max()),
-            "pitch_radius_min_mm": 18.5, "normal_force_min_N": float(cycle["normal_force_N"].min()),
+            "pitch_radius_of_curvature_min_mm": 18.5,
+            "normal_force_min_N": float(cycle["normal_force_N"].min()),
             "normal_force_max_N": float(cycle["normal_force_N"].max()),
             "p0_max_MPa": float(cycle["p0_fe_MPa"].max()),
             "p0_hertz_max_MPa": float(cycle["p0_hertz_MPa"].max()),
             "half_width_max_mm": float(cycle["half_width_fe_mm"].max()),
             "von_mises_max_MPa": float(cycle["von_mises_MPa"].max()),
-            "reaction_A_max_N": float(np.abs(cycle["reaction_A_N"]).max()),
-            "reaction_B_max_N": float(np.abs(cycle["reaction_B_N"]).max()),
-            "friction_loss_J_per_cam_turn": 3.1, "fe_vs_hertz_p0_max_percent": 0.17,
+            "guide_reaction_A_max_N": float(np.abs(cycle["guide_reaction_A_N"]).max()),
+            "guide_reaction_B_max_N": float(np.abs(cycle["guide_reaction_B_N"]).max()),
+            "friction_loss_J_per_cam_turn": 3.1, "p0_difference_max_percent": 0.17,
             "residual_equilibrium_max": 2e-12,
         },
     }))  # fmt: skip

@@ -1,1 +1,18 @@
-"""Units, quantities, tables, files, disk cache, worker processes, progress."""
+"""Units, quantities, tables, files, disk cache, worker processes, progress.
+
+In the order of use:
+
+| module             | responsibility                                           | symbol, unit     |
+| ------------------ | -------------------------------------------------------- | ---------------- |
+| `units`            | unit strings to SI and back; units of column names       |                  |
+| `quantities`       | quantities of an input: unit and bounds of a field       | SI               |
+| `material`         | material card: elastic constants, strengths, source      | E, Pa; nu; S, Pa |
+| `files`            | files read, written in one step, hashed; JSON records    | SHA-256          |
+| `tables`           | columns with unit and meaning; CSV files                 |                  |
+| `disk_cache`       | arrays that depend on their key alone, kept between runs |                  |
+| `worker_processes` | processes of one BLAS thread for independent tasks       |                  |
+| `progress`         | progress of a run on the terminal                        | s                |
+
+Imports `geometry` alone. A column stands beside its values, in the `columns()` of the class that
+computes them; `results.run_records.column_table` lists all.
+"""

@@ -1,9 +1,9 @@
-"""Arrays that are costly to compute and depend on nothing but their key, kept between runs.
+"""Disk cache of arrays that depend on their key alone, kept between runs.
 
-The key holds what the arrays were asked for, the versions of the libraries they come from and
-the text of the modules that compute them, so that an entry never outlives its recipe. A broken
-or foreign entry counts as none. Writers of one entry write the same bytes, each to a file of
-its own that then takes the place, so they need no lock.
+The key is a hash of the inputs, of the versions of the libraries and of the source text of the
+modules that compute the arrays, so that a changed module makes a new entry. An unreadable entry
+counts as missing. Writers of one entry write the same bytes and replace the file in one step, so
+they need no lock.
 """
 
 from __future__ import annotations
@@ -12,9 +12,8 @@ import hashlib
 import importlib.metadata
 import os
 import sys
-import tempfile
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
@@ -23,9 +22,11 @@ from types import ModuleType
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import npz_bytes, write_atomic
 
 FOLDER, OFF = "CAMWRIGHT_CACHE", "CAMWRIGHT_NO_CACHE"
-LARGEST = 400_000_000  # bytes in all; what was not used for longest goes first
+LARGEST = 400_000_000  # bytes in all; the least recently used entry is deleted first
 _LIBRARIES = ("camwright", "gmsh", "numpy", "scikit-fem", "scipy")
 _BROKEN = (
     *(OSError, ValueError, KeyError, EOFError, MemoryError, NotImplementedError),
@@ -36,12 +37,12 @@ Arrays = Mapping[str, Array]
 
 
 def folder() -> Path | None:
-    """Where entries lie; None where there is no home or the cache is switched off."""
+    """Folder of the entries; None without a home folder or with the cache switched off."""
     if os.environ.get(OFF):
         return None
-    given = os.environ.get(FOLDER)
-    if given:
-        return Path(given)
+    stated = os.environ.get(FOLDER)
+    if stated:
+        return Path(stated)
     try:
         if sys.platform == "win32":
             return Path(os.environ["LOCALAPPDATA"]) / "camwright" / "Cache"
@@ -53,76 +54,67 @@ def folder() -> Path | None:
 
 
 def switch_off() -> None:
-    """No reading and no writing from here on, in this process and those it starts."""
+    """Neither read nor write entries any more, in this process and those it starts."""
     os.environ[OFF] = "1"
 
 
-def key(kind: str, asked: object, modules: tuple[ModuleType, ...]) -> str:
-    """Fingerprint of a question, of the libraries and of the modules that answer it."""
-    digest = hashlib.sha256(repr((kind, asked, _versions(), sys.version_info[:2])).encode())
+def key(kind: str, inputs: Hashable, modules: tuple[ModuleType, ...]) -> str:
+    """Hash of the inputs, of the libraries' versions and of the modules' source text."""
+    digest = hashlib.sha256(repr((kind, inputs, _versions(), sys.version_info[:2])).encode())
     for module in modules:
         digest.update(_source(module))
     return f"{kind}-{digest.hexdigest()[:40]}"
 
 
 def kept(
-    kind: str, asked: object, compute: Callable[[], Arrays], modules: tuple[ModuleType, ...]
+    kind: str, inputs: Hashable, compute: Callable[[], Arrays], modules: tuple[ModuleType, ...]
 ) -> Arrays:
-    """Arrays by name from the cache, or computed and put there.
+    """Arrays by name, from the cache or computed and written to it.
 
     Parameters
     ----------
     kind : str               first word of the entry's file name
-    asked : object           what was asked for; its repr enters the key
+    inputs : hashable        all that decides the arrays; its repr enters the key
     compute : function       () -> arrays by name
-    modules : tuple          modules whose text decides the arrays
+    modules : tuple          modules whose source text decides the arrays
     """
     place = folder()
     if place is None:
         return _laid_out(compute())
-    path = place / f"{key(kind, asked, modules)}.npz"
-    found = _read(path)
-    if found is None:
-        found = _laid_out(compute())
-        _write(path, found)
-    return found
+    path = place / f"{key(kind, inputs, modules)}.npz"
+    arrays = _read(path)
+    if arrays is None:
+        arrays = _laid_out(compute())
+        _write(path, arrays)
+    return arrays
 
 
 def _laid_out(arrays: Arrays) -> dict[str, Array]:
-    """Rows one after the other, as they are read back: sums over them then agree to the bit."""
+    """Arrays in C order, as they are read back: sums over them then agree to the bit."""
     return {name: np.array(values, order="C") for name, values in arrays.items()}
 
 
 def _read(path: Path) -> dict[str, Array] | None:
-    """Arrays of an entry; None for one that is missing, cut short or altered (zip has sums)."""
+    """Arrays of an entry; None if it is missing, cut short or altered (zip has check sums)."""
     try:
         with np.load(path, allow_pickle=False) as entry:
-            found = {name: entry[name] for name in entry.files}
+            arrays = {name: entry[name] for name in entry.files}
     except _BROKEN:
         return None
-    with suppress(OSError):  # a folder shared for reading alone
+    with suppress(OSError):  # a read-only folder
         path.touch()
-    return found
+    return arrays
 
 
 def _write(path: Path, arrays: Arrays) -> None:
-    """Put an entry in its place in one step; a folder that cannot be written is no error."""
-    temporary = None
-    with suppress(OSError):
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            handle, temporary = tempfile.mkstemp(".part", path.stem, path.parent)
-            with os.fdopen(handle, "wb") as file:
-                np.savez(file, allow_pickle=False, **arrays)
-            Path(temporary).replace(path)
-            _make_room(path)
-        except OSError:
-            if temporary is not None:
-                Path(temporary).unlink(missing_ok=True)
+    """Write an entry; a folder that cannot be written is no error."""
+    with suppress(OSError, ResultError):
+        write_atomic(path, npz_bytes(arrays, compressed=False))
+        _make_room(path)
 
 
 def _make_room(newest: Path) -> None:
-    """Delete the entries not used for longest until the rest is no larger than `LARGEST`."""
+    """Delete the least recently used entries until the rest is no larger than `LARGEST`."""
     entries = [(entry.stat(), entry) for entry in newest.parent.glob("*.npz") if entry != newest]
     room = LARGEST - newest.stat().st_size
     for state, entry in sorted(entries, key=lambda pair: pair[0].st_mtime, reverse=True):
@@ -133,13 +125,13 @@ def _make_room(newest: Path) -> None:
 
 @lru_cache(maxsize=1)
 def _versions() -> tuple[str, ...]:
-    found = []
+    versions = []
     for name in _LIBRARIES:
         try:
-            found.append(f"{name} {importlib.metadata.version(name)}")
+            versions.append(f"{name} {importlib.metadata.version(name)}")
         except importlib.metadata.PackageNotFoundError:
-            found.append(name)
-    return tuple(found)
+            versions.append(name)
+    return tuple(versions)
 
 
 @lru_cache(maxsize=64)

@@ -1,28 +1,33 @@
-"""Files read with care and written whole or not at all."""
+"""Files: read within limits, written whole or not at all, hashed."""
 
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import os
 import tempfile
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from camwright.geometry.errors import InputError, ResultError
 
+Json: TypeAlias = "str | float | Sequence[Json] | Mapping[str, Json] | None"
+"""A value of a JSON record."""
+
 
 def inside(folder: Path, name: str, field: str) -> Path:
-    """The file `name` under `folder`; refuses every way out of it, links too.
+    """Path of the file `name` under `folder`, symbolic links resolved.
 
     Raises
     ------
     InputError
-        If the name leaves the folder or cannot be one.
+        If the name is none of a file, or leads out of the folder, by a link too.
     """
     limit = "a relative path that stays in the case file's folder"
     path = Path(name)
@@ -38,13 +43,12 @@ def inside(folder: Path, name: str, field: str) -> Path:
 
 
 def read_toml(path: Path, field: str, most: int) -> dict[str, Any]:
-    """The tables of a file of at most `most` bytes.
+    """Tables of a TOML file of at most `most` bytes.
 
     Raises
     ------
     InputError
-        Naming `field`, for a file that is larger, cannot be read, is nested too deeply or is no
-        TOML in UTF-8.
+        Naming `field`, if the file is larger, unreadable, nested too deeply or not TOML in UTF-8.
     """
     try:
         if path.stat().st_size > most:
@@ -58,12 +62,12 @@ def read_toml(path: Path, field: str, most: int) -> dict[str, Any]:
 
 
 def write_atomic(path: Path, content: bytes | str) -> Path:
-    """Write a file whole or not at all; missing parent folders are made.
+    """Write a file whole or not at all; creates missing parent folders.
 
     Raises
     ------
     ResultError
-        If it cannot be written, such as on a full disk.
+        If the file cannot be written, such as on a full disk.
     """
     data = content.encode() if isinstance(content, str) else content
     temporary = None
@@ -85,7 +89,7 @@ def write_atomic(path: Path, content: bytes | str) -> Path:
 
 
 def hash_inputs(case_text: str, included: Mapping[str, bytes]) -> str:
-    """Hash of the resolved case text and the bytes of its included files."""
+    """SHA-256 of the resolved case text and the bytes of its included files."""
     digest = hashlib.sha256(case_text.encode())
     for name, content in sorted(included.items()):
         digest.update(f"\0{name}\0{len(content)}\0".encode())
@@ -94,6 +98,7 @@ def hash_inputs(case_text: str, included: Mapping[str, bytes]) -> str:
 
 
 def read_text(path: Path) -> str:
+    """Text of a file in UTF-8; ResultError if it cannot be read."""
     try:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -102,31 +107,55 @@ def read_text(path: Path) -> str:
 
 
 def read_json(path: Path) -> Any:
+    """Contents of a JSON file, for the caller to check; ResultError if it is none."""
     try:
         return json.loads(read_text(path), parse_constant=_no_constant)
     except (ValueError, RecursionError) as error:
         raise ResultError(f"{path}: not JSON ({' '.join(str(error).split())})") from None
 
 
-def json_text(value: object) -> str:
-    """JSON with numpy numbers taken in; NaN and infinity are refused, null says missing."""
+def json_text(value: Json) -> str:
+    """JSON of a record, numpy numbers included; ResultError for NaN and infinity."""
     try:
         return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=_plain)
     except (TypeError, ValueError) as error:
         raise ResultError(f"a record cannot be written: {error}") from None
 
 
-def _plain(value: object) -> object:
+def _plain(value: np.generic | np.ndarray | Mapping[str, Json]) -> Json:
     if isinstance(value, (np.generic, np.ndarray)):
-        return value.tolist()
+        plain: Json = value.tolist()
+        return plain
     if isinstance(value, Mapping):
         return dict(value)
-    raise TypeError(f"{type(value).__name__} has no place in JSON")
+    raise TypeError(f"{type(value).__name__} cannot be written as JSON")
 
 
 def _no_constant(name: str) -> float:
-    raise ValueError(f"{name} is not a number")
+    raise ValueError(f"{name} is no number")
+
+
+def npz_bytes(arrays: Mapping[str, ArrayLike], *, compressed: bool = True) -> bytes:
+    """Arrays by name as a numpy archive; the same bytes for the same numbers."""
+    buffer = io.BytesIO()
+    named = {name: np.asarray(values) for name, values in arrays.items()}
+    (np.savez_compressed if compressed else np.savez)(buffer, allow_pickle=False, **named)
+    return buffer.getvalue()
+
+
+def files_in(folder: Path) -> Iterator[tuple[str, Path]]:
+    """Files under a folder by relative name, in order; those of a hidden part are left out."""
+    for file in sorted(folder.rglob("*")):
+        parts = file.relative_to(folder).parts
+        if file.is_file() and not any(part.startswith(".") for part in parts):
+            yield "/".join(parts), file
+
+
+def file_hashes(folder: Path, wanted: Callable[[str], bool]) -> dict[str, str]:
+    """SHA-256 of the files under a folder whose relative name is wanted, by that name."""
+    return {name: sha256_of(file) for name, file in files_in(folder) if wanted(name)}
 
 
 def sha256_of(path: Path) -> str:
+    """SHA-256 of a file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()

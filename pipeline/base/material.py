@@ -1,4 +1,4 @@
-"""The material card: elastic constants, strengths, and where they come from."""
+"""Material card: elastic constants, strengths and their source."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Tempe
 
 @dataclass(frozen=True, kw_only=True)
 class Material(Part):
-    """A material card: elastic constants, strengths and where they come from.
+    """Material card: elastic constants, strengths and their source.
 
-    swelling is the growth of a length from dry to fully moist; hardness is Brinell's or Vickers'.
-    name is the one the case gives it.
+    swelling is the relative growth of a length from dry to fully moist, hardness Brinell or
+    Vickers, name that of the card in the case.
     """
 
     table: ClassVar[str] = "material"

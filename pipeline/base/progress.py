@@ -1,4 +1,4 @@
-"""What a long computation says while it runs: bars on a terminal, lines elsewhere."""
+"""Progress of a long computation: bars on a terminal, plain lines elsewhere."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ LINE_EVERY_S = 10.0
 
 
 class Progress(Protocol):
-    """Told by the run where it stands."""
+    """Receiver of the progress of a run."""
 
     def stage(self, name: str) -> None:
-        """A new stage has begun."""
+        """A stage starts."""
 
     def advance(self, k: int, total: int) -> None:
-        """`k` of `total` pieces of the stage are done."""
+        """`k` of `total` steps of the stage are complete."""
 
     def note(self, text: str) -> None:
-        """Something a reader should know."""
+        """A remark for the user."""
 
 
 class Silent:
-    """Says nothing."""
+    """No output."""
 
     def stage(self, name: str) -> None: ...
 
@@ -50,7 +50,7 @@ SILENT = Silent()
 
 
 class Lines:
-    """Plain lines, one a stage and one every ten seconds with the time that remains."""
+    """Plain lines: one a stage, and one every `LINE_EVERY_S` with the remaining time."""
 
     def __init__(
         self, say: Callable[[str], None], clock: Callable[[], float] = time.monotonic

@@ -1,7 +1,7 @@
 """Quantities of an input: SI floats read from text with a unit, within bounds.
 
-A bound stands once, beside the field it belongs to: a case file's text is read by it, and a value
-built in Python is held to it.
+A bound stands once, beside its field, and holds for the text of a case file and for a value set in
+Python alike.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class In:
-    """Marks a float field: written with a unit, held in SI; bounds in the unit written.
+    """Marks a float field: unit in a case file, and bounds in that unit; the value is in SI.
 
-    Without a unit it is a pure number, written bare.
+    Without a unit the field is a pure number.
     """
 
     unit: str = ""
@@ -59,13 +59,13 @@ class In:
         return core_schema.no_info_plain_validator_function(read)
 
     def read(self, value: object) -> float:
-        """SI value of a number as a case file has it.
+        """SI value of a number of a case file.
 
         Raises
         ------
         InputError
-            If it is no finite number with a unit of this dimension, or out of bounds; the field
-            is left empty.
+            If it is no finite number with a unit of this dimension, or out of bounds; without the
+            name of the field.
         """
         number = self._number(value)
         if not self.holds(number):
@@ -141,14 +141,14 @@ class Count:
         return core_schema.int_schema(ge=self.at_least, le=self.at_most, strict=True)
 
     def read(self, value: object) -> int:
-        """A whole number as a case file has it, as `In.read` does."""
+        """A whole number of a case file; see `In.read`."""
         if isinstance(value, bool) or not isinstance(value, int):
             raise InputError("", str(value), "a whole number")
         self.require("", value)
         return value
 
     def require(self, field: str, value: object) -> None:
-        """Refuse a value out of bounds, as `In.require` does."""
+        """Refuse a value out of bounds; see `In.require`."""
         if isinstance(value, bool) or not isinstance(value, int):
             raise InputError(field, _text(value), "a whole number")
         if not self.at_least <= value <= self.at_most:
@@ -206,7 +206,7 @@ class OneOf:
     words: tuple[str, ...]
 
     def require(self, field: str, value: object) -> None:
-        """Refuse what is none of the words."""
+        """Refuse a value that is none of the words."""
         if value not in self.words:
             raise InputError(field, _text(value), " or ".join(f'"{word}"' for word in self.words))
 
@@ -239,7 +239,7 @@ class Part:
 
 
 class _Rule(NamedTuple):
-    """What a field may hold, besides None where it is optional."""
+    """Unit and bounds of a field, and whether it may be None."""
 
     mark: In | Count | Characters | OneOf
     optional: bool = False
@@ -295,7 +295,6 @@ Force = Annotated[float, In("N", at_least=0, at_most=1e9)]
 Share = Annotated[float, In(at_least=0, at_most=1)]
 Positive = Annotated[float, In(above=0, at_most=1e6)]
 Fraction = Annotated[float, In(above=0, at_most=1)]
-Safety = Annotated[float, In(above=0, at_most=100)]
 Rate = Annotated[float, In("kN/m", above=0, at_most=1e6)]
 Preload = Annotated[float, In("N", above=0, at_most=1e9)]
 Residual = Annotated[float, In(above=0, at_most=1e-3)]

@@ -9,154 +9,176 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from camwright.geometry.arrays import Array, readonly
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import read_text
 
+Texts = NDArray[np.str_]
+Cells = Array | Texts
+
 
 @dataclass(frozen=True)
 class Column:
-    """A table column: its name without unit, the unit it is written in."""
+    """A table column; it stands beside its values, in the code that computes them.
+
+    Parameters
+    ----------
+    name : str       without unit
+    unit : str       in which it is written; empty for a pure number
+    meaning : str    in one phrase
+    unknown : bool   whether a value may be unknown, NaN: an empty cell
+    """
 
     name: str
     unit: str = ""
-    optional: bool = False
-    may_be_unknown: bool = False
+    meaning: str = ""
+    unknown: bool = False
 
     @property
     def header(self) -> str:
+        """Name with the unit, as in the file."""
         return units.column(self.name, self.unit)
+
+
+LOAD_CASE = Column("load_case", "", "Load case")
+CAM_ANGLE = Column("cam_angle", "deg", "Cam angle")
+CRANK_ANGLE = Column("crank_angle", "deg", "Crank angle")
+
+Values = Mapping[Column, Cells]
+"""SI values (n,) by column; texts of `LOAD_CASE` alone."""
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Columns of one length by header; numbers as written, in the unit their name carries."""
+    """Columns of one length by header, in the unit of the header.
 
-    columns: Mapping[str, NDArray[Any]]
+    rows_of is the load case of each row; None in a table of no load case.
+    """
 
-    def __getitem__(self, header: str) -> Any:
+    columns: Mapping[str, Array]
+    rows_of: Texts | None = None
+
+    def __getitem__(self, header: str) -> Array:
         if header not in self.columns:
             raise ResultError(f"column {header} is missing; there is {', '.join(self.columns)}")
         return self.columns[header]
 
-    def __contains__(self, header: object) -> bool:
+    def __contains__(self, header: str) -> bool:
         return header in self.columns
+
+    def get(self, header: str) -> Array | None:
+        """A column that not every run has; None without it."""
+        return self.columns.get(header)
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values()), ()))
 
-    def where(self, header: str, value: object) -> Table:
-        """The rows in which a column has a value."""
-        rows = self[header] == value
-        return Table(MappingProxyType({name: _fixed(c[rows]) for name, c in self.columns.items()}))
+    @property
+    def load_cases(self) -> tuple[str, ...]:
+        """Names of the load cases, in the order of the rows."""
+        return () if self.rows_of is None else tuple(dict.fromkeys(self.rows_of.tolist()))
+
+    def of_load_case(self, name: str) -> Table:
+        """The rows of a load case; none where there is no such load case."""
+        owners = np.full(len(self), "") if self.rows_of is None else self.rows_of
+        rows = owners == name
+        columns = {header: readonly(values[rows]) for header, values in self.columns.items()}
+        return Table(MappingProxyType(columns), _fixed_texts(owners[rows]))
 
     def to_csv(self) -> str:
-        """CSV text; every float reads back bit for bit."""
+        """CSV text; every float reads back bit for bit, NaN is an empty cell."""
+        cells = {header: _texts(values) for header, values in self.columns.items()}
+        if self.rows_of is not None:
+            cells = {LOAD_CASE.header: self.rows_of.tolist(), **cells}
         buffer = io.StringIO()
         writer = csv.writer(buffer, lineterminator="\n")
-        writer.writerow(self.columns)
-        writer.writerows(zip(*(_texts(column) for column in self.columns.values()), strict=True))
+        writer.writerow(cells)
+        writer.writerows(zip(*cells.values(), strict=True))
         return buffer.getvalue()
 
 
-def table(columns: Iterable[Column], values: Mapping[str, ArrayLike]) -> Table:
-    """A table from SI values by bare column name, turned into the unit of each column.
+def table(values: Values) -> Table:
+    """A table from SI values, in the unit of each column.
 
     Raises
     ------
     ResultError
-        If a column is not given, unknown, of another length, or holds a NaN it may not hold.
+        If a header occurs twice, a column is of another length, or holds a NaN that it may not
+        hold.
     """
-    columns = tuple(columns)
-    unknown = set(values) - {column.name for column in columns}
-    if unknown:
-        raise ResultError(f"no such column: {', '.join(sorted(unknown))}")
-    made: dict[str, NDArray[Any]] = {}
-    for column in columns:
-        if column.name not in values:
-            if column.optional:
-                continue
-            raise ResultError(f"column {column.header} was not given")
-        made[column.header] = _in_unit(column, np.asarray(values[column.name]))
-    if len({len(given) for given in made.values()}) > 1:
-        lengths = ", ".join(f"{name} {len(given)}" for name, given in made.items())
-        raise ResultError(f"columns of different length: {lengths}")
-    return Table(MappingProxyType(made))
+    made: dict[str, Array] = {}
+    rows_of: Texts | None = None
+    for column, cells in values.items():
+        if column.header in made:
+            raise ResultError(f"column {column.header} = twice, must be once")
+        if column == LOAD_CASE:
+            rows_of = _fixed_texts(cells)
+        else:
+            made[column.header] = _in_unit(column, np.asarray(cells, dtype=float))
+    lengths = {header: len(cells) for header, cells in made.items()}
+    if rows_of is not None:
+        lengths[LOAD_CASE.header] = len(rows_of)
+    if len(set(lengths.values())) > 1:
+        shown = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        raise ResultError(f"columns of different length: {shown}")
+    return Table(MappingProxyType(made), rows_of)
 
 
-def read_table(path: Path, columns: Iterable[Column] = ()) -> Table:
-    """A CSV table; a column is of floats unless it is ``load_case``.
-
-    Parameters
-    ----------
-    columns : Column   the layout: cells of a column that `may_be_unknown` may be empty (NaN)
+def read_table(path: Path) -> Table:
+    """A CSV table: numbers, an empty cell as NaN, and texts in the column ``load_case``.
 
     Raises
     ------
     ResultError
-        If the file is unreadable, ragged, or has a cell that is no number.
+        If the file is unreadable, ragged, or has a cell that is neither a number nor empty.
     """
-    unknown = {column.header for column in columns if column.may_be_unknown}
     rows = list(csv.reader(io.StringIO(read_text(path))))
     if not rows or len(set(rows[0])) != len(rows[0]):
         raise ResultError(f"{path}: no header, or a column twice")
     for line, row in enumerate(rows, start=1):
         if len(row) != len(rows[0]):
             raise ResultError(f"{path}, line {line}: {len(row)} cells, must be {len(rows[0])}")
-    cells = list(zip(*rows[1:], strict=True)) or [()] * len(rows[0])
-    return Table(
-        MappingProxyType(
-            {
-                name: _parsed(path, name, cells[k], name in unknown)
-                for k, name in enumerate(rows[0])
-            },
-        )
-    )
+    columns = list(zip(*rows[1:], strict=True)) or [()] * len(rows[0])
+    cells = dict(zip(rows[0], columns, strict=True))
+    owners = cells.pop(LOAD_CASE.header, None)
+    numbers = {header: _parsed(path, header, column) for header, column in cells.items()}
+    return Table(MappingProxyType(numbers), None if owners is None else _fixed_texts(owners))
 
 
-def _in_unit(column: Column, given: NDArray[Any]) -> NDArray[Any]:
-    if given.dtype.kind in "US":
-        return _fixed(given.astype(str))
-    values = given.astype(float)
-    if values.ndim != 1 or (np.isnan(values).any() and not column.may_be_unknown):
+def _in_unit(column: Column, values: Array) -> Array:
+    if values.ndim != 1 or (np.isnan(values).any() and not column.unknown):
         what = "NaN" if values.ndim == 1 else f"{values.ndim} dimensions"
         raise ResultError(f"column {column.header} holds {what}")
     if column.unit:
         values = values / units.factor(column.unit)
-    if column.name in ("cam_angle", "crank_angle"):
+    if column in (CAM_ANGLE, CRANK_ANGLE):
         values = np.round(values, 10)  # 0.5, not 0.49999999999999994
-    return _fixed(values)
+    return readonly(values)
 
 
-def _parsed(path: Path, name: str, cells: Iterable[str], may_be_unknown: bool) -> NDArray[Any]:
-    if name == "load_case":
-        return _fixed(np.array(list(cells), dtype=str))
+def _parsed(path: Path, header: str, cells: Iterable[str]) -> Array:
     values: list[float] = []
     for line, cell in enumerate(cells, start=2):
-        if cell == "" and may_be_unknown:
-            values.append(math.nan)
-            continue
         try:
-            value = float(cell)
+            value = float(cell) if cell else math.nan
         except ValueError:
             value = math.nan
-        if math.isnan(value):
-            raise ResultError(f"{path}, line {line}: {name} = {cell[:40]!r}, must be a number")
+        if math.isnan(value) and cell:
+            raise ResultError(f"{path}, line {line}: {header} = {cell[:40]!r}, must be a number")
         values.append(value)
-    return _fixed(np.array(values))
+    return readonly(values)
 
 
-def _fixed(values: NDArray[Any]) -> NDArray[Any]:
-    values.setflags(write=False)
-    return values
+def _fixed_texts(values: ArrayLike) -> Texts:
+    texts = np.array(values, dtype=np.str_)
+    texts.setflags(write=False)
+    return texts
 
 
-def _texts(column: NDArray[Any]) -> Iterable[str]:
-    if column.dtype.kind == "U":
-        return column.tolist()
-    return ("" if math.isnan(value) else repr(value) for value in column.tolist())
+def _texts(values: Array) -> list[str]:
+    return ["" if math.isnan(value) else repr(value) for value in values.tolist()]

@@ -11,9 +11,13 @@ import re
 from decimal import Decimal, InvalidOperation
 from functools import lru_cache
 from math import degrees, isfinite
-from typing import Any
+from typing import TYPE_CHECKING
 
 from camwright.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from pint import UnitRegistry
+    from pint.facets.plain import PlainUnit
 
 _NUMBER = r"[+-]?(?:\d[\d_]*(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?|[+-]?(?:nan|inf|infinity)"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*", re.IGNORECASE | re.DOTALL)
@@ -28,15 +32,15 @@ _LONGEST = 80
 
 
 @lru_cache(maxsize=1)
-def _registry() -> Any:
+def _registry() -> UnitRegistry[Decimal]:
     import pint  # half a second, and only a case file with unit strings needs it
 
     return pint.UnitRegistry(non_int_type=Decimal)
 
 
 @lru_cache(maxsize=512)
-def _unit(text: str) -> Any:
-    """The pint unit of `text`; raises ValueError for what is not one."""
+def _unit(text: str) -> PlainUnit:
+    """The pint unit of `text`; ValueError if it is none."""
     if not text:
         return _registry().dimensionless
     if len(text) > _LONGEST or not _UNIT.fullmatch(text):
@@ -49,7 +53,7 @@ def _unit(text: str) -> Any:
 
 
 @lru_cache(maxsize=512)
-def _si_unit(text: str) -> Any:
+def _si_unit(text: str) -> PlainUnit:
     """The coherent SI unit of the same dimension as `text`, the angle in rad."""
     unit = _unit(text)
     return _registry().Quantity(Decimal(1), unit).to_base_units().units
@@ -66,12 +70,13 @@ def same_dimension(unit: str, other: str) -> bool:
     return bool(one.dimensionality == two.dimensionality and _angle(one) == _angle(two))
 
 
-def _angle(unit: Any) -> int:
-    """Power of the plane angle in a unit, which pint takes for a number."""
+def _angle(unit: PlainUnit) -> int:
+    """Power of the plane angle in a unit; pint treats the angle as a pure number."""
     from pint.util import to_units_container
 
-    powers: Any = to_units_container(unit)
-    return int(sum(power for name, power in powers.items() if name.endswith(_ANGLES)))
+    powers = to_units_container(unit).items()
+    angles = [power for name, power in powers if name.endswith(_ANGLES)]
+    return int(sum(float(power) for power in angles if isinstance(power, (int, float, Decimal))))
 
 
 def parse(text: object, unit: str, field: str) -> float:
@@ -85,12 +90,12 @@ def parse(text: object, unit: str, field: str) -> float:
 
     Returns
     -------
-    value : float   in m, kg, s, K, rad and what follows from them
+    value : float   in m, kg, s, K, rad and units derived from them
 
     Raises
     ------
     InputError
-        If the number stands bare, is not finite, or the unit is unknown or of another dimension.
+        If the unit is missing, unknown or of another dimension, or the number is not finite.
     """
     example = f'a number with a unit, such as "1 {unit}"'
     if not isinstance(text, str):
@@ -98,15 +103,15 @@ def parse(text: object, unit: str, field: str) -> float:
     match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
     if match is None or not match.group(2):
         raise InputError(field, text, example)
-    number, given = match.group(1), match.group(2)
+    number, stated = match.group(1), match.group(2)
     try:
-        known = same_dimension(given, unit)
+        known = same_dimension(stated, unit)
     except ValueError:
         raise InputError(field, text, f"in a known unit, such as {unit}") from None
     if not known:
         raise InputError(field, text, f"in a unit of the dimension of {unit}")
     try:
-        value = float(_to_si(Decimal(number), given, unit))
+        value = float(_to_si(Decimal(number), stated, unit))
     except (InvalidOperation, OverflowError, ValueError):
         value = float("nan")
     if not isfinite(value):
@@ -179,6 +184,6 @@ def celsius(temperature: float) -> float:
 
 
 def shown(value: float, unit: str, digits: int = 4) -> str:
-    """A value in SI as a reader sees it, such as ``12.5 mm``."""
+    """A value in SI as text in a unit, such as ``12.5 mm``."""
     number = f"{in_unit(value, unit):.{digits}g}"
     return f"{number} {unit}" if unit not in ("", "-") else number

@@ -1,4 +1,4 @@
-"""Fresh processes for independent pieces of work, each with one BLAS thread."""
+"""Worker processes for independent tasks, each with one BLAS thread."""
 
 from __future__ import annotations
 
@@ -17,29 +17,30 @@ _LOOK_EVERY_S = 1.0
 
 
 def workers_for(jobs: int | None, tasks: int) -> int:
-    """Processes to use: as asked, else the processors there are, at most 4 and one a task."""
+    """Number of processes: `jobs`, by default one a processor up to 4; at most one a task."""
     return max(1, min(jobs or min(os.cpu_count() or 1, _JOBS_MOST), tasks))
 
 
 @contextmanager
 def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """A pool of fresh processes; work not yet begun is dropped when it is left by an error.
+    """A pool of spawned processes; an error cancels the tasks that have not started.
 
-    They read the number of threads before they load a BLAS: many small ones beat few wide ones.
-    An interrupt is for the parent to handle; where the parent is killed they end by themselves.
+    The number of threads is set before the processes load a BLAS: many processes of one thread are
+    faster than few of many. Workers ignore the keyboard interrupt, which the parent handles, and
+    end by themselves where the parent is killed.
     """
     before = {name: os.environ.get(name) for name in _THREADS}
     os.environ.update(dict.fromkeys(_THREADS, "1"))
-    found = ProcessPoolExecutor(
+    workers_pool = ProcessPoolExecutor(
         workers, mp_context=get_context("spawn"), initializer=_as_worker, initargs=(os.getpid(),)
     )
     try:
-        yield found
+        yield workers_pool
     except BaseException:
-        found.shutdown(cancel_futures=True)
+        workers_pool.shutdown(cancel_futures=True)
         raise
     finally:
-        found.shutdown()
+        workers_pool.shutdown()
         for name, value in before.items():
             if value is None:
                 os.environ.pop(name, None)

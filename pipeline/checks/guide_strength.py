@@ -184,7 +184,7 @@ def _guide_edge_pressure(side: Side) -> Declaration:
 
 
 def _edge(parts: PartLoads, side: Side) -> Array:
-    return parts.bush_peak_a if side == "A" else parts.bush_peak_b
+    return parts.guide_edge_pressure_a if side == "A" else parts.guide_edge_pressure_b
 
 
 def _guide_temperature(side: Side) -> Declaration:

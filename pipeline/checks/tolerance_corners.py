@@ -16,6 +16,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.files import Json
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import Corner, Machine, machines
@@ -103,7 +104,7 @@ def _robust(machine: Machine, checks: Sequence[Check], tried: Sequence[Outcome])
     return TOLERANCE_CORNERS.judged(machine, demand)
 
 
-def corners_record(case: Case, tried: Sequence[Outcome]) -> dict[str, object]:
+def corners_record(case: Case, tried: Sequence[Outcome]) -> dict[str, Json]:
     """Contents of ``corners.json``."""
     return {
         "seed": case.tolerances.seed,

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from camwright.pipeline.commands.terminal import FAILED, PASSED, say, show, show_json
+
+if TYPE_CHECKING:
+    from camwright.pipeline.results.run_reader import CheckRecord
 
 
 def check(
@@ -65,12 +68,13 @@ def check(
     return FAILED if failed else PASSED
 
 
-def _comparable(folder: Path, only: Iterable[str]) -> list[dict[str, Any]]:
-    """Checks of an earlier run that match a pattern."""
+def _comparable(folder: Path, only: Iterable[str]) -> list[CheckRecord]:
+    """Checks of a baseline run that fit a pattern."""
     from camwright.pipeline.results.check_report import fits
     from camwright.pipeline.results.run_reader import read_verdict
 
-    return [record for record in read_verdict(folder)["checks"] if fits(record, only)]
+    checks: list[CheckRecord] = read_verdict(folder)["checks"]
+    return [record for record in checks if fits(record, only)]
 
 
 def _as_signed(folder: Path) -> bool:

@@ -1,1 +1,21 @@
-"""Loads, contact and part loads over one cam turn."""
+"""Loads, contact, rolling and part loads over one cam turn.
+
+In the order of the calculation:
+
+| module               | responsibility                                  | symbol, unit           |
+| -------------------- | ----------------------------------------------- | ---------------------- |
+| `cam_balance`        | unbalance of the cam, counter-hole              | U, kg m; F, N          |
+| `contact_setup`      | cam and follower of a machine as a contact pair |                        |
+| `crank_speed`        | crank speed with and without cam, consistency   | omega, rad/s; J, kg m2 |
+| `turn`               | loads and guide reactions of a load case        | F_n, N; T, N m         |
+| `elastic_response`   | follower on its elastic stem, loss of contact   | F, N; delta, m         |
+| `part_loads`         | guides, stem, spring, pin, ring, key, camshaft  | p, sigma, Pa; F, N     |
+| `oil_film_history`   | film thickness and its ratio to roughness       | h, m; lambda           |
+| `rolling_history`    | traction, creep, rolling fatigue, bore stress   | tau, sigma, Pa; xi     |
+| `cycle`              | turn with contact; columns of its table         |                        |
+| `guide_pressure`     | line load of the guides, pressure in the bores  | P', N/m; p, Pa         |
+| `certificate_angles` | angles of the certificate, their solution       | theta, rad             |
+| `solution`           | all load cases of a cam, by one tier            |                        |
+
+Imports `case`, `contact`, `engine`, `follower` and what they import; no checks and no files.
+"""

@@ -1,15 +1,15 @@
-"""Unbalance of a case's cam, and the hole that takes it away, drilled or only proposed."""
+"""Unbalance of the cam, and the counter-hole that balances it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
+from camwright.pipeline.base.files import Json
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.follower.camshaft_loads import (
     CounterHole,
@@ -21,7 +21,7 @@ from camwright.pipeline.follower.camshaft_loads import (
 )
 
 WALL = 3e-3
-"""Steel left around a hole that the case does not ask for, m."""
+"""Wall around a proposed hole, which no case states, m."""
 _GRAM_MILLIMETRE = 1e-6  # kg m
 
 
@@ -29,8 +29,8 @@ _GRAM_MILLIMETRE = 1e-6  # kg m
 class Balance:
     """A cam's unbalance and its counter-hole.
 
-    hole is the one that takes all of it away, or most of it where `missed` says why none takes
-    all; None where no hole fits or none is needed. density is per area, kg/m2.
+    hole balances the cam, or reduces the unbalance as far as it can where `missed` states why none
+    balances it; None where none fits or none is necessary. density is per area, kg/m2.
     """
 
     unbalance: Unbalance
@@ -41,7 +41,7 @@ class Balance:
 
     @property
     def left(self) -> Unbalance:
-        """What is left once the hole is drilled; the unbalance itself without one."""
+        """Residual unbalance with the hole; the whole unbalance without one."""
         if self.hole is None:
             return self.unbalance
         area = np.pi * self.hole.radius**2
@@ -52,17 +52,17 @@ class Balance:
 
     @property
     def as_made(self) -> Unbalance:
-        """Of the cam as the shop is told to make it."""
+        """Unbalance of the cam as manufactured."""
         return self.left if self.drilled else self.unbalance
 
-    def record(self) -> dict[str, Any]:
-        """As ``trial.json`` holds it."""
+    def record(self) -> dict[str, Json]:
+        """Record in ``trial.json``."""
         hole = self.hole
         return {
             "mass_g": 1e3 * self.unbalance.mass,
             "unbalance_g_mm": self.unbalance.product / _GRAM_MILLIMETRE,
             "unbalance_angle_deg": float(np.degrees(self.unbalance.angle) % 360.0),
-            "unbalance_left_g_mm": self.left.product / _GRAM_MILLIMETRE,
+            "residual_unbalance_g_mm": self.left.product / _GRAM_MILLIMETRE,
             "hole_diameter_mm": None if hole is None else 2e3 * hole.radius,
             "hole_x_mm": None if hole is None else 1e3 * float(hole.centre[0]),
             "hole_y_mm": None if hole is None else 1e3 * float(hole.centre[1]),
@@ -72,7 +72,7 @@ class Balance:
 
 
 def balance(cam: CamBody, contour: Contour) -> Balance:
-    """Unbalance of the cam with bore and keyway, and the hole that removes it."""
+    """Unbalance of the cam with bore and keyway, and its counter-hole."""
     made, order = _unbalance(cam, contour), cam.counter_hole
     wall = WALL if order is None else order.wall
     depth = 0.0 if cam.keyway is None else cam.keyway.depth
@@ -92,12 +92,12 @@ def _unbalance(cam: CamBody, contour: Contour) -> Unbalance:
 
 
 def unbalance_force(cam: CamBody, contour: Contour, cam_speed: float, theta: Array) -> Array:
-    """Centrifugal force of the cam as made on its shaft, (2, n), N; see `rotating_force`."""
+    """Centrifugal force of the cam as manufactured on its shaft (2, n), N; see `rotating_force`."""
     drilled = cam.counter_hole is not None
     made = balance(cam, contour).as_made if drilled else _unbalance(cam, contour)
     return rotating_force(made, cam_speed, theta)
 
 
 def drilled_hole(cam: CamBody, contour: Contour) -> CounterHole | None:
-    """The hole as drilled; None where none is ordered or none fits."""
+    """The counter-hole as drilled; None where the case states none, or none fits."""
     return None if cam.counter_hole is None else balance(cam, contour).hole

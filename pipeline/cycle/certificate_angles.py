@@ -1,4 +1,4 @@
-"""Which angles the certificate looks at, and the processes that work it out."""
+"""Angles of the certificate, and their solution in worker processes."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from camwright.pipeline.cycle.cycle import Cycle
 
 
 def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int, int], ...]:
-    """Load case and position of the `count` angles to certify, the worst first.
+    """Load case and position of the `count` angles to certify, the most critical first.
 
-    The extremes of pressure, load, curvature and its change over all load cases, then equal
-    steps over the turn of the first. Angles closer than four positions count as one.
+    Extremes of pressure, load, curvature and its change over all load cases, then equal steps over
+    the turn of the first. Of angles closer than four positions only one is certified.
     """
     wanted: list[tuple[int, int]] = []
 
@@ -59,22 +59,22 @@ def certified(
     cycles: Sequence[Cycle],
     chosen: Iterable[tuple[int, int]],
     jobs: int | None,
-    tell: Callable[[int, int], None],
+    advance: Callable[[int, int], None],
 ) -> tuple[CertificatePoint, ...]:
-    """Certificate points at chosen (load case, position), worked out in `jobs` processes."""
+    """Certificate points at chosen (load case, position), solved in `jobs` processes."""
     tasks = [
         (pair, cycles[case].contact, index, float(cycles[case].theta[index]))
         for case, index in chosen
     ]
     workers = workers_for(jobs, len(tasks))
     if workers <= 1:
-        found = []
+        points = []
         for task in tasks:
-            found.append(certificate_point(*task))
-            tell(len(found), len(tasks))
-        return tuple(found)
+            points.append(certificate_point(*task))
+            advance(len(points), len(tasks))
+        return tuple(points)
     with pool(workers) as fresh:
         futures = [fresh.submit(certificate_point, *task) for task in tasks]
-        for done, _ in enumerate(as_completed(futures), start=1):
-            tell(done, len(tasks))
+        for count, _ in enumerate(as_completed(futures), start=1):
+            advance(count, len(tasks))
         return tuple(future.result() for future in futures)

@@ -1,4 +1,4 @@
-"""Crank speed of a case with and without its mechanism, and whether its inputs agree."""
+"""Crank speed with and without the mechanism, and consistency of the inputs."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import CamError
 from camwright.geometry.follower_path import FollowerPath
 from camwright.geometry.periodic_spline import periodic_quintic
+from camwright.pipeline.base.tables import CRANK_ANGLE, Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.engine.crankshaft import (
     CrankMotion,
@@ -36,15 +37,15 @@ POSITIONS = 720
 
 @dataclass(frozen=True, eq=False)
 class SpeedStudy:
-    """Three motions of one crank under one torque.
+    """Three motions of the crank under the same torque.
 
     Parameters
     ----------
-    before : CrankMotion           the engine alone
-    inertia_alone : CrankMotion    with the mechanism mounted and its follower held off the cam
-    after : CrankMotion            with the mechanism at work
-    added_inertia : float          kg m2, of a flywheel that would steady the crank of the engine
-                                   alone as much as the mechanism does
+    before : CrankMotion           engine alone
+    inertia_alone : CrankMotion    with the rotating parts of the mechanism, without cam force
+    after : CrankMotion            with the cam
+    added_inertia : float          kg m2, of a flywheel with which the engine alone has the standard
+                                   deviation of the speed with the cam
     """
 
     before: CrankMotion
@@ -52,14 +53,17 @@ class SpeedStudy:
     after: CrankMotion
     added_inertia: float
 
-    @property
-    def columns(self) -> Mapping[str, Array]:
-        """SI values of ``1_speed.csv``."""
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``1_speed.csv``."""
         return {
-            "crank_angle": self.before.theta,
-            "speed_before": self.before.speed,
-            "speed_inertia_alone": self.inertia_alone.speed,
-            "speed_after": self.after.speed,
+            CRANK_ANGLE: self.before.theta,
+            Column("speed_before", "rad/s", "Crank speed of the engine alone"): self.before.speed,
+            Column(
+                "speed_inertia_alone",
+                "rad/s",
+                "Crank speed with the inertia of the mechanism alone",
+            ): self.inertia_alone.speed,
+            Column("speed_after", "rad/s", "Crank speed with the cam"): self.after.speed,
         }
 
     def flywheel_masses(self, outer_radius: float) -> tuple[float, float]:
@@ -68,7 +72,7 @@ class SpeedStudy:
 
 
 def follower_inertia(pitch: FollowerPath, mass: float, gear_ratio: float, count: int) -> Array:
-    """m (ds/dtheta_crank)^2 at equal angles of the cam turn, kg m2."""
+    """Inertia of the follower at the crank, m (ds/dtheta_crank)^2, at equal cam angles, kg m2."""
     slope = pitch.lift(uniform_turn(count), 1) / gear_ratio
     return np.asarray(mass * slope**2)
 
@@ -76,10 +80,9 @@ def follower_inertia(pitch: FollowerPath, mass: float, gear_ratio: float, count:
 def mechanism_torque(
     pitch: FollowerPath, system: FollowerSystem, gear_ratio: float, count: int
 ) -> MechanismTorque:
-    """Torque of spring and friction on the crank; the follower's inertia is left to J(theta).
+    """Torque of spring and friction on the crank; J(theta) includes the follower's inertia.
 
-    Friction depends on the cam's push and so on the follower's acceleration at the speed and
-    the acceleration of the crank.
+    Friction depends on the contact force, and thus on speed and acceleration of the crank.
     """
     theta = uniform_turn(count)
 
@@ -101,34 +104,34 @@ def speed_study(
     mechanism_inertia: float = 0.0,
     load: Load = Load(),  # noqa: B008 - frozen
 ) -> SpeedStudy:
-    """Crank speed without, with the inertia of, and with a balancing cam.
+    """Crank speed without the mechanism, with its inertia alone, and with the cam.
 
     Parameters
     ----------
-    torque : array (n,)          N m at equal crank angles, without the inertia that `inertia` holds
+    torque : array (n,)          N m at equal crank angles, without the torque of `inertia`
     inertia : Inertia            of the engine, at the same angles
     mean_speed : float           rad/s
-    mechanism_inertia : float    kg m2, of what turns in the mechanism, at the crank
+    mechanism_inertia : float    kg m2, of the rotating parts of the mechanism, at the crank
 
     Raises
     ------
     CamError
-        If the engine would stall.
+        If the engine stalls.
     """
     count = torque.size
-    moved = follower_inertia(pitch, system.mass, gear_ratio, count)
+    follower = follower_inertia(pitch, system.mass, gear_ratio, count)
     before = crank_motion(torque, inertia, mean_speed, load=load)
     mounted = inertia.plus(mechanism_inertia)
     alone = crank_motion(torque, mounted, mean_speed, load=load)
     after = crank_motion(
         torque,
-        mounted.plus(0.0, moved),
+        mounted.plus(0.0, follower),
         mean_speed,
         load=load,
         mechanism=mechanism_torque(pitch, system, gear_ratio, count),
     )
-    wanted = after.statistics.std
-    needed = equivalent_inertia(before.net_torque, mean_speed, wanted) if wanted > 0 else np.inf
+    std = after.statistics.std
+    needed = equivalent_inertia(before.net_torque, mean_speed, std) if std > 0 else np.inf
     return SpeedStudy(before, alone, after, needed - inertia.mean)
 
 
@@ -137,9 +140,8 @@ def study_of(
 ) -> SpeedStudy | None:
     """Crank speed of one load case; None without a crankshaft.
 
-    The guides rub per side force as `rubbing` gives it; without it, as point supports. Where the
-    engine states its reciprocating masses they are part of J(theta), and the torque of their
-    inertia at constant speed is taken out.
+    Guide friction follows from `rubbing`, without it from point supports. Reciprocating masses that
+    the engine states are part of J(theta); their inertia torque at constant speed is subtracted.
     """
     shaft = machine.crankshaft
     if shaft is None:
@@ -163,10 +165,10 @@ def study_of(
 def driven_cam_speed(
     machine: Machine, torque: Torque | None, pitch: FollowerPath, rubbing: Rubbing
 ) -> Array:
-    """Speed of the cam at the angles of `rubbing`, equal parts of a turn, rad/s.
+    """Cam speed at the angles of `rubbing`, equal parts of a turn, rad/s.
 
-    That of the crank with the cam at work, where there are a torque and a crankshaft; constant
-    without them, or where engine and inertia contradict each other.
+    With a torque and a crankshaft that of the crank with the cam; constant without them, or where
+    the engine stalls with its inertia.
     """
     steady = np.full(rubbing.theta.size, machine.cam_speed)
     if torque is None or not machine.speed > 0:
@@ -186,9 +188,9 @@ def speed_ripple(
     pitch: FollowerPath,
     rubbing: Mapping[str, Rubbing],
 ) -> dict[str, tuple[float, float]]:
-    """Std of the crank speed, rad/s, of each running load case: engine alone, with the cam.
+    """Standard deviation of the crank speed, rad/s, by load case: engine alone, with the cam.
 
-    Empty without a crankshaft; a load case that stalls is NaN.
+    Empty without a crankshaft; NaN for a load case that stalls.
     """
     ripple: dict[str, tuple[float, float]] = {}
     for machine in machines:
@@ -216,13 +218,13 @@ def consistency(
     rubbing: Rubbing | None = None,
     measured: bool = False,
 ) -> tuple[Finding, ...]:
-    """Agreement of inertia, power, energy and work with what the other inputs imply.
+    """Inertia, power, energy and work against the values that the other inputs imply.
 
     Parameters
     ----------
-    demand : array (n,)   crank torque the cam was drawn to take, N m about its mean; None where
-                          limits shape the lift: power and energy then have nothing to agree with
-    measured : bool       the measured speed belongs to this load case
+    demand : array (n,)   crank torque about its mean, N m, for which the lift is drawn; None where
+                          limits shape the lift: power and energy are then not compared
+    measured : bool       the measured speed is that of this load case
     """
     ratio, shaft = machine.gear_ratio, machine.crankshaft
     system = replace(machine.system, rubbing=rubbing)

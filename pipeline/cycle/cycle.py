@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
+from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, LOAD_CASE, Cells, Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
@@ -21,14 +21,19 @@ from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.follower_forces import Loads
 from camwright.pipeline.follower.guide_reactions import GuideReactions
 
+LIFT = Column("lift", "mm", "Lift")
+PRESSURE_ANGLE = Column("pressure_angle", "deg", "Pressure angle")
+PITCH_RADIUS = Column("pitch_radius_of_curvature", "mm", "Radius of curvature of the pitch curve")
+CONTOUR_RADIUS = Column("contour_radius_of_curvature", "mm", "Radius of curvature of the contour")
+
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """A turn with its contact, and what follows from both.
+    """A turn with its contact; rolling and part loads are computed from both on first use.
 
     bodies are the meshed bodies of the contact; None in a preview, where the contact is that of
-    half-planes, and under a contour that is no body, where it is unknown. Rolling and part loads
-    are computed when first read. None inside them means that the machine has no such part.
+    half-planes, and for a contour that encloses no body, where it is unknown. None inside rolling
+    and part loads means that the machine has no such part.
     """
 
     turn: Turn
@@ -69,7 +74,7 @@ class Cycle:
 
     @cached_property
     def rolling(self) -> RollingHistory:
-        """Traction, creep, film, fatigue and bore stress over the turn; NaN for no body."""
+        """Traction, creep, film, fatigue and bore stress; NaN if the contour is no body."""
         if self.contact.tier is None:
             return RollingHistory.unknown(self.theta.size)
         return rolling_history(self.machine, self.pair, self.bodies, self.loads, self.contact)
@@ -78,63 +83,117 @@ class Cycle:
     def parts(self) -> PartLoads:
         """Loads of guides, stem, spring, pin, key and shaft over the turn.
 
-        Where an elastic follower leaves the cam, a preview does not follow its flights.
+        A preview does not compute the flights of an elastic follower that leaves the cam.
         """
         flights = self.contact.tier is not Tier.PREVIEW
         return part_loads(self.turn, self.contour, self.pair.width, flights=flights)
 
-    def columns(self) -> Mapping[str, Array]:
-        """SI values by the names of the columns of ``5_cycle.csv``."""
+    def columns(self) -> dict[Column, Cells]:
+        """Columns of ``5_cycle.csv``; the contact of a contour that encloses no body is unknown."""
+
+        def contact_column(name: str, unit: str, meaning: str) -> Column:
+            return Column(name, unit, meaning, unknown=True)
+
         turn, loads, contact, guides = self.turn, self.loads, self.contact, self.guides
-        found = {
-            "load_case": np.full(self.theta.size, self.load_case),
-            "cam_angle": self.theta,
-            "crank_angle": self.machine.gear_ratio * self.theta,
-            "lift": loads.lift,
-            "pressure_angle": loads.pressure_angle,
-            "pitch_radius": self.contour.pitch.radius_of_curvature(self.theta),
-            "contour_radius_of_curvature": self.contour.radius_of_curvature(self.theta),
-            "normal_force": loads.normal_force,
-            "line_load": contact.line_load,
-            "p0_hertz": contact.p0_hertz,
-            "p0_fe": contact.p0,
-            "p0_difference": contact.p0_difference,
-            "half_width_hertz": contact.half_width_hertz,
-            "half_width_fe": contact.half_width,
-            "tau_max": contact.tau_max,
-            "tau_depth": contact.tau_depth,
-            "von_mises": contact.von_mises,
-            "von_mises_depth": contact.von_mises_depth,
-            "reaction_A": guides.reaction_a,
-            "reaction_B": guides.reaction_b,
-            "reaction_A_statics": guides.statics_a,
-            "reaction_B_statics": guides.statics_b,
-            "spring_force": loads.spring_force,
-            "inertia_force": loads.inertia_force,
-            "axial_force": loads.axial_force,
-            "tangential_force": loads.tangential_force,
-            "friction_A": loads.friction_force_a,
-            "friction_B": loads.friction_force_b,
-            "jam_index": loads.jam_index,
-            "jam_index_statics": loads.jam_index_statics,
-            "cam_speed": turn.cam_speed,
-            "velocity": loads.velocity,
-            "cam_torque": loads.cam_torque,
-            "residual_equilibrium": contact.residual_equilibrium,
-            "residual_complementarity": contact.residual_complementarity,
-            "residual_guide_force": guides.force_residual,
-            "residual_guide_moment": guides.moment_residual,
-            "residual_friction": turn.friction_residual,
-            "stem_slope_A": guides.slope_a,
-            "stem_slope_B": guides.slope_b,
-            "roller_deflection": guides.roller_deflection,
+        columns: dict[Column, Cells] = {
+            LOAD_CASE: np.full(self.theta.size, self.load_case),
+            CAM_ANGLE: self.theta,
+            CRANK_ANGLE: self.machine.gear_ratio * self.theta,
+            LIFT: loads.lift,
+            PRESSURE_ANGLE: loads.pressure_angle,
+            PITCH_RADIUS: self.contour.pitch.radius_of_curvature(self.theta),
+            CONTOUR_RADIUS: self.contour.radius_of_curvature(self.theta),
+            Column("normal_force", "N", "Normal force on the cam"): loads.normal_force,
+            contact_column(
+                "line_load", "N/mm", "Normal force over width of the line contact"
+            ): contact.line_load,
+            contact_column("p0_hertz", "MPa", "Maximum contact pressure, Hertz"): contact.p0_hertz,
+            contact_column("p0_fe", "MPa", "Maximum contact pressure, finite elements"): contact.p0,
+            contact_column(
+                "p0_difference", "percent", "Maximum contact pressure, finite elements over Hertz"
+            ): contact.p0_difference,
+            contact_column(
+                "half_width_hertz", "mm", "Half-width of the contact, Hertz"
+            ): contact.half_width_hertz,
+            contact_column(
+                "half_width_fe", "mm", "Half-width of the contact, finite elements"
+            ): contact.half_width,
+            contact_column(
+                "tau_max", "MPa", "Maximum in-plane shear stress below the contact"
+            ): contact.tau_max,
+            contact_column("tau_depth", "mm", "Depth of that shear stress"): contact.tau_depth,
+            contact_column(
+                "von_mises", "MPa", "Maximum von Mises stress below the contact"
+            ): contact.von_mises,
+            contact_column(
+                "von_mises_depth", "mm", "Depth of that von Mises stress"
+            ): contact.von_mises_depth,
+            Column("guide_reaction_A", "N", "Reaction of guide A"): guides.reaction_a,
+            Column("guide_reaction_B", "N", "Reaction of guide B"): guides.reaction_b,
+            Column(
+                "guide_reaction_A_statics", "N", "Reaction of guide A as a point support"
+            ): guides.statics_a,
+            Column(
+                "guide_reaction_B_statics", "N", "Reaction of guide B as a point support"
+            ): guides.statics_b,
+            Column(
+                "guide_normal_load_A", "N", "Sum of the normal forces on both sides of guide A"
+            ): guides.rubbing_load_a,
+            Column(
+                "guide_normal_load_B", "N", "Sum of the normal forces on both sides of guide B"
+            ): guides.rubbing_load_b,
+            Column("spring_force", "N", "Spring force"): loads.spring_force,
+            Column("inertia_force", "N", "Inertia force of the follower"): loads.inertia_force,
+            Column(
+                "axial_force", "N", "Contact force in the direction of the stem"
+            ): loads.axial_force,
+            Column("side_force", "N", "Contact force across the stem"): loads.tangential_force,
+            Column("guide_friction_A", "N", "Friction force of guide A"): loads.friction_force_a,
+            Column("guide_friction_B", "N", "Friction force of guide B"): loads.friction_force_b,
+            Column("jam_index", "", "Guide friction over axial force"): loads.jam_index,
+            Column(
+                "jam_index_statics", "", "Jam index with point supports as guides"
+            ): loads.jam_index_statics,
+            Column("cam_speed", "rad/s", "Angular speed of the cam"): turn.cam_speed,
+            Column("follower_velocity", "m/s", "Velocity of the follower"): loads.velocity,
+            Column("cam_torque", "N m", "Torque that drives the cam"): loads.cam_torque,
+            contact_column(
+                "residual_equilibrium", "", "Contact pressure against line load, relative"
+            ): contact.residual_equilibrium,
+            contact_column(
+                "residual_complementarity", "", "Contact pressure times gap, relative"
+            ): contact.residual_complementarity,
+            Column(
+                "residual_guide_force", "", "Transverse forces on the follower, relative"
+            ): guides.force_residual,
+            Column(
+                "residual_guide_moment", "", "Moments on the follower, relative"
+            ): guides.moment_residual,
+            Column(
+                "residual_friction", "", "Forces along the stem with guide friction, relative"
+            ): turn.friction_residual,
+            Column("stem_slope_A", "deg", "Slope of the stem in guide A"): guides.slope_a,
+            Column("stem_slope_B", "deg", "Slope of the stem in guide B"): guides.slope_b,
+            Column(
+                "stem_end_deflection", "um", "Transverse deflection of the stem at the contact"
+            ): guides.roller_deflection,
         }
+        # An engine at rest has no torque in its load case.
         if turn.torque_before is not None and turn.torque_after is not None:
-            found |= {"torque_before": turn.torque_before, "torque_after": turn.torque_after}
-        # Another plane bears more shear only where the Poisson ratio is small: then it is told.
-        # The peaks of the two fields are fitted apart and agree within 0.3 % where they are one.
+            before, after = (
+                Column(
+                    f"torque_{when}", "N m", f"Crank torque {words}, less its mean", unknown=True
+                )
+                for when, words in (("before", "of the engine alone"), ("after", "with the cam"))
+            )
+            columns |= {before: turn.torque_before, after: turn.torque_after}
+        # The maximum lies in another plane only where the Poisson ratio is small. The peaks of the
+        # two fields are fitted separately and agree within 0.3 % where they are one.
         if (contact.tau_any_plane > 1.01 * contact.tau_max).any():
-            found["tau_any_plane"] = contact.tau_any_plane
+            shear = contact_column(
+                "tau_max_all_planes", "MPa", "Maximum shear stress over all planes"
+            )
+            columns[shear] = contact.tau_any_plane
         if contact.tier is not None:
-            found |= self.rolling.columns()
-        return found | dict(self.parts.columns())
+            columns |= self.rolling.columns()
+        return columns | self.parts.columns()

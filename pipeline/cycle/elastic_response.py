@@ -1,4 +1,4 @@
-"""The follower on its elastic stem over a turn of a case, at the speed the crank really has."""
+"""Follower on its elastic stem over a turn, at the computed cam speed."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ BOUNCE_TURNS = 1.0
 class ElasticHistory:
     """One turn; arrays (n,) SI.
 
-    response is the steady one with the contact held, deflection what it shortens the stem by;
-    flights are the losses of contact in one turn from there, where it does not hold, and
-    force_max the greatest force of it. method says at which speed, and how.
+    response is the periodic one with the contact kept, deflection the shortening of the stem.
+    flights are the losses of contact in one turn from that state, if its contact force becomes
+    negative; force_max is the maximum contact force. method states speed and solution.
     """
 
     response: Response
@@ -59,7 +59,7 @@ def elastic_history(
     lift : Lift
     at : array (n,)          the lift at these angles, m
     cam_speed : array (n,)   rad/s
-    flights : bool           follow the follower where it leaves the cam, by far the costliest part
+    flights : bool           compute the flights, by far the most expensive part
     """
     follower = elastic_follower(machine)
     response = periodic_response(at, cam_speed, follower)

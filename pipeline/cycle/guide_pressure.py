@@ -1,45 +1,45 @@
-"""Pressure in both guides over the turn and, where it is greatest, all round the bore."""
+"""Line load of both guides over the turn, and pressure around the bore at its maximum."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.pin_in_hole import Conforming, pin_in_hole
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.part_loads import bush_pair
+from camwright.pipeline.cycle.part_loads import guide_bodies
 from camwright.pipeline.follower.guide_reactions import Guide
 
 ANGLES = 721
-"""Angles round the bore, from half a turn before the line of action to half a turn beyond."""
+"""Angles around the bore, from -180 to 180 deg about the line of action."""
 
 SLICES = 81
 """Slices over the loaded length of a guide."""
 
 _MM, _MPA, _N_PER_MM = 1e3, 1e-6, 1e-3
-_KNOTS = 48  # of the pressure on half a contact; its peak is within 1e-3 of that of twice as many
+_KNOTS = 48  # of the pressure on half a contact; the peak is within 1e-3 of that of 96
 _LOADS, _LEAST = 8, 0.01
 _SHARES = np.sin(np.linspace(0.0, 0.5 * np.pi, 65))  # densest where the pressure falls
 
 
-def bush_arrays(cycles: Sequence[Cycle]) -> Mapping[str, Any]:
-    """Arrays of ``5_bushes.npz``.
+def guide_arrays(cycles: Sequence[Cycle]) -> Mapping[str, ArrayLike]:
+    """Arrays of ``5_guides.npz``.
 
     Returns
     -------
     mapping   load_case (n,) and cam_angle_deg (n,), a row per position of each load case; for
-              the guides A and B: A_along_mm (k,) from the middle of the guide, growing away from
-              the roller; A_line_N_per_mm (n, k), the guide's push on the stem, positive against
-              the side force; A_row the row of the greatest; A_round_deg (m,) from the line of
-              action of a positive push; A_pressure_MPa (s, m) in the bore at that row, at
-              A_slices_mm (s,) along the part of the guide that is loaded then
+              the guides A and B: A_along_mm (k,) from the middle of the guide, away from the
+              roller; A_line_N_per_mm (n, k), line load on the stem, positive against the side
+              force; A_row the row of its maximum; A_round_deg (m,) from the line of action of a
+              positive line load; A_pressure_MPa (s, m) in the bore at that row, at A_slices_mm
+              (s,) along the loaded part of the guide
     """
-    found: dict[str, Any] = {
+    arrays: dict[str, ArrayLike] = {
         "load_case": np.repeat([c.load_case for c in cycles], [c.theta.size for c in cycles]),
         "cam_angle_deg": np.degrees(np.concatenate([c.theta for c in cycles])),
     }
@@ -49,21 +49,21 @@ def bush_arrays(cycles: Sequence[Cycle]) -> Mapping[str, Any]:
         row = int(np.argmax(np.abs(lines).max(axis=0)))
         knots = getattr(cycles[0].guides, f"knots_{side}")
         slices = loaded_length(knots, lines[:, row])
-        pushes = np.interp(slices, knots, lines[:, row])
+        loads = np.interp(slices, knots, lines[:, row])
         name = side.upper()
-        found |= {
+        arrays |= {
             f"{name}_along_mm": _MM * knots,
             f"{name}_line_N_per_mm": _N_PER_MM * lines.T,
             f"{name}_row": np.array(row),
             f"{name}_slices_mm": _MM * slices,
             f"{name}_round_deg": np.degrees(_round()),
-            f"{name}_pressure_MPa": _MPA * bore_pressure(machine, guide, pushes),
+            f"{name}_pressure_MPa": _MPA * bore_pressure(machine, guide, loads),
         }
-    return found
+    return arrays
 
 
 def loaded_length(knots: Array, line: Array) -> Array:
-    """Even places over the knots (k,) that are loaded and those next to them; m."""
+    """Equal steps, m, over the loaded knots (k,) and their neighbours."""
     on = np.flatnonzero(line)
     if not on.size:
         return np.linspace(knots[0], knots[-1], SLICES)
@@ -71,16 +71,16 @@ def loaded_length(knots: Array, line: Array) -> Array:
     return np.linspace(*ends, SLICES)
 
 
-def bore_pressure(machine: Machine, guide: Guide, pushes: Array) -> Array:
-    """Pressure (k, m), Pa, round the bore under pushes (k,), N/m, of a guide on its stem.
+def bore_pressure(machine: Machine, guide: Guide, line_load: Array) -> Array:
+    """Pressure (k, m), Pa, around the bore under line loads (k,), N/m, of a guide on its stem.
 
-    Each slice of the guide is a pin in a hole of its own; a negative push is that of the other
-    side of the bore. Exact at `_LOADS` loads, between them along lines of equal share of the
-    contact's angle; far below the greatest as Hertz has it. Not a number where the stem would
-    wedge itself into the bore.
+    Each slice of the guide is an independent pin in a hole; a negative load acts on the other side
+    of the bore. Solved at `_LOADS` loads, interpolated between them at equal shares of the contact
+    angle, and scaled as a Hertz contact below the least of them. NaN where the pin in the hole has
+    no solution.
     """
-    size = np.abs(pushes)
-    pressure = np.zeros((pushes.size, ANGLES))
+    size = np.abs(line_load)
+    pressure = np.zeros((line_load.size, ANGLES))
     if not size.any():
         return pressure
     loads = float(size.max()) * np.geomspace(_LEAST, 1.0, _LOADS)
@@ -96,25 +96,25 @@ def bore_pressure(machine: Machine, guide: Guide, pushes: Array) -> Array:
         low, share = int(at), at % 1.0
         high = min(low + 1, _LOADS - 1)
         light = np.sqrt(min(size[k] / loads[0], 1.0))
-        # Both go nearly as powers of the load.
+        # Both are nearly powers of the load.
         angle = light * half[low] ** (1 - share) * half[high] ** share
         shape = light * shapes[low] ** (1 - share) * shapes[high] ** share
-        away = np.abs(_round()) if pushes[k] > 0 else np.pi - np.abs(_round())
+        away = np.abs(_round()) if line_load[k] > 0 else np.pi - np.abs(_round())
         pressure[k] = np.interp(away / angle, _SHARES, shape, right=0.0)
     return pressure
 
 
 def _slice(machine: Machine, guide: Guide, load: float) -> Conforming:
-    pin, bush = bush_pair(machine, guide)
+    pin, bore = guide_bodies(machine, guide)
     radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
-    return pin_in_hole(load, radius, clearance, pin, bush, _KNOTS)
+    return pin_in_hole(load, radius, clearance, pin, bore, _KNOTS)
 
 
-def _shape(found: Conforming) -> Array:
-    """Pressure at `_SHARES` of the contact's angle, which ends with no pressure."""
-    inside = found.angle < found.contact_angle
-    at = np.append(found.angle[inside], found.contact_angle) / found.contact_angle
-    return np.interp(_SHARES, at, np.append(found.pressure[inside], 0.0))
+def _shape(contact: Conforming) -> Array:
+    """Pressure at `_SHARES` of the contact angle; zero at its end."""
+    inside = contact.angle < contact.contact_angle
+    at = np.append(contact.angle[inside], contact.contact_angle) / contact.contact_angle
+    return np.interp(_SHARES, at, np.append(contact.pressure[inside], 0.0))
 
 
 def _round() -> Array:

@@ -1,13 +1,14 @@
-"""The oil film between cam and follower along the turn, as the case asks for it."""
+"""Oil film between cam and follower over the turn."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
+from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.oil_film import (
@@ -24,10 +25,11 @@ _UM = 1e6
 
 @dataclass(frozen=True, eq=False)
 class FilmHistory:
-    """Least film (n,) m of smooth surfaces and its lambda ratio (n,), where roughness is known.
+    """Minimum film thickness (n,), m, of smooth surfaces, over a turn.
 
-    mixed, where the case asks for it: rough surfaces by a regression of unverified source, NaN
-    where it refuses; refusal, its first words.
+    ratio (n,) is film thickness over combined roughness; None if a roughness is unknown. mixed is
+    the film of rough surfaces by a regression of unverified source, NaN outside its range; None if
+    the case states the smooth film. refusal is the reason at the first such position.
     """
 
     thickness: Array
@@ -38,27 +40,45 @@ class FilmHistory:
     def __post_init__(self) -> None:
         freeze(self, thickness=self.thickness)
 
-    def columns(self) -> Mapping[str, Array]:
-        """SI values by the names of the columns of ``5_cycle.csv``."""
-        found = {"film_thickness": self.thickness}
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``5_cycle.csv``."""
+        smooth = Column(
+            "film_thickness", "um", "Minimum film thickness of smooth surfaces", unknown=True
+        )
+        columns = {smooth: self.thickness}
         if self.ratio is not None:
-            found["lambda_ratio"] = self.ratio
-        if self.mixed is not None:
-            found |= {
-                "mixed_film": self.mixed.minimum,
-                "mixed_film_central": self.mixed.central,
-                "asperity_share": self.mixed.asperity_share,
+            ratio = Column(
+                "film_thickness_ratio", "", "Film thickness over combined roughness", unknown=True
+            )
+            columns[ratio] = self.ratio
+        if (mixed := self.mixed) is not None:
+            columns |= {
+                Column(
+                    "film_thickness_mixed",
+                    "um",
+                    "Minimum film thickness of rough surfaces",
+                    unknown=True,
+                ): mixed.minimum,
+                Column(
+                    "film_thickness_mixed_central",
+                    "um",
+                    "Central film thickness of rough surfaces",
+                    unknown=True,
+                ): mixed.central,
+                Column(
+                    "asperity_load_share", "", "Share of the load on asperities", unknown=True
+                ): mixed.asperity_share,
             }
-        return found
+        return columns
 
-    def record(self) -> dict[str, object]:
-        """What the mixed film is worth, for ``trial.json``; empty where it is not asked for."""
+    def record(self) -> dict[str, Json]:
+        """Record of the mixed film in ``trial.json``; empty without one."""
         if self.mixed is None:
             return {}
         known = np.isfinite(self.mixed.minimum)
-        least = _UM * float(self.mixed.minimum[known].min()) if known.any() else None
+        minimum = _UM * float(self.mixed.minimum[known].min()) if known.any() else None
         return {
-            "least_um": least,
+            "minimum_um": minimum,
             "positions_refused": int((~known & np.isfinite(self.thickness)).sum()),
             "refusal": self.refusal,
             "source": self.mixed.source,
@@ -93,6 +113,6 @@ def film_history(
 
 
 def _softer(machine: Machine) -> float:
-    """Brinell hardness of the softer surface; a case with a mixed film has both."""
+    """Brinell hardness of the softer surface; a mixed film requires both."""
     cards = (machine.cam.material, machine.follower.material)
     return min(card.hardness for card in cards if card.hardness is not None)

@@ -1,14 +1,14 @@
-"""What guides, stem, spring, roller pin, key and shaft carry over one turn of a load case."""
+"""Loads of guides, stem, spring, roller pin, key and shaft over one turn of a load case."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.contour import Contour
+from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
 from camwright.pipeline.contact.pin_in_hole import peak_pressure
@@ -41,17 +41,15 @@ from camwright.pipeline.follower.spring import surge_force
 class PartLoads:
     """One turn; arrays (n,) SI, None where the case does not describe the part.
 
-    bush_peak_* are the pressures of the stem in the bore where the line pressure is greatest.
-    shares tell why the guides answer otherwise than point supports.
-    ring_amplitude and ring_mean are of the stress along a bearing's outer ring at its groove as
-    it turns under the load; ring_correction is the share by which the contact's peak pressure
-    changes from a contact over a ball, for which it stands, to one between two balls.
+    guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest.
+    shares are the changes of reaction and contact force by length and clearance of the guides.
+    ring_amplitude and ring_mean are of the stress in the groove of the bearing's outer ring, which
+    rotates under the load; ring_correction is the relative change of the maximum contact pressure
+    from a contact over a ball, as solved, to one between two balls.
     """
 
-    bush_peak_a: Array
-    bush_peak_b: Array
-    rubbing_load_a: Array
-    rubbing_load_b: Array
+    guide_edge_pressure_a: Array
+    guide_edge_pressure_b: Array
     heat_a: GuideHeat
     heat_b: GuideHeat
     friction: FrictionBounds
@@ -77,36 +75,62 @@ class PartLoads:
             if isinstance(getattr(self, name), np.ndarray):
                 freeze(self, **{name: getattr(self, name)})
 
-    def columns(self) -> Mapping[str, Array]:
-        """SI values by the names of the columns of ``5_cycle.csv``."""
-        found = {
-            "bush_peak_A": self.bush_peak_a,
-            "bush_peak_B": self.bush_peak_b,
-            "rubbing_load_A": self.rubbing_load_a,
-            "rubbing_load_B": self.rubbing_load_b,
-            "friction_heat_A": self.heat_a.power,
-            "friction_heat_B": self.heat_b.power,
-            "viscous_force": self.viscous_force,
-            "normal_force_friction_min": self.friction.normal_force_min,
-            "normal_force_friction_max": self.friction.normal_force_max,
-            "jam_index_friction_max": self.friction.jam_index_max,
-            "elastic_contact_force": self.elastic.response.contact_force,
-            "elastic_deflection": self.elastic.deflection,
-            "bore_pressure": self.bore_pressure,
-            "key_pressure": self.key_pressure,
-            "shaft_bearing_1": self.shaft_bearing_1,
-            "shaft_bearing_2": self.shaft_bearing_2,
-            "spring_stress": self.spring_stress,
-            "spring_surge_force": self.surge_force,
-            "pin_stress": self.pin_stress,
-            "roller_speed": self.roller_spin,
-            "roller_acceleration": self.roller_spin_acceleration,
-            "ring_stress_amplitude": self.ring_amplitude,
-            "ring_stress_mean": self.ring_mean,
-            "ring_correction": self.ring_correction,
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``5_cycle.csv``, of the parts that the machine has."""
+        friction, elastic = self.friction, self.elastic
+        columns = {
+            Column(
+                "guide_edge_pressure_A", "MPa", "Maximum pressure of the stem in guide A"
+            ): self.guide_edge_pressure_a,
+            Column(
+                "guide_edge_pressure_B", "MPa", "Maximum pressure of the stem in guide B"
+            ): self.guide_edge_pressure_b,
+            Column("guide_friction_power_A", "W", "Friction power of guide A"): self.heat_a.power,
+            Column("guide_friction_power_B", "W", "Friction power of guide B"): self.heat_b.power,
+            Column("viscous_force", "N", "Viscous drag on the follower"): self.viscous_force,
+            Column(
+                "normal_force_friction_min", "N", "Normal force at minimum guide friction"
+            ): friction.normal_force_min,
+            Column(
+                "normal_force_friction_max", "N", "Normal force at maximum guide friction"
+            ): friction.normal_force_max,
+            Column(
+                "jam_index_friction_max", "", "Jam index at maximum guide friction, rise"
+            ): friction.jam_index_max,
+            Column(
+                "contact_force_elastic_stem", "N", "Contact force with an elastic stem"
+            ): elastic.response.contact_force,
+            Column("stem_shortening", "um", "Shortening of the stem"): elastic.deflection,
+            Column(
+                "bore_pressure", "MPa", "Normal force over projected area of the cam bore"
+            ): self.bore_pressure,
+            Column("key_pressure", "MPa", "Pressure on the flank of the key"): self.key_pressure,
+            Column("shaft_bearing_load_1", "N", "Load on camshaft bearing 1"): self.shaft_bearing_1,
+            Column("shaft_bearing_load_2", "N", "Load on camshaft bearing 2"): self.shaft_bearing_2,
+            Column("spring_stress", "MPa", "Shear stress of the spring wire"): self.spring_stress,
+            Column(
+                "spring_surge_force", "N", "Change of the spring force by surge"
+            ): self.surge_force,
+            Column("pin_stress", "MPa", "Bending stress of the roller pin"): self.pin_stress,
+            Column("roller_speed", "rpm", "Rotational speed of the roller"): self.roller_spin,
+            Column(
+                "roller_acceleration", "rad/s^2", "Angular acceleration of the roller"
+            ): self.roller_spin_acceleration,
+            Column(
+                "ring_stress_amplitude", "MPa", "Stress amplitude of the bearing's outer ring"
+            ): self.ring_amplitude,
+            Column(
+                "ring_stress_mean", "MPa", "Mean stress of the bearing's outer ring"
+            ): self.ring_mean,
+            Column(
+                "p0_change_between_balls",
+                "percent",
+                "Change of the maximum contact pressure from over a ball to between two balls",
+                unknown=True,
+            ): self.ring_correction,
         }
-        known = {name: values for name, values in found.items() if values is not None}
-        return known | dict(self.shares.columns())
+        known = {column: values for column, values in columns.items() if values is not None}
+        return known | self.shares.columns()
 
 
 def part_loads(
@@ -117,7 +141,7 @@ def part_loads(
     Parameters
     ----------
     contact_width : float   of the line contact, m
-    flights : bool          follow an elastic follower where it leaves the cam
+    flights : bool          compute the flights of an elastic follower that leaves the cam
     """
     machine, loads, guides = turn.machine, turn.loads, turn.guides
     friction, shares = _friction_bounds(turn, contour)
@@ -126,10 +150,8 @@ def part_loads(
     motion, pair = _roller_motion(machine, contour, loads), machine.guides
     pin = None if machine.roller is None else machine.roller.pin_stress_per_newton
     return PartLoads(
-        bush_peak_a=_bush_peak(machine, pair.a, guides.line_pressure_max_a),
-        bush_peak_b=_bush_peak(machine, pair.b, guides.line_pressure_max_b),
-        rubbing_load_a=guides.rubbing_load_a,
-        rubbing_load_b=guides.rubbing_load_b,
+        guide_edge_pressure_a=_edge_pressure(machine, pair.a, guides.line_pressure_max_a),
+        guide_edge_pressure_b=_edge_pressure(machine, pair.b, guides.line_pressure_max_b),
         heat_a=_heat(machine, 0, guides.rubbing_load_a, loads.velocity),
         heat_b=_heat(machine, 1, guides.rubbing_load_b, loads.velocity),
         friction=friction,
@@ -160,15 +182,15 @@ def part_loads(
     )
 
 
-def bush_pair(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:
-    """Stem and bore of a guide as the bodies of a pin in a hole."""
+def guide_bodies(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:
+    """Stem and bore of a guide as pin and hole."""
     stem, bush = machine.stem, guide.material
     return Pin(stem.elastic_modulus, stem.poisson_ratio), Bush(bush.E, bush.nu, 2.0 * WALL_SHARE)
 
 
-def _bush_peak(machine: Machine, guide: Guide, line_pressure: Array) -> Array:
+def _edge_pressure(machine: Machine, guide: Guide, line_pressure: Array) -> Array:
     radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
-    peak, _ = peak_pressure(line_pressure, radius, clearance, *bush_pair(machine, guide))
+    peak, _ = peak_pressure(line_pressure, radius, clearance, *guide_bodies(machine, guide))
     return peak
 
 
@@ -182,7 +204,7 @@ def _heat(machine: Machine, side: int, rubbing: Array, velocity: Array) -> Guide
 
 
 def _friction_bounds(turn: Turn, contour: Contour) -> tuple[FrictionBounds, GuideShares]:
-    """The turn at the bounds of friction, and its guides beside point supports."""
+    """The turn at the bounds of friction, and the changes against point supports."""
     machine, pitch, speed = turn.machine, contour.pitch, turn.machine.cam_speed
     system, stem, pair = machine.system, machine.stem, machine.guides
     knots = turn.guides.knots_a.size
@@ -199,7 +221,7 @@ def _friction_bounds(turn: Turn, contour: Contour) -> tuple[FrictionBounds, Guid
 
 
 def _key_pressure(machine: Machine, loads: Loads) -> Array | None:
-    """Pressure on the flank in the cam: the keyway's depth is half the key's height."""
+    """Pressure on the flank of the keyway, whose depth is half the height of the key."""
     cam = machine.cam
     key = cam.keyway
     if key is None:

@@ -1,14 +1,15 @@
-"""What rolling or sliding does beside pressing: traction, creep, film, fatigue, bore."""
+"""Traction, creep, oil film, rolling fatigue and bore stress over a turn."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, freeze, uniform_turn
+from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.bore_stress import BoreStress, bore_stress
 from camwright.pipeline.contact.contact_history import ContactHistory
@@ -27,7 +28,7 @@ from camwright.pipeline.cycle.oil_film_history import FilmHistory, film_history
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
 from camwright.pipeline.follower.follower_forces import Loads, follower_loads
 
-# Of the contact angles, every so many tell what the real body adds.
+# Every so many contact angles the stress that the real body adds is solved.
 _THINNED = 4
 _MM, _MPA = 1e3, 1e-6
 MAPS = ("von_mises", "tau_max", "shear_range", "crossland", "dang_van")
@@ -35,13 +36,12 @@ MAPS = ("von_mises", "tau_max", "shear_range", "crossland", "dang_van")
 
 @dataclass(frozen=True, eq=False)
 class RollingHistory:
-    """One turn, arrays (n,) SI; None where the case does not say what it takes.
+    """One turn; arrays (n,) SI. None where the case lacks the data.
 
-    traction_demand, tangential over normal force that rolling without slip asks for, NaN where
-    the contact is open, None under a face; sliding, that of a face; shear_range of the shear
-    along the surface, in the cam; bore, None in a look ahead; envelope, the map of greatest
-    stresses; contact, with creep and skid; tau_max and von_mises in the cam with the traction of
-    rolling or sliding added, Pa; film.
+    shear_range, Pa, of the orthogonal shear stress in the cam; bore, None in a preview; envelope,
+    map of the maximum stresses; traction_demand, tangential over normal force of rolling without
+    slip, NaN where the contact is open, None under a flat face; sliding of a flat face; contact,
+    creep and slip of a roller; tau_max and von_mises, Pa, in the cam with traction; film.
     """
 
     shear_range: Array
@@ -61,34 +61,64 @@ class RollingHistory:
 
     @classmethod
     def unknown(cls, count: int) -> RollingHistory:
-        """NaN at every angle: of a contour that is no body."""
+        """NaN at every angle: the contour encloses no body."""
         return cls(np.full(count, np.nan), None, Envelope.unknown())
 
-    def columns(self) -> Mapping[str, Array]:
-        """SI values by the names of the columns of ``5_cycle.csv``."""
-        found = {"shear_range": self.shear_range}
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``5_cycle.csv``; a contour that encloses no body leaves them unknown."""
+
+        def column(name: str, unit: str, meaning: str) -> Column:
+            return Column(name, unit, meaning, unknown=True)
+
+        columns = {
+            column(
+                "shear_range", "MPa", "Maximum range of the orthogonal shear stress in the cam"
+            ): self.shear_range
+        }
         if self.traction_demand is not None:
-            found["traction_demand"] = self.traction_demand
+            demand = column(
+                "traction_demand", "", "Traction coefficient that rolling without slip requires"
+            )
+            columns[demand] = self.traction_demand
         if self.sliding is not None:
-            found |= self.sliding.columns()
-        if self.bore is not None:
-            found |= {
-                "bore_stress": self.bore.von_mises,
-                "bore_stress_at_edge": self.bore.at_edge,
-                "bore_stress_off_edges": self.bore.away_from_edges,
+            columns |= self.sliding.columns()
+        if (bore := self.bore) is not None:
+            columns |= {
+                column(
+                    "bore_stress", "MPa", "Maximum von Mises stress at the bore"
+                ): bore.von_mises,
+                column(
+                    "bore_stress_at_edge", "", "1 where that maximum is at an edge of the keyway"
+                ): bore.at_edge.astype(float),
+                column(
+                    "bore_stress_off_edges",
+                    "MPa",
+                    "Maximum von Mises stress at the bore away from the keyway edges",
+                ): bore.away_from_edges,
             }
-        if self.contact is not None:
-            skid = self.contact.utilisation
-            found |= {
-                "creepage": self.contact.creepage,
-                "slip": self.contact.slip,
-                "skid": np.where(np.isfinite(skid), skid, np.nan),
+        if (contact := self.contact) is not None:
+            share = contact.utilisation
+            columns |= {
+                column("creepage", "", "Creep speed over rolling speed"): contact.creepage,
+                column("slip_speed", "m/s", "Slip speed of the roller surface"): contact.slip,
+                column(
+                    "traction_utilisation",
+                    "",
+                    "Traction that rolling requires over the friction limit",
+                ): np.where(np.isfinite(share), share, np.nan),
             }
         if self.tau_max is not None and self.von_mises is not None:
-            found |= {"tau_max_rolling": self.tau_max, "von_mises_rolling": self.von_mises}
+            columns |= {
+                column(
+                    "tau_max_with_traction", "MPa", "Maximum in-plane shear stress with traction"
+                ): self.tau_max,
+                column(
+                    "von_mises_with_traction", "MPa", "Maximum von Mises stress with traction"
+                ): self.von_mises,
+            }
         if self.film is not None:
-            found |= self.film.columns()
-        return found
+            columns |= self.film.columns()
+        return columns
 
 
 def rolling_history(
@@ -134,7 +164,7 @@ def _envelope(
     loads: Loads,
     contact: ContactHistory,
 ) -> Envelope:
-    """The map at stations of its own, under the loads there."""
+    """Map of the maximum stresses, at its own stations."""
     stations, theta = uniform_turn(STATIONS), loads.theta
     system = replace(machine.system, rubbing=loads.rubbing)
     there = follower_loads(pair.contour.pitch, system, machine.cam_speed, stations)
@@ -149,7 +179,7 @@ def _envelope(
 def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load: Array) -> Array:
     """Stress (3, n) along the contour, Pa, that the real cam adds under loads (n,) N/m.
 
-    Known at every few angles and drawn out between them: what a wall adds is smooth.
+    Solved at every few angles and interpolated: the effect of a wall is smooth.
     """
     few = theta[::_THINNED]
     unit = bodies.cam.correction(pair.contour.points(few), pair.contour.normal(few)).along
@@ -159,30 +189,30 @@ def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load
 
 def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:
     """Arrays of ``5_envelope.npz`` by load case: a row per station, a column per depth."""
-    found = {}
+    arrays = {}
     for load_case, turn in turns.items():
         map_ = turn.envelope
-        found[f"{load_case}.cam_angle_deg"] = np.degrees(map_.theta)
-        found[f"{load_case}.arc_mm"] = _MM * map_.arc
-        found[f"{load_case}.depth_mm"] = _MM * map_.depth
+        arrays[f"{load_case}.cam_angle_deg"] = np.degrees(map_.theta)
+        arrays[f"{load_case}.arc_mm"] = _MM * map_.arc
+        arrays[f"{load_case}.depth_mm"] = _MM * map_.depth
         for name in MAPS:
             values = getattr(map_, name)
             if values is not None:
-                found[f"{load_case}.{name}_MPa"] = _MPA * values
-    return found
+                arrays[f"{load_case}.{name}_MPa"] = _MPA * values
+    return arrays
 
 
-def rolling_record(turns: Mapping[str, RollingHistory]) -> dict[str, Any]:
-    """The turn's worst places by load case, mm and MPa, for ``trial.json``."""
+def rolling_record(turns: Mapping[str, RollingHistory]) -> dict[str, Json]:
+    """Maxima of the turn and their places by load case, mm and MPa, for ``trial.json``."""
     return {name: _worst(turn) for name, turn in turns.items()}
 
 
-def _worst(turn: RollingHistory) -> dict[str, Any]:
-    record: dict[str, Any] = {}
+def _worst(turn: RollingHistory) -> dict[str, Json]:
+    record: dict[str, Json] = {}
     for name in MAPS:
         if getattr(turn.envelope, name) is not None:
             value, theta, depth = turn.envelope.worst(name)
-            if not np.isfinite(value):  # somewhere the contact is not known
+            if not np.isfinite(value):  # the contact is unknown at some angle
                 record[name] = None
                 continue
             record[name] = {
@@ -195,15 +225,15 @@ def _worst(turn: RollingHistory) -> dict[str, Any]:
     if turn.contact is not None:
         loss = turn.contact.loss
         record["sliding_loss_J_per_cam_turn"] = loss if np.isfinite(loss) else None
-        record["skidding_share"] = float(turn.contact.skidding.mean())
+        record["gross_slip_share"] = float(turn.contact.skidding.mean())
     if turn.sliding is not None:
         record["sliding_loss_J_per_cam_turn"] = turn.sliding.loss
     if turn.film is not None and turn.film.mixed is not None:
-        record["mixed_film"] = turn.film.record()
+        record["film_thickness_mixed"] = turn.film.record()
     return record
 
 
-def _worst_of_bore(bore: BoreStress) -> dict[str, Any]:
+def _worst_of_bore(bore: BoreStress) -> dict[str, Json]:
     k = int(bore.von_mises.argmax())
     return {
         "von_mises_MPa": _MPA * float(bore.von_mises[k]),

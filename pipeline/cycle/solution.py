@@ -31,7 +31,7 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.turn import Turn, turn
 from camwright.pipeline.engine.torque import Torque
 
-# Positions solved together: what an interruption may cost, and the grain of the progress bar.
+# Positions solved and stored together; an interruption loses at most one such piece.
 CHUNK = 90
 MESHING, CONTACT = "mesh", "cycle"
 CERTIFICATE, BENCHMARKS = "certificate", "benchmarks"
@@ -54,20 +54,19 @@ class ContactMesh:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """All that checks and results are drawn from.
+    """Solved cam in every load case; input of the checks and of the results.
 
     Parameters
     ----------
     machines, cycles : tuple     one a load case, the design load case first
-    mesh : ContactMesh           None in a preview, and where the contour is no body: its contact
-                                 is NaN
+    mesh : ContactMesh           None in a preview, and if the contour encloses no body: the
+                                 contact is then NaN
     certificate : tuple          full two-body solutions; empty unless certified
-    benchmarks : mapping         as `benchmarks` gives them; None unless certified
+    benchmarks : mapping         see `benchmarks`; None unless certified
     crank_speed : mapping        load case -> std of the crank speed, rad/s, without and with the
                                  cam; empty without a crankshaft
-    final : bool                 a solution to sign: it must be certified
-    coarse : bool                coarse guide mesh, constant crank speed: its ratios of demands
-                                 count
+    final : bool                 to be signed off: it must be certified
+    coarse : bool                coarse guide mesh, constant crank speed: for ratios of demands
     """
 
     case: Case
@@ -89,19 +88,19 @@ class Solution:
 
 
 class ContactStore(Protocol):
-    """Pieces of a contact solution that outlive an interruption."""
+    """Pieces of a contact solution, kept over an interruption."""
 
     def load(self, load_case: str, key: str) -> Mapping[int, Mapping[str, Array]]:
-        """Pieces by index, of one load case and of one key alone."""
+        """Pieces of a load case and a key, by index."""
         ...
 
     def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None:
-        """Keep a piece."""
+        """Store a piece."""
         ...
 
 
 class NotStored:
-    """A store that keeps nothing."""
+    """A store without effect."""
 
     def load(self, load_case: str, key: str) -> Mapping[int, Mapping[str, Array]]:  # noqa: ARG002
         return {}
@@ -127,10 +126,10 @@ def solution(
 
     Parameters
     ----------
-    torques : mapping     engine torque by load case; None: worked out from the case
-    positions : int       per cam turn; None: the case's
-    coarse : bool         coarse guide mesh, constant crank speed: where ratios of demands count
-    store : ContactStore  of the contact's pieces, to resume an interrupted solution
+    torques : mapping     engine torque by load case; None: computed from the case
+    positions : int       per cam turn; None: those of the case
+    coarse : bool         coarse guide mesh, constant crank speed: for ratios of demands
+    store : ContactStore  of the pieces of the contact, to resume an interrupted solution
 
     Raises
     ------
@@ -175,14 +174,14 @@ def solved_turns(
     advance: float = 0.0,
     body: bool | None = None,
 ) -> Solution:
-    """The solution of turns whose loads are known.
+    """Contact and crank speed of turns whose loads are known.
 
     Parameters
     ----------
-    coarse : bool             the turns are coarse; the crank speed is left out
-    speed_contour : Contour   cam of the crank speed, where it stands otherwise on its shaft
-    advance : float           rad of cam by which that cam leads
-    body : bool               whether the contour encloses a body; None: worked out
+    coarse : bool             the turns are coarse; the crank speed is not computed
+    speed_contour : Contour   cam of the crank speed, if its phase on the shaft differs
+    advance : float           cam angle by which that cam leads, rad
+    body : bool               whether the contour encloses a body; None: to be determined
     """
     known = engine_torques(case) if torques is None else torques
     states = tuple(each.machine for each in turns)
@@ -210,12 +209,12 @@ def solved_turns(
 def certified_solution(
     solved: Solution, positions: int, *, jobs: int | None = None, progress: Progress = SILENT
 ) -> Solution:
-    """The solution with its certificate and the benchmarks of its environment.
+    """The solution with certificate and benchmarks.
 
     Parameters
     ----------
     positions : int   angles solved in full, both bodies on three meshes
-    jobs : int        processes; None: the processors there are, at most 4
+    jobs : int        processes; None: one a processor, at most 4
     """
     final = replace(solved, final=True)
     if solved.mesh is None:
@@ -237,7 +236,7 @@ def is_body(contour: Contour) -> bool:
 
 
 def meshed(pair: ContactPair, turns: tuple[Turn, ...]) -> ContactMesh | None:
-    """Meshes at the angle of greatest Hertz pressure over all turns; None without a load.
+    """Meshes at the angle of maximum Hertz pressure over all turns; None without load.
 
     Raises
     ------
@@ -274,7 +273,7 @@ def _contact(
     store: ContactStore,
     progress: Progress,
 ) -> ContactHistory:
-    """Contact of a turn: by Hertz without meshed bodies, unknown under a contour that is none."""
+    """Contact of a turn: Hertz without meshed bodies, NaN if the contour encloses no body."""
     if not body:
         return ContactHistory.unknown(each.theta.size)
     if bodies is None:
@@ -288,7 +287,7 @@ def _contact(
 def _pieces(
     pair: ContactPair, bodies: CycleBodies, each: Turn, store: ContactStore, progress: Progress
 ) -> Iterator[tuple[int, Mapping[str, Array]]]:
-    """Pieces of a turn's contact by index, from the store where it has them."""
+    """Pieces of the contact of a turn by index, from the store if it has them."""
     name, key = each.machine.load_case, _fingerprint(pair, each)
     known, total = store.load(name, key), -(-each.theta.size // CHUNK)
     for index, start in enumerate(range(0, each.theta.size, CHUNK)):
@@ -304,7 +303,7 @@ def _pieces(
 
 
 def _fingerprint(pair: ContactPair, each: Turn) -> str:
-    """Hash of all that decides the contact of a turn."""
+    """SHA-256 of the inputs of the contact of a turn."""
     digest = hashlib.sha256(pair.contour.pitch.lift.values.tobytes())
     digest.update(each.loads.normal_force.tobytes())
     digest.update(repr((pair.width, pair.bore_radius, pair.cam, pair.follower)).encode())

@@ -13,7 +13,7 @@ from camwright.pipeline.follower.follower_forces import Loads
 from camwright.pipeline.follower.friction_coupling import guided_loads
 from camwright.pipeline.follower.guide_reactions import KNOTS, GuideReactions
 
-COARSE_KNOTS = 5  # of a guide, where ratios of demands count and not the demands
+COARSE_KNOTS = 5  # of a guide, for ratios of demands
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,10 +21,10 @@ class Turn:
     """Loads over one turn of one load case.
 
     Arrays (n,) at equal cam angles theta, rad. The loads are in equilibrium with the guides,
-    friction included, except for friction_residual, relative. cam_speed, rad/s, is that of a
-    crank driven by engine and cam where the machine has a crankshaft, else constant; the loads
-    are those of the constant speed. torque_before and torque_after are crank torques without
-    and with the cam, N m, less their means; None without an engine.
+    friction included, up to the relative friction_residual. cam_speed, rad/s, varies with the
+    crank if the machine has a crankshaft; the loads are those of the constant mean speed.
+    torque_before and torque_after are crank torques without and with the cam less their means,
+    N m; None without an engine.
     """
 
     machine: Machine

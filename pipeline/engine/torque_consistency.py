@@ -45,8 +45,8 @@ class Finding:
         """Whether they differ by more than 10 %; NaN included."""
         return not abs(self.difference) <= FLAG_ABOVE
 
-    def as_record(self) -> dict[str, object]:
-        """Plain values; an infinite difference is null."""
+    def as_record(self) -> dict[str, str | float | None]:
+        """Plain values; a difference beyond all bounds is null."""
         percent = 100.0 * self.difference
         return {
             "id": self.id,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
 
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.follower_path import FollowerPath
+from camwright.pipeline.base.tables import Column
 
 _MEAN_SHARE = pi / 4.0  # mean over peak pressure of Hertz
 
@@ -82,11 +82,15 @@ class FaceSliding:
         loss = float(power.mean()) * FULL_TURN / cam_speed
         return cls(motion.place, motion.sliding, _MEAN_SHARE * peak * motion.sliding, power, loss)
 
-    def columns(self) -> Mapping[str, Array]:
-        """SI values by the names of the columns of ``5_cycle.csv``."""
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``5_cycle.csv``."""
         return {
-            "place_on_face": self.place,
-            "sliding_speed": self.speed,
-            "face_pv": self.pv,
-            "face_friction_power": self.power,
+            Column(
+                "face_contact_offset", "mm", "Offset of the contact from the stem axis"
+            ): self.place,
+            Column("sliding_speed", "m/s", "Sliding speed of the cam on the face"): self.speed,
+            Column(
+                "face_pv", "MPa m/s", "Mean contact pressure times sliding speed", unknown=True
+            ): self.pv,
+            Column("face_friction_power", "W", "Friction power of the face"): self.power,
         }

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.follower_path import FollowerPath
+from camwright.pipeline.base.tables import Column
 from camwright.pipeline.follower.follower_forces import (
     FollowerSystem,
     Loads,
@@ -51,14 +51,31 @@ class GuideShares:
     reaction_a: Share
     normal_force: Share
 
-    def columns(self) -> Mapping[str, Array]:
-        """SI values by the names of the columns of ``5_cycle.csv``."""
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``5_cycle.csv``."""
+        reaction, force = self.reaction_a, self.normal_force
         return {
-            "reaction_by_length": self.reaction_a.by_length,
-            "reaction_by_clearance": self.reaction_a.by_clearance,
-            "normal_force_statics": self.normal_force.points,
-            "normal_force_by_length": self.normal_force.by_length,
-            "normal_force_by_clearance": self.normal_force.by_clearance,
+            Column(
+                "guide_reaction_by_length",
+                "N",
+                "Change of a guide reaction by the length of the guides",
+            ): reaction.by_length,
+            Column(
+                "guide_reaction_by_clearance",
+                "N",
+                "Change of a guide reaction by the guide clearance",
+            ): reaction.by_clearance,
+            Column(
+                "normal_force_statics", "N", "Normal force with point supports as guides"
+            ): force.points,
+            Column(
+                "normal_force_by_length", "N", "Change of the normal force by the guide length"
+            ): force.by_length,
+            Column(
+                "normal_force_by_clearance",
+                "N",
+                "Change of the normal force by the guide clearance",
+            ): force.by_clearance,
         }
 
 

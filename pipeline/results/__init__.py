@@ -1,1 +1,39 @@
-"""Run folders: records, fields, workshop files, sign-off."""
+"""Run folders: records, fields, workshop files, sign-off.
+
+In the order of a run:
+
+| module                 | responsibility                                                        |
+| ---------------------- | --------------------------------------------------------------------- |
+| `trial`                | a cam with its solution, checks and smoothing                         |
+| `run_reader`           | a finished run read from its folder; schema of the records            |
+| `signoff`              | sign-off record: figures, evidence, validity limits, hashes of files  |
+| `run_folder`           | the folder of a run while it is written; resumption                   |
+| `run_records`          | columns of the tables, key figures, records of trial and crank speed  |
+| `trial_writer`         | files of a trial                                                      |
+| `stress_fields`        | VTU files of the contact and of both bodies over the turn             |
+| `contact_patch_series` | VTU files of the stress below the contact over the turn               |
+| `recorded_turn`        | outlines and poses of cam and follower for the scene                  |
+| `field_output`         | all field files of a run                                              |
+| `workshop_files`       | contour table, DXF drawing, STEP solid, cutter path, inspection sheet |
+| `contact_deck`         | contact at one cam angle as an input deck                             |
+| `check_report`         | checks of a run as table, lines and JUnit XML                         |
+| `baseline_comparison`  | changes of the checks against a baseline run                          |
+
+| file                       | contents                                             |
+| -------------------------- | ---------------------------------------------------- |
+| ``run.json``               | summary: versions, verdict, key figures, hashes      |
+| ``signoff.json``           | sign-off record                                      |
+| ``1_torque.csv``           | engine torque and its components                     |
+| ``1_speed.csv``            | crank speed with and without the cam                 |
+| ``trial_N/2_lift.csv``     | lift and its derivatives                             |
+| ``trial_N/2_limits.csv``   | utilisation of the limits in a constrained synthesis |
+| ``trial_N/3_contour.csv``  | pitch curve and contour                              |
+| ``trial_N/4_mesh.msh``     | meshes of cam and follower                           |
+| ``trial_N/5_cycle.csv``    | all quantities over the turn, by load case           |
+| ``trial_N/5_pressure.npz`` | contact pressure at every position                   |
+| ``trial_N/5_guides.npz``   | line load of the guides, pressure in their bores     |
+| ``trial_N/5_envelope.npz`` | maximum stresses of the turn below the contour       |
+| ``trial_N/6_checks.json``  | checks                                               |
+| ``trial_N/trial.json``     | smoothing, balance, mesh, certificate, rolling       |
+| ``corners.json``           | demands at the tolerance corners                     |
+"""

@@ -1,72 +1,100 @@
-"""What changed in the checks against an earlier run, beyond the error bars."""
+"""Changes of the checks against a baseline run, beyond the error bars."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable
+from typing import Literal, TypedDict
 
-Record = Mapping[str, Any]
+from camwright.pipeline.results.run_reader import CheckRecord
 
-# Demands without an error bar of their own are compared as far as they are printed.
+# Relative error bar of a demand without one: digits beyond it are not printed.
 UNKNOWN_ERROR = 1e-6
 
 
-def changes(before: Iterable[Record], now: Iterable[Record]) -> list[dict[str, Any]]:
-    """One entry per check that differs: by status, by demand beyond both error bars, by limit.
+class Change(TypedDict):
+    """Change of a check; `kinds` of status, demand, limit, new, gone."""
 
-    A check on one side only is `new` or `gone`. Of the evidence, shares such as residuals and
-    mesh uncertainties are errors themselves: they differ where their status does.
+    id: str
+    kinds: list[str]
+    unit: str
+    demand_before: float | None
+    demand: float | None
+    error_bars: float
+    status_before: str | None
+    status: str | None
+
+
+def changes(before: Iterable[CheckRecord], now: Iterable[CheckRecord]) -> list[Change]:
+    """Checks that differ: by status, by demand beyond both error bars, by limit.
+
+    A check on one side only is `new` or `gone`. Relative evidence, such as residuals and mesh
+    uncertainties, is an error itself: it differs where its status does.
     """
     old, new = ({record["id"]: record for record in side} for side in (before, now))
-    found = [_change(old.get(name), new.get(name)) for name in dict.fromkeys([*new, *old])]
-    return [entry for entry in found if entry["kinds"]]
+    entries = []
+    for name in dict.fromkeys([*new, *old]):
+        if name not in old:
+            entries.append(_one_sided(new[name], "new"))
+        elif name not in new:
+            entries.append(_one_sided(old[name], "gone"))
+        else:
+            entries.append(_change(old[name], new[name]))
+    return [entry for entry in entries if entry["kinds"]]
 
 
-def lines(found: Iterable[Mapping[str, Any]]) -> list[str]:
+def lines(entries: Iterable[Change]) -> list[str]:
     """One line a change."""
     return [
         f"{entry['id']}: {', '.join(entry['kinds'])}; demand {_text(entry['demand_before'])} ->"
         f" {_text(entry['demand'])} {entry['unit']} (error bars {_text(entry['error_bars'])}),"
         f" {entry['status_before'] or 'absent'} -> {entry['status'] or 'absent'}"
-        for entry in found
+        for entry in entries
     ] or ["nothing changed beyond the error bars"]
 
 
-def _change(old: Record | None, new: Record | None) -> dict[str, Any]:
-    kinds = []
-    bars = _error(old) + _error(new)
-    if old is None or new is None:
-        kinds.append("new" if old is None else "gone")
-    else:
-        if old["status"] != new["status"]:
-            kinds.append("status")
-        if not _is_error(new) and _apart(old["demand"], new["demand"], bars):
-            kinds.append("demand")
-        if _apart(old["limit"], new["limit"], UNKNOWN_ERROR * abs(new["limit"] or 0.0)):
-            kinds.append("limit")
-    either = new or old or {}
+def _one_sided(record: CheckRecord, kind: Literal["new", "gone"]) -> Change:
+    demand, status = record["demand"], record["status"]
     return {
-        "id": either["id"],
-        "kinds": kinds,
-        "unit": either["unit"],
-        "demand_before": None if old is None else old["demand"],
-        "demand": None if new is None else new["demand"],
-        "error_bars": bars,
-        "status_before": None if old is None else old["status"],
-        "status": None if new is None else new["status"],
+        "id": record["id"],
+        "kinds": [kind],
+        "unit": record["unit"],
+        "demand_before": demand if kind == "gone" else None,
+        "demand": demand if kind == "new" else None,
+        "error_bars": _error(record),
+        "status_before": status if kind == "gone" else None,
+        "status": status if kind == "new" else None,
     }
 
 
-def _is_error(record: Record) -> bool:
-    """Whether a demand is itself the error of a number: told where its verdict changes."""
-    return bool(record.get("evidence")) and record["unit"] in ("-", "%")
+def _change(old: CheckRecord, new: CheckRecord) -> Change:
+    bars, limit = _error(old) + _error(new), new["limit"] or 0.0
+    differs = {
+        "status": old["status"] != new["status"],
+        "demand": not _is_error(new) and _apart(old["demand"], new["demand"], bars),
+        "limit": _apart(old["limit"], new["limit"], UNKNOWN_ERROR * abs(limit)),
+    }
+    return {
+        "id": new["id"],
+        "kinds": [kind for kind, changed in differs.items() if changed],
+        "unit": new["unit"],
+        "demand_before": old["demand"],
+        "demand": new["demand"],
+        "error_bars": bars,
+        "status_before": old["status"],
+        "status": new["status"],
+    }
 
 
-def _error(record: Record | None) -> float:
-    if record is None or record["demand"] is None:
+def _is_error(record: CheckRecord) -> bool:
+    """Whether a demand is itself the relative error of a number."""
+    return record["evidence"] and record["unit"] in ("-", "%")
+
+
+def _error(record: CheckRecord) -> float:
+    if record["demand"] is None:
         return 0.0
-    known = record.get("error")
-    return float(known if known is not None else UNKNOWN_ERROR * abs(record["demand"]))
+    known = record["error"]
+    return known if known is not None else UNKNOWN_ERROR * abs(record["demand"])
 
 
 def _apart(old: float | None, new: float | None, bars: float) -> bool:

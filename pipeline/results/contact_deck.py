@@ -1,4 +1,4 @@
-"""The contact at one angle as an input deck, so that another program can solve it again."""
+"""Contact at one cam angle as an input deck for another finite-element program."""
 
 from __future__ import annotations
 
@@ -20,17 +20,16 @@ from camwright.pipeline.results.run_folder import drawn_cam
 
 
 def force_at(cycle: Table, load_case: str, theta: float) -> float:
-    """Normal force (N) of a load case at any cam angle (rad), by straight lines in its table.
+    """Normal force, N, of a load case at a cam angle, rad, by linear interpolation of the cycle.
 
     Raises
     ------
     InputError
-        If there is no such load case, or no load at the angle.
+        If the load case is unknown, or the follower is not loaded at the angle.
     """
-    rows = cycle.where("load_case", load_case)
+    rows = cycle.of_load_case(load_case)
     if not len(rows):
-        known = ", ".join(dict.fromkeys(cycle["load_case"].tolist()))
-        raise InputError("--load-case", load_case, f"one of {known}")
+        raise InputError("--load-case", load_case, f"one of {', '.join(cycle.load_cases)}")
     angle = np.degrees(theta % FULL_TURN)
     force = float(np.interp(angle, rows["cam_angle_deg"], rows["normal_force_N"], period=360.0))
     if not force > 0:
@@ -39,24 +38,24 @@ def force_at(cycle: Table, load_case: str, theta: float) -> float:
 
 
 def nodal_forces(pair: ContactPair, solved: SolvedPair) -> tuple[Array, Array]:
-    """Forces (2, nodes), N, that the contact pressure puts on the nodes of cam and follower."""
+    """Nodal forces (2, nodes), N, of the contact pressure on cam and follower."""
     on_cam, on_follower = (
-        pair.width * side.body.surface_forces(moved, side.surface)
-        for side, moved in zip(solved.sides, solved.solution.displacements, strict=True)
+        pair.width * side.body.surface_forces(displacement, side.surface)
+        for side, displacement in zip(solved.sides, solved.solution.displacements, strict=True)
     )
     return on_cam, on_follower
 
 
 def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> None:
-    """Write the bodies at one angle with the pressures of the contact on their nodes.
+    """Write both bodies at one angle with the nodal forces of the contact pressure.
 
-    What springs hold, as balls hold a ring, stands under their forces instead.
+    A body on springs, such as a ring on balls, is loaded by the spring forces instead.
     """
     other, forces = pair.follower, nodal_forces(pair, solved)
     load = float(np.abs(forces[1].sum(axis=1) @ solved.frame.normal))
     bodies = {
-        name: _deck_body(side.body, held, force, moved, pair.width)
-        for name, side, held, force, moved in zip(
+        name: _deck_body(side.body, held, force, displacement, pair.width)
+        for name, side, held, force, displacement in zip(
             ("cam", other.name),
             solved.sides,
             ("bore", other.held),
@@ -80,27 +79,29 @@ def write_contact_deck(path: Path, pair: ContactPair, solved: SolvedPair) -> Non
     )
 
 
-def _deck_body(body: ElasticBody, held: str, forces: Array, moved: Array, width: float) -> DeckBody:
+def _deck_body(
+    body: ElasticBody, held: str, forces: Array, displacement: Array, width: float
+) -> DeckBody:
     if body.springs is None:
         return DeckBody(body.mesh, body.modulus, body.poisson, held, forces)
-    whole = forces + width * body.springs.forces(moved[:, :, None])[:, :, 0]
-    # Three ways of two nodes far apart across x: no force there, as all others balance.
+    whole = forces + width * body.springs.forces(displacement[:, :, None])[:, :, 0]
+    # Three displacements of two distant nodes are fixed; all forces balance, so none acts there.
     x = body.mesh.points[0]
     left, right = int(np.argmin(x)), int(np.argmax(x))
     placed = tuple(
-        (node, component, float(moved[component, node]))
+        (node, component, float(displacement[component, node]))
         for node, component in ((left, 0), (left, 1), (right, 1))
     )
     return DeckBody(body.mesh, body.modulus, body.poisson, "", whole, placed)
 
 
 def deck(run: Path, theta: float, path: Path, load_case: str | None = None) -> SolvedPair:
-    """Solve the contact of a run at a cam angle (rad) and write it as a deck.
+    """Solve the contact of a run at a cam angle, rad, and write it as a deck.
 
     Raises
     ------
     InputError
-        If the angle carries no load.
+        If the load case is unknown, or the follower is not loaded at the angle.
     """
     cycle = run_reader.read_run(run).final.cycle
     case, contour = drawn_cam(run)

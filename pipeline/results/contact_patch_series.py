@@ -1,4 +1,4 @@
-"""Stress under the roller at every position of a turn, as a time series for ParaView."""
+"""Stress below the contact at every position of a turn, as a time series for ParaView."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.results.stress_fields import position_notes
 
 _MILLIMETRE, _MEGAPASCAL = 1e-3, 1e6
-_TOGETHER = 45  # positions whose stress is held at once
+_TOGETHER = 45  # positions whose stress is in memory at once
 INDEX = "patch_cycle.pvd"
 
 
@@ -38,13 +38,13 @@ def write_patches(
     bodies: CycleBodies,
     cycle: Cycle,
     number: int,
-    tell: Callable[[int, int], None] = lambda *_: None,
+    advance: Callable[[int, int], None] = lambda *_: None,
 ) -> Path:
-    """Write ``patch_cycle.pvd`` with a piece for every position, in the cam's frame.
+    """Write ``patch_cycle.pvd`` with a piece for every position, in the cam frame.
 
-    The stress is that from which the cycle took its peaks: pressures of the position and what
-    the real body adds; zero where the surfaces carry no load. Times are cam angles in degrees;
-    `number` is that of the load case, from 1.
+    The stress is that whose maxima the cycle lists: by the pressure of the position and the
+    correction of the real body; zero without contact. Times are cam angles in degrees; `number` is
+    that of the load case, from 1.
     """
     pieces = folder / "patch"
     pieces.mkdir(exist_ok=True)
@@ -52,8 +52,8 @@ def write_patches(
     entries, count = [], cycle.theta.size
     for start in range(0, count, _TOGETHER):
         part = slice(start, start + _TOGETHER)
-        found = patch_stress(pair, bodies, cycle, part)
-        for k, nodal in enumerate(np.moveaxis(found, 2, 0), start=start):
+        stress = patch_stress(pair, bodies, cycle, part)
+        for k, nodal in enumerate(np.moveaxis(stress, 2, 0), start=start):
             angle = float(np.degrees(cycle.theta[k]))
             name = f"patch_{round(1000 * angle):06d}.vtu"
             mesh = BodyMesh(_placed(pair, cycle, k, points), triangles, {})
@@ -61,7 +61,7 @@ def write_patches(
             fields = _fields(nodal, pair.cam.poisson)
             write_vtu(pieces / name, {"cam": mesh}, {"cam": fields}, notes)
             entries.append((angle, f"patch/{name}"))
-        tell(min(start + _TOGETHER, count), count)
+        advance(min(start + _TOGETHER, count), count)
     index = folder / INDEX
     write_pvd(index, entries)
     return index
@@ -73,29 +73,29 @@ def patch_mesh(poisson: float) -> tuple[Array, Index]:
     Raises
     ------
     ResultError
-        If the kept template is not of the mesh that is made now.
+        If the cached template is of another mesh.
     """
     patch = contact_patch(poisson)
     body, frame, _ = patch_body(poisson, ELEMENTS_PER_HALF_WIDTH)
     chosen = body.mesh.triangles[:, elements_near(body, frame.origin, STRESS_REACH)]
     nodes = np.unique(chosen)
     seen = body.mesh.points[:, nodes] * np.array([[1.0], [-1.0]])
-    found = cKDTree(patch.points.T).query(seen.T)
-    apart, column = np.asarray(found[0]), np.asarray(found[1], dtype=np.int64)
+    distance, nearest = cKDTree(patch.points.T).query(seen.T)
+    apart, column = np.asarray(distance), np.asarray(nearest, dtype=np.int64)
     if nodes.size != patch.points.shape[1] or apart.max() > 1e-12:
-        raise ResultError("the contact patch kept from earlier runs is of another mesh")
+        raise ResultError("the cached contact patch is of another mesh")
     return patch.points, column[np.searchsorted(nodes, chosen)]
 
 
 def patch_stress(pair: ContactPair, bodies: CycleBodies, cycle: Cycle, part: slice) -> Array:
-    """Stress (3, m, n), Pa, at some positions of a cycle; zero where nothing touches."""
+    """Stress (3, m, n), Pa, at some positions of a cycle; zero without contact."""
     theta, contact = cycle.theta[part], cycle.contact
     on = contact.line_load[part] > 0
-    found = np.zeros((3, contact_patch(pair.cam.poisson).points.shape[1], theta.size))
+    stress = np.zeros((3, contact_patch(pair.cam.poisson).points.shape[1], theta.size))
     if on.any():
         at = theta[on]
         cam = bodies.cam.correction(pair.contour.points(at), pair.contour.normal(at))
-        found[:, :, on] = stress_on_patch(
+        stress[:, :, on] = stress_on_patch(
             pair,
             cam,
             at,
@@ -104,11 +104,11 @@ def patch_stress(pair: ContactPair, bodies: CycleBodies, cycle: Cycle, part: sli
             contact.p0_hertz[part][on],
             contact.pressure[part][on],
         )
-    return found
+    return stress
 
 
 def _placed(pair: ContactPair, cycle: Cycle, k: int, points: Array) -> Array:
-    """Points of the patch in the cam's frame, m; one of no size would be no mesh."""
+    """Points of the patch in the cam frame, m; of a minimum size without contact."""
     theta = float(cycle.theta[k])
     frame = ContactFrame(pair.contour.points(theta), pair.contour.normal(theta))
     size = float(cycle.contact.half_width_hertz[k]) or _MILLIMETRE * 1e-3

@@ -1,4 +1,4 @@
-"""All field files of a run: the worst contact, the bodies and the patch over the turn, the map."""
+"""Field files of a run: contact at its maximum, bodies and patch over the turn, stress map."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from camwright.meshes.mesh_files import write_sheet
+from camwright.pipeline.base.files import npz_bytes, write_atomic
 from camwright.pipeline.contact.certificate import solve_pair
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.rolling_envelope import Envelope
@@ -27,11 +28,11 @@ _MEGAPASCAL = 1e6
 
 
 def write_fields(
-    folder: Path, final: Trial, tell: Callable[[int, int], None] = lambda *_: None
+    folder: Path, final: Trial, advance: Callable[[int, int], None] = lambda *_: None
 ) -> None:
-    """Write ``fields/`` of a trial that has a body.
+    """Write ``fields/`` of a trial; nothing if the contour encloses no body.
 
-    The series and the map are those of the load case with the greatest pressure.
+    Series and map are those of the load case with the maximum contact pressure.
     """
     if final.mesh is None:
         return
@@ -46,25 +47,25 @@ def write_fields(
     certified = positions_to_certify(final.cycles, final.case.solver.certificate_positions)
     indices = shown_positions(cycle, [k for number, k in certified if number == chosen])
     bodies = cycle.bodies or CycleBodies.meshed(pair)
-    write_bodies(folder, pair, bodies, cycle, indices, chosen + 1, tell)
-    write_patches(folder, pair, bodies, cycle, chosen + 1, tell)
+    write_bodies(folder, pair, bodies, cycle, indices, chosen + 1, advance)
+    write_patches(folder, pair, bodies, cycle, chosen + 1, advance)
     write_envelope(folder / ENVELOPE, pair, cycle.rolling.envelope, chosen + 1)
-    np.savez_compressed(folder / TURN, allow_pickle=False, **turn_view(pair, bodies, cycle))
+    write_atomic(folder / TURN, npz_bytes(turn_view(pair, bodies, cycle)))
 
 
 def hardest(cycles: Sequence[Cycle]) -> int:
-    """Number, from 0, of the load case with the greatest pressure."""
+    """Number, from 0, of the load case with the maximum contact pressure."""
     return int(np.argmax([cycle.contact.p0_hertz.max() for cycle in cycles]))
 
 
 def shown_positions(cycle: Cycle, certified: Sequence[int]) -> IntArray:
-    """Positions of a turn at every `BODIES_STEP`, and those that are certified."""
+    """Positions at every `BODIES_STEP`, and the certified ones."""
     stride = max(1, round(BODIES_STEP / (cycle.theta[1] - cycle.theta[0])))
     return np.union1d(np.arange(0, cycle.theta.size, stride), np.array(certified, dtype=np.int64))
 
 
 def write_envelope(path: Path, pair: ContactPair, map_: Envelope, number: int) -> None:
-    """The greatest stresses of a turn as a band under the contour, in the cam's frame.
+    """Maximum stresses of a turn in a band under the contour, in the cam frame.
 
     Depths are along the inward normal; `number` is that of the load case, from 1.
     """

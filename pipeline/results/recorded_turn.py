@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.cutouts import KeywayLike
@@ -16,21 +15,20 @@ from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.results.stress_fields import follower_places
 
 FRAMES = 360
-"""Positions recorded at most; a turn of fewer is recorded whole."""
+"""Maximum number of recorded positions."""
 
 _MM = 1e3
 
 
-def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[str, NDArray[Any]]:
+def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[str, ArrayLike]:
     """Arrays of ``fields/turn.npz``.
 
     Returns
     -------
     mapping   load_case; position (f,) rows of the cycle and cam_angle_deg (f,); cam_mm
-              (2, stations, 2) contour, then bore with keyway, in the cam's frame; follower_mm
-              (2, n) nodes of the follower's mesh in its own frame, whose origin lies at
-              follower_origin_mm (f, 2) in the cam's frame and which is turned by
-              follower_turn_deg (f,)
+              (2, stations, 2) contour, then bore with keyway, in the cam frame; follower_mm
+              (2, n) nodes of the follower mesh in its own frame; origin of that frame
+              follower_origin_mm (f, 2) and its rotation follower_turn_deg (f,) in the cam frame
     """
     count = cycle.theta.size
     shown = np.arange(0, count, -(-count // FRAMES))
@@ -47,7 +45,7 @@ def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[s
 
 
 def cam_outlines(pair: ContactPair, stations: int) -> Array:
-    """Contour and bore (2, stations, 2), m, at the same directions from the axis."""
+    """Contour and bore (2, stations, 2), m, at the same polar angles."""
     outer = pair.contour.points(uniform_turn(stations))
     radius, angle = np.hypot(*outer), np.arctan2(outer[1], outer[0])
     inner = outer * (bore_reach(pair.bore_radius, pair.keyway, angle) / radius)

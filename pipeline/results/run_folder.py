@@ -1,7 +1,4 @@
-"""Writing a run folder: whole or not at all, and resumable after an interruption.
-
-A run grows in ``.DIR.partial`` beside its final place and is renamed when it is complete.
-"""
+"""Run folder: written in ``.DIR.partial`` beside its final path, renamed when it is complete."""
 
 from __future__ import annotations
 
@@ -19,7 +16,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,8 +26,15 @@ from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError, ResultError
 from camwright.geometry.lift import Lift
-from camwright.pipeline.base.files import json_text, read_json, write_atomic
-from camwright.pipeline.base.tables import Column, table
+from camwright.pipeline.base.files import (
+    Json,
+    file_hashes,
+    json_text,
+    npz_bytes,
+    read_json,
+    write_atomic,
+)
+from camwright.pipeline.base.tables import Values, table
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.results import run_reader, signoff
@@ -44,29 +48,29 @@ _LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk"
 
 
 def versions() -> dict[str, str]:
-    """What computed the numbers: project, its source text, Python, the libraries."""
-    found = {"camwright": _version("camwright"), "source": _source_sha256()}
-    found["python"] = platform.python_version()
-    return found | {name: _version(name) for name in _LIBRARIES}
+    """Versions of the project, its source text, Python and the libraries."""
+    ours = {"camwright": _version("camwright"), "source": _source_sha256()}
+    ours["python"] = platform.python_version()
+    return ours | {name: _version(name) for name in _LIBRARIES}
 
 
 class RunFolder:
-    """The folder of a run while it grows; a context manager.
+    """The folder of a run while it is written; a context manager.
 
-    Left before `finish` by Ctrl-C, by a kill or by what nobody expected, it keeps what there is
-    for ``resume``. An error of ours takes it away.
+    An interruption or an unexpected exception before `finish` leaves the files for ``resume``; a
+    `CamError` deletes them.
 
     Parameters
     ----------
-    out : Path      where the run is to lie in the end
-    case : Case     as it is computed, positions included
-    resume : bool   go on with what an interrupted run left
+    out : Path      final path of the folder
+    case : Case     as computed, positions included
+    resume : bool   continue an interrupted run
 
     Raises
     ------
     ResultError
-        If `out` holds anything but a run of this case, if another process writes to it, or if
-        what an interrupted run left is of another input or of other versions.
+        If `out` holds anything but a run of this case, if another process writes to it, or if the
+        interrupted run has another input or other versions.
     """
 
     def __init__(self, out: Path, case: Case, *, resume: bool = False) -> None:
@@ -89,70 +93,66 @@ class RunFolder:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        # What is told to the user would end so again; what nobody expected need not, and the
-        # solved part of a trial is worth keeping for then.
+        # A `CamError` would occur again. After any other exception the solved pieces are kept.
         ours = kind is not None and issubclass(kind, CamError)
         bare = not any((self.path / _CHUNKS).rglob("*.npz"))
         if ours or (bare and kind is not None and issubclass(kind, Exception)):
             self.discard()
         self._unlock()
 
-    # --- the files, in the order of the road
+    # --- files, in the order of the calculation
 
-    def write_torque(self, crank_angle: ArrayLike, torques: Mapping[str, ArrayLike]) -> None:
-        """``1_torque.csv``: crank angle (rad) and torques (N m) by name, ``total`` first."""
-        columns = (*run_reader.CRANK, *(Column(name, "N m") for name in torques))
-        self._write_table("1_torque.csv", columns, {"crank_angle": crank_angle, **torques})
+    def write_torque(self, values: Values) -> None:
+        """``1_torque.csv``."""
+        self._write_table("1_torque.csv", values)
 
-    def write_speed(self, values: Mapping[str, ArrayLike]) -> None:
-        """``1_speed.csv`` from SI values by the names of `results.SPEED`."""
-        self._write_table("1_speed.csv", run_reader.SPEED, values)
+    def write_speed(self, values: Values) -> None:
+        """``1_speed.csv``."""
+        self._write_table("1_speed.csv", values)
 
-    def write_lift(self, trial: int, values: Mapping[str, ArrayLike]) -> None:
-        """``2_lift.csv`` from SI values by the names of `results.LIFT`."""
-        self._write_table(f"trial_{trial}/2_lift.csv", run_reader.LIFT, values)
+    def write_lift(self, trial: int, values: Values) -> None:
+        """``2_lift.csv``."""
+        self._write_table(f"trial_{trial}/2_lift.csv", values)
 
-    def write_limits(self, trial: int, cam_angle: ArrayLike, uses: Mapping[str, ArrayLike]) -> None:
-        """``2_limits.csv``: cam angle (rad) and the share in use of each limit by its name."""
-        columns = (*run_reader.CAM, *(Column(name, "") for name in uses))
-        name = f"trial_{trial}/{run_reader.LIMITS_FILE}"
-        self._write_table(name, columns, {"cam_angle": cam_angle, **uses})
+    def write_limits(self, trial: int, values: Values) -> None:
+        """``2_limits.csv``."""
+        self._write_table(f"trial_{trial}/{run_reader.LIMITS_FILE}", values)
 
-    def write_contour(self, trial: int, values: Mapping[str, ArrayLike]) -> None:
-        """``3_contour.csv`` from SI values by the names of `results.CONTOUR`."""
-        self._write_table(f"trial_{trial}/3_contour.csv", run_reader.CONTOUR, values)
+    def write_contour(self, trial: int, values: Values) -> None:
+        """``3_contour.csv``."""
+        self._write_table(f"trial_{trial}/3_contour.csv", values)
 
     def mesh_path(self, trial: int) -> Path:
-        """Where ``4_mesh.msh`` belongs; its folder is there."""
+        """Path of ``4_mesh.msh``; its folder exists."""
         return self._file(f"trial_{trial}/4_mesh.msh")
 
-    def write_cycle(self, trial: int, values: Mapping[str, ArrayLike]) -> None:
-        """``5_cycle.csv`` from SI values by the names of `results.CYCLE`, all load cases."""
-        self._write_table(f"trial_{trial}/5_cycle.csv", run_reader.CYCLE, values)
+    def write_cycle(self, trial: int, values: Values) -> None:
+        """``5_cycle.csv``, all load cases."""
+        self._write_table(f"trial_{trial}/5_cycle.csv", values)
 
     def write_pressure(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
         """``5_pressure.npz``: contact pressure at every position of every load case."""
-        write_atomic(self._file(f"trial_{trial}/5_pressure.npz"), _npz(arrays))
+        write_atomic(self._file(f"trial_{trial}/5_pressure.npz"), npz_bytes(arrays))
 
-    def write_bushes(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
-        """``5_bushes.npz``: pressure along the guides at every position, and round the bores."""
-        write_atomic(self._file(f"trial_{trial}/5_bushes.npz"), _npz(arrays))
+    def write_guides(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
+        """``5_guides.npz``: line load of the guides at every position, pressure in the bores."""
+        write_atomic(self._file(f"trial_{trial}/5_guides.npz"), npz_bytes(arrays))
 
     def write_envelope(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
-        """``5_envelope.npz``: greatest stresses of a turn in a band under the contour."""
-        write_atomic(self._file(f"trial_{trial}/5_envelope.npz"), _npz(arrays))
+        """``5_envelope.npz``: maximum stresses of a turn in a band under the contour."""
+        write_atomic(self._file(f"trial_{trial}/5_envelope.npz"), npz_bytes(arrays))
 
-    def write_checks(self, trial: int, records: Iterable[Mapping[str, Any]]) -> None:
+    def write_checks(self, trial: int, records: Iterable[Mapping[str, Json]]) -> None:
         """``6_checks.json``"""
         text = json_text([dict(record) for record in records])
         write_atomic(self._file(f"trial_{trial}/6_checks.json"), text + "\n")
 
-    def write_trial(self, trial: int, record: Mapping[str, Any]) -> None:
-        """``trial.json``: smoother, what was changed and why, certificate, mesh quality."""
+    def write_trial(self, trial: int, record: Mapping[str, Json]) -> None:
+        """``trial.json``: smoothing, reason of the trial, mesh quality, certificate."""
         text = json_text(dict(record))
         write_atomic(self._file(f"trial_{trial}/trial.json"), text + "\n")
 
-    def write_corners(self, record: Mapping[str, Any]) -> None:
+    def write_corners(self, record: Mapping[str, Json]) -> None:
         """``corners.json``: demands at every corner of the tolerances."""
         write_atomic(self._file("corners.json"), json_text(dict(record)) + "\n")
 
@@ -164,30 +164,32 @@ class RunFolder:
     def figures(self) -> Path:
         return self._file("figures/x").parent
 
-    def write_summary(self, summary: Mapping[str, Any]) -> dict[str, Any]:
+    def write_summary(self, summary: Mapping[str, Json]) -> dict[str, Json]:
         """``run.json``, completed by schema, case, hashes and versions; may be written again.
 
         Parameters
         ----------
-        summary : Mapping   ``timings_s, trials, verdict, binding, headline`` and what else there is
+        summary : Mapping   the other entries of `run_reader.Summary`, and further ones
         """
-        missing = [name for name in run_reader.HEADLINE if name not in summary["headline"]]
+        headline = summary["headline"]
+        known = headline if isinstance(headline, Mapping) else {}
+        missing = [name for name in run_reader.HEADLINE if name not in known]
         if missing:
             raise ResultError(f"headline lacks {', '.join(missing)}")
-        whole = {
+        whole: dict[str, Json] = {
             "schema": run_reader.SCHEMA,
             "case": self.case.name,
             "input_sha256": self.case.sha256,
             "versions": self.versions,
             "platform": signoff.environment(),
             **summary,
-            "files": run_reader.file_hashes(self.path),
+            "files": file_hashes(self.path, run_reader.is_result),
         }
         write_atomic(self.path / "run.json", json_text(whole) + "\n")
         return whole
 
-    def finish(self, summary: Mapping[str, Any]) -> None:
-        """Write the summary, sign the whole and move the folder to its final place."""
+    def finish(self, summary: Mapping[str, Json]) -> None:
+        """Write summary and sign-off record, and move the folder to its final path."""
         shutil.rmtree(self.path / _CHUNKS, ignore_errors=True)
         self.write_summary(summary)
         (self.path / _STATE).unlink(missing_ok=True)
@@ -210,7 +212,7 @@ class RunFolder:
         (self.out / _LOCK).unlink(missing_ok=True)
 
     def discard(self) -> None:
-        """Take away what there is of the unfinished run, and the folders made for it."""
+        """Delete the unfinished run, and the folders created for it."""
         if self._lock is not None:
             shutil.rmtree(self.path, ignore_errors=True)
             self._unlock()
@@ -218,7 +220,7 @@ class RunFolder:
             if folder.is_dir() and not any(folder.iterdir()):
                 folder.rmdir()
 
-    # --- pieces of the cycle, kept as they are done
+    # --- pieces of the contact solution
 
     def contact_store(self, trial: int) -> ContactFiles:
         """Pieces of the contact of a trial."""
@@ -245,7 +247,7 @@ class RunFolder:
             raise
 
     def _take_over(self, resume: bool) -> None:
-        """Go on with an interrupted run, or clear it away."""
+        """Continue an interrupted run, or delete it."""
         state = self.path / _STATE
         if self.path.is_symlink() or not self.path.is_dir():
             raise ResultError(f"{self.path}: in the way, and not the start of a run")
@@ -253,7 +255,7 @@ class RunFolder:
             raise ResultError(f"{self.path}: in the way, and not the start of a run")
         self._take_lock()
         if resume and state.is_file():
-            differ = _differing(read_json(state), self._identity())
+            differ = _differing(read_json(state), self.case, self.versions)
             if differ:
                 raise ResultError(
                     f"{self.path}: cannot be resumed: {differ} differ; run without --resume"
@@ -270,11 +272,11 @@ class RunFolder:
         for name, content in self.case.included.items():
             write_atomic(self.path / name, content)
 
-    def _identity(self) -> dict[str, Any]:
+    def _identity(self) -> dict[str, Json]:
         return {"input": self.case.sha256, "versions": self.versions}
 
     def _take_lock(self) -> None:
-        """Hold the folder for this process; the system lets go when the process ends."""
+        """Lock the folder for this process; the system unlocks it when the process ends."""
         if self._lock is not None:
             return
         try:
@@ -302,25 +304,23 @@ class RunFolder:
             raise ResultError(f"{path}: {error.strerror or error}") from None
         return path
 
-    def _write_table(
-        self, name: str, columns: Iterable[Column], values: Mapping[str, ArrayLike]
-    ) -> None:
-        write_atomic(self._file(name), table(columns, values).to_csv())
+    def _write_table(self, name: str, values: Values) -> None:
+        write_atomic(self._file(name), table(values).to_csv())
 
 
 @dataclass(frozen=True)
 class ContactFiles:
-    """Pieces of a trial's contact as files: the store of a run that may be interrupted."""
+    """Pieces of the contact of a trial as files, to resume an interrupted run."""
 
     folder: Path
 
     def save(self, load_case: str, index: int, arrays: Mapping[str, Array], key: str) -> None:
-        """Keep a piece; `key` is the hash of all that decides it."""
+        """Store a piece; `key` is the hash of its inputs."""
         named = {f"a_{name}": a for name, a in arrays.items()} | {"key": np.array(key)}
-        write_atomic(self.folder / load_case / f"{index:06d}.npz", _npz(named))
+        write_atomic(self.folder / load_case / f"{index:06d}.npz", npz_bytes(named))
 
     def load(self, load_case: str, key: str) -> dict[int, dict[str, Array]]:
-        """Pieces by index; those of another key are left out."""
+        """Pieces of a key by index."""
         pieces: dict[int, dict[str, Array]] = {}
         for file in sorted((self.folder / load_case).glob("*.npz")):
             try:
@@ -329,58 +329,48 @@ class ContactFiles:
                         names = [name for name in stored.files if name.startswith("a_")]
                         pieces[int(file.stem)] = {n[2:]: readonly(stored[n]) for n in names}
             except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-                continue  # torn by a crash of the machine: computed anew
+                continue  # damaged by a crash of the machine: solved again
         return pieces
 
 
-def _differing(found: Any, wanted: Mapping[str, Any]) -> str:
-    """What an interrupted run was made of that is not so now, in words; empty when all is."""
-    found = found if isinstance(found, dict) else {}
-    if found.get("input") != wanted["input"]:
+def _differing(state: Json, case: Case, versions: Mapping[str, str]) -> str:
+    """Input or versions of an interrupted run that differ, in words; empty if none does."""
+    known = state if isinstance(state, Mapping) else {}
+    if known.get("input") != case.sha256:
         return "its input"
-    then, now = found.get("versions"), wanted["versions"]
-    then = then if isinstance(then, dict) else {}
-    names = [name for name in {**then, **now} if then.get(name) != now.get(name)]
+    then = known.get("versions")
+    then = then if isinstance(then, Mapping) else {}
+    names = [name for name in {**then, **versions} if then.get(name) != versions.get(name)]
     return f"its versions ({', '.join(names)})" if names else ""
 
 
 def drawn_cam(run: Path) -> tuple[Case, Contour]:
     """The case of a run and the contour of its last trial."""
-    found = run_reader.read_run(run)
     case = read_case(run / "case.toml")
-    values = 1e-3 * np.asarray(found.final.lift["lift_mm"], dtype=float)
+    values = 1e-3 * run_reader.read_run(run).final.lift["lift_mm"]
     return case, case.contour(Lift(uniform_turn(values.size), values))
 
 
 @contextmanager
 def set_aside(out: Path, case: Case) -> Iterator[None]:
-    """Make room for another run of a case of the same name; put the old one back on failure.
+    """Set a run of a case of the same name aside; put it back on failure.
 
-    A run of a case of another name, or a folder that is no run, is left where it is: opening
-    the `RunFolder` then refuses it.
+    A run of a case of another name, or a folder that is no run, stays: `RunFolder` refuses it.
     """
     out = _absolute(out)
     aside = out.with_name(f".{out.name}.replaced")
     if aside.exists() and not out.exists():
         aside.rename(out)  # left by a process that was killed
-    moved = _holds_only_a_run(out) and run_reader.read_summary(out)["case"] == case.name
-    if moved:
+    replaced = _holds_only_a_run(out) and run_reader.read_summary(out)["case"] == case.name
+    if replaced:
         shutil.rmtree(aside, ignore_errors=True)
         out.rename(aside)
     try:
         yield
     finally:
-        if moved and not out.exists():
+        if replaced and not out.exists():
             aside.rename(out)
         shutil.rmtree(aside, ignore_errors=True)
-
-
-def _npz(arrays: Mapping[str, ArrayLike]) -> bytes:
-    """Arrays by name as numpy keeps them, the same bytes for the same numbers."""
-    buffer = io.BytesIO()
-    named: dict[str, Any] = {name: np.asarray(values) for name, values in arrays.items()}
-    np.savez_compressed(buffer, **named)
-    return buffer.getvalue()
 
 
 def _holds_only_a_run(out: Path) -> bool:
@@ -390,7 +380,7 @@ def _holds_only_a_run(out: Path) -> bool:
 
 
 def _refuse_strangers(out: Path, case: Case) -> None:
-    """A folder is written over only where it holds nothing but a run of the same input."""
+    """Refuse to overwrite a folder that holds anything but a run of the same input."""
     if not os.path.lexists(out):
         return
     if not out.is_dir():
@@ -420,7 +410,7 @@ def _absolute(out: Path) -> Path:
 
 
 def _make_parents(out: Path) -> list[Path]:
-    """Make the folders above `out`; gives those that were not there, innermost first."""
+    """Create the folders above `out`; returns the new ones, innermost first."""
     missing = [folder for folder in out.parents if not folder.exists()]
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -437,7 +427,7 @@ def _version(name: str) -> str:
 
 
 def _source_sha256() -> str:
-    """Hash of the project's own modules: a changed line is another version."""
+    """SHA-256 of the modules of the project, shortened."""
     root = Path(camwright.__file__).parent
     digest = hashlib.sha256()
     for package in ("geometry", "meshes", "pipeline", "reports"):

@@ -1,139 +1,155 @@
-"""A finished run as it lies on disk: tables, checks, summary. `run_folder` writes it.
+"""A finished run read from its folder: tables, checks, summary. `run_folder` writes it.
 
-Reading needs no solver and no case parser, so that a run of long ago can be reported again.
+Reading needs no solver and no case parser.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any
+from typing import Any, TypedDict
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import hash_inputs, read_json, read_text, sha256_of
-from camwright.pipeline.base.tables import Column, Table, read_table
+from camwright.pipeline.base.files import Json, hash_inputs, read_json, read_text, sha256_of
+from camwright.pipeline.base.tables import Table, read_table
 
-SCHEMA = 1
+SCHEMA = 2
+"""Number of the form of a run folder; a folder of another form is refused."""
 HEADLINE = (
     *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),
-    *("lift_max_mm", "pressure_angle_max_deg", "pitch_radius_min_mm"),
+    *("lift_max_mm", "pressure_angle_max_deg", "pitch_radius_of_curvature_min_mm"),
     *("normal_force_min_N", "normal_force_max_N"),
     *("p0_max_MPa", "p0_hertz_max_MPa", "half_width_max_mm", "von_mises_max_MPa"),
-    *("reaction_A_max_N", "reaction_B_max_N", "friction_loss_J_per_cam_turn"),
-    *("fe_vs_hertz_p0_max_percent", "residual_equilibrium_max"),
+    *("guide_reaction_A_max_N", "guide_reaction_B_max_N", "friction_loss_J_per_cam_turn"),
+    *("p0_difference_max_percent", "residual_equilibrium_max"),
 )
 STATUSES = ("pass", "fail", "not_evaluated", "waived")
-_REQUIRED = ("schema", "case", "input_sha256", "versions", "timings_s", "trials", "verdict",
-             "binding", "headline")  # fmt: skip
-_CHECK_KEYS = ("id", "title", "demand", "limit", "unit", "utilisation", "status", "load_case",
-               "cam_angle_deg", "source", "method")  # fmt: skip
-
-
-def _columns(text: str) -> tuple[Column, ...]:
-    """Columns from ``name [unit]`` lines.
-
-    ``?`` marks one that may be left out, ``~`` one whose cells may be empty (NaN): the contact
-    of a contour that is no body is not known.
-    """
-    found = []
-    for line in text.split(";"):
-        name, _, unit = line.strip().partition(" ")
-        marks = name[len(name.rstrip("?~")) :]
-        found.append(Column(name.rstrip("?~"), unit.strip(" []"), "?" in marks, "~" in marks))
-    return tuple(found)
-
-
-CRANK = (Column("crank_angle", "deg"),)
-CAM = (Column("cam_angle", "deg"),)
-SPEED = _columns(
-    "crank_angle [deg]; speed_before [rad/s]; speed_inertia_alone [rad/s]; speed_after [rad/s]"
-)
 LIMITS_FILE = "2_limits.csv"
-LIFT = _columns(
-    "cam_angle [deg]; crank_angle [deg]; lift [mm]; lift_d1 [mm/rad]; lift_d2 [mm/rad^2];"
-    "lift_d3 [mm/rad^3]"
-)
-CONTOUR = _columns(
-    "cam_angle [deg]; pitch_x [mm]; pitch_y [mm]; contour_x [mm]; contour_y [mm]; normal_x;"
-    "normal_y; pressure_angle [deg]; pitch_radius [mm]; contour_radius_of_curvature [mm]"
-)
-CYCLE = _columns(
-    "load_case; cam_angle [deg]; crank_angle [deg]; lift [mm]; pressure_angle [deg];"
-    "pitch_radius [mm]; contour_radius_of_curvature [mm]; normal_force [N]; line_load~ [N/mm];"
-    "p0_hertz~ [MPa]; p0_fe~ [MPa]; p0_difference~ [percent]; half_width_hertz~ [mm];"
-    "half_width_fe~ [mm]; tau_max~ [MPa]; tau_depth~ [mm]; von_mises~ [MPa]; von_mises_depth~ [mm];"
-    "reaction_A [N]; reaction_B [N]; reaction_A_statics [N]; reaction_B_statics [N];"
-    "spring_force [N]; inertia_force [N]; axial_force [N]; tangential_force [N];"
-    "friction_A [N]; friction_B [N]; jam_index; velocity [m/s]; cam_torque [N m];"
-    "torque_before?~ [N m]; torque_after?~ [N m]; residual_equilibrium~; residual_complementarity~;"
-    "residual_guide_force; residual_guide_moment;"
-    "traction_demand?~; creepage?~; slip?~ [m/s]; skid?~; film_thickness?~ [um]; lambda_ratio?~;"
-    "mixed_film?~ [um]; mixed_film_central?~ [um]; asperity_share?~;"
-    "tau_max_rolling?~ [MPa]; von_mises_rolling?~ [MPa];"
-    "shear_range?~ [MPa]; bore_stress?~ [MPa]; bore_stress_at_edge?~;"
-    "bore_stress_off_edges?~ [MPa];"
-    "jam_index_statics?; cam_speed? [rad/s]; residual_friction?; normal_force_statics? [N];"
-    "stem_slope_A? [deg]; stem_slope_B? [deg]; roller_deflection? [um];"
-    "reaction_by_length? [N]; reaction_by_clearance? [N];"
-    "normal_force_by_length? [N]; normal_force_by_clearance? [N];"
-    "bush_peak_A? [MPa]; bush_peak_B? [MPa]; rubbing_load_A? [N]; rubbing_load_B? [N];"
-    "friction_heat_A? [W]; friction_heat_B? [W]; viscous_force? [N];"
-    "normal_force_friction_min? [N]; normal_force_friction_max? [N]; jam_index_friction_max?;"
-    "elastic_contact_force? [N]; elastic_deflection? [um]; bore_pressure? [MPa];"
-    "key_pressure? [MPa]; shaft_bearing_1? [N]; shaft_bearing_2? [N]; spring_stress? [MPa];"
-    "spring_surge_force? [N]; pin_stress? [MPa];"
-    "ring_stress_range? [MPa]; ring_stress_amplitude? [MPa]; ring_stress_mean? [MPa];"
-    "roller_speed? [rpm]; roller_acceleration? [rad/s^2];"
-    "ring_correction?~ [percent]; tau_any_plane?~ [MPa];"
-    "place_on_face? [mm]; sliding_speed? [m/s]; face_pv?~ [MPa m/s]; face_friction_power? [W]"
-)
+
+
+class TrialContents(TypedDict):
+    """Contents of ``trial.json``."""
+
+    number: int
+    why: str
+    smoothing_kind: str | None
+    smoothing_strength: float | None
+    smoothing_width_deg: float | None
+    smoothing_description: str
+    prices: Json
+    contact_method: str
+    balance: dict[str, Json]
+    mesh: dict[str, Json] | None
+    certificate: list[dict[str, Json]]
+
+
+class CheckRecord(TypedDict):
+    """A record of ``6_checks.json``, in `unit` and degrees; null: missing, or infinite."""
+
+    id: str
+    title: str
+    demand: float | None
+    limit: float | None
+    unit: str
+    utilisation: float | None
+    status: str
+    load_case: str
+    cam_angle_deg: float | None
+    source: str
+    method: str
+    sense: str
+    must_have: bool
+    waiver: str | None
+    note: str
+    error: float | None
+    corner: str | None
+    corner_demand: float | None
+    evidence: bool
+
+
+class Finding(TypedDict):
+    """An input beside the value that the other inputs imply."""
+
+    load_case: str
+    title: str
+    given: float
+    implied: float
+    unit: str
+    difference_percent: float | None
+    flagged: bool
+
+
+class SummaryOfAnyRun(TypedDict):
+    """Contents of ``run.json`` that every run has."""
+
+    schema: int
+    case: str
+    input_sha256: str
+    versions: dict[str, str]
+    platform: str
+    timings_s: dict[str, float]
+    trials: int
+    verdict: str
+    binding: list[str]
+    statement: str
+    headline: dict[str, float | None]
+    prices: Json
+    benchmarks: Json
+    speed: Json
+    consistency: list[Finding]
+    files: dict[str, str]
+
+
+class Summary(SummaryOfAnyRun, total=False):
+    """Contents of ``run.json``."""
+
+    valve_train: Json
 
 
 @dataclass(frozen=True, eq=False)
 class TrialRecord:
-    """One trip down the road: a lift, everything that follows from it, and what was checked."""
+    """A trial read from its folder: lift, contour, cycle, checks and record."""
 
     number: int
     path: Path
     lift: Table
     contour: Table
     cycle: Table
-    checks: tuple[Mapping[str, Any], ...]
-    record: Mapping[str, Any]
+    checks: tuple[CheckRecord, ...]
+    record: TrialContents
     limits: Table | None = None
 
     @property
     def verdict(self) -> str:
-        """`pass` when every must-have passes or is waived; no checks, no pass."""
-        return "fail" if not self.checks or self.binding else "pass"
+        """``pass`` when every must-have check passes or is waived; without checks ``fail``."""
+        return verdict_of(self.checks)
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """Must-have checks that fail or are not evaluated."""
-        return _binding(self.checks)
+        """Ids of the must-have checks that fail or are not evaluated."""
+        return binding_of(self.checks)
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run folder read back; the last trial is the answer."""
+    """A run read from its folder; the last trial is the result."""
 
     path: Path
     case_text: str
-    summary: Mapping[str, Any]
+    summary: Summary
     torque: Table | None
     trials: tuple[TrialRecord, ...]
     speed: Table | None = None
 
     @property
     def final(self) -> TrialRecord:
+        """The last trial."""
         return self.trials[-1]
 
     @property
     def verdict(self) -> str:
-        """Drawn from the checks of the final trial, not from the summary."""
+        """Verdict by the checks of the final trial."""
         return self.final.verdict
 
 
@@ -143,7 +159,7 @@ def read_run(path: str | Path) -> Run:
     Raises
     ------
     ResultError
-        If something is missing or unreadable, or if two records disagree.
+        If a file is missing or unreadable, or if two records disagree.
     """
     path = Path(path)
     summary = read_summary(path)
@@ -156,137 +172,158 @@ def read_run(path: str | Path) -> Run:
         trials=tuple(_read_trial(path, k + 1) for k in range(summary["trials"])),
         speed=read_table(speed) if speed.exists() else None,
     )
-    if run.verdict != summary["verdict"]:
-        said, found = summary["verdict"], run.verdict
-        raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {found}")
+    _require_verdict(path, summary, run.verdict)
     return run
 
 
 def read_verdict(path: Path) -> dict[str, Any]:
-    """What a finished run says of itself, no table read: summary and checks of the last trial.
+    """Summary of a finished run and checks of its last trial; no table is read.
 
     Raises
     ------
     ResultError
-        If something is missing or unreadable, or if summary and checks disagree.
+        If a file is missing or unreadable, or if summary and checks disagree.
     """
     summary = read_summary(path)
-    checks = tuple(_read_checks(path / f"trial_{summary['trials']}" / "6_checks.json"))
-    found = "fail" if not checks or _binding(checks) else "pass"
-    if found != summary["verdict"]:
-        said = summary["verdict"]
-        raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {found}")
+    checks = read_checks(path / f"trial_{summary['trials']}")
+    _require_verdict(path, summary, verdict_of(checks))
     return {
         "case": summary["case"],
         "input_sha256": summary["input_sha256"],
-        "verdict": found,
-        "binding": list(_binding(checks)),
+        "verdict": summary["verdict"],
+        "binding": list(binding_of(checks)),
         "trials": summary["trials"],
-        "statement": summary.get("statement", ""),
+        "statement": summary["statement"],
         "headline": summary["headline"],
-        "consistency": summary.get("consistency") or [],
-        "checks": [dict(record) for record in checks],
+        "consistency": summary["consistency"],
+        "checks": list(checks),
     }
 
 
 def verify_run(path: Path) -> None:
-    """Compare the files of a run with the hashes taken when it was finished."""
+    """Compare the files of a run with the hashes in ``run.json``; ResultError for a difference."""
     summary = read_summary(path)
     if input_sha256(path) != summary["input_sha256"]:
         raise ResultError(f"{path}: case.toml or inputs/ are not those of the run")
-    for name, digest in summary.get("files", {}).items():
+    for name, digest in summary["files"].items():
         file = path / name
         if not file.is_file() or sha256_of(file) != digest:
             state = "was changed" if file.is_file() else "is missing"
             raise ResultError(f"{file}: {state} since the run")
 
 
-def read_summary(path: Path) -> dict[str, Any]:
-    """The contents of ``run.json``."""
+def read_summary(path: Path) -> Summary:
+    """Contents of ``run.json``; ResultError for a folder that holds no run of this schema."""
     if not path.is_dir():
         raise ResultError(f"{path}: no such folder")
     file = path / "run.json"
     if not file.is_file():
         raise ResultError(f"{path}: holds no finished run (run.json is missing)")
-    summary = read_json(file)
-    missing = [key for key in _REQUIRED if not isinstance(summary, dict) or key not in summary]
-    if missing:
-        raise ResultError(f"{file}: lacks {', '.join(missing)}")
-    if summary["schema"] != SCHEMA:
-        raise ResultError(f"{file}: schema {summary['schema']}, must be {SCHEMA}")
+    summary: Summary = read_json(file)
+    require_schema(file, summary)
+    _require(file, summary, SummaryOfAnyRun.__annotations__)
     if not isinstance(summary["trials"], int) or summary["trials"] < 1:
         raise ResultError(f"{file}: trials = {summary['trials']}, must be a count >= 1")
     return summary
+
+
+def require_schema(file: Path, record: Json | Summary) -> None:
+    """Refuse a record of another schema."""
+    schema = record.get("schema", SCHEMA) if isinstance(record, dict) else SCHEMA
+    if schema != SCHEMA:
+        raise ResultError(f"{file}: schema = {schema}, must be {SCHEMA}: run the case again")
 
 
 def input_sha256(path: Path) -> str:
     """Hash of the resolved case and its included files, as `Case.sha256` has it."""
     inputs = path / "inputs"
     kept = {
-        file.relative_to(path).as_posix(): file.read_bytes()
+        f"{inputs.name}/{file.name}": file.read_bytes()
         for file in (sorted(inputs.iterdir()) if inputs.is_dir() else ())
     }
     return hash_inputs(read_text(path / "case.toml"), kept)
 
 
-def file_hashes(path: Path) -> dict[str, str]:
-    """SHA-256 of the tables, checks and meshes of a run; pictures and pages can be redrawn."""
-    kept, later = (".csv", ".json", ".msh", ".npz"), ("run.json", "signoff.json")
-    return {
-        file.relative_to(path).as_posix(): sha256_of(file)
-        for file in sorted(path.rglob("*"))
-        if file.suffix in kept and file.name not in later and not _hidden(file, path)
-    }
+def is_result(name: str) -> bool:
+    """Whether a file of a run is a table, a record, a mesh or an array; the rest can be redrawn."""
+    file = Path(name)
+    made_last = ("run.json", "signoff.json")
+    return file.suffix in (".csv", ".json", ".msh", ".npz") and file.name not in made_last
 
 
-def _binding(checks: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+def binding_of(checks: Iterable[CheckRecord]) -> tuple[str, ...]:
+    """Ids of the must-have checks that fail or are not evaluated."""
     return tuple(
         check["id"]
         for check in checks
-        if check.get("must_have", True) and check["status"] not in ("pass", "waived")
+        if check["must_have"] and check["status"] not in ("pass", "waived")
     )
+
+
+def verdict_of(checks: Collection[CheckRecord]) -> str:
+    """``pass`` when every must-have check passes or is waived; without checks ``fail``."""
+    return "fail" if not checks or binding_of(checks) else "pass"
+
+
+def _require_verdict(path: Path, summary: Summary, verdict: str) -> None:
+    said = summary["verdict"]
+    if said != verdict:
+        raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {verdict}")
 
 
 def _read_trial(run: Path, number: int) -> TrialRecord:
     path = run / f"trial_{number}"
-    record = read_json(path / "trial.json")
-    if not isinstance(record, dict):
-        raise ResultError(f"{path / 'trial.json'}: must be an object")
     limits = path / LIMITS_FILE
     return TrialRecord(
         number=number,
         path=path,
         lift=read_table(path / "2_lift.csv"),
         contour=read_table(path / "3_contour.csv"),
-        cycle=read_table(path / "5_cycle.csv", CYCLE),
-        checks=tuple(_read_checks(path / "6_checks.json")),
-        record=MappingProxyType(record),
+        cycle=read_table(path / "5_cycle.csv"),
+        checks=read_checks(path),
+        record=read_trial_record(path),
         limits=read_table(limits) if limits.is_file() else None,
     )
 
 
-def _read_checks(path: Path) -> Iterator[Mapping[str, Any]]:
-    records = read_json(path)
+def read_trial_record(trial: Path) -> TrialContents:
+    """Contents of ``trial.json`` in the folder of a trial."""
+    file = trial / "trial.json"
+    record: TrialContents = read_json(file)
+    _require(file, record, TrialContents.__annotations__)
+    return record
+
+
+def read_checks(trial: Path) -> tuple[CheckRecord, ...]:
+    """Records of ``6_checks.json`` in the folder of a trial.
+
+    Raises
+    ------
+    ResultError
+        If a record lacks a key, has an unknown status, or passes against its numbers.
+    """
+    file = trial / "6_checks.json"
+    records: list[CheckRecord] = read_json(file)
     if not isinstance(records, list):
-        raise ResultError(f"{path}: must be a list of checks")
+        raise ResultError(f"{file}: must be a list of checks")
     for record in records:
-        missing = [key for key in _CHECK_KEYS if not isinstance(record, dict) or key not in record]
-        if missing:
-            raise ResultError(f"{path}: a check lacks {', '.join(missing)}")
+        _require(file, record, CheckRecord.__annotations__, "a check ")
         if record["status"] not in STATUSES:
-            raise ResultError(f"{path}: {record['id']}: status {record['status']} is unknown")
+            raise ResultError(f"{file}: {record['id']}: status {record['status']} is unknown")
         if record["status"] == "pass" and not _holds(record):
-            raise ResultError(f"{path}: {record['id']} is marked pass, its numbers say otherwise")
-        yield MappingProxyType(record)
+            raise ResultError(f"{file}: {record['id']} is marked pass, its numbers say otherwise")
+    return tuple(records)
 
 
-def _holds(record: Mapping[str, Any]) -> bool:
-    """Whether the numbers of a record bear out a pass; a missing one never does."""
+def _require(file: Path, record: Mapping[str, object], keys: Iterable[str], what: str = "") -> None:
+    missing = [key for key in keys if not isinstance(record, dict) or key not in record]
+    if missing:
+        raise ResultError(f"{file}: {what}lacks {', '.join(missing)}")
+
+
+def _holds(record: CheckRecord) -> bool:
+    """Whether demand and limit of a record pass; a missing number never does."""
     demand, limit = record["demand"], record["limit"]
-    if not all(isinstance(number, (int, float)) for number in (demand, limit)):
+    if not isinstance(demand, (int, float)) or not isinstance(limit, (int, float)):
         return False
-    return bool(demand >= limit if record.get("sense") == "at_least" else demand <= limit)
-
-
-def _hidden(file: Path, folder: Path) -> bool:
-    return any(re.match(r"\.", part) for part in file.relative_to(folder).parts)
+    return bool(demand >= limit if record["sense"] == "at_least" else demand <= limit)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 
@@ -12,13 +11,21 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
+from camwright.pipeline.base.files import Json
+from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, Cells, Column, Values
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
 from camwright.pipeline.cycle.cam_balance import balance
 from camwright.pipeline.cycle.crank_speed import SpeedStudy, consistency, study_of
-from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.cycle import (
+    CONTOUR_RADIUS,
+    LIFT,
+    PITCH_RADIUS,
+    PRESSURE_ANGLE,
+    Cycle,
+)
 from camwright.pipeline.cycle.rolling_history import rolling_record
 from camwright.pipeline.engine.crankshaft import CrankMotion
 from camwright.pipeline.engine.torque import Torque
@@ -27,45 +34,76 @@ from camwright.pipeline.results.trial import Trial
 _MM, _MPA = 1e3, 1e-6
 
 
-def lift_columns(case: Case, lift: Lift) -> dict[str, Array]:
-    """SI values of ``2_lift.csv``."""
+def torque_columns(torque: Torque) -> dict[Column, Array]:
+    """Columns of ``1_torque.csv``: the torque of the engine and its components."""
+    total = Column("total", "N m", "Engine torque at the crank")
+    parts = {
+        Column(name, "N m", f"Engine torque at the crank, {name.replace('_', ' ')}"): values
+        for name, values in torque.components.items()
+    }
+    return {CRANK_ANGLE: torque.theta_crank, total: torque.total, **parts}
+
+
+def lift_columns(case: Case, lift: Lift) -> dict[Column, Array]:
+    """Columns of ``2_lift.csv``."""
     theta = uniform_turn(case.solver.positions)
     return {
-        "cam_angle": theta,
-        "crank_angle": case.mechanism.gear_ratio * theta,
-        "lift": lift(theta),
-        "lift_d1": lift(theta, 1),
-        "lift_d2": lift(theta, 2),
-        "lift_d3": lift(theta, 3),
+        CAM_ANGLE: theta,
+        CRANK_ANGLE: case.mechanism.gear_ratio * theta,
+        LIFT: lift(theta),
+        Column("lift_d1", "mm/rad", "First derivative of the lift by cam angle"): lift(theta, 1),
+        Column("lift_d2", "mm/rad^2", "Second derivative of the lift by cam angle"): lift(theta, 2),
+        Column("lift_d3", "mm/rad^3", "Third derivative of the lift by cam angle"): lift(theta, 3),
     }
 
 
-def contour_columns(case: Case, contour: Contour) -> dict[str, Array]:
-    """SI values of ``3_contour.csv``."""
+def limit_columns(theta: Array, uses: Mapping[str, Array]) -> dict[Column, Array]:
+    """Columns of ``2_limits.csv``: utilisation (n,) of each limit by the id of its check."""
+    columns = {Column(name, "", f"Utilisation of {name}"): use for name, use in uses.items()}
+    return {CAM_ANGLE: theta, **columns}
+
+
+def contour_columns(case: Case, contour: Contour) -> dict[Column, Array]:
+    """Columns of ``3_contour.csv``."""
     theta = uniform_turn(case.solver.positions)
     pitch, normal = contour.pitch.points(theta), contour.normal(theta)
     surface = contour.points(theta)
     return {
-        "cam_angle": theta,
-        "pitch_x": pitch[0],
-        "pitch_y": pitch[1],
-        "contour_x": surface[0],
-        "contour_y": surface[1],
-        "normal_x": normal[0],
-        "normal_y": normal[1],
-        "pressure_angle": contour.pitch.pressure_angle(theta),
-        "pitch_radius": contour.pitch.radius_of_curvature(theta),
-        "contour_radius_of_curvature": contour.radius_of_curvature(theta),
+        CAM_ANGLE: theta,
+        Column("pitch_x", "mm", "Pitch curve in the cam frame"): pitch[0],
+        Column("pitch_y", "mm", "Pitch curve in the cam frame"): pitch[1],
+        Column("contour_x", "mm", "Contour in the cam frame"): surface[0],
+        Column("contour_y", "mm", "Contour in the cam frame"): surface[1],
+        Column("normal_x", "", "Outward normal of the contour"): normal[0],
+        Column("normal_y", "", "Outward normal of the contour"): normal[1],
+        PRESSURE_ANGLE: contour.pitch.pressure_angle(theta),
+        PITCH_RADIUS: contour.pitch.radius_of_curvature(theta),
+        CONTOUR_RADIUS: contour.radius_of_curvature(theta),
     }
 
 
-def cycle_columns(cycles: tuple[Cycle, ...]) -> Mapping[str, Array]:
-    """Columns of all load cases, one below the other."""
+def cycle_columns(cycles: tuple[Cycle, ...]) -> dict[Column, Cells]:
+    """Columns of ``5_cycle.csv``: those of all load cases, one below the other."""
     tables = [cycle.columns() for cycle in cycles]
-    names = dict.fromkeys(name for table in tables for name in table)
+    columns = dict.fromkeys(column for table in tables for column in table)
     # One load case has columns that another lacks, such as the torque of an engine at rest.
     unknown = np.full(cycles[0].theta.size, np.nan)
-    return {name: np.concatenate([t.get(name, unknown) for t in tables]) for name in names}
+    return {
+        column: np.concatenate([table.get(column, unknown) for table in tables])
+        for column in columns
+    }
+
+
+def column_table(trial: Trial) -> dict[str, tuple[Column, ...]]:
+    """Columns of a solved trial, with unit and meaning, by file of its folder."""
+    tables: dict[str, Values] = {
+        "2_lift.csv": lift_columns(trial.case, trial.lift),
+        "3_contour.csv": contour_columns(trial.case, trial.contour),
+        "5_cycle.csv": cycle_columns(trial.cycles),
+    }
+    if trial.limits_in_use is not None:
+        tables["2_limits.csv"] = limit_columns(*trial.limits_in_use)
+    return {name: tuple(tables[name]) for name in sorted(tables)}
 
 
 def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
@@ -79,7 +117,7 @@ def pressure_arrays(cycles: tuple[Cycle, ...]) -> dict[str, Array]:
 
 
 def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | None]:
-    """Figures of the final trial in millimetres, newtons and megapascals; null: not applicable."""
+    """Key figures of the final trial in mm, N and MPa; None where not applicable."""
     first, contour = trial.cycles[0], trial.contour
     design = torques.get(first.load_case)
 
@@ -96,26 +134,26 @@ def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | N
         "torque_std_after_Nm": None if after is None else float(np.std(after)),
         "torque_p2p_before_Nm": None if design is None else design.peak_to_peak,
         "torque_p2p_after_Nm": None if after is None else float(np.ptp(after)),
-        "torque_mean_removed_Nm": None if design is None else design.mean,
+        "torque_mean_Nm": None if design is None else design.mean,
         "lift_max_mm": _MM * trial.lift.highest.value,
         "pressure_angle_max_deg": float(np.degrees(contour.pressure_angle_max().value)),
-        "pitch_radius_min_mm": _MM * contour.least_convex_pitch_radius().value,
+        "pitch_radius_of_curvature_min_mm": _MM * contour.least_convex_pitch_radius().value,
         "normal_force_min_N": float(min(c.loads.normal_force.min() for c in trial.cycles)),
         "normal_force_max_N": over(lambda c: c.loads.normal_force),
         "p0_max_MPa": contact(lambda h: h.p0, _MPA),
         "p0_hertz_max_MPa": contact(lambda h: h.p0_hertz, _MPA),
         "half_width_max_mm": contact(lambda h: h.half_width, _MM),
         "von_mises_max_MPa": contact(lambda h: h.von_mises, _MPA),
-        "reaction_A_max_N": over(lambda c: np.abs(c.guides.reaction_a)),
-        "reaction_B_max_N": over(lambda c: np.abs(c.guides.reaction_b)),
+        "guide_reaction_A_max_N": over(lambda c: np.abs(c.guides.reaction_a)),
+        "guide_reaction_B_max_N": over(lambda c: np.abs(c.guides.reaction_b)),
         "friction_loss_J_per_cam_turn": float(first.loads.friction_loss),
-        "fe_vs_hertz_p0_max_percent": contact(lambda h: np.abs(h.p0_difference), 100.0),
+        "p0_difference_max_percent": contact(lambda h: np.abs(h.p0_difference), 100.0),
         "residual_equilibrium_max": _residual_max(trial),
     }
 
 
 def _residual_max(trial: Trial) -> float | None:
-    """Worst equilibrium residual of contact and guides; None where the contact is unknown."""
+    """Maximum equilibrium residual of contact and guides; None if the contact is unknown."""
 
     def worst(cycle: Cycle) -> float:
         parts = (
@@ -126,21 +164,21 @@ def _residual_max(trial: Trial) -> float | None:
         )
         return float(np.max([np.abs(part).max() for part in parts]))
 
-    greatest = float(np.max([worst(cycle) for cycle in trial.cycles]))
-    return greatest if np.isfinite(greatest) else None
+    residual = float(np.max([worst(cycle) for cycle in trial.cycles]))
+    return residual if np.isfinite(residual) else None
 
 
-def trial_record(trial: Trial) -> dict[str, Any]:
+def trial_record(trial: Trial) -> dict[str, Json]:
     """Contents of ``trial.json``: smoothing, reason, mesh, certificate, rolling."""
     smoothing, mesh, width = trial.smoothing, trial.mesh, trial.smoothing.angular_width
     machine, contact = trial.solution.machine, trial.cycles[0].contact
     return {
         "number": trial.number,
         "why": trial.why,
-        "smoother": smoothing.kind,
-        "strength": smoothing.strength,
-        "angular_width_deg": None if width is None else in_unit(width, "deg"),
-        "smoothing": smoothing.words,
+        "smoothing_kind": smoothing.kind,
+        "smoothing_strength": smoothing.strength,
+        "smoothing_width_deg": None if width is None else in_unit(width, "deg"),
+        "smoothing_description": smoothing.words,
         "synthesis": trial.synthesis,
         "prices": None if trial.synthesis is None else trial.synthesis["prices"],
         "closure_mm": _MM * trial.lift.closure,
@@ -162,32 +200,34 @@ def trial_record(trial: Trial) -> dict[str, Any]:
 
 def crank_speed_record(
     torques: Mapping[str, Torque], trial: Trial, required: Array | None
-) -> tuple[dict[str, Any], Mapping[str, Array] | None]:
+) -> tuple[dict[str, Json], Values | None]:
     """Crank speed with and without the cam, and the consistency of the inputs.
 
     Parameters
     ----------
-    required : array (n,)   crank torque about its mean, N m, for which a smoother drew the lift in
-                            the design load case; None where none did
+    required : array (n,)   crank torque about its mean, N m, for which the lift is drawn in the
+                            design load case; None if no smoother of the torque drew it
 
     Returns
     -------
     record : dict       ``speed`` and ``consistency`` of ``run.json``
-    columns : mapping   SI values of ``1_speed.csv`` in the design load case; None without a
-                        crankshaft
+    columns : mapping   of ``1_speed.csv`` in the design load case; None without a crankshaft
     """
-    case, speed, findings, columns = trial.case, {}, [], None
+    case = trial.case
+    speed: dict[str, Json] = {}
+    findings: list[Json] = []
+    columns: Values | None = None
     running = [c for c in trial.cycles if c.load_case in torques and c.machine.speed > 0]
     for number, cycle in enumerate(running):
         machine, name, pitch = cycle.machine, cycle.load_case, trial.contour.pitch
         torque, rubbing, study = torques[name], cycle.loads.rubbing, None
         try:
             study = study_of(machine, torque, pitch, rubbing)
-        except CamError as error:  # a crank that stalls contradicts the case, not the cam
+        except CamError as error:  # a crank that stalls
             speed[name] = {"refused": str(error)}
         if study is not None:
             speed[name] = _speed_record(study, trial.contour.radius_max().value)
-            columns = study.columns if number == 0 else columns
+            columns = study.columns() if number == 0 else columns
         agreement = consistency(
             machine,
             torque,
@@ -201,7 +241,7 @@ def crank_speed_record(
     return {"speed": speed or None, "consistency": findings}, columns
 
 
-def _speed_record(study: SpeedStudy, radius: float) -> dict[str, Any]:
+def _speed_record(study: SpeedStudy, radius: float) -> dict[str, Json]:
     """Crank speed of one load case; radius (m) of the cam."""
     disc, rim = study.flywheel_masses(radius)
     return {
@@ -233,7 +273,7 @@ def _motion_record(motion: CrankMotion) -> dict[str, float]:
     }
 
 
-def certificate_record(point: CertificatePoint) -> dict[str, Any]:
+def certificate_record(point: CertificatePoint) -> dict[str, Json]:
     """One certified angle in millimetres and megapascals."""
     return {
         "cam_angle_deg": float(np.degrees(point.theta)),
@@ -251,7 +291,7 @@ def certificate_record(point: CertificatePoint) -> dict[str, Any]:
     }
 
 
-def _figure(figure: Convergence, cycle: float, scale: float) -> dict[str, Any]:
+def _figure(figure: Convergence, cycle: float, scale: float) -> dict[str, Json]:
     return {
         "cycle": scale * cycle,
         "meshes": [scale * value for value in figure.values],

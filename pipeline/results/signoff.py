@@ -1,28 +1,33 @@
-"""The sign-off record of a run: its figures with error bars, verdict, evidence, every file's hash.
+"""Sign-off record of a run: figures with error bars, verdict, evidence, hash of every file.
 
-It is drawn from the files of the run alone, so that anybody can draw it again.
+It follows from the files of the run alone and can be reproduced from them.
 """
 
 from __future__ import annotations
 
-import hashlib
 import platform
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-from camwright.pipeline.base.files import json_text, read_json
+from camwright.pipeline.base.files import (
+    Json,
+    file_hashes,
+    files_in,
+    json_text,
+    read_json,
+    write_atomic,
+)
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.model_limits import MODEL_LIMITS, limitations
+from camwright.pipeline.results.run_reader import CheckRecord
 
 NAME = "signoff.json"
-SCHEMA = 1
 PRESENTATION = ("figures", "exports", "inspection")
-"""Folders of what is drawn from the results, or measured later, and may come and go."""
+"""Folders of files that are drawn from the results or measured later; they are not signed."""
 PRESENTATION_SUFFIXES = (".html", ".png", ".svg", ".pdf")
 
 
-def record(path: Path) -> dict[str, Any]:
+def record(path: Path) -> dict[str, Json]:
     """The sign-off record of the run in a folder.
 
     Raises
@@ -32,51 +37,43 @@ def record(path: Path) -> dict[str, Any]:
     """
     summary = run_reader.read_summary(path)
     trial = path / f"trial_{summary['trials']}"
-    made, checks = (
-        read_json(trial / "trial.json"),
-        read_json(trial / "6_checks.json"),
-    )
-    stops = [
-        c["id"]
-        for c in checks
-        if c.get("must_have", True) and c["status"] not in ("pass", "waived")
-    ]
+    made, checks = run_reader.read_trial_record(trial), run_reader.read_checks(trial)
     corners = path / "corners.json"
     return {
-        "schema": SCHEMA,
+        "schema": run_reader.SCHEMA,
         "case": summary["case"],
         "case_sha256": run_reader.input_sha256(path),
         "code": {name: summary["versions"].get(name) for name in ("camwright", "source")},
         "environment": {
-            "platform": summary.get("platform", ""),
+            "platform": summary["platform"],
             "versions": summary["versions"],
         },
-        "verdict": "fail" if stops or not checks else "pass",
-        "binding": stops,
+        "verdict": run_reader.verdict_of(checks),
+        "binding": list(run_reader.binding_of(checks)),
         "not_evaluated": [c["id"] for c in checks if c["status"] == "not_evaluated"],
         "waivers": [
             {"check": c["id"], "waiver": c["waiver"], "status": c["status"]}
             for c in checks
-            if c.get("waiver")
+            if c["waiver"]
         ],
         "trial": summary["trials"],
         "headline": summary["headline"],
         "figures": [_figure(check) for check in checks],
         "evidence": {
-            "mesh": made.get("mesh"),
-            "certificate": made.get("certificate", []),
-            "contact_method": made.get("contact_method"),
-            "benchmarks": summary.get("benchmarks"),
-            "corners": read_json(corners).get("tried") if corners.is_file() else None,
+            "mesh": made["mesh"],
+            "certificate": made["certificate"],
+            "contact_method": made["contact_method"],
+            "benchmarks": summary["benchmarks"],
+            "corners": read_json(corners)["tried"] if corners.is_file() else None,
             "statements": _statements(checks),
         },
         **limitations(),
         "files": hashes(path),
-        "presentation": [name for name, _ in _files(path) if is_presentation(name)],
+        "presentation": [name for name, _ in files_in(path) if is_presentation(name)],
     }
 
 
-def _statements(checks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+def _statements(checks: Sequence[CheckRecord]) -> list[Json]:
     """Limits of the model with their checks; a status of null: the check was not made."""
     status = {check["id"]: check["status"] for check in checks}
     return [
@@ -86,49 +83,42 @@ def _statements(checks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     ]
 
 
-def write(path: Path) -> dict[str, Any]:
+def write(path: Path) -> None:
     """Write the record into the folder of a run that is otherwise complete."""
-    from camwright.pipeline.base.files import write_atomic
-
-    whole = record(path)
-    write_atomic(path / NAME, json_text(whole) + "\n")
-    return whole
+    write_atomic(path / NAME, json_text(record(path)) + "\n")
 
 
 def changes(path: Path) -> list[str]:
-    """What differs from the sign-off record, one line a file; empty when nothing does.
+    """Differences from the sign-off record, one line a file; empty without any.
 
     Raises
     ------
     ResultError
-        If there is no record, or it cannot be read.
+        If the record is missing, unreadable or of another schema.
     """
     signed = read_json(path / NAME)
+    run_reader.require_schema(path / NAME, signed)
     known = signed.get("files") if isinstance(signed, dict) else None
     if not isinstance(known, Mapping):
         return [f"{NAME}: holds no hashes"]
     now = hashes(path)
-    found = [f"{name}: is missing since the sign-off" for name in known if name not in now]
-    found += [f"{name}: was added since the sign-off" for name in now if name not in known]
-    found += [
+    differences = [f"{name}: is missing since the sign-off" for name in known if name not in now]
+    differences += [f"{name}: was added since the sign-off" for name in now if name not in known]
+    differences += [
         f"{name}: was changed since the sign-off"
         for name in known
         if name in now and now[name] != known[name]
     ]
-    return sorted(found) or _disagreements(signed, record(path))
+    return sorted(differences) or _disagreements(signed, record(path))
 
 
 def hashes(path: Path) -> dict[str, str]:
-    """SHA-256 of every input, result and field file; not of the record, nor of presentation."""
-    return {
-        name: hashlib.sha256(file.read_bytes()).hexdigest()
-        for name, file in _files(path)
-        if name != NAME and not is_presentation(name)
-    }
+    """SHA-256 of every input, result and field file, without the record and presentation."""
+    return file_hashes(path, lambda name: name != NAME and not is_presentation(name))
 
 
 def is_presentation(name: str) -> bool:
-    """Whether a file is drawn from the results and may be drawn again."""
+    """Whether a file is drawn from the results and can be drawn again."""
     return name.startswith(tuple(f"{f}/" for f in PRESENTATION)) or name.endswith(
         PRESENTATION_SUFFIXES
     )
@@ -139,38 +129,41 @@ def environment() -> str:
     return f"{platform.system()} {platform.machine()}"
 
 
-def _disagreements(signed: Mapping[str, Any], drawn: Mapping[str, Any]) -> list[str]:
-    """Words of the record that its own files do not bear out.
+def _disagreements(signed: Mapping[str, Json], drawn: Mapping[str, Json]) -> list[str]:
+    """Entries of the record that differ from the files of the run.
 
-    What the program says of itself is of the version that signed, and no file of the run.
+    The limitations are those of the version that signed; they follow from no file of the run.
     """
     left_out = ("presentation", "files", "limitations", "singularities")
     words = [
-        name
-        for name in drawn
-        if name not in left_out and not _borne_out(signed.get(name), drawn[name])
+        name for name in drawn if name not in left_out and not _agree(signed.get(name), drawn[name])
     ]
     return [f"{NAME}: {name} is not what the files of the run say" for name in words]
 
 
-def _borne_out(signed: Any, drawn: Any) -> bool:
-    """Whether two values agree in all that was signed; a later version may say more."""
+def _agree(signed: Json, drawn: Json) -> bool:
+    """Whether all signed values agree; a later version may add entries."""
     if isinstance(signed, Mapping) and isinstance(drawn, Mapping):
-        return all(key in drawn and _borne_out(value, drawn[key]) for key, value in signed.items())
+        return all(key in drawn and _agree(value, drawn[key]) for key, value in signed.items())
     if isinstance(signed, list) and isinstance(drawn, list):
         same = len(signed) == len(drawn)
-        return same and all(_borne_out(a, b) for a, b in zip(signed, drawn, strict=True))
-    return bool(signed == drawn)
+        return same and all(_agree(a, b) for a, b in zip(signed, drawn, strict=True))
+    return signed == drawn
 
 
-def _files(path: Path) -> Iterator[tuple[str, Path]]:
-    for file in sorted(path.rglob("*")):
-        name = file.relative_to(path).as_posix()
-        if file.is_file() and not any(part.startswith(".") for part in Path(name).parts):
-            yield name, file
-
-
-def _figure(check: Mapping[str, Any]) -> dict[str, Any]:
-    names = ["id", "demand", "error", "limit", "unit", "utilisation", "status", "load_case"]
-    names += ["cam_angle_deg", "source", "method", "corner", "corner_demand"]
-    return {name: check.get(name) for name in names}
+def _figure(check: CheckRecord) -> dict[str, Json]:
+    return {
+        "id": check["id"],
+        "demand": check["demand"],
+        "error": check["error"],
+        "limit": check["limit"],
+        "unit": check["unit"],
+        "utilisation": check["utilisation"],
+        "status": check["status"],
+        "load_case": check["load_case"],
+        "cam_angle_deg": check["cam_angle_deg"],
+        "source": check["source"],
+        "method": check["method"],
+        "corner": check["corner"],
+        "corner_demand": check["corner_demand"],
+    }

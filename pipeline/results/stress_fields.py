@@ -1,4 +1,4 @@
-"""Fields of a run for analysts: VTU files of the contact and of both bodies over the turn."""
+"""VTU files of the contact and of both bodies over the turn."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.cycle import Cycle
 
 _MILLIMETRE, _MEGAPASCAL = 1e-3, 1e6
-_TOGETHER = 24  # positions whose fields are held at once
+_TOGETHER = 24  # positions whose fields are in memory at once
 BODIES_INDEX = "bodies_cycle.pvd"
 
 IntArray = NDArray[np.int64]
 
 
 def write_contact(path: Path, solved: SolvedPair, name: str) -> None:
-    """Both bodies at one angle, as solved: displacement, stress, in the cam's frame.
+    """Displacement and stress of both bodies at one angle, in the cam frame.
 
-    `name` is that of the follower's body in the file.
+    `name` is that of the body of the follower in the file.
     """
     sides = zip(("cam", name), solved.sides, solved.solution.displacements, strict=True)
-    # The follower was held still; what it has come nearer is its rigid motion.
+    # The follower is fixed in the solution; the approach is its rigid motion.
     rigid = {"cam": np.zeros(2), name: -solved.solution.approach * solved.frame.normal}
     data = {
-        body: _point_data(side.body, moved + rigid[body][:, None], _recovered(side.body, moved))
-        for body, side, moved in sides
+        body: _point_data(side.body, field + rigid[body][:, None], _recovered(side.body, field))
+        for body, side, field in sides
     }
     write_vtu(
         path,
@@ -61,19 +61,18 @@ def write_bodies(
     cycle: Cycle,
     indices: IntArray,
     number: int,
-    tell: Callable[[int, int], None] = lambda *_: None,
+    advance: Callable[[int, int], None] = lambda *_: None,
 ) -> Path:
     """Both bodies at some positions of a turn, as ``bodies_cycle.pvd`` with its pieces.
 
-    In the cam's frame, so the follower goes round. Displacements are each body's own, against
-    where it is held. At the contact the stress is that of its ellipse in the half-plane,
-    elsewhere the finite-element correction joins it; the meshes are those of the bodies, too
-    coarse to show the contact itself. Times are cam angles in degrees.
+    In the cam frame, in which the follower rotates. Displacements are relative to the support of
+    each body. The stress is that of the Hertz pressure on the half-plane plus the finite-element
+    correction; the meshes are too coarse to resolve the contact. Times are cam angles in degrees.
 
     Parameters
     ----------
     indices : (n,)   positions of the cycle, in order
-    number : int     of the load case, from 1; stated in the files
+    number : int     of the load case, from 1
     """
     pieces = folder / "bodies"
     pieces.mkdir(exist_ok=True)
@@ -81,8 +80,8 @@ def write_bodies(
     for start in range(0, indices.size, _TOGETHER):
         part = indices[start : start + _TOGETHER]
         places = follower_places(pair, cycle.theta[part])
-        found = _loaded(pair, bodies, cycle, part)
-        for k, place, (on_cam, facing) in zip(part, places, found, strict=True):
+        fields = _loaded(pair, bodies, cycle, part)
+        for k, place, (on_cam, facing) in zip(part, places, fields, strict=True):
             angle = float(np.degrees(cycle.theta[k]))
             name = f"bodies_{round(1000 * angle):06d}.vtu"
             there = facing.turned(place.turn)
@@ -90,13 +89,13 @@ def write_bodies(
                 pieces / name,
                 {"cam": bodies.cam.body.mesh, other: place.mesh(bodies.follower.body.mesh)},
                 {
-                    "cam": _point_data(bodies.cam.body, on_cam.moved, on_cam.stress),
-                    other: _point_data(bodies.follower.body, there.moved, there.stress),
+                    "cam": _point_data(bodies.cam.body, on_cam.displacement, on_cam.stress),
+                    other: _point_data(bodies.follower.body, there.displacement, there.stress),
                 },
                 position_notes(pair, cycle, int(k), number),
             )
             entries.append((angle, f"bodies/{name}"))
-        tell(min(start + _TOGETHER, indices.size), indices.size)
+        advance(min(start + _TOGETHER, indices.size), indices.size)
     index = folder / BODIES_INDEX
     write_pvd(index, entries)
     return index
@@ -106,27 +105,27 @@ def write_bodies(
 class BodyField:
     """Displacement (2, n), m, and stress xx, yy, xy (3, n), Pa, at the nodes of a body."""
 
-    moved: Array
+    displacement: Array
     stress: Array
 
     def turned(self, turn: Array) -> BodyField:
-        """In other axes: `turn` (2, 2) takes a vector from the old to the new ones."""
+        """The field in rotated axes; `turn` (2, 2) transforms a vector to them."""
         xx, yy, xy = self.stress
         tensor = turn @ np.array([[xx, xy], [xy, yy]]).transpose(2, 0, 1) @ turn.T
         turned = np.stack([tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 0, 1]])
-        return BodyField(turn @ self.moved, turned)
+        return BodyField(turn @ self.displacement, turned)
 
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where a body is: origin (2,) m of its own frame, and the turn (2, 2) of its axes."""
+    """Pose of a body: origin (2,), m, of its own frame, and rotation (2, 2) of its axes."""
 
     origin: Array
     turn: Array
 
     @property
     def angle(self) -> float:
-        """Of the turn, rad."""
+        """Rotation, rad."""
         return float(np.arctan2(self.turn[1, 0], self.turn[0, 0]))
 
     def mesh(self, own: BodyMesh) -> BodyMesh:
@@ -134,7 +133,7 @@ class Place:
 
 
 def follower_places(pair: ContactPair, theta: Array) -> list[Place]:
-    """The follower's body in the cam's frame at cam angles (n,), facing the cam."""
+    """Poses of the follower's body in the cam frame at cam angles (n,)."""
     contacts, normals = pair.contour.points(theta), pair.contour.normal(theta)
     at, up = (np.broadcast_to(v, contacts.shape) for v in facing(pair, theta))
     places = []
@@ -153,7 +152,7 @@ def facing(pair: ContactPair, theta: Array) -> tuple[Array, Array]:
 
 
 def position_notes(pair: ContactPair, cycle: Cycle, k: int, number: int) -> dict[str, float]:
-    """Numbers that belong to a position of the cycle as a whole; `number` is its load case's."""
+    """Data of a position of the cycle; `number` is that of its load case, from 1."""
     contact, theta = cycle.contact, float(cycle.theta[k])
     point, normal = pair.contour.points(theta), pair.contour.normal(theta)
     return {

@@ -18,9 +18,9 @@ from camwright.pipeline.cycle.solution import ContactMesh, Solution
 
 @dataclass(frozen=True)
 class SmoothingRecord:
-    """How the torque was smoothed: `kind` of smoother, strength, width in rad of crank, in words.
+    """Smoothing of the torque: kind, description, strength, and width in rad of crank angle.
 
-    strength and angular_width are None where no smoother of the torque drew the lift.
+    strength and angular_width are None if no smoother of the torque drew the lift.
     """
 
     kind: str | None
@@ -44,9 +44,9 @@ class Trial:
     smoothing : SmoothingRecord
     solution : Solution
     checks : tuple     not evaluated first, then by falling utilisation
-    synthesis : mapping   record of the constrained synthesis that drew the lift; None without
-    limits_in_use : (n,) cam angles, rad, and the share in use of each limit at them (n,) by its
-                  name; None without a constrained synthesis
+    synthesis : mapping   record of the constrained synthesis; None without one
+    limits_in_use : tuple  cam angles (n,), rad, and utilisation (n,) of each limit by the id of its
+                          check; None without a constrained synthesis
     """
 
     number: int
@@ -59,7 +59,7 @@ class Trial:
 
     @property
     def case(self) -> Case:
-        """The case as solved: with the spring and prime radius of a constrained synthesis."""
+        """The case as solved, with spring and prime radius of a constrained synthesis."""
         return self.solution.case
 
     @property
@@ -74,12 +74,12 @@ class Trial:
 
     @property
     def cycles(self) -> tuple[Cycle, ...]:
-        """One cycle a load case, the design load case first."""
+        """Cycles by load case, the design load case first."""
         return self.solution.cycles
 
     @property
     def mesh(self) -> ContactMesh | None:
-        """Meshes at the worst contact; None in a preview, and where the contour is no body."""
+        """Meshes at the maximum Hertz pressure; None in a preview, or without a body."""
         return self.solution.mesh
 
     @property
@@ -94,5 +94,5 @@ class Trial:
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """Ids of the must-have checks that fail the verdict, worst first."""
+        """Ids of the must-have checks that fail or are not evaluated, worst first."""
         return binding(self.checks)

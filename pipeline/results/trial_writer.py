@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from camwright.meshes.mesh_files import write_msh
-from camwright.pipeline.cycle.guide_pressure import bush_arrays
+from camwright.pipeline.cycle.guide_pressure import guide_arrays
 from camwright.pipeline.cycle.rolling_history import envelope_arrays
 from camwright.pipeline.cycle.solution import ContactStore
 from camwright.pipeline.results.run_folder import RunFolder
@@ -11,6 +11,7 @@ from camwright.pipeline.results.run_records import (
     contour_columns,
     cycle_columns,
     lift_columns,
+    limit_columns,
     pressure_arrays,
     trial_record,
 )
@@ -18,13 +19,13 @@ from camwright.pipeline.results.trial import Trial
 
 
 class TrialWriter:
-    """Writes each trial of a run into its folder as soon as it is solved."""
+    """Writes each trial of a run into the run folder as soon as it is solved."""
 
     def __init__(self, folder: RunFolder) -> None:
         self._folder = folder
 
     def store(self, number: int) -> ContactStore:
-        """Pieces of the contact of a trial, kept in the folder until the run is complete."""
+        """Pieces of the contact of a trial, stored in the folder until the run is complete."""
         return self._folder.contact_store(number)
 
     def keep(self, trial: Trial) -> None:
@@ -32,7 +33,7 @@ class TrialWriter:
         folder, number, case = self._folder, trial.number, trial.case
         folder.write_lift(number, lift_columns(case, trial.lift))
         if trial.limits_in_use is not None:
-            folder.write_limits(number, *trial.limits_in_use)
+            folder.write_limits(number, limit_columns(*trial.limits_in_use))
         folder.write_contour(number, contour_columns(case, trial.contour))
         if (mesh := trial.mesh) is not None:
             bodies = {"cam": mesh.cam, mesh.name: mesh.follower}
@@ -41,10 +42,10 @@ class TrialWriter:
             folder.write_envelope(number, envelope_arrays(turns))
         folder.write_cycle(number, cycle_columns(trial.cycles))
         folder.write_pressure(number, pressure_arrays(trial.cycles))
-        folder.write_bushes(number, bush_arrays(trial.cycles))
+        folder.write_guides(number, guide_arrays(trial.cycles))
         self.judge(trial)
 
     def judge(self, trial: Trial) -> None:
-        """Write the checks and the record of a trial, again where it has been certified."""
+        """Write checks and record of a trial; again after its certificate."""
         self._folder.write_checks(trial.number, [check.as_record() for check in trial.checks])
         self._folder.write_trial(trial.number, trial_record(trial))

@@ -14,20 +14,11 @@ from camwright.geometry.cutter_path import cutter_path
 from camwright.geometry.errors import CamError
 from camwright.meshes.step_solid import write_step
 from camwright.pipeline.base.files import write_atomic
-from camwright.pipeline.base.tables import Column, table
+from camwright.pipeline.base.tables import CAM_ANGLE, Column, table
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.cycle.cam_balance import drilled_hole
+from camwright.pipeline.cycle.cycle import LIFT, PRESSURE_ANGLE
 
-_CONTOUR = (
-    Column("cam_angle", "deg"), Column("polar_angle", "deg"), Column("radius", "mm"),
-    Column("x", "mm"), Column("y", "mm"), Column("normal_x", ""), Column("normal_y", ""),
-    Column("curvature", "1/mm"), Column("pressure_angle", "deg"), Column("lift", "mm"),
-    Column("lift_d1", "mm/rad"), Column("lift_d2", "mm/rad^2"), Column("lift_d3", "mm/rad^3"),
-)  # fmt: skip
-_CUTTER = (
-    Column("cam_angle", "deg"), Column("x", "mm"), Column("y", "mm"),
-    Column("path_radius", "mm"), Column("tool_radius", "mm"),
-)  # fmt: skip
 _INSPECTION = (
     "cam_angle_deg", "polar_angle_deg", "nominal_radius_mm", "nominal_x_mm", "nominal_y_mm",
     "normal_x", "normal_y", "deviation_min_mm", "deviation_max_mm",
@@ -51,8 +42,8 @@ def write_workshop(
 ) -> None:
     """Write ``contour.csv``, ``contour.dxf``, ``cam.step``, ``cutter.csv``, ``inspection.csv``.
 
-    A file that the contour does not allow, such as the path of a tool larger than a hollow, is
-    left out and `note` is told why; all others are written.
+    A file that the contour does not allow, such as the path of a tool larger than the minimum
+    concave radius, is left out with a `note`; all others are written.
     """
     folder.mkdir(parents=True, exist_ok=True)
     outline, order = outline_of(case, contour), case.workshop_order
@@ -75,36 +66,42 @@ def write_workshop(
 
 
 def contour_table(contour: Contour, theta: Array) -> str:
-    """CSV of the contour and the lift behind it, a row per angle."""
+    """CSV of contour and lift, a row per angle."""
     x, y = contour.points(theta)
     normal = contour.normal(theta)
     lift = contour.pitch.lift.derivatives(theta, 3)
-    values = {
-        "cam_angle": theta,
-        "polar_angle": np.mod(np.arctan2(y, x), 2 * np.pi),
-        "radius": np.hypot(x, y),
-        "x": x,
-        "y": y,
-        "normal_x": normal[0],
-        "normal_y": normal[1],
-        "curvature": contour.curvature(theta),
-        "pressure_angle": contour.pitch.pressure_angle(theta),
-        **{name: lift[k] for k, name in enumerate(("lift", "lift_d1", "lift_d2", "lift_d3"))},
+    derivatives = {
+        Column(f"lift_d{k}", f"mm/rad{'' if k == 1 else f'^{k}'}"): lift[k] for k in (1, 2, 3)
     }
-    return table(_CONTOUR, values).to_csv()
+    return table(
+        {
+            CAM_ANGLE: theta,
+            Column("polar_angle", "deg"): np.mod(np.arctan2(y, x), 2 * np.pi),
+            Column("radius", "mm"): np.hypot(x, y),
+            Column("x", "mm"): x,
+            Column("y", "mm"): y,
+            Column("normal_x"): normal[0],
+            Column("normal_y"): normal[1],
+            Column("curvature", "1/mm"): contour.curvature(theta),
+            PRESSURE_ANGLE: contour.pitch.pressure_angle(theta),
+            LIFT: lift[0],
+            **derivatives,
+        }
+    ).to_csv()
 
 
 def cutter_table(contour: Contour, tool_radius: float, theta: Array) -> str:
-    """CSV of the tool's centre in the cam frame."""
+    """CSV of the path of the tool centre in the cam frame."""
     path = cutter_path(contour, tool_radius, theta)
-    values = {
-        "cam_angle": path.theta,
-        "x": path.centre[0],
-        "y": path.centre[1],
-        "path_radius": path.radius_of_curvature,
-        "tool_radius": np.full(theta.size, tool_radius),
-    }
-    return table(_CUTTER, values).to_csv()
+    return table(
+        {
+            CAM_ANGLE: path.theta,
+            Column("x", "mm"): path.centre[0],
+            Column("y", "mm"): path.centre[1],
+            Column("path_radius", "mm"): path.radius_of_curvature,
+            Column("tool_radius", "mm"): np.full(theta.size, tool_radius),
+        }
+    ).to_csv()
 
 
 def inspection_sheet(contour: Contour, theta: Array, tolerance: float) -> str:

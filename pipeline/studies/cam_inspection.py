@@ -17,9 +17,9 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.geometry.measured_contour import Inspection, inspected, real_contour
 from camwright.pipeline.base import units
-from camwright.pipeline.base.files import json_text, write_atomic
+from camwright.pipeline.base.files import Json, json_text, write_atomic
 from camwright.pipeline.base.progress import SILENT, Progress
-from camwright.pipeline.base.tables import Column, Table, read_table, table
+from camwright.pipeline.base.tables import CAM_ANGLE, Column, Table, read_table, table
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.results import run_reader
@@ -35,11 +35,6 @@ _WAVES_LISTED = 12
 
 _PLACES = (("measured_x_mm", "measured_y_mm"), ("x_mm", "y_mm"))
 _POLAR = (("polar_angle_deg", "measured_radius_mm"), ("angle_deg", "radius_mm"))
-_DEVIATION = (
-    Column("cam_angle", "deg"),
-    Column("deviation", "um"),
-    Column("form", "um"),
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,17 +134,15 @@ def write_inspection(run: Path, part: RealPart, tolerance: float) -> Record:
     folder, fit = run / FOLDER, part.fit
     order = np.argsort(fit.theta)
     deviation = {
-        "cam_angle": fit.theta[order],
-        "deviation": fit.deviation[order],
-        "form": fit.form(fit.theta[order]),
+        CAM_ANGLE: fit.theta[order],
+        Column("deviation", "um"): fit.deviation[order],
+        Column("form", "um"): fit.form(fit.theta[order]),
     }
-    write_atomic(folder / "deviation.csv", table(_DEVIATION, deviation).to_csv())
-    write_atomic(
-        folder / "cycle.csv", table(run_reader.CYCLE, cycle_columns(part.trial.cycles)).to_csv()
-    )
+    write_atomic(folder / "deviation.csv", table(deviation).to_csv())
+    write_atomic(folder / "cycle.csv", table(cycle_columns(part.trial.cycles)).to_csv())
     records = [check.as_record() for check in part.trial.checks]
     write_atomic(folder / "checks.json", json_text(records) + "\n")
-    record = {
+    record: dict[str, Json] = {
         "phase_deg": in_unit(fit.phase, "deg"),
         "size_um": in_unit(fit.size, "um"),
         "deviation_min_um": in_unit(float(fit.deviation.min()), "um"),
@@ -160,7 +153,7 @@ def write_inspection(run: Path, part: RealPart, tolerance: float) -> Record:
         "within_tolerance": bool(np.abs(fit.deviation).max() <= 0.5 * tolerance),
         "waves_um": _waves(fit),
         "nominal": _figures_of(run_reader.read_run(run).final.cycle),
-        "measured": _figures_of(read_table(folder / "cycle.csv", run_reader.CYCLE)),
+        "measured": _figures_of(read_table(folder / "cycle.csv")),
         "verdict": part.trial.verdict,
         "binding": list(part.trial.binding),
     }

@@ -149,7 +149,7 @@ def lines(document: Document) -> Iterator[str]:
         ("p0_MPa", "peak pressure"), ("half_width_mm", "half-width"),
         ("tau_max_MPa", "shear in plane"), ("tau_depth_mm", "at depth"),
         ("von_mises_MPa", "von Mises"), ("von_mises_depth_mm", "at depth"),
-        ("shear_any_plane_MPa", "shear, any plane"),
+        ("tau_max_all_planes_MPa", "shear, all planes"),
     ):  # fmt: skip
         if name in theory:
             unit = name.rpartition("_")[2]
@@ -204,7 +204,7 @@ def _figures(contact: LineContact) -> dict[str, float]:
         "von_mises_depth_mm": in_unit(contact.von_mises_depth, "mm"),
     }
     if contact.shear_any_plane > (1 + _WORTH) * contact.tau_max:
-        record["shear_any_plane_MPa"] = in_unit(contact.shear_any_plane, "MPa")
+        record["tau_max_all_planes_MPa"] = in_unit(contact.shear_any_plane, "MPa")
     return record
 
 
@@ -275,7 +275,7 @@ def _fields(of: Array, poisson: float, side: int) -> dict[str, Array]:
         "stress_xy": side * xy,
         "von_mises": plane_stress_measures.von_mises(of, poisson),
         "tau_max": plane_stress_measures.shear_in_plane(of),
-        "tau_any_plane": plane_stress_measures.shear_any_plane(of, poisson),
+        "tau_max_all_planes": plane_stress_measures.shear_any_plane(of, poisson),
     }
     scale = units.factor("MPa")
     return {units.column(name, "MPa"): values / scale for name, values in in_si.items()}

@@ -54,9 +54,9 @@ def test_run_tells_of_a_face(folder):
     run = read_run(folder)
     cycle = run.final.cycle
     slope = 6.0 * np.sin(np.radians(2.0 * cycle["cam_angle_deg"])) * (cycle["cam_angle_deg"] < 180)
-    np.testing.assert_allclose(cycle["place_on_face_mm"], slope, atol=0.02)
+    np.testing.assert_allclose(cycle["face_contact_offset_mm"], slope, atol=0.02)
     assert (cycle["pressure_angle_deg"] == 0.0).all()
-    np.testing.assert_allclose(cycle["tangential_force_N"], 0.08 * cycle["normal_force_N"])
+    np.testing.assert_allclose(cycle["side_force_N"], 0.08 * cycle["normal_force_N"])
     assert cycle["sliding_speed_m_per_s"].min() > 0
     assert np.abs(cycle["p0_fe_MPa"] / cycle["p0_hertz_MPa"] - 1).max() < 5e-3
     checks = {check["id"]: check for check in run.final.checks}

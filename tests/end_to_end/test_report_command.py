@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import shutil
 import subprocess
 import sys
 import webbrowser
 from pathlib import Path
 
 import pytest
+import report_fixture
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.cli import PASSED, app
@@ -17,7 +17,6 @@ from camwright.reports import figure_svg, page, sections
 from camwright.reports import pdf as printing
 
 ROOT = Path(__file__).parents[2]
-RUN = ROOT / "tests" / "data" / "runs" / "schema-1-signed"
 NEEDED = (
     "camwright.geometry",
     "camwright.pipeline.base",
@@ -27,6 +26,8 @@ NEEDED = (
     "camwright.reports",
 )
 SOLVERS = {"skfem", "gmsh", "clarabel", "cvxopt", "pypardiso"}
+ALWAYS = {"outline", "pressure-angle", "lift", "radii", "pressure", "stress", "normal-force",
+          "forces", "guides", "jamming", "speed"}  # fmt: skip
 LISTING = """
 import sys
 from camwright.pipeline import cli
@@ -41,7 +42,7 @@ print("loaded", *sys.modules)
 
 @pytest.fixture
 def run(tmp_path: Path) -> Path:
-    return Path(shutil.copytree(RUN, tmp_path / "run"))
+    return report_fixture.write_run(tmp_path / "run", positions=36, field=False)
 
 
 @pytest.fixture
@@ -92,6 +93,7 @@ def test_one_part_alone_writes_its_files_alone(run: Path) -> None:
 @pytest.mark.usefixtures("quick")
 def test_a_report_has_all_parts_but_those_to_ask_for(run: Path) -> None:
     made = sections.report(run)
+    assert {path.stem for path in made["figures"]} >= ALWAYS
     assert list(made) == [part.name for part in sections.PARTS if not part.on_request]
     assert not (run / printing.PDF).exists()
 

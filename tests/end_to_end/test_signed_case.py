@@ -23,7 +23,7 @@ def test_signed_case_passes(tmp_path):
     assert figures["torque_std_after_Nm"] <= 0.5 * figures["torque_std_before_Nm"]
     assert summary["prices"]
     trial = json.loads((tmp_path / "run" / "trial_1" / "trial.json").read_text(encoding="utf-8"))
-    assert trial["smoother"] == "constrained" and trial["synthesis"]["feasible"]
+    assert trial["smoothing_kind"] == "constrained" and trial["synthesis"]["feasible"]
     starts = trial["synthesis"]["starts"]
     assert starts["agree"] and starts["sentence"] in summary["statement"]
     assert set(trial["synthesis"]["corrections"]) == {"idle", "overspeed"}

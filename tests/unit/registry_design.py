@@ -243,7 +243,7 @@ for _side, _load in (("a", 500.0), ("b", 200.0)):
         _name,
         limited(_name, lambda p: with_material("nylon", yield_strength=p)),
         None,
-        lambda s=_side: with_parts(**{f"bush_peak_{s}": NAN}),
+        lambda s=_side: with_parts(**{f"guide_edge_pressure_{s}": NAN}),
         40.0 if _side == "a" else 30.0,
         "greatest of the turn",
     )

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.pipeline.base.tables import Column
+from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, LOAD_CASE, Column, Values
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.template import template
@@ -16,20 +16,40 @@ from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.run_folder import RunFolder
 
 ROWS = 5
+LIFT = (CAM_ANGLE, CRANK_ANGLE, Column("lift", "mm"), Column("lift_d1", "mm/rad"),
+        Column("lift_d2", "mm/rad^2"), Column("lift_d3", "mm/rad^3"))  # fmt: skip
+CONTOUR = (CAM_ANGLE, Column("contour_x", "mm"), Column("contour_y", "mm"))
+CYCLE = (LOAD_CASE, CAM_ANGLE, CRANK_ANGLE, Column("lift", "mm"), Column("normal_force", "N"),
+         Column("pressure_angle", "deg"), Column("p0_hertz", "MPa", unknown=True),
+         Column("p0_fe", "MPa", unknown=True), Column("von_mises", "MPa", unknown=True),
+         Column("torque_before", "N m", unknown=True),
+         Column("torque_after", "N m", unknown=True))  # fmt: skip
+TRIAL = {
+    "number": 1, "why": "", "smoothing_kind": "none", "smoothing_strength": 1.0,
+    "smoothing_width_deg": None, "smoothing_description": "none", "prices": None,
+    "contact_method": "", "balance": {}, "mesh": None, "certificate": [],
+    "widths": np.arange(2.0),
+}  # fmt: skip
+TORQUE = (CRANK_ANGLE, Column("total", "N m"))
 
 
 def small_case(name: str = "small") -> Case:
     return parse_case(template(name))
 
 
-def values(columns: tuple[Column, ...], rows: int = ROWS) -> dict[str, Any]:
+def values(columns: tuple[Column, ...], rows: int = ROWS) -> dict[Column, Any]:
     """SI values for every column, none of them a round number."""
-    made: dict[str, Any] = {}
+    made: dict[Column, Any] = {}
     for k, column in enumerate(columns):
-        made[column.name] = np.sin(np.arange(rows) + k) / 3.0
-    if "load_case" in made:
-        made["load_case"] = np.array(["idle"] * rows)
+        made[column] = np.sin(np.arange(rows) + k) / 3.0
+    if LOAD_CASE in made:
+        made[LOAD_CASE] = np.array(["idle"] * rows)
     return made
+
+
+def named(columns: Values) -> dict[str, Any]:
+    """Values by the bare name of their column."""
+    return {column.name: values for column, values in columns.items()}
 
 
 def check(status: str = "pass", **changes: Any) -> dict[str, Any]:
@@ -48,6 +68,12 @@ def check(status: str = "pass", **changes: Any) -> dict[str, Any]:
         "method": "refined between samples",
         "sense": "at_most",
         "must_have": True,
+        "waiver": None,
+        "note": "",
+        "error": None,
+        "corner": None,
+        "corner_demand": None,
+        "evidence": False,
     }
     return record | changes
 
@@ -58,22 +84,27 @@ def summary(verdict: str = "pass", trials: int = 1) -> dict[str, Any]:
         "trials": trials,
         "verdict": verdict,
         "binding": [] if verdict == "pass" else ["pressure_angle"],
+        "statement": "",
         "headline": dict.fromkeys(run_reader.HEADLINE, 1.0),
+        "prices": None,
+        "benchmarks": None,
+        "speed": None,
+        "consistency": [],
     }
 
 
 def write_trial(folder: RunFolder, checks: list[Mapping[str, Any]], number: int = 1) -> None:
-    folder.write_lift(number, values(run_reader.LIFT))
-    folder.write_contour(number, values(run_reader.CONTOUR))
-    folder.write_cycle(number, values(run_reader.CYCLE))
+    folder.write_lift(number, values(LIFT))
+    folder.write_contour(number, values(CONTOUR))
+    folder.write_cycle(number, values(CYCLE))
     folder.write_checks(number, checks)
-    folder.write_trial(number, {"smoother": {"kind": "none"}, "widths": np.arange(2.0)})
+    folder.write_trial(number, TRIAL)
 
 
 def write_run(out: Path, case: Case | None = None, status: str = "pass") -> Path:
     """A finished run whose only check has this status."""
     with RunFolder(out, case or small_case()) as folder:
-        folder.write_torque(np.arange(ROWS) / 7.0, {"total": np.arange(ROWS) / 3.0})
+        folder.write_torque(values(TORQUE))
         write_trial(folder, [check(status)])
         folder.finish(summary("pass" if status in ("pass", "waived") else "fail"))
     return out

@@ -142,7 +142,7 @@ def test_the_record_is_plain_numbers():
     record = balance(case_of().cam, SLIGHT).record()
     assert json.loads(json.dumps(record)) == record
     assert record["hole_drilled"] is False
-    assert record["unbalance_left_g_mm"] < 1e-6 < record["unbalance_g_mm"]
+    assert record["residual_unbalance_g_mm"] < 1e-6 < record["unbalance_g_mm"]
 
 
 def test_the_workshop_drills_it(tmp_path):

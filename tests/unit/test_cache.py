@@ -147,4 +147,4 @@ def test_writers_at_one_time_leave_whole_entries(place):
     with multiprocessing.get_context("spawn").Pool(2) as pool:
         pool.map(_write_often, [str(place)] * 2)
     assert len(list(place.glob("*.npz"))) == 3
-    assert not list(place.glob("*.part"))
+    assert not list(place.glob(".*.tmp"))

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_run import named
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.lift import Lift
@@ -56,9 +57,11 @@ def test_the_stem_rides_on_that_speed_and_says_so(gx120):
     cycle = Cycle(given, contour, pair, None, unknown)
     elastic = cycle.parts.elastic
     assert "varies by" in elastic.method
-    columns = cycle.columns()
+    columns = named(cycle.columns())
     np.testing.assert_array_equal(columns["cam_speed"], given.cam_speed)
-    np.testing.assert_array_equal(columns["elastic_contact_force"], elastic.response.contact_force)
+    np.testing.assert_array_equal(
+        columns["contact_force_elastic_stem"], elastic.response.contact_force
+    )
     speed = 0.5 * case.load_cases[0].speed
     steady = harmonic_response(given.loads.lift, speed, elastic_follower(machine))
     assert np.abs(elastic.response.contact_force - steady.contact_force).max() > 0.5

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from crank_traces import CYCLE, noisy_times, tooth_angles, voltage
+from small_run import named
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case, read_case
@@ -137,7 +138,7 @@ def test_speed_of_the_published_case(gx120):
     assert stds == pytest.approx([3.59, 3.44, 0.40], rel=0.02)
     assert max(study.before.closure, study.after.closure) < 1e-10
     assert study.added_inertia == pytest.approx(0.11, abs=0.005)  # two digits are published
-    assert set(study.columns) == {
+    assert {column.name for column in study.columns()} == {
         "crank_angle", "speed_before", "speed_inertia_alone", "speed_after"
     }  # fmt: skip
     whole, pitch = torque.without_mean().total, contour.pitch
@@ -171,7 +172,7 @@ def test_the_record_of_a_run_holds_the_crank_speed_of_the_guides_that_rub(gx120)
     assert flywheel["added_inertia_kg_m2"] == study.added_inertia
     assert flywheel["outer_radius_mm"] == pytest.approx(1e3 * radius, rel=1e-12)
     assert flywheel["disc_mass_kg"] == pytest.approx(2.0 * flywheel["rim_mass_kg"], rel=1e-12)
-    np.testing.assert_array_equal(columns["speed_after"], study.after.speed)
+    np.testing.assert_array_equal(named(columns)["speed_after"], study.after.speed)
     agreement = {one["id"]: one for one in record["consistency"]}
     assert set(agreement) == {"power", "energy", "work", "inertia"}
     assert {one["load_case"] for one in agreement.values()} == {"idle"}

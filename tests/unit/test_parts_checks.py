@@ -5,6 +5,7 @@ from dataclasses import replace
 import made_trial as made
 import numpy as np
 import pytest
+from small_run import named
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -31,7 +32,6 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.follower_forces import follower_loads
 from camwright.pipeline.follower.guide_reactions import guide_reactions
-from camwright.pipeline.results import run_reader
 
 SPRING = """
 [spring.design]
@@ -232,15 +232,21 @@ def test_temperature_with_a_heat_path(bare):
 
 
 def test_columns_of_all_parts(full):
-    columns = full.cycles[0].columns()
-    for name in ("bush_peak_A", "spring_stress", "pin_stress", "shaft_bearing_2", "key_pressure"):
+    columns = named(full.cycles[0].columns())
+    for name in (
+        "guide_edge_pressure_A",
+        "spring_stress",
+        "pin_stress",
+        "shaft_bearing_load_2",
+        "key_pressure",
+    ):
         assert np.isfinite(columns[name]).all()
     force = full.cycles[0].loads.normal_force
     np.testing.assert_allclose(columns["bore_pressure"], force / (2 * 10e-3 * 10e-3), rtol=1e-12)
     # the wall of a bush spreads nothing: its peak is above the projected pressure
     guides = full.cycles[0].guides
     loaded = guides.pressure_max_a > 0
-    assert (columns["bush_peak_A"][loaded] > guides.pressure_max_a[loaded]).all()
+    assert (columns["guide_edge_pressure_A"][loaded] > guides.pressure_max_a[loaded]).all()
 
 
 def test_a_card_fills_in_what_the_case_leaves_out():
@@ -275,8 +281,11 @@ def test_friction_that_the_guides_do_not_have_fails_the_balance(bare):
 def test_columns_of_a_turn_close(bare):
     """What one row says of friction, force, heat and shares adds up: 1e-9 of the greatest."""
     cycle, guides = bare.cycles[0], bare.case.guides
-    rows = table(run_reader.CYCLE, cycle.columns())
-    v, rubs = rows["velocity_m_per_s"], rows["friction_A_N"] + rows["friction_B_N"]
+    rows = table(cycle.columns())
+    v, rubs = (
+        rows["follower_velocity_m_per_s"],
+        rows["guide_friction_A_N"] + rows["guide_friction_B_N"],
+    )
 
     def same(one, other):
         np.testing.assert_allclose(one, other, atol=1e-9 * np.abs(other).max())
@@ -284,13 +293,13 @@ def test_columns_of_a_turn_close(bare):
     pressed = rows["spring_force_N"] + rows["inertia_force_N"] + rows["viscous_force_N"]
     same(pressed + np.sign(v) * rubs, rows["axial_force_N"])
     for side, guide in (("A", guides.a), ("B", guides.b)):
-        same(guide.friction * rows[f"rubbing_load_{side}_N"], rows[f"friction_{side}_N"])
-        same(rows[f"friction_{side}_N"] * np.abs(v), rows[f"friction_heat_{side}_W"])
-        changed = rows["reaction_by_length_N"] + rows["reaction_by_clearance_N"]
-        same(rows[f"reaction_{side}_statics_N"] + changed, rows[f"reaction_{side}_N"])
+        same(guide.friction * rows[f"guide_normal_load_{side}_N"], rows[f"guide_friction_{side}_N"])
+        same(rows[f"guide_friction_{side}_N"] * np.abs(v), rows[f"guide_friction_power_{side}_W"])
+        changed = rows["guide_reaction_by_length_N"] + rows["guide_reaction_by_clearance_N"]
+        same(rows[f"guide_reaction_{side}_statics_N"] + changed, rows[f"guide_reaction_{side}_N"])
     changed = rows["normal_force_by_length_N"] + rows["normal_force_by_clearance_N"]
     same(rows["normal_force_statics_N"] + changed, rows["normal_force_N"])
-    heat = (rows["friction_heat_A_W"] + rows["friction_heat_B_W"]).mean()
+    heat = (rows["guide_friction_power_A_W"] + rows["guide_friction_power_B_W"]).mean()
     assert np.mean(rows["cam_torque_Nm"]) * cycle.cam_speed == pytest.approx(heat, rel=1e-9)
     assert rows["residual_friction"].max() <= 1e-10
     same(np.radians(rows["stem_slope_A_deg"]), cycle.guides.slope_a)

@@ -9,7 +9,8 @@ from camwright.reports import report_tables, verification_tables
 CHECK = {
     "id": "x", "title": "Contact pressure", "demand": 1088.3, "limit": 650.0, "unit": "MPa",
     "utilisation": 1.67, "status": "fail", "load_case": "idle", "cam_angle_deg": 245.5,
-    "source": "s", "method": "m",
+    "source": "s", "method": "m", "sense": "at_most", "must_have": True, "waiver": None,
+    "note": "", "error": None, "corner": None, "corner_demand": None, "evidence": False,
 }  # fmt: skip
 
 

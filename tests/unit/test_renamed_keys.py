@@ -25,6 +25,7 @@ from camwright.pipeline.checks.registry import (
 )
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.results.workshop_files import WORKSHOP
+from camwright.reports import guide_pressure_figure
 
 NAMES = renamed_names()
 CHECK_IDS = {each.id for each in (*CHECKS, TOLERANCE_CORNERS, UNSIGNED, WAIVERS_WITHOUT_EFFECT)}
@@ -236,4 +237,4 @@ def test_renamed_values_keys_of_wires_and_files_are_those_of_today() -> None:
     fields = section_of(HelicalSpring).model_fields
     assert set(NAMES["wires"].values()) <= set(fields)
     assert not set(NAMES["wires"]) & set(fields)
-    assert NAMES["files"] == {"shop/": f"{WORKSHOP}/"}
+    assert NAMES["files"] == {"shop/": f"{WORKSHOP}/", "5_bushes.npz": guide_pressure_figure.FILE}

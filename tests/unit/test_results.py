@@ -3,39 +3,68 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from small_run import ROWS, check, small_case, summary, values, write_run, write_trial
+from small_run import (
+    CYCLE,
+    LIFT,
+    ROWS,
+    check,
+    small_case,
+    summary,
+    values,
+    write_run,
+    write_trial,
+)
 
+from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import ResultError
+from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import json_text
-from camwright.pipeline.base.tables import read_table, table
-from camwright.pipeline.results import run_reader
-from camwright.pipeline.results.run_folder import RunFolder
+from camwright.pipeline.base.tables import CAM_ANGLE, LOAD_CASE, Column, read_table, table
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.results import run_reader, signoff
+from camwright.pipeline.results.run_folder import RunFolder, drawn_cam
+from camwright.pipeline.results.run_records import column_table
+from camwright.pipeline.solver import solve
+
+THETA = uniform_turn(36)
 
 
 def test_cycle_columns_are_the_promised_ones() -> None:
-    headers = [column.header for column in run_reader.CYCLE]
+    case = small_case().with_positions(36)
+    contour = case.contour(Lift(THETA, 0.004 * (1 - np.cos(THETA))))
+    files = column_table(solve(case, contour, tier=Tier.PREVIEW))
+    assert list(files) == ["2_lift.csv", "3_contour.csv", "5_cycle.csv"]
+    for column in (column for columns in files.values() for column in columns):
+        assert column.meaning, column.header
+    headers = [column.header for column in files["5_cycle.csv"]]
     assert headers[:9] == [
         "load_case",
         "cam_angle_deg",
         "crank_angle_deg",
         "lift_mm",
         "pressure_angle_deg",
-        "pitch_radius_mm",
+        "pitch_radius_of_curvature_mm",
         "contour_radius_of_curvature_mm",
         "normal_force_N",
         "line_load_N_per_mm",
     ]
     for header in ("p0_hertz_MPa", "p0_fe_MPa", "p0_difference_percent", "half_width_fe_mm"):
         assert header in headers
-    for header in ("velocity_m_per_s", "cam_torque_Nm", "torque_after_Nm", "jam_index"):
+    for header in (
+        "follower_velocity_m_per_s",
+        "cam_torque_Nm",
+        "jam_index",
+        "guide_edge_pressure_A_MPa",
+    ):
         assert header in headers
     assert len(set(headers)) == len(headers)
-    assert [column.header for column in run_reader.LIFT][3:] == [
+    assert [column.header for column in files["2_lift.csv"]][3:] == [
         "lift_d1_mm_per_rad",
         "lift_d2_mm_per_rad2",
         "lift_d3_mm_per_rad3",
@@ -43,10 +72,10 @@ def test_cycle_columns_are_the_promised_ones() -> None:
 
 
 def test_table_turns_si_into_the_unit_of_the_column() -> None:
-    given = values(run_reader.LIFT, 720)
-    given["lift"] = np.full(720, 0.0335)
-    given["cam_angle"] = np.arange(720) * (2.0 * np.pi / 720.0)
-    made = table(run_reader.LIFT, given)
+    given = values(LIFT, 720)
+    given[LIFT[2]] = np.full(720, 0.0335)
+    given[CAM_ANGLE] = np.arange(720) * (2.0 * np.pi / 720.0)
+    made = table(given)
     assert made["lift_mm"].tolist() == [33.5] * 720
     assert made["cam_angle_deg"].tolist() == [0.5 * k for k in range(720)]  # no 0.49999999999999994
     with pytest.raises(ValueError, match="read-only"):
@@ -54,30 +83,32 @@ def test_table_turns_si_into_the_unit_of_the_column() -> None:
 
 
 def test_csv_reads_back_bit_for_bit(tmp_path: Path) -> None:
-    made = table(run_reader.CYCLE, values(run_reader.CYCLE, 300))
+    made = table(values(CYCLE, 300))
     path = tmp_path / "5_cycle.csv"
     path.write_text(made.to_csv())
     again = read_table(path)
     assert list(again.columns) == list(made.columns)
+    assert again.load_cases == made.load_cases == ("idle",)
     for header, column in made.columns.items():
         assert column.tolist() == again[header].tolist()
     assert again.to_csv() == made.to_csv()
 
 
 def test_columns_that_do_not_apply_are_left_out() -> None:
-    given = values(run_reader.CYCLE)
-    del given["torque_before"], given["torque_after"]
-    made = table(run_reader.CYCLE, given)
+    given = {c: v for c, v in values(CYCLE).items() if not c.name.startswith("torque")}
+    made = table(given)
     assert "torque_before_Nm" not in made
     assert len(made) == ROWS
 
 
 def test_what_could_not_be_found_is_left_empty(tmp_path: Path) -> None:
-    made = table(run_reader.CYCLE, values(run_reader.CYCLE) | {"p0_fe": np.full(ROWS, np.nan)})
+    given = values(CYCLE)
+    given |= {column: np.full(ROWS, np.nan) for column in given if column.name == "p0_fe"}
+    made = table(given)
     path = tmp_path / "table.csv"
     path.write_text(made.to_csv())
     assert "nan" not in path.read_text()
-    again = read_table(path, run_reader.CYCLE)
+    again = read_table(path)
     assert np.isnan(again["p0_fe_MPa"]).all()
     assert again["p0_hertz_MPa"].tolist() == made["p0_hertz_MPa"].tolist()
 
@@ -85,16 +116,16 @@ def test_what_could_not_be_found_is_left_empty(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"lift": None}, "column lift_mm was not given"),
-        ({"lyft": np.zeros(ROWS)}, "no such column: lyft"),
-        ({"lift": np.zeros(ROWS + 1)}, "columns of different length"),
-        ({"lift": np.array([0.0, np.nan, 0.0, 0.0, 0.0])}, "column lift_mm holds NaN"),
+        ({Column("lift", "mm", "again"): np.zeros(ROWS)}, "column lift_mm = twice, must be once"),
+        ({LIFT[2]: np.zeros(ROWS + 1)}, "columns of different length"),
+        ({LOAD_CASE: np.array(["idle"])}, "columns of different length"),
+        ({LIFT[2]: np.zeros((ROWS, 1))}, "column lift_mm holds 2 dimensions"),
+        ({LIFT[2]: np.array([0.0, np.nan, 0.0, 0.0, 0.0])}, "column lift_mm holds NaN"),
     ],
 )
-def test_table_refuses(change: dict[str, Any], message: str) -> None:
-    given = {name: v for name, v in (values(run_reader.LIFT) | change).items() if v is not None}
+def test_table_refuses(change: dict[Column, Any], message: str) -> None:
     with pytest.raises(ResultError, match=message):
-        table(run_reader.LIFT, given)
+        table(values(LIFT) | change)
 
 
 @pytest.mark.parametrize(
@@ -105,7 +136,7 @@ def test_table_refuses(change: dict[str, Any], message: str) -> None:
         ("a,b\n1\n", "line 2: 1 cells, must be 2"),
         ("a,b\n1,x\n", "line 2: b = 'x', must be a number"),
         ("a,b\n1,nan\n", "line 2: b = 'nan', must be a number"),
-        ("a,b\n1,\n1,2\n", "line 2: b = '', must be a number"),
+        ("a,b\n1,2\n1, \n", "line 3: b = ' ', must be a number"),
     ],
 )
 def test_broken_csv_is_refused(tmp_path: Path, text: str, message: str) -> None:
@@ -118,7 +149,9 @@ def test_broken_csv_is_refused(tmp_path: Path, text: str, message: str) -> None:
 def test_rows_of_one_load_case(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
     path.write_text("load_case,lift_mm\nidle,1\nrated,2\nidle,3\n")
-    assert read_table(path).where("load_case", "idle")["lift_mm"].tolist() == [1.0, 3.0]
+    assert read_table(path).load_cases == ("idle", "rated")
+    assert read_table(path).of_load_case("idle")["lift_mm"].tolist() == [1.0, 3.0]
+    assert len(read_table(path).of_load_case("full load")) == 0
     with pytest.raises(ResultError, match="column force_N is missing"):
         read_table(path)["force_N"]
 
@@ -183,7 +216,7 @@ def test_a_pass_that_its_numbers_do_not_bear_out(tmp_path: Path, change: dict[st
         ("trial_1/6_checks.json", "[{}]", "a check lacks id"),
         ("trial_1/6_checks.json", "{}", "must be a list"),
         ("trial_1/6_checks.json", '[{"a": NaN}]', "not JSON"),
-        ("trial_1/trial.json", "[]", "must be an object"),
+        ("trial_1/trial.json", "[]", "lacks number"),
         ("trial_1/2_lift.csv", "\xff", "must be"),
     ],
 )
@@ -198,6 +231,28 @@ def test_broken_run_is_one_line(
     with pytest.raises(ResultError, match=message) as caught:
         run_reader.read_run(run)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "read",
+    [
+        run_reader.read_run,
+        run_reader.read_verdict,
+        run_reader.verify_run,
+        signoff.changes,
+        signoff.record,
+        drawn_cam,
+        lambda run: RunFolder(run, small_case()),
+    ],
+)
+def test_a_folder_of_another_schema_is_refused(
+    tmp_path: Path, read: Callable[[Path], object]
+) -> None:
+    run = write_run(tmp_path / "run")
+    for name in ("run.json", "signoff.json"):
+        (run / name).write_text(json.dumps({"schema": 1, "case": "small"}))
+    with pytest.raises(ResultError, match=r"\.json: schema = 1, must be 2: run the case again$"):
+        read(run)
 
 
 def test_no_folder() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from small_run import check, small_case, summary, write_run, write_trial
+from small_run import TORQUE, check, small_case, summary, values, write_run, write_trial
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
@@ -73,7 +73,7 @@ def test_what_nobody_expected_leaves_solved_trials_to_resume(tmp_path: Path) -> 
 
 def test_what_nobody_expected_before_any_contact_leaves_nothing(tmp_path: Path) -> None:
     with pytest.raises(ZeroDivisionError), RunFolder(tmp_path / "run", small_case()) as folder:
-        folder.write_torque(np.arange(5) / 7.0, {"total": np.arange(5) / 3.0})
+        folder.write_torque(values(TORQUE))
         raise ZeroDivisionError
     assert entries(tmp_path) == []
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from camwright.pipeline.base.tables import Table
 from camwright.reports.analysis_sheet import BINDS, limits_strip
 from camwright.reports.figure_svg import svg_and_png
 from camwright.reports.interactive import specification
@@ -9,12 +10,14 @@ from camwright.reports.interactive import specification
 
 def columns():
     theta = np.arange(360.0)
-    return {
-        "cam_angle_deg": theta,
-        "pressure_angle": 0.999 * np.abs(np.sin(np.radians(theta))),
-        "roller_life": np.full(360, 0.999),
-        "undercut": np.full(360, 0.2),
-    }
+    return Table(
+        {
+            "cam_angle_deg": theta,
+            "pressure_angle": 0.999 * np.abs(np.sin(np.radians(theta))),
+            "roller_life": np.full(360, 0.999),
+            "undercut": np.full(360, 0.2),
+        }
+    )
 
 
 def test_strips_show_what_is_used_and_mark_where_it_binds():
@@ -39,5 +42,5 @@ def test_strips_are_drawn_still_and_live():
 
 def test_runs_without_a_record_have_no_strips():
     assert limits_strip(None, 2.0, strokes=True) is None
-    unused = {"cam_angle_deg": np.arange(4.0), "undercut": np.full(4, 0.1)}
+    unused = Table({"cam_angle_deg": np.arange(4.0), "undercut": np.full(4, 0.1)})
     assert limits_strip(unused, 2.0, strokes=True) is None

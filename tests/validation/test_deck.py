@@ -155,10 +155,10 @@ def test_what_no_deck_can_hold_is_refused(tmp_path: Path) -> None:
 def test_force_between_positions_and_where_there_is_none() -> None:
     table = Table(
         {
-            "load_case": np.array(["idle"] * 4),
             "cam_angle_deg": np.array([0.0, 90.0, 180.0, 270.0]),
             "normal_force_N": np.array([100.0, 200.0, 0.0, 300.0]),
-        }
+        },
+        np.array(["idle"] * 4),
     )
     assert force_at(table, "idle", np.radians(45.0)) == pytest.approx(150.0)
     assert force_at(table, "idle", np.radians(315.0)) == pytest.approx(200.0)

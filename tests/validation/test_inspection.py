@@ -155,10 +155,10 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Case, Contour]:
         out.write_lift(1, lift_columns(case, lift))
         out.write_contour(1, contour_columns(case, made))
         cycle = {k: np.abs(v) if v.dtype.kind == "f" else v
-                 for k, v in small_run.values(run_reader.CYCLE).items()}  # fmt: skip
+                 for k, v in small_run.values(small_run.CYCLE).items()}  # fmt: skip
         out.write_cycle(1, cycle)
         out.write_checks(1, [small_run.check()])
-        out.write_trial(1, {})
+        out.write_trial(1, small_run.TRIAL)
         out.finish(small_run.summary())
     return folder, case, made
 

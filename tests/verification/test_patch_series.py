@@ -20,8 +20,8 @@ from camwright.pipeline.contact.pin_in_hole import peak_pressure
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.guide_pressure import bore_pressure, bush_arrays, loaded_length
-from camwright.pipeline.cycle.part_loads import bush_pair
+from camwright.pipeline.cycle.guide_pressure import bore_pressure, guide_arrays, loaded_length
+from camwright.pipeline.cycle.part_loads import guide_bodies
 from camwright.pipeline.cycle.solution import turns_of
 from camwright.pipeline.follower.guide_reactions import lobatto
 from camwright.pipeline.results.contact_patch_series import (
@@ -231,7 +231,7 @@ def test_edge_of_bore_and_keyway() -> None:
 
 @pytest.fixture(scope="module")
 def bushes(series):
-    return bush_arrays([series[-1]])
+    return guide_arrays([series[-1]])
 
 
 @pytest.mark.parametrize("side", ["A", "B"])
@@ -259,7 +259,7 @@ def test_pressure_in_a_bush_is_that_of_a_pin_in_its_hole(series) -> None:
     pressure = bore_pressure(machine, guide, pushes)
     assert not pressure[1].any()
     assert pressure[0].argmax() == 0 and pressure[4].argmax() == pressure.shape[1] // 2
-    pin, bush = bush_pair(machine, guide)
+    pin, bush = guide_bodies(machine, guide)
     radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
     peak, _ = peak_pressure(np.abs(pushes), radius, clearance, pin, bush)
     np.testing.assert_allclose(pressure.max(axis=1), peak, rtol=0.01)

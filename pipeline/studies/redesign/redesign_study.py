@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from camwright.geometry.errors import InputError, ResultError
-from camwright.pipeline.base.files import json_text, read_json, write_atomic
+from camwright.pipeline.base.files import Json, json_text, read_json, write_atomic
 from camwright.pipeline.base.progress import Progress
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.base.worker_processes import pool, workers_for
@@ -89,7 +89,7 @@ def redesign(
         tried = _searched(search, running, workers, progress)
         original, points = _solved_whole(search, _chosen(tried, against), workers, progress)
     kept, refused = _split(points, against)
-    document = {
+    document: dict[str, Json] = {
         "schema": 1,
         "case": case.name,
         "input_sha256": case.sha256,

@@ -33,13 +33,13 @@ def path(tmp_path):
 
 
 def test_reads_both_guides_and_their_worst_place(path):
-    a, b = guide_pressure_figure.read_bushes(path, "idle")
+    a, b = guide_pressure_figure.read_guides(path, "idle")
     assert (a.name, a.peak, a.slice, a.worst_angle) == ("A", 40.0, 0, 315.0)
     assert b.line.shape == (ROWS, KNOTS)
 
 
 def test_draws_a_picture_of_either_side_of_the_bore(path):
-    png = guide_pressure_figure.drawn(guide_pressure_figure.read_bushes(path, "idle"))
+    png = guide_pressure_figure.drawn(guide_pressure_figure.read_guides(path, "idle"))
     assert png.startswith(b"\x89PNG") and len(png) > 10_000
 
 
@@ -54,9 +54,9 @@ def test_what_is_pressed_is_shown_with_a_margin():
 
 def test_a_file_without_the_load_case_is_told(path):
     with pytest.raises(ResultError, match="rated"):
-        guide_pressure_figure.read_bushes(path, "rated")
+        guide_pressure_figure.read_guides(path, "rated")
     with pytest.raises(ResultError):
-        guide_pressure_figure.read_bushes(path.with_name("none.npz"), "idle")
+        guide_pressure_figure.read_guides(path.with_name("none.npz"), "idle")
 
 
 def test_pressure_over_the_contact_is_that_of_the_angle_and_of_the_harder_case(tmp_path):

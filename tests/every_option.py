@@ -1,0 +1,43 @@
+"""The case of the GX120 with every option that a case may state, at little cost."""
+
+import tomllib
+from pathlib import Path
+
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import case_of
+
+GX120 = Path(__file__).resolve().parents[1] / "cases" / "gx120.toml"
+OPTIONS = {
+    "cam": {"roughness": "0.3 um", "profile_tolerance": "0.02 mm", "counter_hole": {}},
+    "spring": {"travel_max": "25 mm", "catalogue": "shipped"},
+    "camshaft": {
+        "bearing_spacing": "60 mm",
+        "cam_position": "30 mm",
+        "gear_position": "75 mm",
+        "gear_radius": "30 mm",
+        "drag": "0.05 N m",
+    },
+    "roller": {
+        "roughness": "0.1 um",
+        "friction": 0.1,
+        "inertia": "0.3 kg mm^2",
+        "pin": {"diameter": "5 mm", "span": "9 mm", "material": "bearing_steel"},
+    },
+    "follower": {"stiffness": "20000 N/mm", "viscous_damping": "2 N s/m"},
+    "lubricant": {
+        "viscosity": "15 mPa s",
+        "pressure_viscosity": "20 1/GPa",
+        "film": "mixed",
+    },
+    "smoothing": {"kind": "moving_average"},
+    "solver": {"positions": 36, "certificate_positions": 1, "max_trials": 1},
+}
+
+
+def full_case() -> Case:
+    tables = tomllib.loads(GX120.read_text(encoding="utf-8"))
+    for section, values in OPTIONS.items():
+        tables[section] = tables.get(section, {}) | values
+    for card in tables["materials"].values():
+        card.setdefault("hardness", 600)
+    return case_of(tables)
