@@ -25,7 +25,7 @@ ORDER = '[workshop]\ntable_step = "0.25 deg"\ntool_radius = "6 mm"\nchord_error 
 
 def case(workshop: str = ORDER, limits: str = "", cam: str = "") -> Case:
     text = template("part")
-    own = text[text.index("[workshop]") : text.index("# --- One table")]
+    own = text[text.index("[workshop]") : text.index("# --- Load cases")]
     text = text.replace(own, workshop).replace(LIMITS, LIMITS + limits)
     return parse_case(text.replace("[cam]\n", "[cam]\n" + cam))
 
