@@ -15,6 +15,8 @@ def check(name, status="pass", utilisation=0.5, **more):
         "id": name, "title": name.title(), "demand": 1.0, "limit": 2.0, "unit": "MPa",
         "utilisation": utilisation, "status": status, "load_case": "idle", "cam_angle_deg": 12.5,
         "source": "", "method": "", "must_have": True, "sense": "at_most",
+        "waiver": None, "note": "", "error": None, "corner": None, "corner_demand": None,
+        "evidence": False,
     }  # fmt: skip
     return base | more
 
