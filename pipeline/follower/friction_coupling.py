@@ -36,7 +36,7 @@ _ROUNDS_MAX = 100  # bisection alone converges in 40 from the bracket F to F/JAM
 _CLIMB = 40  # rounds without bisection at positions that have no upper bound yet
 
 # Values of a fixed-point map at positions, numbered by the second argument.
-Answer = Callable[[Array, NDArray[np.intp]], Array]
+FixedPointMap = Callable[[Array, NDArray[np.intp]], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +108,7 @@ def guided_loads(
     way, slope = Push.of(pitch, system, theta), points.lift_slope
     bores = _Bores(stem, guides, knots, points, way)
 
-    def answer(push: Array, at: NDArray[np.intp]) -> Array:
+    def mapping(push: Array, at: NDArray[np.intp]) -> Array:
         a, b = bores.factors(push, at)
         jam = (system.friction_a * a + system.friction_b * b) * way.side_factor[at]
         return np.asarray(free.axial_force[at] / share_left(slope[at], jam))
@@ -116,7 +116,7 @@ def guided_loads(
     force, outward = free.axial_force, slope > 0.0
     high = np.where(outward, force / JAM_FLOOR, force)
     low, start = np.where(outward, force, 0.0), np.where(outward, force, points.axial_force)
-    push, rounds = balanced(answer, low, high, start)
+    push, rounds = balanced(mapping, low, high, start)
     everywhere = np.arange(theta.size)
     a, b = bores.factors(push, everywhere)
     loads = follower_loads(pitch, replace(system, rubbing=Rubbing(theta, a, b)), cam_speed, theta)
@@ -137,7 +137,7 @@ def guided_loads(
     return Guided(loads, reactions, residual, rounds + 2)
 
 
-def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Array, int]:
+def balanced(mapping: FixedPointMap, low: Array, high: Array, start: Array) -> tuple[Array, int]:
     """Fixed points x = f(x) of continuous functions, each within a bracket.
 
     With f(low) >= low and f(high) <= high: secant steps within the bracket. Where a step does not
@@ -146,7 +146,7 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
 
     Parameters
     ----------
-    answer : function   f of values (k,) and their positions (k,) in the arrays
+    mapping : function  f of values (k,) and their positions (k,) in the arrays
     low, high : array (n,)
     start : array (n,)
 
@@ -168,7 +168,7 @@ def balanced(answer: Answer, low: Array, high: Array, start: Array) -> tuple[Arr
     for rounds in range(_ROUNDS_MAX):
         if not at.size:
             return x, rounds
-        now, value = x[at], answer(x[at], at)
+        now, value = x[at], mapping(x[at], at)
         miss = now - value
         open_ = np.abs(miss) > 0.01 * RESIDUAL * value
         low[at] = np.where(miss < 0.0, now, low[at])
