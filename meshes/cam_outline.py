@@ -55,8 +55,9 @@ def trace(contour: ContourLike) -> Trace:
     normal = contour.normal(0.5 * (theta[1:] + theta[:-1]))
     forward = normal[0] * chord[1] - normal[1] * chord[0]
     if not (forward > 0).all():
-        worst = np.degrees(theta[int(np.argmin(forward))])
-        raise GeometryError(f"contour = undercut at cam angle {worst:.2f} deg, must be sound")
+        worst = theta[int(np.argmin(forward))]
+        where = f"cam angle {np.degrees(worst):.2f} deg"
+        raise GeometryError(f"contour = undercut at {where}, must be sound")
     return Trace(contour, theta, points, np.r_[0.0, np.cumsum(np.hypot(*chord))])
 
 

@@ -45,7 +45,11 @@ Materials = Annotated[
 
 
 class Case(Section):
-    """A design and its load cases."""
+    """A design and its load cases as a case file has them, resolved, SI; frozen.
+
+    Made by `read_case`. Each field is a section of the case file; one that the case leaves out has
+    its defaults or is None. `docs/case-file.md` lists every key with unit, bounds and default.
+    """
 
     schema_version: Literal[1]
     name: Name

@@ -162,11 +162,13 @@ def _flights(histories: list[ElasticHistory]) -> str:
     if not flights:
         return ""
     high = max(flights, key=lambda flight: flight.height)
-    lift_off, landing = (np.degrees(angle) % 360.0 for angle in (high.jump, high.landing))
+    lift_off, landing = (
+        f"{np.degrees(angle) % 360.0:.1f} deg" for angle in (high.jump, high.landing)
+    )
     force = max(history.force_max for history in histories)
     return (
         f"{len(flights)} losses of contact per turn; the highest flight starts at"
-        f" {lift_off:.1f} deg and ends at {landing:.1f} deg, {shown(high.height, 'mm', 3)} high,"
+        f" {lift_off} and ends at {landing}, {shown(high.height, 'mm', 3)} high,"
         f" with {shown(high.landing_speed, 'm/s', 3)}; greatest impact force {shown(force, 'N')}"
     )
 

@@ -152,11 +152,11 @@ def cam_unbalance(solution: Solution) -> Demand:
     """Eccentricity times speed of the finished cam, m/s, and the counter-hole for it."""
     balanced = balance(solution.machine.cam, solution.contour)
     made, speed = balanced.as_made, max(machine.cam_speed for machine in solution.machines)
-    angle = np.degrees(made.angle) % 360
+    angle = f"{np.degrees(made.angle) % 360:.1f} deg"
     return Demand(
         made.eccentricity * speed,
         solution.machine.limits[UNBALANCE],
-        note=f"{made.force(speed):.1f} N at {angle:.1f} deg of the cam{_hole(balanced)}",
+        note=f"{made.force(speed):.1f} N at {angle} of the cam{_hole(balanced)}",
     )
 
 

@@ -204,10 +204,10 @@ def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:
 
 def rolling_record(turns: Mapping[str, RollingHistory]) -> dict[str, Json]:
     """Maxima of the turn and their places by load case, mm and MPa, for ``trial.json``."""
-    return {name: _worst(turn) for name, turn in turns.items()}
+    return {name: _worst_record(turn) for name, turn in turns.items()}
 
 
-def _worst(turn: RollingHistory) -> dict[str, Json]:
+def _worst_record(turn: RollingHistory) -> dict[str, Json]:
     record: dict[str, Json] = {}
     for name in MAPS:
         if getattr(turn.envelope, name) is not None:
@@ -221,7 +221,7 @@ def _worst(turn: RollingHistory) -> dict[str, Json]:
                 "depth_mm": _MM * depth,
             }
     if turn.bore is not None:
-        record["bore"] = _worst_of_bore(turn.bore)
+        record["bore"] = _worst_bore_record(turn.bore)
     if turn.contact is not None:
         loss = turn.contact.loss
         record["sliding_loss_J_per_cam_turn"] = loss if np.isfinite(loss) else None
@@ -233,7 +233,7 @@ def _worst(turn: RollingHistory) -> dict[str, Json]:
     return record
 
 
-def _worst_of_bore(bore: BoreStress) -> dict[str, Json]:
+def _worst_bore_record(bore: BoreStress) -> dict[str, Json]:
     k = int(bore.von_mises.argmax())
     return {
         "von_mises_MPa": _MPA * float(bore.von_mises[k]),

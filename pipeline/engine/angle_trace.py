@@ -230,6 +230,8 @@ def _guard_gaps(trace: Trace, lines: Sequence[int], gap_max: float) -> None:
     limit = _gap_limit(float(np.median(trace.spacing)), gap_max)
     widest = int(np.argmax(trace.spacing))
     if trace.spacing[widest] > limit:
-        gap, start = np.degrees(trace.spacing[widest]), np.degrees(trace.angle[widest])
-        field = f"{trace.source} line {lines[widest]}, gap after {start:g} deg"
-        raise InputError(field, f"{gap:.4g} deg", f"at most {np.degrees(limit):.4g} deg")
+        gap, start = trace.spacing[widest], trace.angle[widest]
+        field = f"{trace.source} line {lines[widest]}, gap after {np.degrees(start):g} deg"
+        raise InputError(
+            field, f"{np.degrees(gap):.4g} deg", f"at most {np.degrees(limit):.4g} deg"
+        )

@@ -169,9 +169,9 @@ class PressureTrace:
         """
         mean, name = self.mean, f"{self.source} pressure"
         if not mean.min() > 0.0:
-            at = np.degrees(self.theta[mean.argmin()])
+            at = self.theta[mean.argmin()]
             hint = "> 0 Pa, absolute; give engine.intake_pressure to peg a relative trace"
-            raise InputError(f"{name} at {at:.4g} deg", f"{mean.min():.4g} Pa", hint)
+            raise InputError(f"{name} at {np.degrees(at):.4g} deg", f"{mean.min():.4g} Pa", hint)
         peak = float(mean.max())
         if not PEAK_RANGE[0] <= peak <= PEAK_RANGE[1]:
             limit = f"from {PEAK_RANGE[0]:g} to {PEAK_RANGE[1]:g} Pa{_unit_hint(peak)}"

@@ -6,6 +6,7 @@ In the order of a run:
 | ---------------------- | --------------------------------------------------------------------- |
 | `trial`                | a cam with its solution, checks and smoothing                         |
 | `run_reader`           | a finished run read from its folder; schema of the records            |
+| `model_limits`         | limits of the model, for report, sign-off record and documentation    |
 | `signoff`              | sign-off record: figures, evidence, validity limits, hashes of files  |
 | `run_folder`           | the folder of a run while it is written; resumption                   |
 | `run_records`          | columns of the tables, key figures, records of trial and crank speed  |

@@ -62,7 +62,7 @@ def prices(design: Design, problem: Problem) -> list[PriceRecord]:
                 "unit": known.unit,
                 "ripple_per_unit_Nm": price,
                 "ripple_per_percent_Nm": multiplier * before / 100.0,
-                "binds_at_deg": _ranges(*design.strip[name]) if name in design.strip else [],
+                "binds_at_deg": _ranges_record(*design.strip[name]) if name in design.strip else [],
                 "sentence": _sentence(known, price),
             }
         )
@@ -107,7 +107,7 @@ def _binding(use: Array) -> NDArray[np.bool_]:
     return np.asarray(np.asarray(use) >= 1.0 - RESERVE - BINDING)
 
 
-def _ranges(theta: Array, use: Array) -> list[tuple[float, float]]:
+def _ranges_record(theta: Array, use: Array) -> list[tuple[float, float]]:
     """Active ranges of cam angle, deg."""
     tight = _binding(use)
     if not tight.any() or np.ptp(use) == 0.0:

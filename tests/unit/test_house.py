@@ -195,3 +195,74 @@ def test_installing_puts_one_name_into_an_environment() -> None:
     elsewhere = [place for place in sys.path if Path(place or ".").resolve() != ROOT]
     for folder in FOLDERS:
         assert not any((Path(place) / folder / "__init__.py").is_file() for place in elsewhere)
+
+
+INSIDE = (
+    "geometry", "meshes", "pipeline.engine", "pipeline.contact", "pipeline.follower",
+    "pipeline.cycle", "pipeline.checks", "pipeline.smoothing", "pipeline",
+)  # fmt: skip
+UNIT_FACTORS = {1e3, 1e-3, 1e6, 1e-6}
+TO_UNITS = {"degrees", "rad2deg"}
+RIM = re.compile(r"record|columns|arrays|statement|words|(^|_)write_|^__str__$")
+"""Functions that make records, columns, files and messages."""
+
+
+NO_UNIT = {
+    "geometry.cad_drawing": "DXF arcs are drawn in degrees",
+    "meshes.mesh_quality": "the quality gates of meshes are angles in degrees",
+    "meshes.outline": "a share of a size",
+    "pipeline.checks.wear_and_grease": "a formula of ISO 281 in mm2/s and mm",
+    "pipeline.contact.elasticity.active_set": "a share of a settlement",
+    "pipeline.engine.angle_trace": "whether the angles of a file are in degrees",
+    "pipeline.engine.indicated_cycle_solver": "steps at whole degrees",
+    "pipeline.follower.elastic_follower": "a share of a speed",
+    "pipeline.follower.guide_contact": "a regularisation",
+    "pipeline.smoothing.allowables": "a million turns",
+}
+
+
+def _unit_factors(node: ast.AST) -> Iterator[int]:
+    """Lines that convert a unit, but for messages and the functions of `RIM`."""
+    if isinstance(node, ast.FunctionDef) and RIM.search(node.name):
+        return
+    if isinstance(node, ast.JoinedStr | ast.Raise):
+        return
+    if isinstance(node, ast.Call):
+        name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+        if name in TO_UNITS:
+            yield node.lineno
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
+        for side in (node.left, node.right):
+            if isinstance(side, ast.Constant) and side.value in UNIT_FACTORS:
+                yield node.lineno
+    for child in ast.iter_child_nodes(node):
+        yield from _unit_factors(child)
+
+
+def test_units_are_converted_at_the_rim() -> None:
+    """Inside all values are SI; case reading, columns, records and messages convert."""
+    found = [
+        f"{name}, line {line}"
+        for name, path in modules().items()
+        if name not in NO_UNIT
+        if package(name) in INSIDE or package(name).startswith("pipeline.contact")
+        for line in _unit_factors(ast.parse(path.read_text(encoding="utf-8")))
+    ]
+    assert found == []
+
+
+DIALECT = re.compile(
+    r"\b(tells? of|asks for|the road|in hand|look(s|ing)? ahead|stands for|bears)\b", re.IGNORECASE
+)
+
+
+def test_prose_is_in_the_terms_of_the_field() -> None:
+    wrong = [
+        f"{path.relative_to(ROOT)}, line {number}: {line.strip()}"
+        for folder in (*FOLDERS, "src/camwright", "cases", "docs", "scripts")
+        for path in sorted((ROOT / folder).rglob("*"))
+        if path.suffix in (".py", ".toml", ".md", ".html") and not path.is_symlink()
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1)
+        if DIALECT.search(line)
+    ]
+    assert wrong == []

@@ -216,7 +216,7 @@ def _studies(
     ]
     return {
         "energy of a turn by pair, J": rows,
-        "traction that rolling without slip asks for": traction,
+        "traction that rolling without slip requires": traction,
         "at a rod of two cranks": trends,
     }
 
