@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
@@ -61,11 +61,10 @@ class Synthesis:
     record: Mapping[str, Any] | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Trials:
-    """Trials of a run, the last one final, and the stopping criterion in words."""
+class Iteration(NamedTuple):
+    """Final trial of a run, its number that of the trials, and the stopping criterion in words."""
 
-    trials: tuple[Trial, ...]
+    final: Trial
     statement: str
 
 
@@ -114,7 +113,7 @@ def trials_of(
     *,
     sink: TrialSink | None = None,
     progress: Progress = SILENT,
-) -> Trials:
+) -> Iteration:
     """Trials by finite elements until one passes or no better one is forecast.
 
     Parameters
@@ -133,7 +132,7 @@ def trials_of(
     if case.engine is None:
         trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
         reason = f"prescribed lift: {'fails' if trial.binding else 'passes'}, not smoothed"
-        return Trials((trial,), reason)
+        return Iteration(trial, reason)
     return _smoothed(task)
 
 
@@ -179,22 +178,22 @@ class _Task:
         return trial
 
 
-def _smoothed(task: _Task) -> Trials:
+def _smoothed(task: _Task) -> Iteration:
     """Trials of ever wider smoothers."""
     case, torques = task.case, task.torques
     forecast = cache(lambda smoother: forecast_checks(case, torques, smoother))
     smoother, why = Smoother.from_case(case.smoothing), "smoother of the case"
-    trials: list[Trial] = []
     attempts: list[Attempt] = []
     while True:
         lift = cam_lift(case, torques, smoother)
         record = smoothing_record(smoother)
-        trials.append(task.solved(len(trials) + 1, case, lift, why, record))
-        attempts.append(Attempt(smoother, trials[-1].checks))
+        trial = task.solved(len(attempts) + 1, case, lift, why, record)
+        attempts.append(Attempt(smoother, trial.checks))
         after = next_smoother(attempts, case.solver.max_trials, forecast)
         if isinstance(after, Stop):
-            return Trials(tuple(trials), after.reason)
-        task.progress.note(f"trial {len(trials)} fails: {after.why}")
+            return Iteration(trial, after.reason)
+        del trial  # its solution takes most of the memory
+        task.progress.note(f"trial {len(attempts)} fails: {after.why}")
         smoother, why = after.smoother, after.why
 
 
@@ -217,22 +216,22 @@ def forecast_checks(
     return checks_of(solved, FORECAST)
 
 
-def _constrained(task: _Task) -> Trials:
+def _constrained(task: _Task) -> Iteration:
     """Synthesis and finite elements in turn, until no utilisation above one half changes."""
     case, torques = task.case, task.torques
     problem = problem_of(case, torques)
     why = "least ripple within all limits"
-    trials: list[Trial] = []
     starts: Starts | None = None
     shift: LimitShift | None = None
+    number = 0
     while True:
-        number = len(trials) + 1
+        number += 1
         task.progress.stage(f"trial {number}: synthesis")
-        if trials:  # starts from the optimum of the trial before
+        if number > 1:  # starts from the optimum of the trial before
             design = synthesise(problem)
         else:
             design, starts = explored(problem, case.smoothing.starts)
-        record = design_record(design, problem, None if trials else starts)
+        record = design_record(design, problem, starts if number == 1 else None)
         conflict = None
         if not design.feasible:
             task.progress.stage("conflicting limits")
@@ -247,15 +246,15 @@ def _constrained(task: _Task) -> Trials:
             synthesis=record,
             uses=limits_in_use(design),
         )
-        trials.append(trial)
         if conflict is not None:
-            return Trials(tuple(trials), conflict.sentence)
+            return Iteration(trial, conflict.sentence)
         shift, problem = corrected(problem, design, trial.cycles, shift)
         last = number == case.solver.max_trials
         if settled(shift, trial.checks) or trial.mesh is None or last:
             result = "fails" if trial.binding else "passes every must-have check"
             agree = "" if starts is None else f"; {starts.sentence}"
-            return Trials(tuple(trials), f"trial {number} {result}; {shift.sentence}{agree}")
+            return Iteration(trial, f"trial {number} {result}; {shift.sentence}{agree}")
+        del trial  # its solution takes most of the memory
         why = shift.sentence
         task.progress.note(f"trial {number}: {why}")
 

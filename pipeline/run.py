@@ -14,7 +14,7 @@ from camwright.pipeline.case.load_case_torque import engine_torques, measurement
 from camwright.pipeline.checks.check import in_order
 from camwright.pipeline.checks.tolerance_corners import corners_record, governed, outcomes
 from camwright.pipeline.engine.torque import Torque
-from camwright.pipeline.iteration import Trials, trials_of
+from camwright.pipeline.iteration import trials_of
 from camwright.pipeline.results.field_output import write_fields
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_reader import Run, read_run
@@ -60,26 +60,38 @@ def run_case(
     out = Path(out)
     case = case if positions is None else case.with_positions(positions)
     with RunFolder(out, case, resume=resume) as folder:
-        watch, writer = Stopwatch(progress), TrialWriter(folder)
-        watch.stage("torque")
-        torques = engine_torques(case)
-        if torques:
-            folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
-        trials = trials_of(case, torques, sink=writer, progress=watch)
-        final = certify_trial(trials.trials[-1], jobs=jobs, progress=watch)
-        final = _with_corners(folder, torques, final, watch)
-        writer.judge(final)
-        watch.stage("fields")
-        write_fields(folder.fields, final, watch.advance)
-        if final.mesh is not None:  # else the contour is no body to machine
-            watch.stage(WORKSHOP)
-            write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
-        summary = _summary(folder, torques, trials, final) | dict(also(final))
-        watch.stage("report")
+        watch = Stopwatch(progress)
+        summary = _solved(folder, case, jobs, watch, also)
+        watch.stage("report")  # the solution, which takes most of the memory, is released by now
         folder.write_summary(summary | {"timings_s": watch.read()})
         present(folder.path)
         folder.finish(summary | {"timings_s": watch.read()})
     return read_run(out)
+
+
+def _solved(
+    folder: RunFolder,
+    case: Case,
+    jobs: int | None,
+    watch: Stopwatch,
+    also: Callable[[Trial], Mapping[str, Any]],
+) -> dict[str, Any]:
+    """Solve a case and write all files but report and records; the contents of ``run.json``."""
+    watch.stage("torque")
+    torques = engine_torques(case)
+    if torques:
+        folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
+    writer = TrialWriter(folder)
+    final, statement = trials_of(case, torques, sink=writer, progress=watch)
+    final = certify_trial(final, jobs=jobs, progress=watch)
+    final = _with_corners(folder, torques, final, watch)
+    writer.judge(final)
+    watch.stage("fields")
+    write_fields(folder.fields, final, watch.advance)
+    if final.mesh is not None:  # else the contour is no body to machine
+        watch.stage(WORKSHOP)
+        write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
+    return _summary(folder, torques, statement, final) | dict(also(final))
 
 
 def _with_corners(
@@ -94,7 +106,7 @@ def _with_corners(
 
 
 def _summary(
-    folder: RunFolder, torques: Mapping[str, Torque], trials: Trials, final: Trial
+    folder: RunFolder, torques: Mapping[str, Torque], statement: str, final: Trial
 ) -> dict[str, Any]:
     """Contents of ``run.json``; writes ``1_speed.csv``."""
     case, required = final.case, None
@@ -106,10 +118,10 @@ def _summary(
         folder.write_speed(columns)
     benchmarks = final.solution.benchmarks
     return {
-        "trials": len(trials.trials),
+        "trials": final.number,
         "verdict": final.verdict,
         "binding": list(final.binding),
-        "statement": trials.statement,
+        "statement": statement,
         "headline": headline(torques, final),
         "prices": None if final.synthesis is None else final.synthesis["prices"],
         "benchmarks": None if benchmarks is None else dict(benchmarks),

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from multiprocessing import get_context
+from multiprocessing.context import SpawnContext, SpawnProcess
+from multiprocessing.popen_spawn_posix import Popen
+from multiprocessing.process import BaseProcess
 
 _JOBS_MOST = 4
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -19,6 +22,29 @@ _LOOK_EVERY_S = 1.0
 def workers_for(jobs: int | None, tasks: int) -> int:
     """Number of processes: `jobs`, by default one a processor up to 4; at most one a task."""
     return max(1, min(jobs or min(os.cpu_count() or 1, _JOBS_MOST), tasks))
+
+
+class _Process(SpawnProcess):
+    """Spawned process that does not run the user's script again.
+
+    A spawned process imports the script of its parent for the functions defined there; the tasks
+    here are functions of the package. So a script needs no ``if __name__ == "__main__"``.
+    """
+
+    @staticmethod
+    def _Popen(process_obj: BaseProcess) -> Popen:  # noqa: N802 - name of multiprocessing
+        script = vars(sys.modules["__main__"])
+        hidden = script.copy()
+        script.pop("__file__", None)
+        script["__spec__"] = None
+        try:
+            return Popen(process_obj)
+        finally:
+            script.update(hidden)
+
+
+class _Context(SpawnContext):
+    Process = _Process
 
 
 @contextmanager
@@ -32,7 +58,7 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     before = {name: os.environ.get(name) for name in _THREADS}
     os.environ.update(dict.fromkeys(_THREADS, "1"))
     workers_pool = ProcessPoolExecutor(
-        workers, mp_context=get_context("spawn"), initializer=_as_worker, initargs=(os.getpid(),)
+        workers, mp_context=_Context(), initializer=_as_worker, initargs=(os.getpid(),)
     )
     try:
         yield workers_pool

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
-from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import AnyLimit, Sense
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.extremes import Extreme
@@ -200,6 +200,15 @@ class Check:
     waiver: str | None = None
     corner: str = ""
     corner_demand: float | None = None
+
+    def __str__(self) -> str:
+        """Title, demand, limit and status in one line, in `unit`."""
+        demand, limit = (
+            "unknown" if value is None or math.isnan(value) else shown(value, self.unit)
+            for value in (self.demand, self.limit)
+        )
+        sign = "<=" if self.sense == "at_most" else ">="
+        return f"{self.title}: {demand}, must be {sign} {limit}: {self.status}"
 
     @property
     def id(self) -> str:

@@ -136,3 +136,9 @@ def test_record_is_valid_json(check):
     assert json.loads(json.dumps(record, allow_nan=False)) == record
     assert record["utilisation"] is None
     assert record["status"] in ("fail", "not_evaluated")
+
+
+def test_a_check_prints_as_a_line():
+    line = "peak: 3 MPa, must be <= 2 MPa: fail"
+    assert str(made_check("x", 3e6, 2e6, unit="MPa", title="peak")) == line
+    assert str(at_most(None)).endswith("unknown, must be <= 2e-06 MPa: not_evaluated")

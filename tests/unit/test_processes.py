@@ -1,6 +1,8 @@
 """Fresh processes: as many as are of use, one BLAS thread each, gone when work is dropped."""
 
 import os
+import subprocess
+import sys
 
 import pytest
 
@@ -24,3 +26,19 @@ def test_workers_have_one_thread_and_the_parent_keeps_its_own(monkeypatch):
     assert os.environ["OMP_NUM_THREADS"] == "7"
     assert "MKL_NUM_THREADS" not in os.environ
     assert all(future.done() for future in waiting)  # worked out or cancelled, none left behind
+
+
+def test_a_script_needs_no_guard(tmp_path):
+    """A script without ``if __name__ == "__main__"`` runs once, and its module is as before."""
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import os\n"
+        "from camwright.pipeline.base.worker_processes import pool\n"
+        "print('begun')\n"
+        "with pool(2) as fresh:\n"
+        "    print(fresh.submit(os.path.basename, __file__).result())\n"
+    )
+    done = subprocess.run(
+        [sys.executable, str(script)], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout.split()) == (0, ["begun", "script.py"]), done.stderr
