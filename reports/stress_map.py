@@ -14,6 +14,7 @@ from camwright.reports.figure_svg import COLOURS, FIGURE_WIDTH, png, style
 FILE = "5_envelope.npz"
 MAPS = (("von_mises_MPa", "von Mises"), ("shear_range_MPa", "orthogonal shear range"))
 _ROWS = 200
+_STATIONS = 480  # of the band, finer than its pixels; each takes memory in the drawing
 
 
 def read_envelope(path: Path, load_case: str) -> dict[str, Array]:
@@ -79,7 +80,10 @@ def around(envelope: dict[str, Array], angle: Array, contour: Array, normal: Arr
     radius = np.hypot(*place)
     scale = _enlarged(0.25 * float(radius.min()) / float(np.nanmax(depth)))
     band = place[:, :, None] - up[:, :, None] * scale * depth
-    closed, shown = (np.concatenate([v, v[..., :1, :]], axis=-2) for v in (band, values))
+    thinned = slice(None, None, max(1, at.size // _STATIONS))
+    closed, shown = (
+        np.concatenate([v[..., thinned, :], v[..., :1, :]], axis=-2) for v in (band, values)
+    )
     peak, peak_angle, peak_depth = worst(envelope, "von_mises_MPa")
     station = int(np.argmin(np.abs(at - peak_angle)))
     with style("envelope-around"):
