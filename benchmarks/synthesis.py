@@ -67,12 +67,12 @@ def main() -> int:
     if positions:
         start = cpu()
         with tempfile.TemporaryDirectory() as folder:
-            summary = run_case(case, Path(folder) / "run", positions=positions, progress=Silent())
+            run = run_case(case, Path(folder) / "run", positions=positions, progress=Silent())
         seconds = cpu() - start
         over = over or seconds > LOOP_BUDGET * unit
         print(
-            f"loop: {seconds:.1f} s, {positions} positions, {summary['trials']} trials, verdict "
-            f"{summary['verdict']}; {seconds / unit:.0f} dense solutions, budget {LOOP_BUDGET:.0f}"
+            f"loop: {seconds:.1f} s, {positions} positions, {len(run.trials)} trials, verdict "
+            f"{run.verdict}; {seconds / unit:.0f} dense solutions, budget {LOOP_BUDGET:.0f}"
         )
     return 1 if over else 0
 

@@ -17,7 +17,7 @@ CASES = Path(__file__).parents[2] / "cases"
 def test_signed_case_passes(tmp_path):
     case = read_case(CASES / "gx120-signed.toml")
     assert {state.name for state in case.load_cases} == {"idle", "overspeed"}
-    summary = run_case(case, tmp_path / "run", positions=180, progress=Silent())
+    summary = run_case(case, tmp_path / "run", positions=180, progress=Silent()).summary
     assert summary["verdict"] == "pass", summary["binding"]
     figures = summary["headline"]
     assert figures["torque_std_after_Nm"] <= 0.5 * figures["torque_std_before_Nm"]

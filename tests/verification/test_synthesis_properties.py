@@ -14,6 +14,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.smoothing import multistart
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.energy_spline import Grid, exact_start, fitted_energy
 from camwright.pipeline.smoothing.multistart import explored
@@ -203,9 +204,10 @@ def test_random_starts_agree():
 
 
 @pytest.mark.slow
-def test_twenty_random_starts_agree_on_the_redesigned_case():
+def test_twenty_random_starts_agree_on_the_redesigned_case(monkeypatch):
+    monkeypatch.setattr(multistart, "_SEED", 7)  # other starts than a run's
     case = read_case(CASES / "gx120-signed.toml")
-    _, starts = explored(problem_of(case, engine_torques(case)), 20, seed=7)
+    _, starts = explored(problem_of(case, engine_torques(case)), 20)
     assert len(starts.ripples) == 20
     assert starts.agree, starts.sentence
 
