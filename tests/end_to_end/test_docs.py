@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.util
 import os
 import re
 import shutil
 import subprocess
 import sys
+import textwrap
 import tomllib
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
 
+from camwright.geometry import motion_laws
+from camwright.pipeline.base.tables import table
+from camwright.pipeline.case import limits
 from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.case.renamed_keys import with_new_keys
 from camwright.pipeline.case.template import template
+from camwright.pipeline.checks import cam_shape
 from camwright.pipeline.cli import app
+from camwright.pipeline.cycle import cycle
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.smoothing import constraints
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = {
@@ -90,6 +100,46 @@ def test_python_snippets_run_in_their_order(page: str, folder: Path) -> None:
     )
     assert result.returncode == 0, result.stderr
     assert result.stdout.strip()
+
+
+def fragments(heading: str) -> list[str]:
+    """Code of a section of docs/contributing.md, each piece as it would stand in its module."""
+    section = PAGES["docs/contributing.md"].split(f"## {heading}\n")[1].split("\n## ")[0]
+    found = re.findall(r"^ *```py\n(.*?)^ *```$", section, re.MULTILINE | re.DOTALL)
+    return [textwrap.dedent(piece) for piece in found]
+
+
+def test_the_check_of_contributing_is_declared() -> None:
+    row, declared, constraint, entry = fragments("A check with a limit")
+    names = dict(vars(limits))
+    exec(row, names)
+    inside = {**vars(cam_shape), "LIFT_JERK": names["LIFT_JERK"]}
+    exec(declared, inside)
+    assert inside["lift_jerk"].id == "lift_jerk"
+    kept = eval(constraint, {**vars(constraints), "LIFT_JERK": names["LIFT_JERK"]})
+    assert kept.limit is names["LIFT_JERK"]
+    assert ast.parse(entry)
+
+
+def test_the_laws_of_contributing_are_laws() -> None:
+    polynomial, function = fragments("A motion law")
+    law = eval(polynomial, dict(vars(motion_laws)))
+    half = np.array([0.0, 0.5])
+    np.testing.assert_allclose(law(half, 0), [0.0, 0.5])
+    names = dict(vars(motion_laws))
+    exec(function, names)
+    own = motion_laws.LAWS["harmonic"](half, 1)
+    np.testing.assert_array_equal(names["_harmonic"](half, 1), own)
+
+
+def test_the_column_of_contributing_is_a_column() -> None:
+    (column,) = fragments("An output column")
+    case = case_of(tomllib.loads(template("demo"))).with_positions(36)
+    turn = preview_case(case).cycles[0].turn
+    made = eval(column, {**vars(cycle), "loads": turn.loads, "turn": turn})
+    np.testing.assert_allclose(
+        table(made)["cam_power_W"], turn.loads.cam_torque * turn.machine.cam_speed, rtol=1e-12
+    )
 
 
 def test_make_targets_exist() -> None:
