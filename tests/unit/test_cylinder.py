@@ -133,6 +133,25 @@ def test_burnt_fraction_runs_from_zero_to_one_within_the_burn():
     assert wiebe(0.5, 5.0, 2.0) == pytest.approx(burnt[2], rel=1e-12)
 
 
+@pytest.mark.parametrize("engine", [ENGINE, replace(ENGINE, **SMALL_DIESEL)])
+def test_burnt_fraction_grows_at_the_rate_of_wiebe(engine):
+    """Derivative of each Wiebe burn by hand: a (m + 1) y^m exp(-a y^(m + 1)) / (1 - exp(-a))."""
+    theta = np.radians(np.arange(351.5, 420.0, 1.0))
+    past = theta - (engine.spark + engine.ignition_delay)
+    burns = [(1.0 - engine.premixed_share, engine.burn_duration, engine.wiebe_m)]
+    burns += [(engine.premixed_share, engine.premixed_duration, engine.premixed_m)]
+    rate = np.zeros_like(theta)
+    for share, duration, m in burns:
+        y, a = past / duration, engine.wiebe_a
+        inside = (y >= 0.0) & (y <= 1.0)
+        reached = np.clip(y, 0.0, 1.0)
+        slope = a * (m + 1.0) * reached**m * np.exp(-a * reached ** (m + 1.0)) / -np.expm1(-a)
+        rate += np.where(inside, share / duration * slope, 0.0)
+    step = 1e-6
+    ahead, behind = burnt_fraction(engine, theta + step), burnt_fraction(engine, theta - step)
+    np.testing.assert_allclose(rate, (ahead - behind) / (2 * step), atol=1e-7)
+
+
 def test_premixed_fuel_burns_first():
     plain = replace(ENGINE, **(SMALL_DIESEL | {"premixed_share": 0.0}))
     mixed = replace(ENGINE, **SMALL_DIESEL)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact import traction as tangential
@@ -33,21 +34,48 @@ def test_carter_of_the_published_example():
     assert tangential.creepage(0.64, 0.3, half_width, 0.5) == pytest.approx(2.4e-4, rel=1e-3)
 
 
+def test_bentall_johnson_of_the_published_example():
+    """Same guide: Al and steel rollers of 50 mm, a = 0.1 mm, creepage 5.259e-4 without friction.
+
+    Contact pressure by Hertz; the slip of free rolling changes sign where half of the load is
+    enclosed (Bentall and Johnson 1967), at the root of (2/pi)(x sqrt(1 - x^2) + arcsin x) = 1/2.
+    """
+    shear, nu = np.array([23.0e9, 82.0e9]), np.array([0.31, 0.28])
+    E = 2 * shear * (1 + nu)
+    modulus = hertz.contact_modulus(E[0], nu[0], E[1], nu[1])
+    half_width, p0 = hertz.line_contact(16.20e3, 0.025, modulus)
+    assert half_width == pytest.approx(0.1e-3, rel=1e-3)
+    half = brentq(lambda x: x * np.sqrt(1 - x**2) + np.arcsin(x) - np.pi / 4, 0.0, 1.0)
+    stretch = (1 - 2 * nu) * (1 + nu) / E
+    creepage = abs(stretch[0] - stretch[1]) * p0 * np.sqrt(1 - half**2)
+    assert creepage == pytest.approx(5.259e-4, rel=1e-2)  # the guide prints its factor to 0.1 %
+
+
+def static_traction(x, ratio):
+    """Cattaneo (1938), Mindlin (1949): the stick zone of `stick_half_width` is in the middle."""
+    stick = float(tangential.stick_half_width(ratio))
+    inside = np.sqrt(np.maximum(1 - (x / stick) ** 2, 0.0))
+    return np.sqrt(np.maximum(1 - x**2, 0.0)) - stick * inside
+
+
 @pytest.mark.parametrize("ratio", [0.2, 0.64, 0.9])
-def test_stick_zones_stick(ratio):
+@pytest.mark.parametrize("law", [tangential.rolling_traction, static_traction])
+def test_stick_zones_stick(law, ratio):
     """Both surfaces stretch alike where they stick, by the half-plane's own kernel.
 
-    By the creepage. Knots at a 1/400 leave 1 % of the full slip's.
+    Static: not at all; rolling: by the creepage. Knots at a 1/400 leave 1 % of the full slip's.
     """
+    rolling = law is tangential.rolling_traction
     knots = np.linspace(-1, 1, 801)
-    traction = tangential.rolling_traction(knots[1:-1], ratio)
+    traction = law(knots[1:-1], ratio)
+    assert np.trapezoid(traction, knots[1:-1]) == pytest.approx(ratio * np.pi / 2, rel=2e-3)
     stick = float(tangential.stick_half_width(ratio))
-    x = stick - 1 + 0.85 * stick * np.linspace(-1, 1, 41)
+    x = (stick - 1 if rolling else 0.0) + 0.85 * stick * np.linspace(-1, 1, 41)
     # A tangential load moves the surface along as a normal one moves it down; two bodies.
     moved = 2 * traction @ settlement(x, knots)
     slope = np.diff(moved) / np.diff(x)
     # In units of mu p0 / E'; p0 / E' is a / (4 R) for like bodies, so creep is 4 (1 - stick).
-    creep = 4 * (1 - stick)
+    creep = 4 * (1 - stick) if rolling else 0.0
     assert np.abs(slope) == pytest.approx(np.full(40, creep), abs=0.02)
 
 
