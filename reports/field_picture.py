@@ -182,12 +182,6 @@ def body_view(field: Field) -> View:
     )  # fmt: skip
 
 
-def contact_picture(vtu: Path, half_width_mm: float, contact_point: Array, normal: Array) -> bytes:
-    """PNG of the von Mises stress below the contact, lengths in half-widths."""
-    view = contact_view(read_field(vtu), half_width_mm, contact_point, normal)
-    return frame_contact(render(vtu, [view])[0], half_width_mm)
-
-
 def frame_contact(
     raster: Raster,
     half_width_mm: float,

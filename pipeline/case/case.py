@@ -33,7 +33,7 @@ from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.camshaft_loads import Camshaft
-from camwright.pipeline.follower.flat_face import FlatFace
+from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.guide_reactions import GuidePair
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
@@ -137,7 +137,7 @@ class Case(Section):
         return self.roller_given
 
     @property
-    def facing(self) -> Roller | FlatFace:
+    def facing(self) -> FollowerKind:
         """The part of the follower that touches the cam."""
         return self.roller if self.follower.face is None else self.follower.face
 

@@ -17,6 +17,7 @@ from camwright.pipeline.engine.crankshaft import Crankshaft
 from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.follower_forces import FollowerSystem
+from camwright.pipeline.follower.follower_kind import FollowerKind
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.follower.guide_reactions import GuidePair
 from camwright.pipeline.follower.roller import Roller
@@ -53,7 +54,7 @@ class Machine:
     gear_ratio : float         crank turns per cam turn
     ripple_weight : float      weight of its torque ripple; 0: no reduction is required
     cam : CamBody
-    follower : Roller or FlatFace   the part that touches the cam, see `FollowerKind`
+    follower : FollowerKind    the part that touches the cam, roller or flat face
     mass : float               that moves with the follower, kg
     viscous_damping : float    of the guides, N s/m
     stem : Stem
@@ -72,7 +73,7 @@ class Machine:
     gear_ratio: float
     ripple_weight: float
     cam: CamBody
-    follower: Roller | FlatFace
+    follower: FollowerKind
     mass: float
     viscous_damping: float
     stem: Stem

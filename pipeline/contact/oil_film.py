@@ -100,7 +100,7 @@ def minimum_film(film: LineFilm) -> Array:
     Dowson and Higginson, Elasto-hydrodynamic Lubrication (1966):
     H = 2.65 U^0.70 G^0.54 W^-0.13.
     """
-    loaded = film.load > 0
+    loaded = ~(film.load <= 0)  # NaN is refused, not unloaded
     load = np.where(loaded, film.load, 1.0)
     film_ratio = 2.65 * film.speed**0.70 * film.material**0.54 * load**-0.13
     return np.where(loaded, film_ratio * film.radius, np.nan)
@@ -139,39 +139,28 @@ class MixedFilm:
         )
 
 
-def mixed_film(film: LineFilm, roughness: float, hardness: float, modulus: float) -> MixedFilm:
+def mixed_film(
+    film: LineFilm, roughness: float, hardness: float, modulus: float
+) -> tuple[MixedFilm, str]:
     """Film of rough surfaces by a regression with unverified source.
 
     Parameters
     ----------
-    film : LineFilm
+    film : LineFilm     at positions (n,)
     roughness : float   combined rms roughness of both surfaces, m
     hardness : float    Vickers, Pa
     modulus : float     E*, Pa
 
-    Raises
-    ------
-    InputError
-        If a group is outside the range of the regression.
+    Returns
+    -------
+    film : MixedFilm   NaN without load and outside the range of the regression
+    words : str        the first violated range; "" without one
 
     References
     ----------
     Masjedi and Khonsari, ASME J. Tribol. 134 (2012) 011503; coefficients as recalled: verify.
     """
-    refused = next(_refusals(film, roughness, hardness, modulus), None)
-    if refused is not None:
-        raise refused[1]
-    return _regression(film, roughness, hardness, modulus)
-
-
-def mixed_film_where_it_holds(
-    film: LineFilm, roughness: float, hardness: float, modulus: float
-) -> tuple[MixedFilm, str]:
-    """`mixed_film` at many positions, NaN outside its range, and the first violated range in words.
-
-    Parameters and references as of `mixed_film`. Positions without load are NaN.
-    """
-    loaded = film.load > 0
+    loaded = ~(film.load <= 0)  # NaN is refused, not unloaded
     at_work = LineFilm(film.load[loaded], film.speed[loaded], film.material, film.radius[loaded])
     refusals = list(_refusals(at_work, roughness, hardness, modulus))
     holds = loaded.copy()

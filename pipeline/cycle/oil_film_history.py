@@ -16,7 +16,7 @@ from camwright.pipeline.contact.oil_film import (
     MixedFilm,
     lambda_ratio,
     minimum_film,
-    mixed_film_where_it_holds,
+    mixed_film,
 )
 
 BRINELL = 9.80665e6  # Pa; Vickers and Brinell numbers are alike below 450
@@ -106,7 +106,7 @@ def film_history(
     ratio = lambda_ratio(thickness, cam, other)
     if oil.film == "smooth":
         return FilmHistory(thickness, ratio)
-    mixed, refusal = mixed_film_where_it_holds(
+    mixed, refusal = mixed_film(
         groups, float(np.hypot(cam, other)), BRINELL * _softer(machine), modulus
     )
     return FilmHistory(thickness, ratio, mixed, refusal)

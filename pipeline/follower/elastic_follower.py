@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, uniform_turn
 from camwright.geometry.errors import InputError
@@ -194,25 +193,3 @@ def _differentiation(n: int) -> Array:
     matrix = 0.5 * (-1.0) ** (k[:, None] - k) / slope
     np.fill_diagonal(matrix, 0.0)
     return np.asarray(matrix)
-
-
-def elastic_jump_speed(
-    lift: Array, follower: ElasticFollower, speed_max: float, steps: int = 160
-) -> float:
-    """Minimum cam speed up to `speed_max` with zero minimum contact force, rad/s.
-
-    Infinite without one. Speeds are searched in equal steps: resonances narrower than a step may
-    be missed.
-    """
-
-    def least(speed: float) -> float:
-        return float(harmonic_response(lift, speed, follower).contact_force.min())
-
-    before = 0.0
-    if least(before) <= 0.0:
-        return 0.0
-    for speed in np.linspace(0.0, speed_max, steps + 1)[1:]:
-        if least(float(speed)) <= 0.0:
-            return float(brentq(least, before, float(speed), xtol=1e-6 * speed_max))
-        before = float(speed)
-    return np.inf

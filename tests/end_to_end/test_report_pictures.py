@@ -119,8 +119,10 @@ def test_without_opengl_the_page_says_so_and_still_shows_the_field(folder, conta
 
 
 def test_pictures_are_whole_png_files(folder, contact):
-    _, point, normal, half_width = contact
-    png = field_picture.contact_picture(folder / picture_list.FIELD, half_width, point, normal)
+    field, point, normal, half_width = contact
+    view = field_picture.contact_view(field, half_width, point, normal)
+    raster = field_picture.render(folder / picture_list.FIELD, [view])[0]
+    png = field_picture.frame_contact(raster, half_width)
     assert png.startswith(b"\x89PNG")
     image = imread(io.BytesIO(png), format="png")
     assert min(image.shape[:2]) > 500

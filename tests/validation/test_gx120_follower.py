@@ -13,13 +13,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from elastic_jump import elastic_jump_speed
 from scipy.signal import resample
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.energy import lift_from_torque, without_mean
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.follower.elastic_follower import ElasticFollower, elastic_jump_speed
+from camwright.pipeline.follower.elastic_follower import ElasticFollower
 from camwright.pipeline.follower.follower_forces import (
     FollowerSystem,
     follower_loads,

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from elastic_jump import elastic_jump_speed
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import InputError
@@ -13,7 +14,6 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.follower.elastic_follower import (
     ElasticFollower,
     collocation_response,
-    elastic_jump_speed,
     harmonic_response,
     periodic_response,
     quasi_static,
