@@ -132,7 +132,7 @@ class Case(Section):
         """
         if self.roller_given is None:
             if self.follower.kind == "flat":
-                raise InputError("follower.kind", "flat", '"roller", as it is needed here')
+                raise InputError("follower.kind", "flat", '"roller" for a value of the roller')
             raise InputError("roller", "missing", 'given with follower.kind = "roller"')
         return self.roller_given
 

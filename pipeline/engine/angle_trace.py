@@ -219,7 +219,7 @@ def guard_span(
 
 
 def _gap_limit(spacing: float, gap_max: float) -> float:
-    """Maximum gap at a median spacing, rad; a `gap_max` above the default is used as it is."""
+    """Maximum gap at a median spacing, rad; above the default it is `gap_max`."""
     if gap_max > GAP_MAX:
         return float(gap_max) * (1.0 + 1e-9)
     return min(float(gap_max), GAP_OVER_MEDIAN_MAX * spacing) * (1.0 + 1e-9)

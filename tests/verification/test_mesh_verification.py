@@ -7,6 +7,7 @@ from skfem import Basis, BilinearForm, ElementTriP2, ElementVector, FacetBasis, 
 from skfem.helpers import ddot, dot, sym_grad
 
 from camwright.geometry.contour import RollerContour
+from camwright.geometry.errors import MeshError
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.meshes.body_mesh import block_mesh, cam_mesh, half_disc_mesh, roller_mesh
@@ -149,12 +150,12 @@ def test_other_bodies_pass_the_gate(mesh):
     sizing = Sizing.from_half_width(HALF_WIDTH, 0.05, contact_point=(0.0, 0.0))
     body = mesh(sizing)
     place = (0.0, -0.008) if "rim" in body.boundaries else (0.0, 0.0)
-    gate(
-        quality(body, place, HALF_WIDTH),
-        angle_min_deg=27.0,
-        scaled_jacobian_min=0.5,
-        edges_min=8.0,
-    )
+    measured = quality(body, place, HALF_WIDTH)
+    limits = {"angle_min_deg": 27.0, "scaled_jacobian_min": 0.5, "edges_min": 8.0}
+    assert gate(measured, **limits) is measured
+    assert measured.min_angle_deg >= 27.0 and measured.min_scaled_jacobian >= 0.5
+    with pytest.raises(MeshError, match="min_angle_deg"):
+        gate(measured, angle_min_deg=61.0)
 
 
 def test_a_block_two_thousand_half_widths_deep_stays_small():
