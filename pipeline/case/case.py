@@ -26,6 +26,7 @@ from camwright.pipeline.case.requirements_section import (
     Tolerances,
     Waiver,
 )
+from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.case.section import Name, Section, Table, Text, named
 from camwright.pipeline.case.toml_text import Tables, tables_of, to_toml
 from camwright.pipeline.case.workshop_section import FORM_TOLERANCE, Workshop, WorkshopOrder
@@ -68,6 +69,7 @@ class Case(Section):
     guides: Table[GuidePair]
     lubricant: Table[Lubricant] | None = None
     materials: Materials
+    scope: Scope = Scope()
     smoothing: Smoothing = Smoothing()
     limits: Limits = Limits()
     solver: Solver = Solver()

@@ -10,6 +10,7 @@ from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import Limits
 from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.case.scope_section import PartName, Scope
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.contact.oil_film import Lubricant
@@ -66,6 +67,7 @@ class Machine:
     spring : Spring            with the preload of this load case
     camshaft, crankshaft, lubricant : or None   None: not described
     limits : Limits
+    scope : Scope              parts that the sign-off covers
     """
 
     load_case: str
@@ -87,6 +89,7 @@ class Machine:
     crankshaft: Crankshaft | None
     lubricant: Lubricant | None
     limits: Limits
+    scope: Scope
 
     @property
     def crank_speed(self) -> float:
@@ -107,6 +110,21 @@ class Machine:
     def face(self) -> FlatFace | None:
         """The flat face; None for a roller."""
         return self.follower if isinstance(self.follower, FlatFace) else None
+
+    def describes(self, part: PartName) -> bool:
+        """Whether the case describes a part of the machine."""
+        roller, shaft = self.roller, self.camshaft
+        return {
+            "roller_bearing": roller is not None,
+            "pin": roller is not None and roller.pin is not None,
+            "fork": False,
+            "spring": self.spring.design is not None,
+            "guides": True,
+            "camshaft": shaft is not None,
+            "camshaft_bearings": shaft is not None and shaft.bearing_rating is not None,
+            "key": self.cam.keyway is not None,
+            "gear": shaft is not None and shaft.gear is not None,
+        }[part]
 
     @property
     def contact_width(self) -> float:
@@ -193,4 +211,5 @@ def machine(case: Case, state: LoadCase) -> Machine:
         crankshaft=case.crankshaft,
         lubricant=case.lubricant,
         limits=case.limits,
+        scope=case.scope,
     )

@@ -100,9 +100,13 @@ class Solver(Section):
 
 
 class Waiver(Section):
-    """A failed check that a named person has accepted, and why."""
+    """A failed check that a named person has accepted up to a value, and why.
+
+    up_to is in the unit of the check, such as ``"1200 MPa"``, or a number without a unit.
+    """
 
     check: Name
+    up_to: Annotated[str, Characters(1, 40)] | Annotated[float, In()]
     name: Annotated[str, Characters(1, 200)]
     reason: Annotated[str, Characters(1, 2000)]
     date: dt.date

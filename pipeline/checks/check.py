@@ -10,14 +10,31 @@ from typing import Literal
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import AnyLimit, Sense
 from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.case.scope_section import PART_WORDS, PartName
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution
 
 Status = Literal["pass", "fail", "not_evaluated", "waived"]
-Verdict = Literal["pass", "fail"]
+Verdict = Literal["pass", "incomplete", "fail"]
 Error = Literal["sampling", "contact", "guides", "unknown"]
 Record = dict[str, str | float | bool | None]
+ROUNDING = 1e-9
+"""Relative error of closed forms and exact integrals: no uncertainty of a demand."""
+
+
+@dataclass(frozen=True)
+class Waived:
+    """Acceptance of a failed demand up to a value.
+
+    Parameters
+    ----------
+    text : str      name, date and reason
+    up_to : float   worst demand that is accepted, SI
+    """
+
+    text: str
+    up_to: float
 
 
 @dataclass(frozen=True)
@@ -67,6 +84,9 @@ class Declaration:
     moved_by_tolerance : bool  its demand differs at a tolerance corner
     error : str                origin of the error bar of the demand
     needs : str                kind of follower; "": any
+    part : str                 part of the scope that it judges; "": cam or follower
+    formula : str              demand and limit with their symbols, for the documentation
+    reason : str               why it decides the verdict, or why it does not
     demand : callable          solution -> demand; None where the check does not apply
     """
 
@@ -85,15 +105,28 @@ class Declaration:
     moved_by_tolerance: bool
     error: Error
     needs: Literal["", "roller", "face"]
+    part: PartName | Literal[""]
+    formula: str
+    reason: str
     demand: Callable[[Solution], Demand | None] = field(repr=False)
 
     def __call__(self, solution: Solution) -> Check | None:
-        """Check of a solution; None where it does not apply."""
-        kind = solution.machine.follower
-        if solution.tier < self.tier or self.needs not in ("", kind.word):
+        """Check of a solution; None where it does not apply or its part is not covered.
+
+        A part that is neither described nor left out by the scope is a check without a demand.
+        """
+        machine = solution.machine
+        if solution.tier < self.tier or self.needs not in ("", machine.follower.word):
             return None
+        if self.part and not machine.scope.covers(self.part):
+            return None
+        if self.part and not machine.describes(self.part):
+            note = (
+                f"no {PART_WORDS[self.part]} is described; describe it or leave it out in [scope]"
+            )
+            return self.judged(machine, Demand(None, None, note=note))
         demand = self.demand(solution)
-        return None if demand is None else self.judged(solution.machine, demand)
+        return None if demand is None else self.judged(machine, demand)
 
     def judged(self, machine: Machine, demand: Demand) -> Check:
         """Check of a demand on a machine."""
@@ -134,6 +167,9 @@ def check(
     moved_by_tolerance: bool = True,
     error: Error = "sampling",
     needs: Literal["", "roller", "face"] = "",
+    part: PartName | Literal[""] = "",
+    formula: str = "",
+    reason: str = "",
 ) -> Callable[[Callable[[Solution], Demand | None]], Declaration]:
     """Declare a check of the demand that the decorated function returns; see `Declaration`.
 
@@ -157,6 +193,9 @@ def check(
             moved_by_tolerance=moved_by_tolerance,
             error=error,
             needs=needs,
+            part=part,
+            formula=formula,
+            reason=reason,
             demand=demand,
         )
 
@@ -181,7 +220,7 @@ class Check:
     must_have : bool         it decides the verdict
     note : str               remark, such as the missing input
     error_share : float      half of the error bar over the demand; None: not known
-    waiver : str             name, reason and date; None: not waived
+    waiver : Waived          None: not waived
     corner : str             tolerance corner of the worst demand; "": none was solved
     corner_demand : float    demand at that corner; None: none was solved
     """
@@ -197,7 +236,7 @@ class Check:
     must_have: bool = True
     note: str = ""
     error_share: float | None = None
-    waiver: str | None = None
+    waiver: Waived | None = None
     corner: str = ""
     corner_demand: float | None = None
 
@@ -242,6 +281,14 @@ class Check:
         return abs(demand) * share
 
     @property
+    def worst(self) -> float | None:
+        """Worse of the demand and that at the governing tolerance corner; it is judged."""
+        demand, corner = self.demand, self.corner_demand
+        if demand is None or math.isnan(demand) or corner is None:
+            return demand
+        return max(demand, corner) if self.sense == "at_most" else min(demand, corner)
+
+    @property
     def margin(self) -> float | None:
         """1 - utilisation; negative beyond the limit."""
         used = self.utilisation
@@ -250,21 +297,21 @@ class Check:
     @property
     def evaluated(self) -> bool:
         """Whether demand and limit are known; NaN and an infinite limit are not."""
-        demand, limit = self.demand, self.limit
+        demand, limit = self.worst, self.limit
         return not (
             demand is None or math.isnan(demand) or limit is None or not math.isfinite(limit)
         )
 
     @property
     def utilisation(self) -> float | None:
-        """Demand over limit, or limit over demand of a least value; None if one is missing.
+        """Worst demand over limit, or limit over it for a least value; None if one is missing.
 
-        A check passes at <= 1. Infinite for a demand <= 0 against a positive least value, and for
-        a positive demand against a limit of zero.
+        At <= 1 the demand is within its limit. Infinite for a demand <= 0 against a positive least
+        value, and for a positive demand against a limit of zero.
         """
         if not self.evaluated:
             return None
-        demand, limit = float(self.demand or 0.0), float(self.limit or 0.0)
+        demand, limit = float(self.worst or 0.0), float(self.limit or 0.0)
         part, whole = (demand, limit) if self.sense == "at_most" else (limit, demand)
         if whole > 0:
             return part / whole
@@ -272,20 +319,39 @@ class Check:
 
     @property
     def status(self) -> Status:
-        """`pass`, `fail`, `not_evaluated`, or `waived` where it would not have passed."""
-        if self.evaluated and self._holds():
+        """`pass`, `fail`, `not_evaluated`, or `waived` where the waiver covers a failed demand."""
+        if not self.evaluated:
+            return "not_evaluated"
+        worst = float(self.worst or 0.0)
+        if self._holds(worst, self.limit) and not self.not_proven:
             return "pass"
-        if self.waiver is not None:
-            return "waived"
-        return "fail" if self.evaluated else "not_evaluated"
+        covered = self.waiver is not None and self._holds(self._upper(worst), self.waiver.up_to)
+        return "waived" if covered else "fail"
 
-    def _holds(self) -> bool:
-        demand, limit = float(self.demand or 0.0), float(self.limit or 0.0)
+    @property
+    def not_proven(self) -> bool:
+        """Whether the limit lies within the error bar of a worst demand that is within it."""
+        if not self.evaluated:
+            return False
+        worst = float(self.worst or 0.0)
+        share = self.error_share or 0.0
+        if share <= ROUNDING or not self._holds(worst, self.limit):
+            return False
+        return not self._holds(self._upper(worst), self.limit)
+
+    def _upper(self, worst: float) -> float:
+        """End of the error bar of the worst demand towards the limit."""
+        error = abs(worst) * (self.error_share or 0.0)
+        return worst + error if self.sense == "at_most" else worst - error
+
+    def _holds(self, demand: float, limit: float | None) -> bool:
+        if limit is None:
+            return False
         return demand <= limit if self.sense == "at_most" else demand >= limit
 
     @property
     def blocks(self) -> bool:
-        """Whether it fails the verdict: a must-have check, neither passed nor waived."""
+        """Whether the verdict is not PASS for it: a must-have check, neither passed nor waived."""
         return self.must_have and self.status in ("fail", "not_evaluated")
 
     def as_record(self) -> Record:
@@ -309,7 +375,9 @@ class Check:
             "sense": self.sense,
             "must_have": self.must_have,
             "lift_can_help": self.lift_can_help,
-            "waiver": self.waiver,
+            "waiver": None if self.waiver is None else self.waiver.text,
+            "waived_up_to": _shown(None if self.waiver is None else self.waiver.up_to, unit),
+            "not_proven": self.not_proven,
             "note": self.note,
             "error": _shown(self.error, unit),
             "margin": _shown(self.margin),
@@ -320,13 +388,19 @@ class Check:
 
 
 def verdict(checks: Iterable[Check]) -> Verdict:
-    """`pass` when there are checks and each must-have check passes or is waived."""
-    checks = tuple(checks)
-    return "pass" if checks and not any(each.blocks for each in checks) else "fail"
+    """Verdict of the must-have checks.
+
+    `fail` if one is beyond its limit or not proven, or without checks; else `incomplete` if one
+    lacks data; else `pass`.
+    """
+    deciding = [each.status for each in checks if each.must_have]
+    if not deciding or "fail" in deciding:
+        return "fail"
+    return "incomplete" if "not_evaluated" in deciding else "pass"
 
 
 def binding(checks: Iterable[Check]) -> tuple[str, ...]:
-    """Ids of the must-have checks that fail the verdict: not evaluated first, then worst first."""
+    """Ids of the must-have checks that keep the verdict from PASS: those without data first."""
     return tuple(each.id for each in in_order(checks) if each.blocks)
 
 

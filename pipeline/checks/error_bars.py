@@ -7,11 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.check import ROUNDING, Check
 from camwright.pipeline.cycle.solution import Solution
 
-# Of closed forms refined between samples and of exact integrals.
-ROUNDING = 1e-9
 GUIDE_ERROR = "mesh_reaction"
 
 

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from types import ModuleType
 
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.requirements_section import Waiver
 from camwright.pipeline.checks import (
     cam_shape,
@@ -28,6 +30,7 @@ from camwright.pipeline.checks.check import (
     Check,
     Declaration,
     Demand,
+    Waived,
     check,
     in_order,
     made_from_others,
@@ -126,6 +129,27 @@ def without_sign_off(checks: Iterable[Check]) -> tuple[Check, ...]:
 
 
 def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, ...]:
-    """The checks with the waivers of the case; a check of the solution cannot be waived."""
-    texts = {w.check: f"{w.name}, {w.date}: {w.reason}" for w in waivers}
-    return tuple(one if one.evidence else replace(one, waiver=texts.get(one.id)) for one in checks)
+    """The checks with the waivers of the case; a check of the solution cannot be waived.
+
+    Raises
+    ------
+    InputError
+        If the value of a waiver is not in the unit of its check.
+    """
+    known = {w.check: w for w in waivers}
+    return tuple(
+        one
+        if one.evidence or one.id not in known
+        else replace(one, waiver=accepted(known[one.id], one.unit))
+        for one in checks
+    )
+
+
+def accepted(waiver: Waiver, unit: str) -> Waived:
+    """Acceptance that a waiver states, its value in SI."""
+    text = f"{waiver.name}, {waiver.date}: {waiver.reason}"
+    quantity = In("" if unit == "-" else unit)
+    try:
+        return Waived(text, quantity.read(waiver.up_to))
+    except InputError as error:
+        raise InputError(f"waivers.{waiver.check}.up_to", waiver.up_to, error.limit) from None
