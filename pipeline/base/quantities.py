@@ -220,7 +220,8 @@ class Part:
 
     A part is a table of a case file and a value of the physics at once: its annotations (`In`,
     `Count`, `Characters`) give unit and bounds of both. `table` names it in messages; the fields
-    of `labels` are set by the reader and stand in no table.
+    of `labels` are set by the reader and stand in no table. `defaults` has, in words, what a field
+    without a value means; any other field that is None is a datum that the part lacks.
 
     Raises
     ------
@@ -230,6 +231,7 @@ class Part:
 
     table: ClassVar[str] = ""
     labels: ClassVar[tuple[str, ...]] = ()
+    defaults: ClassVar[Mapping[str, str]] = {}
 
     def __post_init__(self) -> None:
         for name, rule in _rules_of(type(self)).items():

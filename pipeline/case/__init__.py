@@ -10,6 +10,7 @@ In the order of the calculation:
 | `limits`               | table of limits, section `[limits]`          | SI               |
 | `engine_section`       | engine: a cylinder model or a measurement    | T, N m           |
 | `lift_section`         | lift: table, segments, points or eccentric   | s, m; theta, rad |
+| `scope_section`        | parts that the sign-off does not cover       |                  |
 | `parts_section`        | follower, valve train                        | m, kg            |
 | `requirements_section` | smoothing, tolerances, load cases, solver    | rad/s; N; rad    |
 | `workshop_section`     | tool, table step, chord error                | m, rad           |

@@ -24,7 +24,7 @@ PART_WORDS: dict[PartName, str] = {
     "key": "key",
     "gear": "driving gear",
 }
-"""Parts that a sign-off may leave out, in the order of the flow of force; cam and follower never."""
+"""Parts that a sign-off may leave out, in the order of the flow of force."""
 
 
 class Scope(Section):
