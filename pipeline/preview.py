@@ -20,16 +20,20 @@ from camwright.pipeline.smoothing.fe_correction import (
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
-from camwright.pipeline.solver import solve
+from camwright.pipeline.solver import judged_at_corners, solve
 
 _ROUNDS = 4  # of synthesis and correction
 
 
-def preview_case(case: Case, *, progress: Progress = SILENT) -> Trial:
+def preview_case(case: Case, *, corners: bool = True, progress: Progress = SILENT) -> Trial:
     """Cam of a case with the contact by closed forms; no sign-off.
 
     A constrained synthesis is corrected for length and clearance of the guides until no
     utilisation above one half changes.
+
+    Parameters
+    ----------
+    corners : bool   judge each check at its worst tolerance corner
 
     Returns
     -------
@@ -43,7 +47,9 @@ def preview_case(case: Case, *, progress: Progress = SILENT) -> Trial:
     torques = engine_torques(case)
     if case.smoothing.kind != "constrained":
         contour = case.contour(cam_lift(case, torques))
-        trial = solve(case, contour, tier=Tier.PREVIEW, torques=torques, progress=progress)
+        trial = solve(
+            case, contour, tier=Tier.PREVIEW, torques=torques, corners=corners, progress=progress
+        )
         smoother = None if case.engine is None else Smoother.from_case(case.smoothing)
         return replace(trial, smoothing=smoothing_record(smoother))
     problem = problem_of(case, torques)
@@ -53,14 +59,21 @@ def preview_case(case: Case, *, progress: Progress = SILENT) -> Trial:
         drawn = redrawn(case, design)
         contour = drawn.contour(design.lift())
         trial = replace(
-            solve(drawn, contour, tier=Tier.PREVIEW, torques=torques, progress=progress),
+            solve(
+                drawn,
+                contour,
+                tier=Tier.PREVIEW,
+                torques=torques,
+                corners=False,
+                progress=progress,
+            ),
             smoothing=CONSTRAINED,
             synthesis=design_record(design, problem),
         )
         earlier, problem = corrected(problem, design, trial.cycles, earlier)
         if not design.feasible or settled(earlier, trial.checks):
             break
-    return trial
+    return judged_at_corners(trial, torques) if corners else trial
 
 
 def smoothing_record(smoother: Smoother | None) -> SmoothingRecord:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques, measurement_record
-from camwright.pipeline.checks.check import in_order
-from camwright.pipeline.checks.tolerance_corners import corners_record, governed, outcomes
+from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.iteration import trials_of
 from camwright.pipeline.results.field_output import write_fields
@@ -84,7 +83,7 @@ def _solved(
     writer = TrialWriter(folder)
     final, statement = trials_of(case, torques, sink=writer, progress=watch)
     final = certify_trial(final, jobs=jobs, progress=watch)
-    final = _with_corners(folder, torques, final, watch)
+    folder.write_corners(corners_record(final.case, final.corners))
     writer.judge(final)
     watch.stage("fields")
     write_fields(folder.fields, final, watch.advance)
@@ -92,17 +91,6 @@ def _solved(
         watch.stage(WORKSHOP)
         write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
     return _summary(folder, torques, statement, final) | dict(also(final))
-
-
-def _with_corners(
-    folder: RunFolder, torques: Mapping[str, Torque], final: Trial, progress: Progress
-) -> Trial:
-    """Final trial with the governing corner of each check; writes ``corners.json``."""
-    progress.stage("tolerance corners")
-    tried = outcomes(final.case, torques, final.contour)
-    if len(tried) > 1:
-        folder.write_corners(corners_record(final.case, tried))
-    return replace(final, checks=in_order(governed(final.solution.machine, final.checks, tried)))
 
 
 def _summary(

@@ -8,11 +8,15 @@ from dataclasses import replace
 from camwright.geometry.contour import Contour
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.check import Check, in_order
 from camwright.pipeline.checks.registry import all_checks
+from camwright.pipeline.checks.tolerance_corners import Outcome, governed, outcomes, unsolved
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import (
     NOT_STORED,
     ContactStore,
+    Solution,
     certified_solution,
     solution,
 )
@@ -30,6 +34,7 @@ def solve(
     torques: Mapping[str, Torque] | None = None,
     positions: int | None = None,
     certify: int = 0,
+    corners: bool = True,
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
     jobs: int | None = 1,
@@ -44,6 +49,7 @@ def solve(
     torques : mapping     engine torque by load case; None: computed from the case
     positions : int       per cam turn; None: those of the case
     certify : int         cam angles solved in full on three meshes; 0: no certificate
+    corners : bool        judge each check at its worst tolerance corner
     store : ContactStore  of partial contact solutions, to resume an interrupted run
     progress : Progress
     jobs : int            processes for the certificate; None: number of processors, at most 4
@@ -69,7 +75,20 @@ def solve(
     if certify:
         solved = certified_solution(solved, certify, jobs=jobs, progress=progress)
     progress.stage(CHECKS)
-    return Trial(1, "", GIVEN_LIFT, solved, all_checks(solved))
+    trial = Trial(1, "", GIVEN_LIFT, solved, all_checks(solved))
+    return judged_at_corners(trial, torques) if corners else trial
+
+
+def judged_at_corners(trial: Trial, torques: Mapping[str, Torque] | None = None) -> Trial:
+    """Trial whose checks are judged at their worst tolerance corners.
+
+    Parameters
+    ----------
+    torques : mapping   engine torque by load case; None: computed from the case
+    """
+    known = engine_torques(trial.case) if torques is None else torques
+    tried = outcomes(trial.case, known, trial.contour)
+    return replace(trial, corners=tried, checks=_judged(trial.solution, tried))
 
 
 def certify_trial(trial: Trial, *, jobs: int | None = None, progress: Progress = SILENT) -> Trial:
@@ -81,4 +100,12 @@ def certify_trial(trial: Trial, *, jobs: int | None = None, progress: Progress =
     """
     count = trial.case.solver.certificate_positions
     solved = certified_solution(trial.solution, count, jobs=jobs, progress=progress)
-    return replace(trial, solution=solved, checks=all_checks(solved))
+    return replace(trial, solution=solved, checks=_judged(solved, trial.corners))
+
+
+def _judged(solved: Solution, tried: tuple[Outcome, ...]) -> tuple[Check, ...]:
+    """Checks of a solution at the worst corners tried; nominal without corners."""
+    checks = all_checks(solved)
+    if not tried:
+        return checks
+    return in_order((*governed(checks, tried), unsolved(solved.machine, tried)))

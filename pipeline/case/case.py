@@ -29,7 +29,7 @@ from camwright.pipeline.case.requirements_section import (
 from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.case.section import Name, Section, Table, Text, named
 from camwright.pipeline.case.toml_text import Tables, tables_of, to_toml
-from camwright.pipeline.case.workshop_section import FORM_TOLERANCE, Workshop, WorkshopOrder
+from camwright.pipeline.case.workshop_section import Workshop, WorkshopOrder
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.oil_film import Lubricant
 from camwright.pipeline.engine.crankshaft import Crankshaft
@@ -169,9 +169,7 @@ class Case(Section):
         """Tables, tool, tolerance band and chord error of the workshop files."""
         shop = self.workshop
         tool = self.largest_tool if shop.tool_radius is None else shop.tool_radius
-        profile = self.cam.profile_tolerance
-        band = FORM_TOLERANCE if profile is None else profile
-        return WorkshopOrder(shop.table_step, tool, band, shop.chord_error)
+        return WorkshopOrder(shop.table_step, tool, self.cam.profile_tolerance, shop.chord_error)
 
 
 def includes(case: Case) -> Iterator[tuple[str, str]]:

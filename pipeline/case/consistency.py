@@ -5,13 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
-from camwright.pipeline.case.limits import TOOL_RADIUS
+from camwright.pipeline.case.limits import OVERSPEED, TOOL_RADIUS
+from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
 from camwright.pipeline.engine.speed_trace import SpeedTable
 from camwright.pipeline.follower.roller import Roller
+from camwright.pipeline.follower.spring import Spring
 
 if TYPE_CHECKING:
     from camwright.pipeline.case.case import Case
@@ -29,6 +32,7 @@ def check_sections(case: Case) -> None:
     _check_geometry(case)
     _check_names(case)
     _check_film(case)
+    _check_tolerances(case)
 
 
 def _check_start(case: Case) -> None:
@@ -75,6 +79,32 @@ def _check_start(case: Case) -> None:
             name = "fired" if load_case.intake_pressure is None else "intake_pressure"
             limit = 'left out unless engine.kind = "cylinder" without a torque file'
             raise InputError(f"load_case[{k}].{name}", getattr(load_case, name), limit)
+
+
+def _check_tolerances(case: Case) -> None:
+    """A tolerance is tighter than its default only with a source."""
+    if case.tolerances.source.strip():
+        return
+    stated, usual, spring = case.tolerances, Tolerances(), case.spring
+    bounds = {
+        "tolerances.friction": (stated.friction, usual.friction, ""),
+        "tolerances.mass": (stated.mass, usual.mass, ""),
+        "tolerances.inertia": (stated.inertia, usual.inertia, ""),
+        "tolerances.phase": (stated.phase, usual.phase, "deg"),
+        "spring.rate_tolerance": (spring.rate_tolerance, Spring.rate_tolerance, ""),
+        "spring.preload_tolerance": (spring.preload_tolerance, Spring.preload_tolerance, ""),
+        "cam.profile_tolerance": (
+            case.cam.profile_tolerance, CamBody.profile_tolerance, "mm",
+        ),
+    }  # fmt: skip
+    for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
+        if guide.friction_max is not None and not guide.source.strip():
+            least = guide.friction * (1.0 + usual.friction)
+            bounds[f"guides.{side}.friction_max"] = guide.friction_max, least, ""
+    for field, (value, least, unit) in bounds.items():
+        if value < least:
+            limit = f">= {shown(least, unit)} without tolerances.source"
+            raise InputError(field, shown(value, unit), limit)
 
 
 def _check_film(case: Case) -> None:
@@ -151,7 +181,16 @@ def _require(field: str, value: float, holds: bool, limit: str) -> None:
 
 def _check_names(case: Case) -> None:
     seen: set[str] = set()
+    over = case.limits[OVERSPEED]
     for k, load_case in enumerate(case.load_cases):
-        if load_case.name.casefold() in seen:
+        name, speed = load_case.name.casefold(), load_case.speed
+        if name in seen:
             raise InputError(f"load_case[{k}].name", load_case.name, "unlike every other")
-        seen.add(load_case.name.casefold())
+        seen.add(name)
+        if name.startswith(STANDSTILL) and speed != 0.0:
+            raise InputError(f"load_case[{k}].speed", shown(speed, "rpm"), "0 rpm at standstill")
+        if over is not None and speed > over:
+            limit = f"<= {shown(over, 'rpm')}, limits.overspeed"
+            raise InputError(f"load_case[{k}].speed", shown(speed, "rpm"), limit)
+        if name.startswith(OVER_SPEED) and speed != over:
+            raise InputError(f"load_case[{k}].speed", shown(speed, "rpm"), "limits.overspeed")

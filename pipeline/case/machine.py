@@ -8,8 +8,8 @@ import numpy as np
 
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import Limits
-from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.case.limits import OVERSPEED, Limits
+from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, LoadCase
 from camwright.pipeline.case.scope_section import PartName, Scope
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.hertz import contact_modulus
@@ -90,6 +90,11 @@ class Machine:
     lubricant: Lubricant | None
     limits: Limits
     scope: Scope
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the crank stands still: nothing slides and nothing wears."""
+        return self.speed == 0.0
 
     @property
     def crank_speed(self) -> float:
@@ -177,8 +182,29 @@ class Machine:
 
 
 def machines(case: Case) -> tuple[Machine, ...]:
-    """The machine in every load case, the design load case first."""
-    return tuple(machine(case, state) for state in case.load_cases)
+    """The machine in every load case that is judged, the design load case first."""
+    return tuple(machine(case, state) for state in judged_load_cases(case))
+
+
+def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:
+    """Load cases of the case, then standstill and over-speed where the case has neither.
+
+    Lowest and highest running speed are those of the case. Standstill and over-speed are judged
+    at every preload, without an engine torque; over-speed only where the case limits the speed.
+    """
+    stated, over = case.load_cases, case.limits[OVERSPEED]
+    added = []
+    for name, speed in ((STANDSTILL, 0.0), (OVER_SPEED, over)):
+        if speed is None:
+            continue
+        known = {state.preload for state in stated if state.speed == speed}
+        preloads = dict.fromkeys(state.preload for state in stated)
+        for preload in preloads:
+            if preload in known:
+                continue
+            label = name if len(preloads) == 1 else f"{name}-{list(preloads).index(preload) + 1}"
+            added.append(LoadCase(name=label, speed=speed, preload=preload, ripple_weight=0.0))
+    return (*stated, *added)
 
 
 def machine(case: Case, state: LoadCase) -> Machine:

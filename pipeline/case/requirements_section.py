@@ -117,20 +117,26 @@ class Tolerances(Section):
 
     mass is that of the follower, inertia that of the crankshaft. Tolerances of the spring and of
     the line profile are in their own sections; friction ranges from guides.*.friction_min to
-    friction_max if these are given.
+    friction_max if these are given. A tolerance tighter than its default needs `source`.
     """
 
-    friction: Annotated[float, In(at_least=0, below=1)] = 0.0
-    mass: Annotated[float, In(at_least=0, below=1)] = 0.0
-    inertia: Annotated[float, In(at_least=0, below=1)] = 0.0
-    phase: Annotated[float, In("deg", at_least=0, at_most=90)] = 0.0
+    friction: Annotated[float, In(above=0, below=1)] = 0.5
+    mass: Annotated[float, In(above=0, below=1)] = 0.03
+    inertia: Annotated[float, In(above=0, below=1)] = 0.05
+    phase: Annotated[float, In("deg", above=0, at_most=90)] = radians(1.0)
     samples: Annotated[int, Field(ge=0, le=1000)] = 16
     seed: Annotated[int, Field(ge=0, le=2**31)] = 1
     source: Text = ""
 
 
+STANDSTILL, OVER_SPEED = "standstill", "over-speed"
+"""Names of the load cases in which every case is judged."""
+
+
 class LoadCase(Section):
     """A load case: crank speed, and what differs from the rest of the case.
+
+    Standstill, and over-speed where limits.overspeed is stated, are judged besides.
 
     At speed 0 spring and friction act, inertia does not. The torque ripple counts with its weight;
     at weight 0 no reduction is required. A preload acts on the cam designed for spring.preload.

@@ -10,9 +10,6 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.pipeline.base.quantities import In, Length
 from camwright.pipeline.case.section import Section
 
-FORM_TOLERANCE = 20e-6
-"""Tolerance band of the inspection sheet, m, if the case states no profile tolerance."""
-
 
 class Workshop(Section):
     """Settings of the files in ``workshop/``.

@@ -76,11 +76,13 @@ WAIVERS_WITHOUT_EFFECT = check(
 )(made_from_others)
 TOLERANCE_CORNERS = check(
     id="tolerance_corners",
-    title="Checks that fail at a tolerance corner only",
-    unit="checks",
+    title="Tolerance corners that cannot be solved",
+    unit="corners",
     source="tolerances of the case, one at a time and by a seeded sample",
-    method="closed forms at the corners; an unsolved corner counts as a failed check",
-    must_have=False,
+    method="closed forms at the corners",
+    formula="n = 0; n: corners at which loads or guides have no solution",
+    reason="a cam that has no solution at a tolerance cannot be signed",
+    evidence=True,
 )(made_from_others)
 UNSIGNED = check(
     id="signed_off",

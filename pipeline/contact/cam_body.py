@@ -50,7 +50,7 @@ class CamBody(Part):
     material: Material
     keyway: Keyway | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
-    profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] | None = None
+    profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] = 1e-4
     waviness_length: Length = 0.005
     counter_hole: BalanceHole | None = None
     source: str = ""

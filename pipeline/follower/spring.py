@@ -186,8 +186,8 @@ class Spring(Part):
     rate: Rate
     preload: Preload
     travel_max: Length | None = None
-    rate_tolerance: Annotated[float, In(at_least=0, below=1)] = 0.0
-    preload_tolerance: Annotated[float, In(at_least=0, below=1)] = 0.0
+    rate_tolerance: Annotated[float, In(above=0, below=1)] = 0.05
+    preload_tolerance: Annotated[float, In(above=0, below=1)] = 0.05
     design: HelicalSpring | None = None
     source: str = ""
 

@@ -11,6 +11,7 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import Check, Verdict, binding, verdict
+from camwright.pipeline.checks.tolerance_corners import Outcome
 from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import ContactMesh, Solution
@@ -47,6 +48,7 @@ class Trial:
     synthesis : mapping   record of the constrained synthesis; None without one
     limits_in_use : tuple  cam angles (n,), rad, and utilisation (n,) of each limit by the id of its
                           check; None without a constrained synthesis
+    corners : tuple    outcomes at the nominal and at each tolerance corner; empty: none was tried
     """
 
     number: int
@@ -56,6 +58,7 @@ class Trial:
     checks: tuple[Check, ...]
     synthesis: Mapping[str, Any] | None = None
     limits_in_use: tuple[Array, Mapping[str, Array]] | None = None
+    corners: tuple[Outcome, ...] = ()
 
     @property
     def case(self) -> Case:
@@ -89,7 +92,7 @@ class Trial:
 
     @property
     def verdict(self) -> Verdict:
-        """``pass`` when every must-have check passes or is waived."""
+        """``fail``, ``incomplete`` or ``pass``, by the must-have checks."""
         return verdict(self.checks)
 
     @property

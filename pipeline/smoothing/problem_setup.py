@@ -117,23 +117,21 @@ def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Sce
         for rate, preload, mu in ends
         if (rate, preload, mu) != (1.0, 1.0, (nominal.friction_a, nominal.friction_b))
     ]
-    if tolerances.mass > 0:
-        corners += [
-            replace(nominal, name=f"{nominal.name}, m x {share:g}", mass=share * nominal.mass)
-            for share in _ends(tolerances.mass)
-        ]
+    corners += [
+        replace(nominal, name=f"{nominal.name}, m x {share:g}", mass=share * nominal.mass)
+        for share in _ends(tolerances.mass)
+    ]
     late = tolerances.phase / case.mechanism.gear_ratio
-    if late > 0:
-        corners += [
-            replace(
-                nominal,
-                name=f"{nominal.name}, phase {np.degrees(shift):+.3g} deg of cam",
-                torque=nominal.torque_at(shift)[0],
-            )
-            for shift in (-late, late)
-        ]
+    corners += [
+        replace(
+            nominal,
+            name=f"{nominal.name}, phase {np.degrees(shift):+.3g} deg of cam",
+            torque=nominal.torque_at(shift)[0],
+        )
+        for shift in (-late, late)
+    ]
     return corners
 
 
 def _ends(tolerance: float) -> list[float]:
-    return [1.0 - tolerance, 1.0 + tolerance] if tolerance > 0 else [1.0]
+    return [1.0 - tolerance, 1.0 + tolerance]

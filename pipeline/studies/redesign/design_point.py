@@ -97,7 +97,7 @@ def point_of(case: Case) -> Point:
     CamError
         If there is no such cam.
     """
-    trial = preview_case(case)
+    trial = preview_case(case, corners=False)
     drawn, contour, turn = trial.case, trial.contour, trial.cycles[0].turn
     rest, torque = turn.torque_after, turn.torque_before
     if rest is None or torque is None:
