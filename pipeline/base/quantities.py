@@ -233,6 +233,15 @@ class Part:
     labels: ClassVar[tuple[str, ...]] = ()
     defaults: ClassVar[Mapping[str, str]] = {}
 
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """Names of the numbers and words without a value, unless `defaults` has their meaning."""
+        return tuple(
+            name
+            for name, rule in _rules_of(type(self)).items()
+            if rule.optional and getattr(self, name) is None and name not in self.defaults
+        )
+
     def __post_init__(self) -> None:
         for name, rule in _rules_of(type(self)).items():
             value = getattr(self, name)

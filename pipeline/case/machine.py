@@ -25,6 +25,13 @@ from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.spring import Spring
 from camwright.pipeline.follower.stem_beam import Stem
 
+_UNLOADED = {
+    "torque": None,
+    "intake_pressure": None,
+    "fired": True,
+    "ripple_weight": 0.0,
+    "source": "every case is judged at standstill and over-speed",
+}
 # Crank speed of a load case at rest, rad/s: inertia, film and heat are negligible.
 CREEP = 1e-3
 
@@ -203,7 +210,8 @@ def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:
             if preload in known:
                 continue
             label = name if len(preloads) == 1 else f"{name}-{list(preloads).index(preload) + 1}"
-            added.append(LoadCase(name=label, speed=speed, preload=preload, ripple_weight=0.0))
+            state = {"name": label, "speed": speed, "preload": preload} | _UNLOADED
+            added.append(stated[0].model_copy(update=state))
     return (*stated, *added)
 
 

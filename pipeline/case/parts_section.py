@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
@@ -25,6 +26,12 @@ class Follower(Section):
 
     The overhang is from guide A to the roller centre, or to the face.
     """
+
+    defaults: ClassVar[Mapping[str, str]] = {
+        "face": "the follower has a roller",
+        "stem_length": "the stem is long",
+        "stiffness": "that of the stem's section",
+    }
 
     kind: Literal["roller", "flat"] = "roller"
     face: Table[FlatFace] | None = None

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from types import UnionType
-from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from pydantic import (
     AfterValidator,
@@ -47,9 +47,23 @@ Text = Annotated[str, Characters(0, 10_000)]
 
 
 class Section(BaseModel):
-    """Base of all sections: frozen, unknown keys refused."""
+    """Base of all sections: frozen, unknown keys refused.
+
+    `defaults` has, in words, what a field without a value means.
+    """
+
+    defaults: ClassVar[Mapping[str, str]] = {}
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+    @property
+    def lacking(self) -> tuple[str, ...]:
+        """Names of the fields without a value, unless `defaults` has their meaning."""
+        return tuple(
+            name
+            for name in type(self).model_fields
+            if getattr(self, name) is None and name not in self.defaults
+        )
 
     @model_validator(mode="before")
     @classmethod

@@ -17,6 +17,7 @@ from camwright.pipeline.checks import (
     guide_strength,
     jump_and_jamming,
     manufacture,
+    part_data,
     part_strength,
     plane_strain_validity,
     roller_bearing,
@@ -40,6 +41,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution
 
 MODULES: tuple[ModuleType, ...] = (
+    part_data,
     torque_balance,
     cam_shape,
     jump_and_jamming,
