@@ -10,7 +10,7 @@ from typing import Literal
 from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import AnyLimit, Sense
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.case.scope_section import PART_WORDS, PartName
+from camwright.pipeline.case.scope_section import PartName
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution
@@ -241,10 +241,10 @@ class Check:
     corner_demand: float | None = None
 
     def __str__(self) -> str:
-        """Title, demand, limit and status in one line, in `unit`."""
+        """Title, worst demand, limit and status in one line, in `unit`."""
         demand, limit = (
             "unknown" if value is None or math.isnan(value) else shown(value, self.unit)
-            for value in (self.demand, self.limit)
+            for value in (self.worst, self.limit)
         )
         sign = "<=" if self.sense == "at_most" else ">="
         return f"{self.title}: {demand}, must be {sign} {limit}: {self.status}"

@@ -1,4 +1,4 @@
-"""Checks of the data of each described part: none is missing."""
+"""Checks that each part is described whole, or left out of the scope of the sign-off."""
 
 from __future__ import annotations
 
@@ -21,21 +21,26 @@ def _data(
     part: PartName | Literal[""] = "",
     needs: Literal["", "roller", "face"] = "",
 ) -> Declaration:
-    """Check that a described part lacks no datum."""
+    """Check that a part is described and lacks no datum; None if the scope leaves it out."""
 
     @check(
         id=f"data_{name}",
         title=f"Missing data of the {words}",
         unit="data",
-        source="a described part is judged whole",
+        source="a machine is judged whole, but for what [scope] leaves out",
         method="keys of the case without value and without default",
         formula=f"n = 0; n: data of the {words} that the case lacks",
         reason="without them the part is not judged whole",
         moved_by_tolerance=False,
-        part=part,
         needs=needs,
     )
-    def data(solution: Solution) -> Demand:
+    def data(solution: Solution) -> Demand | None:
+        machine = solution.machine
+        if part and not machine.scope.covers(part):
+            return None
+        if part and not machine.describes(part):
+            note = f"no {words} is described; describe it or leave it out in [scope]"
+            return Demand(None, 0.0, note=note)
         missing = [
             f"{path}.{key}"
             for path, each in parts(solution.case)
