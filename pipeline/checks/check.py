@@ -111,20 +111,15 @@ class Declaration:
     demand: Callable[[Solution], Demand | None] = field(repr=False)
 
     def __call__(self, solution: Solution) -> Check | None:
-        """Check of a solution; None where it does not apply or its part is not covered.
+        """Check of a solution; None where it does not apply, or its part is not described.
 
-        A part that is neither described nor left out by the scope is a check without a demand.
+        Whether a part is described has a check of its own, see `part_data`.
         """
         machine = solution.machine
         if solution.tier < self.tier or self.needs not in ("", machine.follower.word):
             return None
-        if self.part and not machine.scope.covers(self.part):
+        if self.part and not (machine.scope.covers(self.part) and machine.describes(self.part)):
             return None
-        if self.part and not machine.describes(self.part):
-            note = (
-                f"no {PART_WORDS[self.part]} is described; describe it or leave it out in [scope]"
-            )
-            return self.judged(machine, Demand(None, None, note=note))
         demand = self.demand(solution)
         return None if demand is None else self.judged(machine, demand)
 

@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Mapping
 from typing import Literal
 
 from camwright.pipeline.base.quantities import Part
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.parts_section import Follower
-from camwright.pipeline.case.scope_section import PartName
+from camwright.pipeline.case.scope_section import PART_WORDS, PartName
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.cycle.solution import Solution
 
+Tables = Mapping[str, Part | Follower | None]
+"""Tables of a case that describe a part, by their keys; None: not in the case."""
+
 
 def _data(
-    name: str,
-    words: str,
-    parts: Callable[[Case], Iterator[tuple[str, Part | Follower | None]]],
-    *,
-    part: PartName | Literal[""] = "",
+    name: PartName | Literal["cam", "follower", "roller", "face"],
+    tables: Callable[[Case], Tables],
     needs: Literal["", "roller", "face"] = "",
 ) -> Declaration:
     """Check that a part is described and lacks no datum; None if the scope leaves it out."""
+    words = "flat face" if name == "face" else name
+    coverable: PartName | None = None
+    for part, text in PART_WORDS.items():
+        if part == name:
+            coverable, words = part, text
 
     @check(
         id=f"data_{name}",
@@ -36,17 +41,14 @@ def _data(
     )
     def data(solution: Solution) -> Demand | None:
         machine = solution.machine
-        if part and not machine.scope.covers(part):
-            return None
-        if part and not machine.describes(part):
-            note = f"no {words} is described; describe it or leave it out in [scope]"
-            return Demand(None, 0.0, note=note)
-        missing = [
-            f"{path}.{key}"
-            for path, each in parts(solution.case)
-            if each is not None
-            for key in each.lacking
-        ]
+        if coverable is not None:
+            if not machine.scope.covers(coverable):
+                return None
+            if not machine.describes(coverable):
+                note = f"no {words} is described; describe it or leave it out in [scope]"
+                return Demand(None, 0.0, note=note)
+        known = {path: part for path, part in tables(solution.case).items() if part is not None}
+        missing = [f"{path}.{key}" for path, part in known.items() for key in part.lacking]
         if missing:
             return Demand(None, 0.0, note=f"missing: {', '.join(missing)}")
         return Demand(0.0, 0.0)
@@ -54,53 +56,32 @@ def _data(
     return data
 
 
-def _roller_bearing(case: Case) -> Iterator[tuple[str, Part | None]]:
-    yield "roller.bearing", case.roller.bearing
-    yield "roller.bearing.ring", case.roller.bearing.ring
+def _spring(case: Case) -> Tables:
+    return {"spring": case.spring, "spring.design": case.spring.design}
 
 
-def _spring(case: Case) -> Iterator[tuple[str, Part | None]]:
-    yield "spring", case.spring
-    yield "spring.design", case.spring.design
+def _guides(case: Case) -> Tables:
+    pair = case.guides
+    return {"guides": pair, "guides.a": pair.a, "guides.b": pair.b}
 
 
-def _guides(case: Case) -> Iterator[tuple[str, Part | None]]:
-    yield "guides", case.guides
-    yield "guides.a", case.guides.a
-    yield "guides.b", case.guides.b
+def _roller_bearing(case: Case) -> Tables:
+    bearing = case.roller.bearing
+    return {"roller.bearing": bearing, "roller.bearing.ring": bearing.ring}
 
 
-def _alone(
-    path: str, part: Callable[[Case], Part | Follower | None]
-) -> Callable[[Case], Iterator[tuple[str, Part | Follower | None]]]:
-    def parts(case: Case) -> Iterator[tuple[str, Part | Follower | None]]:
-        yield path, part(case)
-
-    return parts
+def _gear(case: Case) -> Tables:
+    return {"camshaft.gear": None if case.camshaft is None else case.camshaft.gear}
 
 
-data_cam = _data("cam", "cam", _alone("cam", lambda case: case.cam))
-data_follower = _data("follower", "follower", _alone("follower", lambda case: case.follower))
-data_roller = _data("roller", "roller", _alone("roller", lambda case: case.roller), needs="roller")
-data_face = _data(
-    "face", "flat face", _alone("follower.face", lambda case: case.follower.face), needs="face"
-)
-data_roller_bearing = _data(
-    "roller_bearing", "bearing of the roller", _roller_bearing, part="roller_bearing",
-    needs="roller",
-)  # fmt: skip
-data_pin = _data(
-    "pin", "pin of the roller", _alone("roller.pin", lambda case: case.roller.pin), part="pin",
-    needs="roller",
-)  # fmt: skip
-data_spring = _data("spring", "spring", _spring, part="spring")
-data_guides = _data("guides", "guides", _guides, part="guides")
-data_camshaft = _data(
-    "camshaft", "camshaft", _alone("camshaft", lambda case: case.camshaft), part="camshaft"
-)
-data_key = _data("key", "key", _alone("cam.keyway", lambda case: case.cam.keyway), part="key")
-data_gear = _data(
-    "gear", "driving gear",
-    _alone("camshaft.gear", lambda case: None if case.camshaft is None else case.camshaft.gear),
-    part="gear",
-)  # fmt: skip
+data_cam = _data("cam", lambda case: {"cam": case.cam})
+data_follower = _data("follower", lambda case: {"follower": case.follower})
+data_roller = _data("roller", lambda case: {"roller": case.roller}, "roller")
+data_face = _data("face", lambda case: {"follower.face": case.follower.face}, "face")
+data_roller_bearing = _data("roller_bearing", _roller_bearing, "roller")
+data_pin = _data("pin", lambda case: {"roller.pin": case.roller.pin}, "roller")
+data_spring = _data("spring", _spring)
+data_guides = _data("guides", _guides)
+data_camshaft = _data("camshaft", lambda case: {"camshaft": case.camshaft})
+data_key = _data("key", lambda case: {"cam.keyway": case.cam.keyway})
+data_gear = _data("gear", _gear)
