@@ -22,7 +22,7 @@ def _data(
     needs: Literal["", "roller", "face"] = "",
 ) -> Declaration:
     """Check that a part is described and lacks no datum; None if the scope leaves it out."""
-    words = "flat face" if name == "face" else name
+    words: str = "flat face" if name == "face" else name
     coverable: PartName | None = None
     for part, text in PART_WORDS.items():
         if part == name:
