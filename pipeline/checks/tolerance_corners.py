@@ -191,13 +191,17 @@ def _phased(each: Turn, corner: Corner) -> Turn:
 
 
 def _governed(one: Check, tried: Sequence[Outcome]) -> Check:
+    """Check with its worst corner; a demand without a value at a solved corner is missing."""
     nominal = tried[0]
     here = nominal.demands.get(one.id)
     if one.demand is None or here is None:
         return one
+    solved = [outcome for outcome in tried if not outcome.refused]
+    unknown = [outcome for outcome in solved if one.id not in outcome.demands]
+    if unknown:
+        return replace(one, corner=unknown[0].corner.name, corner_demand=float("nan"))
     sign = 1.0 if one.sense == "at_most" else -1.0
-    known = [outcome for outcome in tried if one.id in outcome.demands]
-    worst = max(known, key=lambda outcome: sign * outcome.demands[one.id])
+    worst = max(solved, key=lambda outcome: sign * outcome.demands[one.id])
     if worst is nominal:
         return replace(one, corner="nominal", corner_demand=one.demand)
     there = worst.demands[one.id]

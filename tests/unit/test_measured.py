@@ -130,7 +130,7 @@ def gx120():
 def test_speed_of_the_published_case(gx120):
     """Engine alone 3.59 rad/s at 157 rad/s, 3.44 with the mechanism's inertia, 0.40 at work."""
     case, torque, contour = gx120
-    (idle,) = machines(case)
+    idle = machines(case)[0]
     study = study_of(idle, torque, contour.pitch)
     assert study is not None
     motions = (study.before, study.inertia_alone, study.after)
@@ -181,7 +181,7 @@ def test_the_record_of_a_run_holds_the_crank_speed_of_the_guides_that_rub(gx120)
 def test_no_crankshaft_no_speed(gx120):
     case, torque, contour = gx120
     bare = case.model_copy(update={"crankshaft": None})
-    (idle,) = machines(bare)
+    idle = machines(bare)[0]
     assert study_of(idle, torque, contour.pitch) is None
     whole, pitch = torque.without_mean().total, contour.pitch
     agreement = consistency(idle, torque, pitch, None, demand=whole, measured=True)
@@ -194,7 +194,7 @@ def test_no_crankshaft_no_speed(gx120):
 
 def test_nothing_asked_of_the_cam_and_nothing_measured_there_is_nothing_to_agree_with(gx120):
     case, torque, contour = gx120
-    (idle,) = machines(case)
+    idle = machines(case)[0]
     found = [one.id for one in consistency(idle, torque, contour.pitch, None, measured=True)]
     assert found == ["inertia"]
     assert consistency(idle, torque, contour.pitch, None) == ()

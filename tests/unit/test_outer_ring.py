@@ -36,7 +36,7 @@ def case(**changes):
 
 def pair_of(given, contour):
     """The contact pair of a case with one load case."""
-    (machine,) = machines(given)
+    machine = machines(given)[0]
     return contact_pair(machine, contour)
 
 
