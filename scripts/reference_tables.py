@@ -19,6 +19,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.section import Section, section_of
+from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
@@ -51,15 +52,33 @@ def limits() -> str:
 
 
 def checks() -> str:
-    rows = (
-        (
-            f"`{one.id}`", one.title.format(follower="follower"), one.unit,
-            "" if one.limit is None else f"`{one.limit.id}`",
-            "required" if one.must_have else "optional", one.needs, one.method,
-        )
-        for one in CHECKS
-    )  # fmt: skip
-    return markdown(("id", "check", "unit", "limit", "", "needs", "method"), rows)
+    """A paragraph for each check: formula, limit, source, load cases, and why it decides."""
+    return "\n\n".join(map(_check, CHECKS))
+
+
+def _check(one: Declaration) -> str:
+    title = one.title.format(follower="follower")
+    of = f", of a {one.needs} alone" if one.needs else ""
+    part = f", part `{one.part}`" if one.part else ""
+    lines = [
+        f"### `{one.id}`: {title}",
+        f"{one.formula}. Unit: {one.unit}{of}{part}.",
+        f"- Calculation: {one.method}.",
+        f"- Limit: {_limit(one)}.",
+        f"- Load cases: {one.load_cases}.",
+        f"- {'Decides the verdict' if one.must_have else 'Does not decide the verdict'}: "
+        f"{one.reason}.",
+    ]
+    return "\n".join([*lines[:2], "", *lines[2:]])
+
+
+def _limit(one: Declaration) -> str:
+    if one.limit is None:
+        return one.source
+    row = one.limit
+    value = shown(row.default, row.quantity.unit)
+    default_of = f", default {value}" if value else ", without a default"
+    return f"`limits.{row.id}`{default_of}; {row.source}"
 
 
 def columns() -> str:

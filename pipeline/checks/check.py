@@ -19,6 +19,8 @@ Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
 Error = Literal["sampling", "contact", "guides", "unknown"]
 Record = dict[str, str | float | bool | None]
+EVERY = "all, standstill and over-speed included"
+NONE = "none: the shape of the cam or a part as drawn"
 ROUNDING = 1e-9
 """Relative error of closed forms and exact integrals: no uncertainty of a demand."""
 
@@ -87,6 +89,7 @@ class Declaration:
     part : str                 part of the scope that it judges; "": cam or follower
     formula : str              demand and limit with their symbols, for the documentation
     reason : str               why it decides the verdict, or why it does not
+    load_cases : str           load cases in which it is made, in words
     demand : callable          solution -> demand; None where the check does not apply
     """
 
@@ -108,6 +111,7 @@ class Declaration:
     part: PartName | Literal[""]
     formula: str
     reason: str
+    load_cases: str
     demand: Callable[[Solution], Demand | None] = field(repr=False)
 
     def __call__(self, solution: Solution) -> Check | None:
@@ -165,6 +169,7 @@ def check(
     part: PartName | Literal[""] = "",
     formula: str = "",
     reason: str = "",
+    load_cases: str = EVERY,
 ) -> Callable[[Callable[[Solution], Demand | None]], Declaration]:
     """Declare a check of the demand that the decorated function returns; see `Declaration`.
 
@@ -191,6 +196,7 @@ def check(
             part=part,
             formula=formula,
             reason=reason,
+            load_cases=load_cases,
             demand=demand,
         )
 
