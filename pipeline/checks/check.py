@@ -286,6 +286,8 @@ class Check:
         demand, corner = self.demand, self.corner_demand
         if demand is None or math.isnan(demand) or corner is None:
             return demand
+        if math.isnan(corner):
+            return corner
         return max(demand, corner) if self.sense == "at_most" else min(demand, corner)
 
     @property

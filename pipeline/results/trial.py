@@ -89,10 +89,10 @@ class Trial:
 
     @property
     def verdict(self) -> Verdict:
-        """``pass`` when every must-have check passes or is waived."""
+        """``fail``, ``incomplete`` or ``pass``; see `checks.check.verdict`."""
         return verdict(self.checks)
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """Ids of the must-have checks that fail or are not evaluated, worst first."""
+        """Ids of the must-have checks that fail or lack data, worst first."""
         return binding(self.checks)
