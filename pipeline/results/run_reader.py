@@ -417,7 +417,7 @@ def read_records(file: Path) -> tuple[CheckRecord, ...]:
         status = record["status"]
         if status not in STATUSES:
             raise ResultError(f"{file}: {record['id']}: status {status} is unknown")
-        if STATUSES.index(status) < STATUSES.index(_status(record)):
+        if STATUSES.index(status) < STATUSES.index(status_of(record)):
             raise ResultError(
                 f"{file}: {record['id']} is marked {status}, its numbers say otherwise"
             )
@@ -430,19 +430,19 @@ def _require(file: Path, record: Mapping[str, object], keys: Iterable[str], what
         raise ResultError(f"{file}: {what}lacks {', '.join(missing)}")
 
 
-def _status(record: CheckRecord) -> str:
+def status_of(record: AnyCheck) -> str:
     """Status of a record by its numbers: worst demand, error bar, limit and value of the waiver.
 
     A missing number is never better than ``not_evaluated``.
     """
-    one, limit = judged(record), _number(record["limit"])
+    one, limit, sense = judged(record), _number(record["limit"]), str(record["sense"])
     if one is None or limit is None:
         return "not_evaluated"
-    upper = one.towards(record["sense"])
-    if not record["not_proven"] and _within(upper, limit, record["sense"]):
+    upper = one.towards(sense)
+    if not record["not_proven"] and _within(upper, limit, sense):
         return "pass"
     accepted = _number(record["waived_up_to"]) if record["waiver"] else None
-    covered = accepted is not None and _within(upper, accepted, record["sense"])
+    covered = accepted is not None and _within(upper, accepted, sense)
     return "waived" if covered else "fail"
 
 
