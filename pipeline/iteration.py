@@ -15,7 +15,7 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.given_lift import given_lift, lift_origin
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.check import Check, Verdict
 from camwright.pipeline.checks.registry import FORECAST, checks_of, without_sign_off
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import NOT_STORED, ContactStore, is_body, solution
@@ -43,6 +43,11 @@ from camwright.pipeline.smoothing.smoothing_forecast import Attempt
 from camwright.pipeline.solver import solve
 
 FORECAST_POSITIONS = 360
+_RESULT: Mapping[Verdict, str] = {
+    "pass": "passes every must-have check",
+    "incomplete": "fails no must-have check, but data are missing",
+    "fail": "fails",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +136,7 @@ def trials_of(
         return _constrained(task)
     if case.engine is None:
         trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
-        reason = f"prescribed lift: {'fails' if trial.binding else 'passes'}, not smoothed"
+        reason = f"prescribed lift: {_RESULT[trial.verdict]}, not smoothed"
         return Iteration(trial, reason)
     return _smoothed(task)
 
@@ -251,7 +256,7 @@ def _constrained(task: _Task) -> Iteration:
         shift, problem = corrected(problem, design, trial.cycles, shift)
         last = number == case.solver.max_trials
         if settled(shift, trial.checks) or trial.mesh is None or last:
-            result = "fails" if trial.binding else "passes every must-have check"
+            result = _RESULT[trial.verdict]
             agree = "" if starts is None else f"; {starts.sentence}"
             return Iteration(trial, f"trial {number} {result}; {shift.sentence}{agree}")
         del trial  # its solution takes most of the memory

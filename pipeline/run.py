@@ -109,6 +109,7 @@ def _summary(
         "trials": final.number,
         "verdict": final.verdict,
         "binding": list(final.binding),
+        "scope": case.scope.as_record(),
         "statement": statement,
         "headline": headline(torques, final),
         "prices": None if final.synthesis is None else final.synthesis["prices"],

@@ -12,10 +12,11 @@ from camwright.reports.figure_svg import COLOURS, png
 from camwright.reports.page import study_page
 from camwright.reports.picture_list import Picture
 from camwright.reports.report_content import Block, Note, Pictures, Section, Tabular
-from camwright.reports.report_tables import Record, Table, listed
+from camwright.reports.report_tables import Cell, Record, Scalar, Status, Table, listed
 
 COLUMNS = (
     ("file", "case"),
+    ("verdict", "verdict"),
     ("roller", "roller"),
     ("spring", "spring"),
     ("bush", "bushes"),
@@ -84,7 +85,7 @@ def _page(document: Record, picture: bytes) -> str:
         "Each point is a case file with the lift of the constrained synthesis, checked by closed "
         "forms as in camwright check. camwright run verifies it by finite elements."
     )
-    points = [[listed(row.get(name)) for name, _ in COLUMNS] for row in document["points"]]
+    points = [[_cell(name, row.get(name)) for name, _ in COLUMNS] for row in document["points"]]
     refused = [
         [f"{row['roller']}, {row['spring']}, {row['bush']}", str(row["why"])]
         for row in document["refused"]
@@ -92,7 +93,7 @@ def _page(document: Record, picture: bytes) -> str:
     pruned = [[str(row["part"]), str(row["why"])] for row in document["pruned"]]
     alt = f"Residual torque ripple over {AXES[document['against']][1]}"
     front = [
-        _table("Points of the front", [words for _, words in COLUMNS], points, 4, 7),
+        _table("Points of the front", [words for _, words in COLUMNS], points, 5, 7),
         Block(Pictures([Picture("Front", alt=alt, png=picture)])),
     ]
     return study_page(title, [
@@ -104,7 +105,13 @@ def _page(document: Record, picture: bytes) -> str:
     ], words)  # fmt: skip
 
 
+def _cell(name: str, value: Scalar | Sequence[Scalar]) -> Cell:
+    """A value of a point; a verdict as a status."""
+    text = listed(value)
+    return Status(text, text.upper()) if name == "verdict" else text
+
+
 def _table(
-    label: str, head: Sequence[str], rows: Sequence[Sequence[str]], text: int, numbers: int = 0
+    label: str, head: Sequence[str], rows: Sequence[Sequence[Cell]], text: int, numbers: int = 0
 ) -> Block:
     return Block(Tabular(Table(label, head, rows, text, numbers)) if rows else Note("None."))

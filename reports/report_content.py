@@ -36,6 +36,10 @@ TRIALS_HEAD = (
     "Trial", "Smoothing", "Strength", "Width, crank angle", "Reason", "Verdict",
     "Required checks not passed",
 )  # fmt: skip
+MISSING = (
+    "A required check without data leaves the verdict INCOMPLETE at best. Describe the part in the "
+    "case, or leave it out of the sign-off in [scope]."
+)
 CHECKS_HEAD = ("Check", "Status", "Demand", "Limit", "Utilisation", "Where")
 
 
@@ -166,7 +170,10 @@ def report_content(material: Material) -> Report:
     statement = titled(str(run.summary["statement"]), final.checks)
     return Report(
         str(material.case.get("title") or run.summary["case"]), _facts(material),
-        verdict(run.verdict, final.checks, final.binding, statement),
+        verdict(
+            run.verdict, final.checks, final.binding, statement,
+            str(run.summary["scope"]["statement"]),
+        ),
         report_tables.tiles(run.summary["headline"]),
         (
             _checks(material), _numbers(material), _sheet(material),
@@ -213,23 +220,33 @@ def _facts(material: Material) -> list[tuple[str, str]]:
 
 
 def _checks(material: Material) -> Section:
-    """Required checks: not evaluated, failed, passed. Optional checks: not evaluated last."""
+    """Checks without data, required ones first; required checks, failed first; optional checks."""
     rows = report_tables.check_rows(material.run.final.checks)
-    required = [row for row in rows if row.must_have]
-    order = {"not_evaluated": 0, "fail": 1}
-    required.sort(key=lambda row: order.get(row.status.id, 2))
-    optional = [row for row in rows if not row.must_have]
-    optional.sort(key=lambda row: row.status.id == "not_evaluated")
+    missing = [row for row in rows if row.status.id == "not_evaluated"]
+    missing.sort(key=lambda row: not row.must_have)
+    known = [row for row in rows if row.status.id != "not_evaluated"]
+    required = [row for row in known if row.must_have]
+    required.sort(key=lambda row: row.status.id != "fail")
+    groups = (
+        ("Missing data", missing, f"{MISSING} {_optional(missing)}".rstrip()),
+        ("Required", required, ""),
+        ("Optional", [row for row in known if not row.must_have], ""),
+    )
     return Section(
         "checks", "Checks",
         [
-            Block(Checks(CHECKS_HEAD, part, f"{title} checks"), title)
-            for title, part in (("Required", required), ("Optional", optional)) if part
+            Block(Checks(CHECKS_HEAD, part, f"Checks: {title.lower()}"), title, lead)
+            for title, part, lead in groups if part
         ],
-        "Required checks: not evaluated first, then failed, then passed, by decreasing "
-        "utilisation. The tick on each bar marks the limit; ± is the numerical uncertainty, "
-        "omitted below the last digit shown.",
+        "Required checks: failed first, then passed, by decreasing utilisation. The tick on each "
+        "bar marks the limit; ± is the numerical uncertainty, omitted below the last digit shown.",
     )  # fmt: skip
+
+
+def _optional(rows: Sequence[CheckRow]) -> str:
+    """Titles of the optional checks among rows, in a sentence."""
+    titles = [isolated(row.title) for row in rows if not row.must_have]
+    return f"Optional: {'; '.join(titles)}." if titles else ""
 
 
 def _numbers(material: Material) -> Section:
@@ -276,13 +293,13 @@ def _trial(trial: TrialRecord) -> list[str | Status]:
     width = record["smoothing_width_deg"]
     failing = [f"{row.title} ({row.utilisation})" for row in rows if row.status.id == "fail"]
     unknown = sum(row.status.id == "not_evaluated" for row in rows)
-    held = [*failing, *([f"{unknown} not evaluated"] if unknown else [])]
-    word = "pass" if trial.verdict == "pass" else "fail"
+    held = [*failing, *([f"{unknown} without data"] if unknown else [])]
+    word = trial.verdict
     return [
         str(trial.number), str(record["smoothing_description"]),
         report_tables.number(record["smoothing_strength"], 3),
         report_tables.quantity(width, "deg") if width is not None else DASH,
-        titled(str(record["why"]), trial.checks), Status(word, word),
+        titled(str(record["why"]), trial.checks), Status(word, word.upper()),
         "; ".join(held) or "none",
     ]  # fmt: skip
 

@@ -10,6 +10,7 @@ from math import inf, isclose, isfinite, isnan, log10, pi
 from typing import Any, TypeAlias
 
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.results.check_report import not_proven
 
 Scalar: TypeAlias = str | float | None
 Record: TypeAlias = Mapping[str, Any]
@@ -196,6 +197,7 @@ class CheckRow:
     must_have: bool
     error: str = ""
     corner: str = ""
+    unproven: str = ""
 
     @property
     def place(self) -> str:
@@ -204,12 +206,13 @@ class CheckRow:
 
     @property
     def remarks(self) -> list[tuple[str, bool]]:
-        """(text, emphasised) of the lines below the title: method, note, corner, waiver."""
+        """(text, emphasised) of the lines below the title: method, note, proof, corner, waiver."""
         limit = f"Limit: {self.source}" if self.source else ""
         corner = f"Worst tolerance corner: {self.corner}" if self.corner else ""
         lines = [
             (" · ".join(filter(None, (self.method, limit))), False), (self.note, True),
-            (corner, False), (f"Waiver: {self.waiver}" if self.waiver else "", True),
+            (self.unproven, True), (corner, False),
+            (f"Waiver: {self.waiver}" if self.waiver else "", True),
         ]  # fmt: skip
         return [line for line in lines if line[0]]
 
@@ -240,6 +243,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
         value = utilisation(check)
         status = str(check["status"])
         status_words = STATUS.get(status, words(status))
+        status_words += ", not proven" if check["not_proven"] else ""
         unit = str(check["unit"])
         sense = "≥" if check["sense"] == "at_least" else "≤"
         limit = quantity(check["limit"], unit)
@@ -253,9 +257,10 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
             where=quantity(angle, "deg") if isinstance(angle, (int, float)) else "",
             load_case=str(check["load_case"] or ""),
             source=str(check["source"]), method=str(check["method"]),
-            note=str(check["note"]), waiver=_waiver(check["waiver"]),
+            note=str(check["note"]), waiver=_waiver(check, unit),
             must_have=bool(check["must_have"]),
             error=_error(check, unit), corner=": ".join(worst_corner(check) or ()),
+            unproven=not_proven(check),
         ))  # fmt: skip
     return rows
 
@@ -303,10 +308,10 @@ def _ratio(value: float | None) -> str:
     return f"{value:.2f}" if value >= 0.005 or value == 0 else "< 0.01"
 
 
-def _waiver(waiver: Json) -> str:
-    if isinstance(waiver, Mapping):
-        return ", ".join(str(value) for key, value in waiver.items() if key != "check")
-    return str(waiver or "")
+def _waiver(check: Record, unit: str) -> str:
+    """Value up to which a waiver accepts the demand, and its name, date and reason."""
+    waiver = check["waiver"]
+    return f"up to {quantity(check['waived_up_to'], unit)}, {waiver}" if waiver else ""
 
 
 @dataclass(frozen=True)

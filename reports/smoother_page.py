@@ -29,7 +29,7 @@ COLUMNS = (
     ("residual_std_Nm", "residual ripple, std, N m"),
     ("residual_p2p_Nm", "residual ripple, peak to peak, N m"),
     ("verdict", "verdict"),
-    ("binding", "failed checks"),
+    ("binding", "required checks not passed"),
     ("why", "reason without a cam"),
 )
 
@@ -81,4 +81,4 @@ def _as_text(value: Cells) -> str:
 
 def _cell(name: str, value: Cells) -> Cell:
     text = listed(value)
-    return Status(text, text) if name == "verdict" else words(text)
+    return Status(text, text.upper()) if name == "verdict" else words(text)

@@ -5,6 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
+from camwright.pipeline.results.check_report import not_proven
+from camwright.pipeline.results.run_reader import (
+    VERDICTS,
+    to_be_confirmed,
+    verdict_line,
+    verdict_of,
+)
 from camwright.reports.report_tables import (
     Record,
     check_rows,
@@ -21,70 +28,102 @@ Check = Record
 class Verdict:
     """Verdict of a run.
 
-    `sentence` counts the checks by status, `governing` describes the required check of highest
-    utilisation, `binding` and `missing` are titles of required checks that fail and that are not
-    evaluated, `stopped` are the clauses of the reason for which the trials ended.
+    `outcome` is ``pass``, ``incomplete`` or ``fail``; `line` the verdict with the numbers of waived
+    checks and of values to be confirmed; `confirm` names these values. `sentence` counts the checks
+    by status, `governing` describes the required check of highest utilisation, `binding` are titles
+    of required checks that fail. `unproven`, `missing` and `waived` are lines on required checks
+    whose error bar lies across the limit, that lack data, and that are waived. `stopped` are the
+    clauses of the reason for which the trials ended, `scope` the parts not covered.
     """
 
-    passed: bool
+    outcome: str
+    line: str
+    confirm: tuple[str, ...]
+    scope: str
     sentence: str
     governing: str
     binding: tuple[str, ...]
     stopped: tuple[str, ...]
+    unproven: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
+    waived: tuple[str, ...] = ()
 
     @property
     def word(self) -> str:
-        return "PASS" if self.passed else "FAIL"
+        return self.outcome.upper()
 
     @property
     def lines(self) -> list[tuple[str, str]]:
         """(label, text) of the lines below the sentence."""
-        missing = f"{'; '.join(self.missing)}. The note of each check names the missing input."
         lines = (
             ("Governing", self.governing),
             ("Binding", f"{'; '.join(self.binding)}." if self.binding else ""),
-            ("Not evaluated", missing if self.missing else ""),
             ("Stopping criterion", self.stopped[0] if self.stopped else ""),
         )
         return [line for line in lines if line[1]]
 
     @property
-    def reasons(self) -> tuple[str, ...]:
-        """Further clauses of the stopping criterion."""
-        return self.stopped[1:]
+    def lists(self) -> list[tuple[str, Sequence[str]]]:
+        """(label, items) of the lists below the lines."""
+        lists = (
+            ("Stopping criterion, continued", self.stopped[1:]),
+            ("Missing data", self.missing),
+            ("Not proven", self.unproven),
+            ("Waived", self.waived),
+        )
+        return [each for each in lists if each[1]]
 
 
 def verdict(
-    recorded: str, checks: Sequence[Check], binding: Sequence[str], stopped: str
+    recorded: str,
+    checks: Sequence[Check],
+    binding: Sequence[str],
+    stopped: str,
+    scope: str = "",
 ) -> Verdict:
     """Verdict in sentences.
 
     Parameters
     ----------
-    recorded : str         verdict of the run, "pass" or "fail"
+    recorded : str         verdict of the run
     checks : sequence      records of the final trial
     binding : sequence     ids of the binding checks
     stopped : str          reason for which the trials ended
+    scope : str            parts that the sign-off does not cover, in a sentence
 
-    The verdict is pass only if it is recorded so, there is a check, and no required check fails or
-    is not evaluated.
+    The outcome is the worse of the recorded verdict and that of the checks.
     """
-    required = [c for c in checks if c["must_have"]]
-    failed = [c for c in required if c["status"] == "fail"]
+    required = [c for c in sorted_checks(checks) if c["must_have"]]
     missing = [c for c in required if c["status"] == "not_evaluated"]
-    passed = recorded == "pass" and bool(checks) and not failed and not missing
     titles = {str(c["id"]): isolated(str(c["title"])) for c in checks}
     unknown = {str(c["id"]): titles[str(c["id"])] for c in missing}
     clauses = (clause for clause in stopped.split("; ") if clause)
+    outcome = max(recorded, verdict_of(checks), key=VERDICTS.index)
     return Verdict(
-        passed,
-        _sentence(checks, required, failed, missing),
-        governing(checks),
-        tuple(titles.get(n, words(n)) for n in map(str, binding) if n not in unknown),
-        tuple(clause for clause in clauses if not _names_all(clause, unknown.values())),
-        tuple(unknown.values()),
+        outcome=outcome,
+        line=verdict_line(checks).replace(verdict_of(checks).upper(), outcome.upper(), 1),
+        confirm=tuple(to_be_confirmed(checks)),
+        scope=scope,
+        sentence=_sentence(checks, required, missing),
+        governing=governing(checks),
+        binding=tuple(titles.get(n, words(n)) for n in map(str, binding) if n not in unknown),
+        stopped=tuple(clause for clause in clauses if not _names_all(clause, unknown.values())),
+        unproven=tuple(
+            f"{isolated(str(c['title']))}: {not_proven(c)}" for c in required if c["not_proven"]
+        ),
+        missing=tuple(_stated(c) for c in missing),
+        waived=tuple(
+            f"{isolated(row.title)}: demand {row.demand}, accepted {isolated(row.waiver)}"
+            for row in check_rows(required)
+            if row.status.id == "waived"
+        ),
     )
+
+
+def _stated(check: Check) -> str:
+    """A check without data, and what to state."""
+    note = str(check["note"]) or "a number is missing"
+    return f"{isolated(str(check['title']))}: {isolated(note)}"
 
 
 def _names_all(clause: str, titles: Collection[str]) -> bool:
@@ -92,28 +131,26 @@ def _names_all(clause: str, titles: Collection[str]) -> bool:
     return len(titles) > 1 and all(title in clause for title in titles)
 
 
-def _sentence(
-    checks: Sequence[Check], required: Sequence[Check], failed: Sequence[Check],
-    missing: Sequence[Check],
-) -> str:  # fmt: skip
+def _sentence(checks: Sequence[Check], required: Sequence[Check], missing: Sequence[Check]) -> str:
     if not checks:
-        return "There are no checks. The verdict is fail without evidence."
+        return "There are no checks. The verdict is FAIL without evidence."
     held = sum(c["status"] == "pass" for c in required)
     parts = [f"{held} of {_count(required, 'required check')} {_verb(held, 'passes', 'pass')}"]
+    failed = sum(c["status"] == "fail" for c in required)
     if failed:
-        parts.append(f"{len(failed)} {_verb(len(failed), 'fails', 'fail')}")
+        parts.append(f"{failed} {_verb(failed, 'fails', 'fail')}")
     if missing:
-        parts.append(f"{len(missing)} not evaluated (counted as failed)")
-    waived = [c for c in required if c["status"] == "waived"]
+        parts.append(f"{len(missing)} {_verb(len(missing), 'lacks', 'lack')} data")
+    waived = sum(c["status"] == "waived" for c in required)
     if waived:
-        parts.append(f"{len(waived)} {_verb(len(waived), 'is', 'are')} waived")
+        parts.append(f"{waived} {_verb(waived, 'is', 'are')} waived")
     optional = [c for c in checks if not c["must_have"]]
     exceeded = sum(c["status"] == "fail" for c in optional)
     unknown = sum(c["status"] == "not_evaluated" for c in optional)
     sentence = ", ".join(parts) + "."
     if exceeded or unknown:
         counts = [f"{exceeded} {_verb(exceeded, 'fails', 'fail')}"] if exceeded else []
-        counts += [f"{unknown} not evaluated"] if unknown else []
+        counts += [f"{unknown} {_verb(unknown, 'lacks', 'lack')} data"] if unknown else []
         sentence += f" Of {_count(optional, 'optional check')}: {', '.join(counts)}."
     return sentence
 

@@ -33,6 +33,21 @@ class Scope(Section):
     not_covered: Annotated[tuple[PartName, ...], Field(strict=False, max_length=16)] = ()
     reason: Text = ""
 
+    @property
+    def statement(self) -> str:
+        """The parts left out and the reason on one line; "" without any."""
+        parts = ", ".join(words for part, words in PART_WORDS.items() if not self.covers(part))
+        reason = " ".join(self.reason.split())
+        return f"Not covered by this sign-off: {parts}: {reason}" if parts else ""
+
+    def as_record(self) -> dict[str, str | list[str]]:
+        """The scope for ``run.json`` and ``signoff.json``."""
+        return {
+            "not_covered": list(self.not_covered),
+            "reason": self.reason,
+            "statement": self.statement,
+        }
+
     def covers(self, part: PartName) -> bool:
         """Whether the sign-off covers a part."""
         return part not in self.not_covered

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from camwright.pipeline.commands.terminal import FAILED, PASSED, say, show, show_json
+from camwright.pipeline.commands.terminal import EXIT_CODE, FAILED, say, show, show_json
 
 if TYPE_CHECKING:
     from camwright.pipeline.results.run_reader import CheckRecord
@@ -32,7 +32,9 @@ def check(
     fail_on: Annotated[
         str,
         typer.Option(
-            "--fail-on", help="Failure criterion: must, open (also not evaluated), any, never."
+            "--fail-on",
+            help="Checks that decide the exit code: must (required), open (also optional ones "
+            "without data), any (also optional ones that fail), never.",
         ),
     ] = "must",
     verify_record: Annotated[
@@ -42,17 +44,21 @@ def check(
 ) -> int:
     """Print the verdict of a run, or of a preview of a case.
 
-    Exit code 0: passed, 1: failed, 2: error. A preview is by closed forms and never passes.
+    Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing). A preview is by closed
+    forms and never passes.
     """
-    from camwright.pipeline.results.check_report import failing, selected
     from camwright.pipeline.results.check_report import junit as junit_text
+    from camwright.pipeline.results.check_report import outcome, selected
+    from camwright.pipeline.results.run_reader import VERDICTS
 
     if verify_record and not _as_signed(target):
         return FAILED
     is_case = target.is_file()
     document = _checked_case(target) if is_case else _checked_run(target)
     document["checks"] = list(selected(document["checks"], only or ()))
-    failed = failing(document["checks"], fail_on)
+    decided = outcome(document["checks"], fail_on)
+    if not only and fail_on != "never":
+        decided = max(decided, document["verdict"], key=VERDICTS.index)
     if baseline is not None:
         from camwright.pipeline.results.baseline_comparison import changes
 
@@ -60,12 +66,14 @@ def check(
     if junit is not None:
         from camwright.pipeline.base.files import write_atomic
 
-        write_atomic(junit, junit_text(document["checks"], document["case"], fail_on))
+        words = {"verdict": document["verdict_line"], "scope": document["scope"]["statement"]}
+        text = junit_text(document["checks"], document["case"], fail_on, words)
+        write_atomic(junit, text)
     if as_json:
         show_json(document)
     else:
         show(document, None if is_case else target)
-    return FAILED if failed else PASSED
+    return EXIT_CODE[decided]
 
 
 def _comparable(folder: Path, only: Iterable[str]) -> list[CheckRecord]:
@@ -98,14 +106,19 @@ def _checked_run(folder: Path) -> dict[str, Any]:
 def _checked_case(path: Path) -> dict[str, Any]:
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.preview import preview_case
+    from camwright.pipeline.results.run_reader import to_be_confirmed, verdict_line
 
     case = read_case(path)
     trial = preview_case(case)
+    checks: list[Any] = [one.as_record() for one in trial.checks]
     return {
         "case": case.name,
         "input_sha256": case.sha256,
-        "verdict": "fail",
+        "verdict": trial.verdict,
+        "verdict_line": verdict_line(checks),
+        "to_be_confirmed": to_be_confirmed(checks),
         "binding": list(trial.binding),
+        "scope": case.scope.as_record(),
         "preview": True,
-        "checks": [one.as_record() for one in trial.checks],
+        "checks": checks,
     }

@@ -38,7 +38,8 @@ def compare(
     rows = [{"smoother": one.smoother, "words": one.words, **one.record} for one in results]
     for row in rows:
         shown = [f"{row[n]:.4g} {u}" for n, u in _COMPARED if row.get(n) is not None]
-        line = f"{row['smoother']} ({row['words']}): {', '.join(shown)}; {row['verdict']}"
+        verdict = str(row["verdict"]).upper()
+        line = f"{row['smoother']} ({row['words']}): {', '.join(shown)}; {verdict}"
         stdout.print(line, markup=False)
     if out is not None:
         lifts = {

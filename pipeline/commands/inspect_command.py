@@ -9,8 +9,7 @@ import typer
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.commands.terminal import (
-    FAILED,
-    PASSED,
+    EXIT_CODE,
     DirArgument,
     progress_shown,
     show_json,
@@ -38,7 +37,7 @@ def inspect(
     """Check a measured cam against its drawing.
 
     Fits the measured points to the contour, solves the measured cam and checks it. Exit code 0:
-    passed, 1: failed, 2: error.
+    PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing).
     """
     from camwright.pipeline.base import units
     from camwright.pipeline.results.run_folder import drawn_cam
@@ -63,4 +62,4 @@ def inspect(
         for line in cam_inspection.lines(record):
             stdout.print(line, markup=False)
         stdout.print(f"deviations: {picture}", markup=False)
-    return PASSED if record["verdict"] == "pass" else FAILED
+    return EXIT_CODE[record["verdict"]]

@@ -10,6 +10,7 @@ import typer
 from camwright.geometry.errors import InputError
 from camwright.pipeline.commands.terminal import (
     FAILED,
+    INCOMPLETE,
     PASSED,
     CaseArgument,
     progress_shown,
@@ -34,8 +35,9 @@ def redesign(
     """Search the catalogues for the parts of a case.
 
     Pareto front of torque ripple and size (or mass) over rollers, springs and bushes, with the cam
-    synthesised for each. Exit code 0: the front has points, 1: no feasible choice, 2: error.
-    Solved points are cached in DIR; run the command again to resume.
+    synthesised for each. Exit code 0: the points of the front pass in the preview, 1: every choice
+    fails, 2: error, 3: the points lack data. Solved points are cached in DIR; run the command again
+    to resume.
     """
     from camwright.pipeline.studies.redesign.redesign_study import RECORD
     from camwright.pipeline.studies.redesign.redesign_study import redesign as searched
@@ -52,7 +54,10 @@ def redesign(
     else:
         _show(document)
         stdout.print(f"record: {folder / RECORD}\npage: {made}", markup=False)
-    return PASSED if document["points"] else FAILED
+    if not document["points"]:
+        return FAILED
+    lacking = any(row["open"] for row in document["points"])
+    return INCOMPLETE if lacking else PASSED
 
 
 def _show(document: dict[str, Any]) -> None:
@@ -72,6 +77,6 @@ def _show(document: dict[str, Any]) -> None:
         stdout.print("no choice of the catalogues keeps all limits", markup=False)
     missing = sorted({name for row in document["points"] for name in row["open"]})
     if missing:
-        stdout.print(f"not evaluated in these points: {', '.join(missing)}", markup=False)
+        stdout.print(f"missing data of these points: {', '.join(missing)}", markup=False)
     counts = f"{len(document['tried'])} tried, {len(document['pruned'])} left out by bounds"
     stdout.print(f"{counts} and dominance; next: camwright run point_01.toml", markup=False)

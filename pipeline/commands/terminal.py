@@ -14,7 +14,9 @@ from rich.console import Console
 
 from camwright.pipeline.base.progress import Bars, Lines, Progress
 
-PASSED, FAILED, ERROR, INTERRUPTED = 0, 1, 2, 130
+PASSED, FAILED, ERROR, INCOMPLETE, INTERRUPTED = 0, 1, 2, 3, 130
+EXIT_CODE = {"pass": PASSED, "incomplete": INCOMPLETE, "fail": FAILED}
+"""Exit code by verdict."""
 
 stdout = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 180)
 stderr = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -53,7 +55,7 @@ def progress_shown() -> Iterator[Progress]:
 
 
 def show(document: dict[str, Any], folder: Path | None) -> None:
-    """Print checks by utilisation, remarks, verdict and path of the report."""
+    """Print checks by utilisation, remarks, verdict, scope and path of the report."""
     from camwright.pipeline.results.check_report import (
         binding_lines,
         consistency_line,
@@ -69,14 +71,19 @@ def show(document: dict[str, Any], folder: Path | None) -> None:
 
         for line in lines(document["changes"]):
             stdout.print(f"baseline: {line}", markup=False)
+    line = document["verdict_line"]
     if folder is None:
-        stdout.print(f"verdict: {document['verdict']}, preview by closed forms", markup=False)
+        stdout.print(f"verdict: {line}; preview by closed forms", markup=False)
     else:
         count = document["trials"]
         trials = f"{count} trial{'s' if count > 1 else ''}"
-        stdout.print(f"verdict: {document['verdict']} after {trials}", markup=False)
+        stdout.print(f"verdict: {line}; after {trials}", markup=False)
         if document["statement"]:
             stdout.print(document["statement"], markup=False)
+    for name in document["to_be_confirmed"]:
+        stdout.print(f"to be confirmed: {name}", markup=False)
+    if document["scope"]["statement"]:
+        stdout.print(document["scope"]["statement"], markup=False)
     for line in binding_lines(document["checks"], document["binding"]):
         stdout.print(line, markup=False)
     for finding in document.get("consistency", ()):

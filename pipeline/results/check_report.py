@@ -6,18 +6,18 @@ import fnmatch
 import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.results.run_reader import CheckRecord, Finding
+from camwright.pipeline.results.run_reader import AnyCheck, CheckRecord, Finding, judged
 
 if TYPE_CHECKING:
     from rich.table import Table
 
 FAIL_ON = ("must", "open", "any", "never")
-"""Checks that make `check` exit with 1: must-haves that fail or are not evaluated; also any check
-not evaluated; also any optional check that fails; none."""
+"""Checks that decide the exit code of `check`: the must-haves; also any check without data; also
+any optional check that fails; none."""
 
 HEADINGS = (
     *("check", "demand", "limit", "unit", "used", "margin", "where", "worst corner", "status"),
@@ -52,8 +52,8 @@ def _patterns(only: Iterable[str]) -> list[str]:
     return [word for text in only for word in text.replace(",", " ").split()]
 
 
-def failing(records: Iterable[CheckRecord], fail_on: str) -> tuple[str, ...]:
-    """Ids of the checks that count as failed at a level of `FAIL_ON`.
+def failing(records: Iterable[CheckRecord], fail_on: str) -> tuple[CheckRecord, ...]:
+    """Checks that count at a level of `FAIL_ON` and fail or lack data.
 
     Raises
     ------
@@ -62,7 +62,39 @@ def failing(records: Iterable[CheckRecord], fail_on: str) -> tuple[str, ...]:
     """
     if fail_on not in FAIL_ON:
         raise InputError("--fail-on", fail_on, f"one of: {', '.join(FAIL_ON)}")
-    return tuple(record["id"] for record in records if _counts(record, fail_on))
+    return tuple(record for record in records if _counts(record, fail_on))
+
+
+def outcome(records: Iterable[CheckRecord], fail_on: str) -> str:
+    """Verdict at a level of `FAIL_ON`: ``fail``, else ``incomplete``, else ``pass``.
+
+    Raises
+    ------
+    InputError
+        If the level is unknown.
+    """
+    counted = {record["status"] for record in failing(records, fail_on)}
+    if "fail" in counted:
+        return "fail"
+    return "incomplete" if counted else "pass"
+
+
+def not_proven(record: AnyCheck) -> str:
+    """Worst demand with its error bar against the limit, where the bar lies across it."""
+    one, limit = judged(record), record["limit"]
+    if not record["not_proven"] or one is None or not isinstance(limit, (int, float)):
+        return ""
+    decimals = 0 if not one.error else max(0, 1 - math.floor(math.log10(one.error)))
+    error = f"{one.error:.{decimals}f}"
+    return f"not proven: {one.demand:.{decimals}f} ± {error} against {limit:.6g}"
+
+
+def waiver_words(record: CheckRecord) -> str:
+    """Value up to which a waiver accepts the demand, and its name, date and reason."""
+    if not record["waiver"]:
+        return ""
+    unit = "" if record["unit"] == "-" else f" {record['unit']}"
+    return f"up to {number(record['waived_up_to'])}{unit}, {record['waiver']}"
 
 
 def _counts(record: CheckRecord, fail_on: str) -> bool:
@@ -92,10 +124,16 @@ def rows(records: Iterable[CheckRecord]) -> list[tuple[str, ...]]:
             share(None if record["utilisation"] is None else 1.0 - record["utilisation"]),
             place(record),
             corner(record),
-            record["status"] + ("" if record["must_have"] else " (optional)"),
+            status(record),
         )
         for record in sorted(records, key=rank)
     ]
+
+
+def status(record: CheckRecord) -> str:
+    """Status of a check in words."""
+    words = record["status"] + (", not proven" if record["not_proven"] else "")
+    return words + ("" if record["must_have"] else " (optional)")
 
 
 def table(records: Iterable[CheckRecord]) -> Table:
@@ -112,32 +150,39 @@ def table(records: Iterable[CheckRecord]) -> Table:
             no_wrap=heading not in ("check", "where", "worst corner"),
         )
     for row in rows(records):
-        style = STYLES.get(row[-1].split()[0], "")
+        style = STYLES.get(re.split("[ ,]", row[-1])[0], "")
         made.add_row(*(Text(cell) for cell in row[:-1]), Text(row[-1], style=style))
     return made
 
 
 def remarks(records: Iterable[CheckRecord]) -> list[str]:
-    """Lines below the table: checks not evaluated, waivers, limits to be verified."""
+    """Lines below the table: missing data, not proven checks, waivers, limits to be verified."""
     records = sorted(records, key=rank)
-    waived = [f"waived: {r['id']}: {r['waiver']}" for r in records if r["waiver"]]
+    waived = [f"{_waived(r)}: {r['id']}: {waiver_words(r)}" for r in records if r["waiver"]]
+    unproven = [f"{r['id']}: {not_proven(r)}" for r in records if r["not_proven"]]
     verify = [r["id"] for r in records if "verify" in r["source"]]
     still_open = [
-        f"not evaluated: {r['id']}: {r['note'] or 'a number is missing'}"
+        f"missing data: {r['id']}: {r['note'] or 'a number is missing'}"
         for r in records
         if r["status"] == "not_evaluated"
     ]
     recalled = [f"recalled limits, to be verified: {', '.join(verify)}"] if verify else []
-    return [*still_open, *waived, *recalled]
+    return [*still_open, *unproven, *waived, *recalled]
+
+
+def _waived(record: CheckRecord) -> str:
+    return {"waived": "waived", "pass": "waiver not needed"}.get(
+        record["status"], "waiver without effect"
+    )
 
 
 def binding_lines(records: Iterable[CheckRecord], binding: Sequence[str]) -> list[str]:
-    """Binding checks: those that fail, and those not evaluated."""
+    """Binding checks: those that fail, and those without data."""
     missing = {r["id"] for r in records if r["status"] == "not_evaluated"}
     known = [name for name in binding if name not in missing]
     unknown = [name for name in binding if name in missing]
     lines = [f"binding: {', '.join(known)}"] if known else []
-    return lines + ([f"binding, as a number is missing: {', '.join(unknown)}"] if unknown else [])
+    return lines + ([f"binding, as data are missing: {', '.join(unknown)}"] if unknown else [])
 
 
 def place(record: CheckRecord) -> str:
@@ -170,32 +215,47 @@ def share(value: float | None) -> str:
     return "-" if value is None else f"{value:.0%}"
 
 
-def junit(records: Iterable[CheckRecord], name: str, fail_on: str) -> str:
-    """JUnit XML: one test case a check; an optional one not evaluated is skipped."""
+def junit(
+    records: Iterable[CheckRecord], name: str, fail_on: str, properties: Mapping[str, str]
+) -> str:
+    """JUnit XML: properties of the run, such as its verdict, and one test case a check.
+
+    A check without data is an error where it decides at the level `fail_on`, else skipped.
+    """
     records = sorted(records, key=rank)
-    failed = set(failing(records, fail_on))
-    skipped = {r["id"] for r in records if r["status"] == "not_evaluated"} - failed
+    counted = failing(records, fail_on)
+    failed = {r["id"] for r in counted if r["status"] == "fail"}
+    lacking = {r["id"] for r in counted} - failed
+    skipped = {r["id"] for r in records if r["status"] == "not_evaluated"} - lacking
     suite = ET.Element(
         "testsuite",
         name=name,
         tests=str(len(records)),
         failures=str(len(failed)),
-        errors="0",
+        errors=str(len(lacking)),
         skipped=str(len(skipped)),
     )
+    stated = ET.SubElement(suite, "properties")
+    for key, value in properties.items():
+        ET.SubElement(stated, "property", name=key, value=_for_xml(value))
     for record in records:
         case = ET.SubElement(suite, "testcase", classname=f"camwright.{name}", name=record["id"])
         text = _for_xml(
             f"{record['title']}: {number(record['demand'])} against {number(record['limit'])}"
-            f" {record['unit']}, {record['status']}; {record['source']}"
+            f" {record['unit']}, {status(record)}; {record['source']}"
         )
+        if record["not_proven"]:
+            text += f"; {_for_xml(not_proven(record))}"
         if record["id"] in failed:
             ET.SubElement(case, "failure", type=record["status"], message=text)
+        elif record["id"] in lacking:
+            note = f"{text}; {_for_xml(record['note'])}" if record["note"] else text
+            ET.SubElement(case, "error", type=record["status"], message=note)
         elif record["id"] in skipped:
             ET.SubElement(case, "skipped", message=text)
         else:
-            waiver = record["waiver"]
-            words = f"{text}; {_for_xml(str(waiver))}" if waiver else text
+            waiver = _for_xml(waiver_words(record))
+            words = f"{text}; waiver {waiver}" if waiver else text
             ET.SubElement(case, "system-out").text = words
     ET.indent(suite)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suite, "unicode") + "\n"

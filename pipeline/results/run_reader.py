@@ -5,16 +5,18 @@ Reading needs no solver and no case parser.
 
 from __future__ import annotations
 
+import math
+import tomllib
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import Any, NamedTuple, TypedDict
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json, hash_inputs, read_json, read_text, sha256_of
 from camwright.pipeline.base.tables import Table, read_table
 
-SCHEMA = 2
+SCHEMA = 3
 """Number of the form of a run folder; a folder of another form is refused."""
 HEADLINE = (
     *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),
@@ -24,7 +26,14 @@ HEADLINE = (
     *("guide_reaction_A_max_N", "guide_reaction_B_max_N", "friction_loss_J_per_cam_turn"),
     *("p0_difference_max_percent", "residual_equilibrium_max"),
 )
-STATUSES = ("pass", "fail", "not_evaluated", "waived")
+STATUSES = ("pass", "waived", "not_evaluated", "fail")
+"""Statuses of a check, from the best to the worst."""
+VERDICTS = ("pass", "incomplete", "fail")
+"""Verdicts, from the best to the worst."""
+_DIGITS = 1e-12
+"""Relative error of a sum of numbers with the 15 digits of a record."""
+_ROUNDING = 1.001e-9
+"""Share of a demand up to which its error is that of rounding, no uncertainty."""
 LIMITS_FILE = "2_limits.csv"
 
 
@@ -44,7 +53,7 @@ class TrialContents(TypedDict):
     certificate: list[dict[str, Json]]
 
 
-class CheckRecord(TypedDict):
+class CheckRecordOfAnyCheck(TypedDict):
     """A record of ``6_checks.json``, in `unit` and degrees; null: missing, or infinite."""
 
     id: str
@@ -61,11 +70,31 @@ class CheckRecord(TypedDict):
     sense: str
     must_have: bool
     waiver: str | None
+    waived_up_to: float | None
+    not_proven: bool
     note: str
     error: float | None
     corner: str | None
     corner_demand: float | None
     evidence: bool
+
+
+class CheckRecord(CheckRecordOfAnyCheck, total=False):
+    """A record of ``6_checks.json``; to_be_confirmed: names of the recalled values it rests on."""
+
+    to_be_confirmed: list[str]
+
+
+AnyCheck = Mapping[str, object]
+"""A `CheckRecord`, also where it is read as plain JSON."""
+
+
+class ScopeRecord(TypedDict):
+    """Parts that the sign-off does not cover, the reason, and both in a sentence."""
+
+    not_covered: list[str]
+    reason: str
+    statement: str
 
 
 class Finding(TypedDict):
@@ -92,6 +121,7 @@ class SummaryOfAnyRun(TypedDict):
     trials: int
     verdict: str
     binding: list[str]
+    scope: ScopeRecord
     statement: str
     headline: dict[str, float | None]
     prices: Json
@@ -122,12 +152,12 @@ class TrialRecord:
 
     @property
     def verdict(self) -> str:
-        """``pass`` when every must-have check passes or is waived; without checks ``fail``."""
+        """``fail``, ``incomplete`` or ``pass``; see `verdict_of`."""
         return verdict_of(self.checks)
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """Ids of the must-have checks that fail or are not evaluated."""
+        """Ids of the must-have checks that fail or lack data."""
         return binding_of(self.checks)
 
 
@@ -166,7 +196,7 @@ def read_run(path: str | Path) -> Run:
     torque, speed = path / "1_torque.csv", path / "1_speed.csv"
     run = Run(
         path=path,
-        case_text=read_text(path / "case.toml"),
+        case_text=_case_text(path, summary),
         summary=summary,
         torque=read_table(torque) if torque.exists() else None,
         trials=tuple(_read_trial(path, k + 1) for k in range(summary["trials"])),
@@ -185,14 +215,18 @@ def read_verdict(path: Path) -> dict[str, Any]:
         If a file is missing or unreadable, or if summary and checks disagree.
     """
     summary = read_summary(path)
+    _case_text(path, summary)
     checks = read_checks(path / f"trial_{summary['trials']}")
     _require_verdict(path, summary, verdict_of(checks))
     return {
         "case": summary["case"],
         "input_sha256": summary["input_sha256"],
         "verdict": summary["verdict"],
+        "verdict_line": verdict_line(checks),
+        "to_be_confirmed": to_be_confirmed(checks),
         "binding": list(binding_of(checks)),
         "trials": summary["trials"],
+        "scope": summary["scope"],
         "statement": summary["statement"],
         "headline": summary["headline"],
         "consistency": summary["consistency"],
@@ -252,7 +286,7 @@ def is_result(name: str) -> bool:
 
 
 def binding_of(checks: Iterable[CheckRecord]) -> tuple[str, ...]:
-    """Ids of the must-have checks that fail or are not evaluated."""
+    """Ids of the must-have checks that fail or lack data."""
     return tuple(
         check["id"]
         for check in checks
@@ -260,9 +294,77 @@ def binding_of(checks: Iterable[CheckRecord]) -> tuple[str, ...]:
     )
 
 
-def verdict_of(checks: Collection[CheckRecord]) -> str:
-    """``pass`` when every must-have check passes or is waived; without checks ``fail``."""
-    return "fail" if not checks or binding_of(checks) else "pass"
+def verdict_of(checks: Iterable[AnyCheck]) -> str:
+    """Verdict of the must-have checks, as `checks.check.verdict` has it.
+
+    ``fail`` if one is beyond its limit or not proven, or without any; else ``incomplete`` if one
+    lacks data; else ``pass``.
+    """
+    deciding = [check["status"] for check in checks if check["must_have"]]
+    if not deciding or "fail" in deciding:
+        return "fail"
+    return "incomplete" if "not_evaluated" in deciding else "pass"
+
+
+def verdict_line(records: Collection[AnyCheck]) -> str:
+    """Verdict, number of waived checks and of values to be confirmed.
+
+    Such as ``PASS, 2 waived, 3 values to be confirmed``.
+    """
+    waived = sum(record["status"] == "waived" for record in records)
+    values = len(to_be_confirmed(records))
+    parts = [verdict_of(records).upper()]
+    parts += [f"{waived} waived"] if waived else []
+    parts += [f"{values} value{'s' if values > 1 else ''} to be confirmed"] if values else []
+    return ", ".join(parts)
+
+
+def to_be_confirmed(records: Iterable[AnyCheck]) -> list[str]:
+    """Names of the recalled values on which the checks rest, each once."""
+    listed = (record.get("to_be_confirmed") for record in records)
+    names = (str(name) for each in listed if isinstance(each, (list, tuple)) for name in each)
+    return list(dict.fromkeys(names))
+
+
+class Judged(NamedTuple):
+    """Worst demand of a record and half of its error bar, in the unit of the record."""
+
+    demand: float
+    error: float
+
+    def towards(self, sense: str) -> float:
+        """End of the error bar towards the limit."""
+        return self.demand - self.error if sense == "at_least" else self.demand + self.error
+
+
+def judged(record: AnyCheck) -> Judged | None:
+    """Demand by which a record is judged: the worse of nominal and tolerance corner.
+
+    None where a number is missing; a named corner without a number is one. The error bar is the
+    same share of the demand at the corner as at the nominal.
+    """
+    demand, corner = _number(record["demand"]), _number(record["corner_demand"])
+    if demand is None or (record["corner"] and corner is None):
+        return None
+    worse = min if record["sense"] == "at_least" else max
+    worst = demand if corner is None else worse(demand, corner)
+    error = _number(record["error"]) or 0.0
+    share = error / abs(demand) if demand else 0.0
+    return Judged(worst, abs(worst) * share if share > _ROUNDING else 0.0)
+
+
+def _case_text(path: Path, summary: Summary) -> str:
+    """Text of ``case.toml``; ResultError if the summary states another scope."""
+    text = read_text(path / "case.toml")
+    try:
+        scope = tomllib.loads(text).get("scope", {})
+    except tomllib.TOMLDecodeError as error:
+        raise ResultError(f"{path / 'case.toml'}: {error}") from None
+    said = summary["scope"]
+    left_out = scope.get("not_covered", []) if isinstance(scope, dict) else None
+    if not isinstance(said, dict) or said.get("not_covered") != left_out:
+        raise ResultError(f"{path}: the scope in run.json is not that of case.toml")
+    return text
 
 
 def _require_verdict(path: Path, summary: Summary, verdict: str) -> None:
@@ -300,18 +402,25 @@ def read_checks(trial: Path) -> tuple[CheckRecord, ...]:
     Raises
     ------
     ResultError
-        If a record lacks a key, has an unknown status, or passes against its numbers.
+        If a record lacks a key, has an unknown status, or one better than its numbers.
     """
-    file = trial / "6_checks.json"
+    return read_records(trial / "6_checks.json")
+
+
+def read_records(file: Path) -> tuple[CheckRecord, ...]:
+    """Records of checks of a file; see `read_checks`."""
     records: list[CheckRecord] = read_json(file)
     if not isinstance(records, list):
         raise ResultError(f"{file}: must be a list of checks")
     for record in records:
-        _require(file, record, CheckRecord.__annotations__, "a check ")
-        if record["status"] not in STATUSES:
-            raise ResultError(f"{file}: {record['id']}: status {record['status']} is unknown")
-        if record["status"] == "pass" and not _holds(record):
-            raise ResultError(f"{file}: {record['id']} is marked pass, its numbers say otherwise")
+        _require(file, record, CheckRecordOfAnyCheck.__annotations__, "a check ")
+        status = record["status"]
+        if status not in STATUSES:
+            raise ResultError(f"{file}: {record['id']}: status {status} is unknown")
+        if STATUSES.index(status) < STATUSES.index(status_of(record)):
+            raise ResultError(
+                f"{file}: {record['id']} is marked {status}, its numbers say otherwise"
+            )
     return tuple(records)
 
 
@@ -321,9 +430,30 @@ def _require(file: Path, record: Mapping[str, object], keys: Iterable[str], what
         raise ResultError(f"{file}: {what}lacks {', '.join(missing)}")
 
 
-def _holds(record: CheckRecord) -> bool:
-    """Whether demand and limit of a record pass; a missing number never does."""
-    demand, limit = record["demand"], record["limit"]
-    if not isinstance(demand, (int, float)) or not isinstance(limit, (int, float)):
-        return False
-    return bool(demand >= limit if record["sense"] == "at_least" else demand <= limit)
+def status_of(record: AnyCheck) -> str:
+    """Status of a record by its numbers: worst demand, error bar, limit and value of the waiver.
+
+    A missing number is never better than ``not_evaluated``.
+    """
+    one, limit, sense = judged(record), _number(record["limit"]), str(record["sense"])
+    if one is None or limit is None:
+        return "not_evaluated"
+    upper = one.towards(sense)
+    if not record["not_proven"] and _within(upper, limit, sense):
+        return "pass"
+    accepted = _number(record["waived_up_to"]) if record["waiver"] else None
+    covered = accepted is not None and _within(upper, accepted, sense)
+    return "waived" if covered else "fail"
+
+
+def _within(demand: float, limit: float, sense: str) -> bool:
+    """Whether a demand keeps a limit, up to the digits of a record."""
+    slack = _DIGITS * max(abs(demand), abs(limit))
+    return demand >= limit - slack if sense == "at_least" else demand <= limit + slack
+
+
+def _number(value: object) -> float | None:
+    """A finite number of a record."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        return None
+    return float(value)

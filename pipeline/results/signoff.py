@@ -19,7 +19,7 @@ from camwright.pipeline.base.files import (
 )
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.model_limits import MODEL_LIMITS, limitations
-from camwright.pipeline.results.run_reader import CheckRecord
+from camwright.pipeline.results.run_reader import CheckRecord, to_be_confirmed, verdict_line
 
 NAME = "signoff.json"
 PRESENTATION = ("figures", "exports", "inspection")
@@ -49,13 +49,27 @@ def record(path: Path) -> dict[str, Json]:
             "versions": summary["versions"],
         },
         "verdict": run_reader.verdict_of(checks),
+        "verdict_line": verdict_line(checks),
         "binding": list(run_reader.binding_of(checks)),
         "not_evaluated": [c["id"] for c in checks if c["status"] == "not_evaluated"],
+        "not_proven": [c["id"] for c in checks if c["not_proven"]],
+        "scope": {
+            "not_covered": summary["scope"]["not_covered"],
+            "reason": summary["scope"]["reason"],
+            "statement": summary["scope"]["statement"],
+        },
         "waivers": [
-            {"check": c["id"], "waiver": c["waiver"], "status": c["status"]}
+            {
+                "check": c["id"],
+                "waiver": c["waiver"],
+                "up_to": c["waived_up_to"],
+                "unit": c["unit"],
+                "status": c["status"],
+            }
             for c in checks
             if c["waiver"]
         ],
+        "to_be_confirmed": to_be_confirmed(checks),
         "trial": summary["trials"],
         "headline": summary["headline"],
         "figures": [_figure(check) for check in checks],
@@ -160,6 +174,7 @@ def _figure(check: CheckRecord) -> dict[str, Json]:
         "unit": check["unit"],
         "utilisation": check["utilisation"],
         "status": check["status"],
+        "not_proven": check["not_proven"],
         "load_case": check["load_case"],
         "cam_angle_deg": check["cam_angle_deg"],
         "source": check["source"],

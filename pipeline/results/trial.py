@@ -97,5 +97,5 @@ class Trial:
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """Ids of the must-have checks that fail or are not evaluated, worst first."""
+        """Ids of the must-have checks that fail or lack data, worst first."""
         return binding(self.checks)

@@ -109,7 +109,7 @@ def settled(shift: LimitShift, checks: Sequence[Check]) -> bool:
     To 1 % of each limit; to the reserve of the synthesis where a check fails that a gentler lift
     can pass.
     """
-    fails = any(check.blocks and check.lift_can_help for check in checks)
+    fails = any(c.must_have and c.lift_can_help and c.status == "fail" for c in checks)
     return shift.size < (RESERVE if fails else SETTLED)
 
 

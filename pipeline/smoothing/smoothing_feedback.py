@@ -42,7 +42,8 @@ def next_smoother(attempts: Sequence[Attempt], max_trials: int, forecast: Foreca
 
     A failed must-have check that a gentler lift can pass is a reason for a wider smoother. The
     torque reduction is kept: the search ends at the widest smoother that keeps it. The last trial
-    is the best one: torque reduction kept, fewest must-have checks failed, least utilisation.
+    is the best one: torque reduction kept, fewest must-have checks failed, least utilisation,
+    fewest without data. Missing data are no reason to smooth.
 
     Parameters
     ----------
@@ -64,8 +65,12 @@ def next_smoother(attempts: Sequence[Attempt], max_trials: int, forecast: Foreca
     if not max_trials >= 1:
         raise InputError("solver.max_trials", max_trials, ">= 1")
     latest, room = attempts[-1], max_trials - len(attempts)
-    if verdict(latest.checks) == "pass":
+    judged = verdict(latest.checks)
+    if judged == "pass":
         return Stop(f"trial {len(attempts)} passes every must-have check", (), len(attempts))
+    if judged == "incomplete":
+        cause = f"no check of trial {len(attempts)} fails, but data are missing"
+        return _end(attempts, room, cause)
     if latest.smoother.kind == "none":
         return _end(attempts, room, "the case has no smoother to widen")
     if keeps_torque(latest.checks) and not lift_failures(latest.checks):
@@ -126,8 +131,10 @@ def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
 
 def _reached(attempts: Sequence[Attempt]) -> str:
     if not any(keeps_torque(item.checks) for item in attempts):
+        known = any(c.status == "fail" for c in attempts[0].checks if c.id == TORQUE_REDUCTION.id)
+        state = "fails" if known else "is not evaluated"
         return (
-            f"{TORQUE_REDUCTION.id} fails with the smoother of the case, "
+            f"{TORQUE_REDUCTION.id} {state} with the smoother of the case, "
             "and a gentler lift lowers it further"
         )
     best = attempts[best_attempt(attempts)].smoother

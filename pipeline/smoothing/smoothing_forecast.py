@@ -16,7 +16,7 @@ from camwright.pipeline.checks.check import Check
 from camwright.pipeline.smoothing.smoothers import Smoother
 
 Forecast = Callable[[Smoother], Sequence[Check]]
-Score = tuple[bool, int, float]
+Score = tuple[bool, int, float, int]
 
 MARGIN = 0.005  # of the limit, between a forecast demand and its limit
 TOLERANCE = 0.02  # relative difference of strength of two distinct trials
@@ -38,13 +38,14 @@ def keeps_torque(checks: Sequence[Check]) -> bool:
 
 
 def score(checks: Sequence[Check]) -> Score:
-    """Torque reduction lost, number of failed must-have checks, their worst utilisation.
+    """Torque reduction lost; failed must-have checks, their worst utilisation; those without data.
 
-    The least score is the best. A missing number counts as failed, without a utilisation.
+    The least score is the best: a failed check is worse than any number of missing data.
     """
-    failing = [check for check in checks if check.blocks]
-    known = [check.utilisation for check in failing if check.utilisation is not None]
-    return (not keeps_torque(checks), len(failing), max(known, default=0.0))
+    blocking = [check for check in checks if check.blocks]
+    failing = [check for check in blocking if check.status == "fail"]
+    worst = max((check.utilisation or 0.0 for check in failing), default=0.0)
+    return (not keeps_torque(checks), len(failing), worst, len(blocking) - len(failing))
 
 
 def best_candidate(
@@ -109,7 +110,7 @@ def _score(
     """Score of the forecast checks of a smoother; known: trials and their own forecasts."""
     candidate = _forecast_checks(forecast, smoother)
     if not candidate:
-        return (True, sys.maxsize, math.inf)
+        return (True, sys.maxsize, math.inf, sys.maxsize)
     if not known:  # no trial so far had a cam
         return score([_with_margin(check) for check in candidate.values()])
     nearest, own = min(

@@ -155,6 +155,8 @@ def write_inspection(run: Path, part: RealPart, tolerance: float) -> Record:
         "nominal": _figures_of(run_reader.read_run(run).final.cycle),
         "measured": _figures_of(read_table(folder / "cycle.csv")),
         "verdict": part.trial.verdict,
+        "verdict_line": run_reader.verdict_line(run_reader.read_records(folder / "checks.json")),
+        "scope": part.trial.case.scope.as_record(),
         "binding": list(part.trial.binding),
     }
     write_atomic(folder / "inspection.json", json_text(record) + "\n")
@@ -200,7 +202,9 @@ def lines(record: Record) -> list[str]:
         real = record["measured"].get(name)
         if drawn is not None and real is not None:
             text.append(f"{name}: {drawn:.5g} nominal, {real:.5g} measured")
-    text.append(f"verdict on the measured cam: {record['verdict']}")
+    text.append(f"verdict on the measured cam: {record['verdict_line']}")
+    if record["scope"]["statement"]:
+        text.append(record["scope"]["statement"])
     if record["binding"]:
         text.append(f"binding: {', '.join(record['binding'])}")
     return text

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from made_check import made_check
 
-from camwright.pipeline.checks.check import Check, binding, in_order, verdict
+from camwright.pipeline.checks.check import ROUNDING, Check, Waived, binding, in_order, verdict
 
 
 def at_most(demand, limit=2.0, **more) -> Check:
@@ -48,7 +48,9 @@ def test_a_missing_number_never_passes(sense, demand, limit):
     check = made_check("x", demand, limit, sense=sense)
     assert check.status == "not_evaluated"
     assert check.utilisation is None
-    assert verdict([check]) == "fail"
+    assert verdict([check]) == "incomplete"
+    assert verdict([check, at_most(1.0)]) == "incomplete"
+    assert verdict([check, at_most(3.0)]) == "fail"
     assert binding([check]) == ("x",)
 
 
@@ -58,17 +60,97 @@ def test_numpy_numbers_are_numbers():
     assert isinstance(check.as_record()["demand"], float)
 
 
-@pytest.mark.parametrize("demand", [3.0, None, np.nan, np.inf])
-def test_a_waiver_is_printed_and_lets_the_verdict_pass(demand):
-    check = at_most(demand, waiver="A. Engineer, 2025-01-02: proven in service")
+def waived(up_to):
+    return Waived("A. Engineer, 2025-01-02: proven in service", up_to)
+
+
+def test_a_waiver_is_printed_and_lets_the_verdict_pass():
+    check = made_check("x", 3e6, 2e6, unit="MPa", waiver=waived(3.5e6))
     assert check.status == "waived"
     assert verdict([check]) == "pass"
     assert binding([check]) == ()
-    assert "proven in service" in check.as_record()["waiver"]
+    record = check.as_record()
+    assert "proven in service" in record["waiver"]
+    assert record["waived_up_to"] == 3.5
+
+
+@pytest.mark.parametrize(
+    ("demand", "corner", "share", "up_to", "status"),
+    [
+        (3.0, None, None, 3.0, "waived"),
+        (3.0, None, None, 3.0 * 0.999, "fail"),
+        (3.0, 3.2, None, 3.2, "waived"),
+        (3.0, 3.2, None, 3.1, "fail"),
+        (3.0, None, 0.1, 3.3001, "waived"),
+        (3.0, None, 0.1, 3.29, "fail"),
+        (3.0, 3.2, 0.1, 3.53, "waived"),
+        (3.0, 3.2, 0.1, 3.51, "fail"),
+        (1.9, None, 0.1, 2.1, "waived"),  # not proven
+        (1.9, None, 0.1, 2.08, "fail"),
+        (np.inf, None, None, 1e300, "fail"),
+    ],
+)
+def test_a_waiver_covers_a_failed_demand_up_to_its_value(demand, corner, share, up_to, status):
+    """The worst demand with its error bar, on both senses: d <= 2 up to w is -d >= -2 up to -w."""
+    more = {"error_share": share, "corner": "mass high" if corner else ""}
+    check = at_most(demand, waiver=waived(up_to), corner_demand=corner, **more)
+    assert check.status == status
+    mirrored = None if corner is None else -corner
+    least = at_least(-demand, -2.0, waiver=waived(-up_to), corner_demand=mirrored, **more)
+    assert least.status == status
+
+
+@pytest.mark.parametrize(
+    ("demand", "limit"), [(None, 2.0), (np.nan, 2.0), (3.0, None), (3.0, np.nan), (3.0, np.inf)]
+)
+def test_a_waiver_never_covers_missing_data(demand, limit):
+    check = at_most(demand, limit, waiver=waived(1e9))
+    assert check.status == "not_evaluated"
+    assert verdict([check]) == "incomplete"
 
 
 def test_a_waiver_not_needed_stays_a_pass():
-    assert at_most(1.0, waiver="A. Engineer").status == "pass"
+    assert at_most(1.0, waiver=waived(3.0)).status == "pass"
+
+
+@pytest.mark.parametrize("sense", ["at_most", "at_least"])
+@pytest.mark.parametrize(
+    ("demand", "share", "status"),
+    [
+        (1.02 / 1.04, 0.03, "fail"),
+        (0.99, 0.0099, "pass"),
+        (0.99, 0.0102, "fail"),
+        (1.0, ROUNDING, "pass"),
+        (1.0, 1e-6, "fail"),
+        (1.0, None, "pass"),
+        (1.01, 0.0, "fail"),
+        (1.01, 0.5, "fail"),
+    ],
+)
+def test_an_error_bar_across_the_limit_is_no_proof(sense, demand, share, status):
+    """Demand over its limit of 1; a least value of -1 is its mirror image."""
+    sign = 1.0 if sense == "at_most" else -1.0
+    check = made_check("x", sign * demand, sign, sense=sense, error_share=share)
+    assert check.status == status
+    assert check.not_proven == (status == "fail" and demand <= 1.0)
+    assert check.as_record()["not_proven"] == check.not_proven
+    assert verdict([check]) == status
+
+
+@pytest.mark.parametrize("sense", ["at_most", "at_least"])
+@pytest.mark.parametrize(
+    ("corner", "status"),
+    [(0.99, "pass"), (1.01, "fail"), (0.2, "pass"), (np.inf, "fail"), (np.nan, "not_evaluated")],
+)
+def test_the_worst_corner_is_judged(sense, corner, status):
+    sign = 1.0 if sense == "at_most" else -1.0
+    check = made_check(
+        "x", 0.9 * sign, sign, sense=sense, corner="spring rate low", corner_demand=sign * corner
+    )
+    assert check.status == status
+    if status == "pass" and sense == "at_most":
+        assert check.utilisation == pytest.approx(max(0.9, corner))
+    assert check.as_record()["demand"] == 0.9 * sign
 
 
 def test_an_optional_check_does_not_decide():
@@ -113,7 +195,7 @@ def test_record_has_the_contract_s_keys():
      ("rpm", math.pi, 30.0), ("degC", 56.85, 56.85), ("-", 0.5, 0.5), ("crossings", 3.0, 3.0)],
 )  # fmt: skip
 def test_record_is_in_the_unit_of_the_check(unit, si, written):
-    """Demand, limit, error and corner; the utilisation is that of the SI values."""
+    """Demand, limit, error and corner; the utilisation is that of the corner in SI."""
     check = made_check(
         "x", si, 2.0 * si, unit=unit, cam_angle=math.pi / 3.0, error_share=0.01,
         corner="mass high", corner_demand=1.5 * si,
@@ -124,7 +206,8 @@ def test_record_is_in_the_unit_of_the_check(unit, si, written):
     assert record["error"] == pytest.approx(0.01 * written, rel=1e-12)
     assert record["corner_demand"] == pytest.approx(1.5 * written, rel=1e-12)
     assert record["cam_angle_deg"] == pytest.approx(60.0, rel=1e-12)
-    assert record["utilisation"] == check.utilisation == 0.5
+    assert record["utilisation"] == pytest.approx(check.utilisation, rel=1e-14)
+    assert check.utilisation == pytest.approx(max(si, 1.5 * si) / (2.0 * si) if si > 0 else 0.5)
 
 
 @pytest.mark.parametrize(

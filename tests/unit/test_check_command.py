@@ -5,21 +5,26 @@ from __future__ import annotations
 import json
 import signal
 import sys
+import tomllib
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from small_run import check, small_case, summary, write_run, write_trial
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline import cli
+from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.case.template import template
 from camwright.pipeline.results.baseline_comparison import changes, lines
 from camwright.pipeline.results.check_report import (
     binding_lines,
     failing,
     junit,
+    not_proven,
+    outcome,
     remarks,
     rows,
     selected,
@@ -72,7 +77,31 @@ def run(tmp_path: Path) -> Path:
     ],
 )
 def test_levels_of_failure(level: str, failed: list[str]) -> None:
-    assert list(failing(RECORDS, level)) == failed
+    assert [record["id"] for record in failing(RECORDS, level)] == failed
+
+
+@pytest.mark.parametrize(
+    ("level", "statuses"),
+    [
+        # of: all pass, optional without data, optional fails, required without data, required fails
+        ("must", ("pass", "pass", "pass", "incomplete", "fail")),
+        ("open", ("pass", "incomplete", "pass", "incomplete", "fail")),
+        ("any", ("pass", "incomplete", "fail", "incomplete", "fail")),
+        ("never", ("pass",) * 5),
+    ],
+)
+def test_outcome_of_a_level(level: str, statuses: tuple[str, ...]) -> None:
+    good = [check("pass"), check("waived", id="w")]
+    added = (
+        check("pass", id="x"),
+        check("not_evaluated", id="x", must_have=False),
+        check("fail", id="x", must_have=False),
+        check("not_evaluated", id="x"),
+        check("fail", id="x"),
+    )
+    assert tuple(outcome([*good, one], level) for one in added) == statuses
+    worst = outcome([*good, *added], level)
+    assert worst == ("pass" if level == "never" else "fail")
 
 
 def test_an_unknown_level_is_refused() -> None:
@@ -97,16 +126,52 @@ def test_table_worst_first_with_margin_error_and_corner() -> None:
 
 def test_waivers_open_checks_and_recalled_limits_are_told() -> None:
     told = "\n".join(remarks(RECORDS))
-    assert "waived: c_waived: A. Engineer, 2025-01-02: proven" in told
-    assert "not evaluated: b_open: no spring" in told
+    assert "waived: c_waived: up to 3.5 deg, A. Engineer, 2025-01-02: proven" in told
+    assert "missing data: b_open: no spring" in told
     assert "to be verified: b_optional" in told
 
 
+def test_a_waiver_that_does_not_act_says_so() -> None:
+    more = {"waiver": "A. Engineer", "waived_up_to": 2.5}
+    told = remarks([check("fail", id="beyond", **more), check("pass", id="spare", **more)])
+    assert told == [
+        "waiver without effect: beyond: up to 2.5 deg, A. Engineer",
+        "waiver not needed: spare: up to 2.5 deg, A. Engineer",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("demand", "error", "more", "words"),
+    [
+        (1.02, 0.03, {}, "not proven: 1.020 ± 0.030 against 1.04"),
+        (1.0399, 0.00021, {}, "not proven: 1.03990 ± 0.00021 against 1.04"),
+        (1000.0, 60.0, {"limit": 1040.0}, "not proven: 1000 ± 60 against 1040"),
+        (0.51, 0.015, {"corner": "mass low", "corner_demand": 1.02},
+         "not proven: 1.020 ± 0.030 against 1.04"),
+        (1.06, 0.03, {"sense": "at_least"}, "not proven: 1.060 ± 0.030 against 1.04"),
+    ],
+)  # fmt: skip
+def test_a_demand_that_is_not_proven_is_shown_with_its_error_bar(
+    demand: float, error: float, more: dict[str, Any], words: str
+) -> None:
+    known = {"demand": demand, "error": error, "limit": 1.04, "not_proven": True}
+    record = check("fail", id="grip", **(known | more))
+    assert not_proven(record) == words
+    assert f"grip: {words}" in remarks([record])
+    assert rows([record])[0][-1] == "fail, not proven"
+    assert words in junit([record], "small", "must", {})
+    assert not_proven(check("fail")) == ""
+
+
 def test_junit_counts() -> None:
-    suite = ET.fromstring(junit(RECORDS, "small", "must"))
-    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("6", "2", "1")
-    failed = [case.get("name") for case in suite if case.find("failure") is not None]
-    assert sorted(failed) == ["a_two", "c_must"]
+    said = {"verdict": "FAIL, 1 waived", "scope": "Not covered: \x1b <key>"}
+    suite = ET.fromstring(junit(RECORDS, "small", "must", said))
+    counts = {name: suite.get(name) for name in ("tests", "failures", "errors", "skipped")}
+    assert counts == {"tests": "6", "failures": "1", "errors": "1", "skipped": "1"}
+    for kind, name in (("failure", "a_two"), ("error", "c_must"), ("skipped", "b_open")):
+        assert [case.get("name") for case in suite if case.find(kind) is not None] == [name]
+    stated = {one.get("name"): one.get("value") for one in suite.iter("property")}
+    assert stated == {"verdict": "FAIL, 1 waived", "scope": "Not covered: \ufffd <key>"}
 
 
 def test_baseline_tells_changes_beyond_the_error_bars_only() -> None:
@@ -164,6 +229,7 @@ def test_a_case_file_is_previewed_and_never_passes(tmp_path: Path, command: Comm
     assert code == 1
     assert document["preview"] is True
     assert document["verdict"] == "fail"
+    assert document["verdict_line"].startswith("FAIL")
     assert "signed_off" in document["binding"]
     assert all(record["method"].startswith("preview: ") for record in document["checks"])
     assert "preview by closed forms" in command("check", file)[1]
@@ -174,6 +240,54 @@ def test_a_finished_run_is_checked_from_its_folder(tmp_path: Path, command: Comm
     assert command("check", out, "--verify-record")[0] == 0
 
 
+SCOPE = {"not_covered": ["key", "gear"], "reason": "<b>rig</b> & 'key' [red]\n\t{0} %s $(id) עברית"}
+STATED = (
+    "Not covered by this sign-off: key, driving gear: <b>rig</b> & 'key' [red] {0} %s $(id) עברית"
+)
+
+
+def test_the_scope_is_stated_in_every_record(tmp_path: Path, command: Command) -> None:
+    """Text that means harm in its reason comes out as it is, on one line."""
+    case = case_of(tomllib.loads(template("small")) | {"scope": SCOPE})
+    out = tmp_path / "run"
+    with RunFolder(out, case) as folder:
+        write_trial(folder, [check("pass", to_be_confirmed=["[bold]PV[/bold]", "C0"])])
+        folder.finish(summary() | {"scope": case.scope.as_record()})
+    code, text, _ = command("check", out)
+    assert code == 0
+    assert f"\n{STATED}\n" in text
+    assert "verdict: PASS, 2 values to be confirmed; after 1 trial\n" in text
+    assert "to be confirmed: [bold]PV[/bold]\n" in text
+    document = json.loads(command("check", out, "--json")[1])
+    signed = json.loads((out / "signoff.json").read_text())
+    for record in (document, signed):
+        assert record["scope"] == SCOPE | {"statement": STATED}
+        assert record["verdict_line"] == "PASS, 2 values to be confirmed"
+        assert record["to_be_confirmed"] == ["[bold]PV[/bold]", "C0"]
+    file = tmp_path / "junit.xml"
+    command("check", out, "--junit", file)
+    stated = [one.get("value") for one in ET.parse(file).iter("property")]
+    assert stated == ["PASS, 2 values to be confirmed", STATED]
+    edited = json.loads((out / "run.json").read_text())
+    edited["scope"]["not_covered"] = ["key"]
+    (out / "run.json").write_text(json.dumps(edited))
+    assert command("check", out)[0] == 2
+
+
+def test_a_run_without_data_is_incomplete_and_without_checks_fails(
+    tmp_path: Path, command: Command
+) -> None:
+    out = write_run(tmp_path / "open", status="not_evaluated")
+    code, text, _ = command("check", out)
+    assert code == 3
+    assert "verdict: INCOMPLETE; after 1 trial\n" in text
+    assert command("check", out, "--fail-on", "never")[0] == 0
+    with RunFolder(tmp_path / "none", small_case()) as folder:
+        write_trial(folder, [check("pass", must_have=False)])
+        folder.finish(summary("fail") | {"binding": []})
+    assert command("check", tmp_path / "none")[0] == 1
+
+
 def test_what_binds_is_told_apart_from_what_nobody_can_judge():
     records = [
         {"id": "roller_static", "status": "fail"},
@@ -182,6 +296,6 @@ def test_what_binds_is_told_apart_from_what_nobody_can_judge():
     ]
     assert binding_lines(records, ["guide_pv_B", "roller_static"]) == [
         "binding: roller_static",
-        "binding, as a number is missing: guide_pv_B",
+        "binding, as data are missing: guide_pv_B",
     ]
     assert binding_lines(records, []) == []

@@ -89,7 +89,7 @@ def test_run_completes_with_0_whatever_the_verdict(
     runner(short_run)
     code, out, err = command("run", case_file, "--out", "runs/small", "--jobs", 2)
     assert code == 0
-    assert "verdict: fail after 1 trial\n" in out
+    assert "verdict: FAIL; after 1 trial\n" in out
     assert "binding: pressure_angle\n" in out
     assert out.endswith("8_report.html\n")
     assert out.index("not_evaluated (optional)") < out.index("150%")
@@ -199,7 +199,9 @@ def test_interrupt_says_how_to_go_on(case_file: Path, command: Command, runner: 
     assert not Path("run").exists()
 
 
-@pytest.mark.parametrize(("status", "code"), [("pass", 0), ("waived", 0), ("fail", 1)])
+@pytest.mark.parametrize(
+    ("status", "code"), [("pass", 0), ("waived", 0), ("fail", 1), ("not_evaluated", 3)]
+)
 def test_check_judges_from_the_folder_alone(
     tmp_path: Path, command: Command, status: str, code: int
 ) -> None:
@@ -208,7 +210,8 @@ def test_check_judges_from_the_folder_alone(
     found, text, err = command("check", out, "--json")
     document = json.loads(text)
     assert (found, err) == (code, "")
-    assert document["verdict"] == ("fail" if code else "pass")
+    assert document["verdict"] == {0: "pass", 1: "fail", 3: "incomplete"}[code]
+    assert document["verdict_line"].startswith(document["verdict"].upper())
     assert document["checks"][0]["status"] == status
     assert document["input_sha256"] == small_case().sha256
 

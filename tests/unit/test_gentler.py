@@ -144,8 +144,31 @@ def test_a_missing_number_does_not_drive_the_lift_and_does_not_pass():
 
     attempts, _, stop = drive(model)
     assert len(attempts) == 1
+    assert verdict(attempts[-1].checks) == "incomplete"
     assert stop.binding == ("guide_pv_B",)
-    assert stop.reason.endswith("; one check not evaluated, as an input is missing")
+    assert stop.reason == (
+        "no check of trial 1 fails, but data are missing; one check not evaluated, as an input is"
+        " missing"
+    )
+
+
+def test_missing_data_of_the_torque_are_no_reason_to_smooth():
+    def model(_s):
+        return torque(np.nan), check("pressure_angle", 0.9)
+
+    attempts, _, stop = drive(model)
+    assert len(attempts) == 1
+    assert stop.binding == ("torque_reduction",)
+    assert stop.reason.startswith("no check of trial 1 fails, but data are missing")
+
+
+def test_a_failed_check_is_worse_than_missing_data_and_those_than_a_pass():
+    kept, missing = torque(0.7), [made_check(name, 2.0, None) for name in "abc"]
+    passes = score([kept, check("pressure_angle", 0.9)])
+    lacking = score([kept, check("pressure_angle", 0.9), *missing])
+    failing = score([kept, check("pressure_angle", 1.01)])
+    assert passes < lacking < failing < score([kept, check("pressure_angle", 1.02)])
+    assert failing < score([kept, check("pressure_angle", 1.01), *missing])
 
 
 def test_beside_a_missing_number_the_others_still_improve():
@@ -164,6 +187,7 @@ def test_nan_torque_reduction_is_not_kept():
     attempts, _, stop = drive(model)
     assert len(attempts) == 1
     assert "torque_reduction" in stop.binding
+    assert "torque_reduction is not evaluated with the smoother of the case" in stop.reason
 
 
 def test_nan_later_ends_on_a_trial_that_is_known():

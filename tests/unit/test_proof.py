@@ -10,7 +10,8 @@ CHECK = {
     "id": "x", "title": "Contact pressure", "demand": 1088.3, "limit": 650.0, "unit": "MPa",
     "utilisation": 1.67, "status": "fail", "load_case": "idle", "cam_angle_deg": 245.5,
     "source": "s", "method": "m", "sense": "at_most", "must_have": True, "waiver": None,
-    "note": "", "error": None, "corner": None, "corner_demand": None, "evidence": False,
+    "waived_up_to": None, "not_proven": False, "note": "", "error": None, "corner": None,
+    "corner_demand": None, "evidence": False,
 }  # fmt: skip
 
 

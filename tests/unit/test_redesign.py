@@ -148,7 +148,8 @@ def test_roller_brings_along_what_hangs_on_it(case, parts):
 
 def test_waivers_are_of_another_design(case, parts):
     text = case.to_toml() + (
-        '\n[[waivers]]\ncheck = "roller_static"\nname = "A"\nreason = "b"\ndate = 2025-06-30\n'
+        '\n[[waivers]]\ncheck = "roller_static"\nup_to = 0.5\nname = "A"\nreason = "b"\n'
+        "date = 2025-06-30\n"
     )
     signed = parse_case(text)
     assert signed.waivers

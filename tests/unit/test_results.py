@@ -158,7 +158,7 @@ def test_rows_of_one_load_case(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("status", "verdict"),
-    [("pass", "pass"), ("waived", "pass"), ("fail", "fail"), ("not_evaluated", "fail")],
+    [("pass", "pass"), ("waived", "pass"), ("fail", "fail"), ("not_evaluated", "incomplete")],
 )
 def test_verdict_comes_from_the_checks(tmp_path: Path, status: str, verdict: str) -> None:
     run = run_reader.read_run(write_run(tmp_path / "run", status=status))
@@ -194,14 +194,73 @@ def test_no_checks_is_no_pass(tmp_path: Path) -> None:
         {"demand": 3.0},
         {"demand": "1"},
         {"demand": 1.0, "limit": 2.0, "sense": "at_least"},
+        {"corner": "mass high", "corner_demand": 2.01},
+        {"corner": "mass high", "corner_demand": None},
+        {"demand": 1.99, "error": 0.02},
+        {"corner": "mass high", "corner_demand": 1.9, "error": 0.1},
+        {"demand": 2.0, "limit": 1.9, "sense": "at_least", "error": 0.11},
+        {"not_proven": True},
     ],
 )
 def test_a_pass_that_its_numbers_do_not_bear_out(tmp_path: Path, change: dict[str, Any]) -> None:
+    with pytest.raises(ResultError, match="marked pass, its numbers say otherwise"):
+        _read_with(tmp_path / "run", check() | change)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"demand": None},
+        {"limit": None},
+        {"waiver": None},
+        {"waived_up_to": None},
+        {"waived_up_to": 2.99},
+        {"error": 0.6},
+        {"corner": "mass high", "corner_demand": 3.51},
+        {"demand": 1.0, "sense": "at_least", "waived_up_to": 1.5},
+    ],
+)
+def test_a_waiver_that_does_not_cover_the_numbers(tmp_path: Path, change: dict[str, Any]) -> None:
+    with pytest.raises(ResultError, match="marked waived, its numbers say otherwise"):
+        _read_with(tmp_path / "run", check("waived") | change)
+
+
+def test_a_failed_check_marked_as_missing_data_is_refused(tmp_path: Path) -> None:
+    forged = check("fail") | {"status": "not_evaluated"}
+    with pytest.raises(ResultError, match="marked not_evaluated, its numbers say otherwise"):
+        _read_with(tmp_path / "run", forged)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"demand": 2.0},
+        {"demand": 1.9, "error": 0.1},
+        {"demand": 2.0, "error": 2e-9},  # rounding of a closed form
+        {"demand": 2.0, "sense": "at_least"},
+        {"corner": "nominal", "corner_demand": 1.0, "error": 0.5},
+    ],
+)
+def test_a_pass_at_its_limit_is_read(tmp_path: Path, change: dict[str, Any]) -> None:
+    (record,) = _read_with(tmp_path / "run", check() | change)
+    assert record["status"] == "pass"
+
+
+def _read_with(run: Path, record: dict[str, Any]) -> tuple[run_reader.CheckRecord, ...]:
+    """Checks of a run folder whose record of the checks was edited."""
+    write_run(run)
+    (run / "trial_1" / "6_checks.json").write_text(json.dumps([record]))
+    return run_reader.read_checks(run / "trial_1")
+
+
+def test_a_scope_that_is_not_of_the_case_is_refused(tmp_path: Path) -> None:
     run = write_run(tmp_path / "run")
-    path = run / "trial_1" / "6_checks.json"
-    path.write_text(json.dumps([check() | change]))
-    with pytest.raises(ResultError, match="its numbers say otherwise"):
-        run_reader.read_run(run)
+    for scope in ({"not_covered": ["key"], "reason": "", "statement": ""}, {}, "key"):
+        summary = json.loads((run / "run.json").read_text())
+        (run / "run.json").write_text(json.dumps(summary | {"scope": scope}))
+        for read in (run_reader.read_run, run_reader.read_verdict):
+            with pytest.raises(ResultError, match=r"the scope in run\.json is not that of case"):
+                read(run)
 
 
 @pytest.mark.parametrize(
@@ -251,7 +310,7 @@ def test_a_folder_of_another_schema_is_refused(
     run = write_run(tmp_path / "run")
     for name in ("run.json", "signoff.json"):
         (run / name).write_text(json.dumps({"schema": 1, "case": "small"}))
-    with pytest.raises(ResultError, match=r"\.json: schema = 1, must be 2: run the case again$"):
+    with pytest.raises(ResultError, match=r"\.json: schema = 1, must be 3: run the case again$"):
         read(run)
 
 

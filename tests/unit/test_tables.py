@@ -15,8 +15,8 @@ def check(name, status="pass", utilisation=0.5, **more):
         "id": name, "title": name.title(), "demand": 1.0, "limit": 2.0, "unit": "MPa",
         "utilisation": utilisation, "status": status, "load_case": "idle", "cam_angle_deg": 12.5,
         "source": "", "method": "", "must_have": True, "sense": "at_most",
-        "waiver": None, "note": "", "error": None, "corner": None, "corner_demand": None,
-        "evidence": False,
+        "waiver": None, "waived_up_to": None, "not_proven": False, "note": "", "error": None,
+        "corner": None, "corner_demand": None, "evidence": False,
     }  # fmt: skip
     return base | more
 
@@ -93,11 +93,42 @@ def test_the_sense_of_a_limit_is_printed():
 
 def test_a_pass_needs_the_word_and_every_required_check():
     good = [check("a"), check("b", "waived", 3.0), check("c", "fail", 2.0, must_have=False)]
-    assert verdict("pass", good, (), "").passed
-    assert not verdict("fail", good, (), "").passed
-    assert not verdict("pass", [], (), "").passed
-    assert not verdict("pass", [*good, check("d", "fail", 1.1)], (), "").passed
-    assert not verdict("pass", [*good, check("d", "not_evaluated", None)], (), "").passed
+    missing, failed = check("d", "not_evaluated", None), check("e", "fail", 1.1)
+    cases = {
+        ("pass", "pass"): good,
+        ("fail", "fail"): good,
+        ("incomplete", "incomplete"): good,
+        ("pass", "fail"): [],
+        ("pass", "incomplete"): [*good, missing],
+        ("incomplete", "fail"): [*good, missing, failed],
+    }
+    for (recorded, outcome), checks in cases.items():
+        said = verdict(recorded, checks, (), "")
+        assert (said.outcome, said.word) == (outcome, outcome.upper())
+        assert said.line.startswith(outcome.upper())
+
+
+def test_the_page_lists_what_is_missing_not_proven_waived_and_to_be_confirmed():
+    checks = [
+        check("a", to_be_confirmed=["pa66 swelling", "<b> PV"]),
+        check("b", "fail", 0.98, demand=1.95, error=0.06, not_proven=True),
+        check("c", "not_evaluated", None, note="state camshaft.diameter"),
+        check("d", "waived", 1.2, waiver="A. Engineer, 2025-01-02: proven", waived_up_to=2.5),
+        check("e", to_be_confirmed=["pa66 swelling"]),
+    ]
+    said = verdict("fail", checks, ("b", "c"), "", "Not covered by this sign-off: key: none")
+    assert said.line == "FAIL, 1 waived, 2 values to be confirmed"
+    assert said.confirm == ("pa66 swelling", "<b> PV")
+    assert said.scope == "Not covered by this sign-off: key: none"
+    assert said.unproven == ("B: not proven: 1.950 ± 0.060 against 2",)
+    assert said.missing == ("C: state camshaft.diameter",)
+    assert said.waived == (
+        "D: demand 1\xa0MPa, accepted up to 2.5\xa0MPa, A. Engineer, 2025-01-02: proven",
+    )
+    assert [label for label, _ in said.lists] == ["Missing data", "Not proven", "Waived"]
+    row = next(row for row in report_tables.check_rows(checks) if row.id == "b")
+    assert row.status.words == "fail, not proven"
+    assert ("not proven: 1.950 ± 0.060 against 2", True) in row.remarks
 
 
 def test_the_sentence_counts_what_holds_fails_and_is_missing():
@@ -107,10 +138,10 @@ def test_the_sentence_counts_what_holds_fails_and_is_missing():
     ]  # fmt: skip
     words = verdict("fail", checks, ("b", "c"), "no more room")
     assert words.sentence == (
-        "1 of 4 required checks passes, 1 fails, 1 not evaluated (counted as failed),"
-        " 1 is waived. Of 1 optional check: 1 not evaluated."
+        "1 of 4 required checks passes, 1 fails, 1 lacks data, 1 is waived."
+        " Of 1 optional check: 1 lacks data."
     )
-    assert (words.binding, words.missing) == (("B",), ("C",))
+    assert (words.binding, words.missing) == (("B",), ("C: a number is missing",))
     assert words.stopped == ("no more room",)
 
 

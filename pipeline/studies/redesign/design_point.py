@@ -16,6 +16,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
+from camwright.pipeline.checks.check import Verdict
 from camwright.pipeline.checks.registry import without_sign_off
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.camshaft_loads import unbalance
@@ -47,8 +48,8 @@ class Point:
 
     ripple_before, ripple_left: standard deviation of the crank torque without and with the cam,
     N m; mass: of cam, follower and the half of the spring not part of the follower; failing, open:
-    ids of the blocking checks that fail or are not evaluated, without those of a sign-off; binding:
-    limits by decreasing shadow price. p0_max is NaN where the contour does not bound a body.
+    ids of the blocking checks that fail or lack data, without those of a sign-off; binding: limits
+    by decreasing shadow price. p0_max is NaN where the contour does not bound a body.
     """
 
     feasible: bool
@@ -67,10 +68,18 @@ class Point:
     open: tuple[str, ...]
     binding: tuple[str, ...]
 
-    def as_record(self) -> dict[str, float | list[str] | None]:
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict of the preview, without the certificate of a sign-off."""
+        if self.failing or not self.feasible:
+            return "fail"
+        return "incomplete" if self.open else "pass"
+
+    def as_record(self) -> dict[str, str | float | list[str] | None]:
         """Record for JSON, names with units."""
         return {
             "feasible": self.feasible,
+            "verdict": self.verdict,
             "ripple_before_Nm": self.ripple_before,
             "ripple_left_Nm": self.ripple_left,
             "torque_reduction": 1.0 - self.ripple_left / self.ripple_before,

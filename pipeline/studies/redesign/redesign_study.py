@@ -89,6 +89,7 @@ def redesign(
         tried = _searched(search, running, workers, progress)
         original, points = _solved_whole(search, _chosen(tried, against), workers, progress)
     kept, refused = _split(points, against)
+    verdict = kept[0][1]["verdict"] if kept else "fail"
     document: dict[str, Json] = {
         "schema": 1,
         "case": case.name,
@@ -97,7 +98,7 @@ def redesign(
         "against": against,
         "given": original,
         "points": _written(search, kept),
-        "refused": [_named(choice) | {"why": _why(record)} for choice, record in refused],
+        "refused": [_named(choice) | {"why": _why(record, verdict)} for choice, record in refused],
         "pruned": [asdict(one) for one in pruned],
         "tried": [_named(choice) | record for choice, record in tried],
     }
@@ -187,25 +188,30 @@ def _solved_whole(
 
 
 def _split(points: Sequence[Tried], against: str) -> tuple[list[Tried], list[Tried]]:
-    """Points of the front by increasing size, and the other points."""
-    good = [pair for pair in points if pair[1]["feasible"] and not pair[1]["failing"]]
+    """Points of the front by increasing size, and the other points.
+
+    No point fails; where one passes, those that lack data are not on the front.
+    """
+    solved = [pair for pair in points if pair[1].get("verdict") in ("pass", "incomplete")]
+    best = "pass" if any(record["verdict"] == "pass" for _, record in solved) else "incomplete"
+    good = [pair for pair in solved if pair[1]["verdict"] == best]
     figures = [(record[AGAINST[against]], record["ripple_left_Nm"]) for _, record in good]
     least = min((record["ripple_before_Nm"] for _, record in good), default=0.0)
     kept = [good[k] for k in front(figures, ALIKE, ALIKE * least)]
     return kept, [pair for pair in points if pair not in kept]
 
 
-def _why(record: Record) -> str:
-    """Reason why a solved point is not on the front."""
+def _why(record: Record, front: str) -> str:
+    """Reason why a solved point is not on a front of points of this verdict."""
     if "why" in record:
         return str(record["why"])
     if not record["feasible"]:
         return "no cam keeps all limits on the fine turn"
-    return (
-        f"fails {', '.join(record['failing'])}"
-        if record["failing"]
-        else "dominated by another point"
-    )
+    if record["failing"]:
+        return f"fails {', '.join(record['failing'])}"
+    if record["open"] and front != "incomplete":
+        return f"lacks data for {', '.join(record['open'])}"
+    return "dominated by another point"
 
 
 def _written(search: Search, kept: Sequence[Tried]) -> list[Record]:
