@@ -8,6 +8,7 @@ In the order of the calculation:
 | `toml_text`            | tables of a case as TOML, units included     |                  |
 | `renamed_keys`         | former names of keys, in `renamed.toml`      |                  |
 | `limits`               | table of limits, section `[limits]`          | SI               |
+| `value_sources`        | source of each value, confirmed or not       |                  |
 | `engine_section`       | engine: a cylinder model or a measurement    | T, N m           |
 | `lift_section`         | lift: table, segments, points or eccentric   | s, m; theta, rad |
 | `scope_section`        | parts that the sign-off does not cover       |                  |

@@ -19,6 +19,7 @@ from camwright.pipeline.case.lift_section import GivenLift, LiftTable
 from camwright.pipeline.case.limits import TOOL_RADIUS, Limits
 from camwright.pipeline.case.parts_section import Follower, ValveTrain
 from camwright.pipeline.case.requirements_section import (
+    Confirmation,
     LoadCase,
     Mechanism,
     Smoothing,
@@ -76,6 +77,8 @@ class Case(Section):
     tolerances: Tolerances = Tolerances()
     workshop: Workshop = Workshop()
     waivers: Annotated[tuple[Waiver, ...], Field(strict=False, max_length=64)] = ()
+    sources: Annotated[dict[str, Text], Field(default_factory=dict, max_length=1024)]
+    confirmed: Annotated[tuple[Confirmation, ...], Field(strict=False, max_length=1024)] = ()
     load_cases: Annotated[
         tuple[LoadCase, ...], Field(alias="load_case", strict=False, min_length=1, max_length=64)
     ]

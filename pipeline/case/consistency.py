@@ -9,6 +9,7 @@ from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.lift_section import LiftSegments, motion_of
 from camwright.pipeline.case.limits import OVERSPEED, TOOL_RADIUS
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, Tolerances
+from camwright.pipeline.case.value_sources import require_known
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.pickup_voltage import VoltageTable
@@ -33,6 +34,16 @@ def check_sections(case: Case) -> None:
     _check_names(case)
     _check_film(case)
     _check_tolerances(case)
+    _check_values(case)
+
+
+def _check_values(case: Case) -> None:
+    """Refuse the source or confirmation of a value that the case does not state."""
+    tables = case.tables()
+    for value in case.sources:
+        require_known(tables, "sources", value)
+    for each in case.confirmed:
+        require_known(tables, "confirmed.value", each.value)
 
 
 def _check_start(case: Case) -> None:

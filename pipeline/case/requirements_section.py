@@ -1,4 +1,4 @@
-"""Requirements on a design: smoothing, tolerances, load cases, waivers; solver settings."""
+"""Requirements on a design: smoothing, tolerances, load cases, waivers, confirmations; solver."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from camwright.pipeline.base.quantities import (
     Rate,
 )
 from camwright.pipeline.case.section import Name, Section, Text
+from camwright.pipeline.case.value_sources import confirms
 
 
 class Mechanism(Section):
@@ -110,6 +111,27 @@ class Waiver(Section):
     name: Annotated[str, Characters(1, 200)]
     reason: Annotated[str, Characters(1, 2000)]
     date: dt.date
+
+
+class Confirmation(Section):
+    """A value with a recalled source that a source, or a named person on a date, confirms.
+
+    value is its dotted name, such as ``materials.s355.endurance_pressure``.
+    """
+
+    value: Annotated[str, Characters(1, 200)]
+    source: Text = ""
+    name: Text = ""
+    date: dt.date | None = None
+
+    @model_validator(mode="after")
+    def _confirms(self) -> Self:
+        signed = bool(self.name.strip()) and self.date is not None
+        if not signed and not confirms(self.source):
+            shown = self.source or "missing"
+            limit = "a source that is neither recalled nor assumed, or a name and a date"
+            raise InputError(f"confirmed.{self.value}.source", shown, limit)
+        return self
 
 
 class Tolerances(Section):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -18,7 +19,7 @@ from camwright.pipeline.cycle.solution import Solution
 Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
 Error = Literal["sampling", "contact", "guides", "unknown"]
-Record = dict[str, str | float | bool | None]
+Record = dict[str, str | float | bool | list[str] | None]
 EVERY = "all, standstill and over-speed included"
 NONE = "none: the shape of the cam or a part as drawn"
 ROUNDING = 1e-9
@@ -224,6 +225,7 @@ class Check:
     waiver : Waived          None: not waived
     corner : str             tolerance corner of the worst demand; "": none was solved
     corner_demand : float    demand at that corner; None: none was solved
+    unconfirmed : tuple      dotted keys of the values on which it rests and no source confirms
     """
 
     declaration: Declaration
@@ -240,6 +242,7 @@ class Check:
     waiver: Waived | None = None
     corner: str = ""
     corner_demand: float | None = None
+    unconfirmed: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """Title, worst demand, limit and status in one line, in `unit`."""
@@ -387,6 +390,7 @@ class Check:
             "corner": self.corner,
             "corner_demand": _shown(self.corner_demand, unit),
             "evidence": self.evidence,
+            "to_be_confirmed": list(self.unconfirmed),
         }
 
 
@@ -400,6 +404,50 @@ def verdict(checks: Iterable[Check]) -> Verdict:
     if not deciding or "fail" in deciding:
         return "fail"
     return "incomplete" if "not_evaluated" in deciding else "pass"
+
+
+def verdict_line(checks: Iterable[Check | Mapping[str, object]]) -> str:
+    """Verdict of the must-have checks in one line, such as ``PASS, 2 waived``.
+
+    Parameters
+    ----------
+    checks : iterable   checks, or their records of a run; a record of an earlier release may lack
+                        ``to_be_confirmed``
+
+    The values to be confirmed are counted once, however many checks rest on them.
+    """
+    records: list[Mapping[str, object]] = [
+        each.as_record() if isinstance(each, Check) else each for each in checks
+    ]
+    deciding = [record for record in records if record["must_have"]]
+    counts = Counter(str(record["status"]) for record in deciding)
+    unproven = sum(record["status"] == "fail" and bool(record["not_proven"]) for record in deciding)
+    values = {value for record in deciding for value in _keys(record.get("to_be_confirmed"))}
+    beyond, missing, excused = counts["fail"] - unproven, counts["not_evaluated"], counts["waived"]
+    reasons = [
+        _counted(beyond, "check beyond its limit", "checks beyond their limit"),
+        _counted(unproven, "check not proven", "checks not proven"),
+        _counted(missing, "check without data", "checks without data"),
+    ]
+    remarks = [
+        f"{excused} waived" if excused else "",
+        _counted(len(values), "value to be confirmed", "values to be confirmed"),
+    ]
+    if not deciding:
+        return "FAIL: no check decides"
+    stated = ", ".join(each for each in (*reasons, *remarks) if each)
+    if counts["fail"] or missing:
+        return f"{'FAIL' if counts['fail'] else 'INCOMPLETE'}: {stated}"
+    return f"PASS, {stated}" if stated else "PASS"
+
+
+def _keys(recorded: object) -> list[str]:
+    return [str(key) for key in recorded] if isinstance(recorded, list) else []
+
+
+def _counted(number: int, one: str, many: str) -> str:
+    """A number with its noun; empty for zero."""
+    return f"{number} {one if number == 1 else many}" if number else ""
 
 
 def binding(checks: Iterable[Check]) -> tuple[str, ...]:

@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 from made_check import made_check
 
-from camwright.pipeline.checks.check import ROUNDING, Check, Waived, binding, in_order, verdict
+from camwright.pipeline.checks.check import (
+    ROUNDING,
+    Check,
+    Waived,
+    binding,
+    in_order,
+    verdict,
+    verdict_line,
+)
 
 
 def at_most(demand, limit=2.0, **more) -> Check:
@@ -225,3 +233,36 @@ def test_a_check_prints_as_a_line():
     line = "peak: 3 MPa, must be <= 2 MPa: fail"
     assert str(made_check("x", 3e6, 2e6, unit="MPa", title="peak")) == line
     assert str(at_most(None)).endswith("unknown, must be <= 2e-06 MPa: not_evaluated")
+
+
+@pytest.mark.parametrize(
+    ("checks", "line"),
+    [
+        ([at_most(1.0)], "PASS"),
+        ([], "FAIL: no check decides"),
+        ([at_most(3.0, must_have=False)], "FAIL: no check decides"),
+        ([at_most(1.0, unconfirmed=("materials.a.E",))], "PASS, 1 value to be confirmed"),
+        (
+            [
+                at_most(3.0, waiver=Waived("A. Engineer", 4.0), unconfirmed=("a", "b")),
+                at_most(1.0, unconfirmed=("b", "c")),
+                at_most(1.0, unconfirmed=("d",), must_have=False),
+            ],
+            "PASS, 1 waived, 3 values to be confirmed",
+        ),
+        (
+            [at_most(3.0), at_most(3.0), at_most(None), at_most(1.99, error_share=0.05)],
+            "FAIL: 2 checks beyond their limit, 1 check not proven, 1 check without data",
+        ),
+        ([at_most(math.nan), at_most(1.0)], "INCOMPLETE: 1 check without data"),
+    ],
+)
+def test_the_verdict_in_one_line_from_checks_and_from_records(checks, line):
+    assert verdict_line(checks) == line
+    assert verdict_line([one.as_record() for one in checks]) == line
+
+
+def test_a_record_of_an_earlier_release_has_no_values_to_be_confirmed():
+    record = at_most(1.0, unconfirmed=("materials.a.E",)).as_record()
+    del record["to_be_confirmed"]
+    assert verdict_line([record]) == "PASS"

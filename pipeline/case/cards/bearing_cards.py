@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
@@ -12,6 +13,15 @@ from camwright.pipeline.follower.roller_parts import Bearing, OuterRing
 _Rating = Annotated[float, In("N", above=0, at_most=1e9)]
 _RING = ("balls", "pitch_diameter", "ring_thickness")
 _STRENGTHS = ("ring_fatigue_bending", "ring_tensile_strength")
+_OF_THE_RING = {
+    "outer_diameter": "outer_diameter",
+    "ring_thickness": "thickness",
+    "pitch_diameter": "pitch_diameter",
+    "balls": "balls",
+    "rows": "rows",
+    "ring_fatigue_bending": "fatigue_bending",
+    "ring_tensile_strength": "tensile_strength",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,3 +95,9 @@ class BearingCard(Part):
             ring=ring,
             source=self.source,
         )
+
+
+def bearing_keys(words: Mapping[str, str]) -> dict[str, str]:
+    """Texts by the keys of a card, by those of ``roller.bearing``."""
+    of_ring = {f"ring.{_OF_THE_RING[key]}": words[key] for key in words if key in _OF_THE_RING}
+    return dict(words) | of_ring

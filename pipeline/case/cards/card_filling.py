@@ -1,8 +1,8 @@
 """Cards of a case: ``card = "NAME"`` supplies the keys that its table leaves out.
 
 Cards are read from the files of this package and from ``cards.toml`` in the folder of the case,
-which takes precedence. The resolved case states every value and its source, and no card. The same
-holds for ``spring.catalogue``.
+which takes precedence. The resolved case states every value, its source in ``[sources]``, and no
+card. The same holds for ``spring.catalogue``.
 """
 
 from __future__ import annotations
@@ -15,10 +15,16 @@ from pathlib import Path
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.files import read_toml
-from camwright.pipeline.case.cards.bearing_cards import BearingCard
+from camwright.pipeline.case.cards.bearing_cards import BearingCard, bearing_keys
 from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.case.cards.provenance import (
+    numbers_of,
+    source_words,
+    without_provenance,
+)
 from camwright.pipeline.case.cards.spring_selection import put_spring
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
+from camwright.pipeline.case.value_sources import UNSTATED, put_sources
 
 KINDS = ("materials", "bushes", "oils", "wires", "bearings")
 FOLDER = Path(__file__).parent
@@ -54,15 +60,24 @@ def fill_cards(case: Tables, folder: Path | None) -> None:
             raise InputError(
                 f"{field}.card", str(name), f"one of: {', '.join(sorted(cards[kind]))}"
             )
+        place = f"cards.{kind}.{name}"
+        words = {key: source_words(card, key, place) for key in numbers_of(card)}
         if kind == "oils":
-            card = _oil(card, table, f"cards.oils.{name}", field)
+            words = _oil_words(words)
+            card = _oil(card, table, place, field)
         elif kind == "bearings":
-            card = tables_of(read_part(BearingCard, card, f"cards.{name}").bearing)
+            words = bearing_keys(words)
+            part = read_part(BearingCard, without_provenance(card), f"cards.{name}")
+            card = tables_of(part.bearing)
         own = dict(table)
-        table.update(card)
+        table.update(without_provenance(card))
         table.update(own)
         if "source" not in own:
             table["source"] = f"card {name}: {card['source']}"
+            words |= dict.fromkeys(numbers_of(own), UNSTATED)
+        else:
+            words = {key: text for key, text in words.items() if key not in own}
+        put_sources(case, field, table, words)
         if kind == "bushes":
             material = _entry(table, "material", field)
             _with_material(case, material, cards["materials"])
@@ -145,7 +160,18 @@ def _with_material(case: Tables, name: TomlValue, cards: Mapping[str, Tables]) -
     if isinstance(materials, dict) and isinstance(name, str) and name not in materials:
         card = cards.get(name)
         if card is not None:
-            materials[name] = {**card, "source": f"card {name}: {card['source']}"}
+            place, source = f"cards.materials.{name}", f"card {name}: {card['source']}"
+            words = {key: source_words(card, key, place) for key in numbers_of(card)}
+            materials[name] = {**without_provenance(card), "source": source}
+            put_sources(case, f"materials.{name}", materials[name], words)
+
+
+def _oil_words(words: Mapping[str, str]) -> dict[str, str]:
+    """Sources of the values of a lubricant, from those of its oil."""
+    made_of = ("viscosity_40", "viscosity_100", "density")
+    texts = dict.fromkeys(words[key] for key in made_of if key in words)
+    kept = {key: text for key, text in words.items() if key not in made_of}
+    return kept | {"viscosity": "; ".join(texts)}
 
 
 def _oil(card: Tables, table: Tables, source: str, field: str) -> Tables:

@@ -12,6 +12,7 @@ from camwright.pipeline.base.quantities import marks_of
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.case.cards.provenance import without_provenance
 from camwright.pipeline.case.cards.spring_catalogue import read_catalogue
 from camwright.pipeline.case.toml_text import Tables
 from camwright.pipeline.follower.guide_reactions import Guide
@@ -62,7 +63,7 @@ def catalogue_of(folder: Path | None) -> Catalogue:
         springs |= {spring.name: spring for spring in read_catalogue(own)}
     return Catalogue(
         {
-            name: read_part(BearingCard, entry, f"cards.{name}")
+            name: read_part(BearingCard, without_provenance(entry), f"cards.{name}")
             for name, entry in cards["bearings"].items()
         },
         springs,

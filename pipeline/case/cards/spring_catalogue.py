@@ -11,6 +11,11 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import read_toml
 from camwright.pipeline.base.quantities import Part, Pressure
 from camwright.pipeline.case.cards.part_table import read_part
+from camwright.pipeline.case.cards.provenance import (
+    numbers_of,
+    source_words,
+    without_provenance,
+)
 from camwright.pipeline.case.renamed_keys import with_new_wire_keys
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 from camwright.pipeline.follower.spring import (
@@ -95,6 +100,22 @@ def read_catalogue(path: str | Path = CATALOGUE) -> tuple[HelicalSpring, ...]:
     return tuple(springs)
 
 
+def sources_in(path: Path, name: str) -> dict[str, str]:
+    """Sources of the numbers of a spring of a catalogue, those of its wire by their provenance."""
+    catalogue = read_toml(path, "catalogue", _BYTES)
+    entries, wires = catalogue.get("spring"), catalogue.get("wires")
+    words: dict[str, str] = {}
+    for entry in entries if isinstance(entries, list) else ():
+        if not isinstance(entry, dict) or entry.get("name") != name:
+            continue
+        wire = wires.get(str(entry.get("wire"))) if isinstance(wires, dict) else None
+        field = f"catalogue.wires.{entry.get('wire')}"
+        card = with_new_wire_keys(wire or {}, field)
+        words = {key: source_words(card, key, field) for key in numbers_of(card)}
+        words |= dict.fromkeys(numbers_of(entry), f"chosen: spring {name} of the catalogue")
+    return words
+
+
 def lightest(
     catalogue: tuple[HelicalSpring, ...], demand: SpringDemand
 ) -> tuple[HelicalSpring | None, dict[str, tuple[str, ...]]]:
@@ -120,7 +141,8 @@ class _Wire(Part):
 
 
 def _wire(field: str, entry: TomlValue) -> _Wire:
-    return read_part(_Wire, with_new_wire_keys(entry, field), field)
+    own = without_provenance(entry) if isinstance(entry, dict) else entry
+    return read_part(_Wire, with_new_wire_keys(own, field), field)
 
 
 def _spring(field: str, entry: TomlValue, wires: Mapping[str, _Wire]) -> HelicalSpring:

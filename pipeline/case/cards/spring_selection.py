@@ -16,9 +16,11 @@ from camwright.pipeline.case.cards.spring_catalogue import (
     SpringDemand,
     lightest,
     read_catalogue,
+    sources_in,
 )
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
+from camwright.pipeline.case.value_sources import put_sources
 
 SHIPPED = "shipped"
 _NEAREST = 3
@@ -53,7 +55,8 @@ def put_spring(case: Tables, folder: Path | None) -> None:
     demand = _demand(case, spring)
     if demand is None:
         return  # `Case` refuses the rate or preload
-    springs = read_catalogue(_path(name, folder))
+    path = _path(name, folder)
+    springs = read_catalogue(path)
     best, reasons = lightest(springs, demand)
     if best is None:
         nearest = sorted(reasons, key=lambda each: len(reasons[each]))[:_NEAREST]
@@ -62,6 +65,7 @@ def put_spring(case: Tables, folder: Path | None) -> None:
         raise InputError("spring.catalogue", str(name), limit if springs else "not empty")
     why = f"lightest of {len(springs)} in catalogue {name}: {best.name}; {best.source}"
     spring["design"] = tables_of(replace(best, source=why.rstrip("; ")))
+    put_sources(case, "spring.design", spring["design"], sources_in(path, best.name))
 
 
 def _demand(case: Tables, spring: Tables) -> SpringDemand | None:

@@ -19,6 +19,7 @@ from camwright.pipeline.case.limits import (
     SPRING_SOLID,
 )
 from camwright.pipeline.case.toml_text import Tables, table_in, tables_of
+from camwright.pipeline.case.value_sources import forget_sources
 from camwright.pipeline.follower.spring import HelicalSpring
 
 AS_GIVEN = "as given"
@@ -85,7 +86,8 @@ def variant(case: Case, parts: Catalogue, choice: Choice, folder: Path | None) -
     The roller sets its radius, width, bore and ratings, and with them the cam width, the pin, the
     overhang and the mass of the follower; the spring sets rate, travel and mass; the bush friction
     and limits of both guides. The prime radius is a variable between the minimum wall and the
-    limit of the cam radius. Waivers are left out, as they are not signed for this design.
+    limit of the cam radius. Waivers and confirmations of the replaced parts are left out, as they
+    are not signed for this design.
 
     Parameters
     ----------
@@ -131,6 +133,7 @@ def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -
 def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
     old, radius = case.roller, 0.5 * card.outer_diameter
     roller = table_in(data, "roller")
+    forget_sources(data, "roller.bearing")
     inside = card.bore if card.pitch_diameter is None else card.pitch_diameter
     chamfer = min(old.chamfer, _CHAMFER_MOST * card.width)
     roller |= {
@@ -156,6 +159,7 @@ def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
 
 
 def _put_spring(data: Tables, case: Case, spring: HelicalSpring) -> None:
+    forget_sources(data, "spring.design")
     table_in(data, "spring").update(
         {
             "rate": units.format(spring.rate, "kN/m"),
@@ -188,6 +192,7 @@ def _put_bushes(data: Tables, name: str) -> None:
     for side in ("a", "b"):
         kept = {key: value for key, value in table_in(guides, side).items() if key in place}
         guides[side] = kept | {"card": name}
+        forget_sources(data, f"guides.{side}")
 
 
 def _put_search(data: Tables, case: Case, choice: Choice, radius: float) -> None:

@@ -1,0 +1,116 @@
+"""Source of each value of a case, and the values that their source does not confirm.
+
+A value has the dotted name of its key, such as ``materials.s355.yield_strength``. Its source is the
+entry of ``[sources]`` under that name, else that of its limit, else the ``source`` of its table.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
+from fnmatch import fnmatchcase
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.limits import LIMITS
+from camwright.pipeline.case.toml_text import Tables, TomlValue
+
+UNSTATED = "stated without a source: verify"
+OF_A_CHECK = "checks."
+"""Prefix of a value that the program holds: the limit that a check declares."""
+_OPEN = re.compile(r"\b(recalled|verify|assum\w*|estimat\w*)\b", re.IGNORECASE)
+_WORDS = ("source", "sources", "name", "condition")
+_NO_VALUES = ("schema_version", "name", "title", "notes", "sources", "confirmed", "scope")
+
+
+def confirms(source: str) -> bool:
+    """Whether a text names a source: neither empty, nor recalled, assumed, estimated or open."""
+    return bool(source.strip()) and _OPEN.search(source) is None
+
+
+def values_in(entry: TomlValue, name: str = "") -> Iterator[str]:
+    """Dotted names of the values of a case, or of one of its tables of that name."""
+    if isinstance(entry, dict):
+        for key, inner in entry.items():
+            if key not in (_WORDS if name else _NO_VALUES):
+                yield from values_in(inner, f"{name}.{key}".lstrip("."))
+    elif not isinstance(entry, list):
+        yield name
+
+
+def values_at(tables: Tables, path: str) -> tuple[str, ...]:
+    """Values of a case at a path; a material is followed by its name.
+
+    Parameters
+    ----------
+    path : str   dotted; its last word may have wildcards: ``cam.material.endurance_*``
+    """
+    *parents, last = path.split(".")
+    table, name = tables, ""
+    for part in parents:
+        inner = table.get(part)
+        name = f"{name}.{part}".lstrip(".")
+        if isinstance(inner, str):
+            materials = tables.get("materials")
+            name = f"materials.{inner}"
+            inner = materials.get(inner) if isinstance(materials, dict) else None
+        if not isinstance(inner, dict):
+            return ()
+        table = inner
+    return tuple(
+        f"{name}.{key}"
+        for key, entry in table.items()
+        if key not in _WORDS and not isinstance(entry, (dict, list)) and fnmatchcase(key, last)
+    )
+
+
+def source_of(tables: Tables, value: str) -> str:
+    """Source of a value by its dotted name; empty if none is stated."""
+    *parents, key = value.split(".")
+    table: TomlValue = tables
+    for part in parents:
+        table = table.get(part, {}) if isinstance(table, dict) else {}
+    stated: list[TomlValue] = [_entry(tables.get("sources"), value)]
+    if parents == ["limits"]:
+        stated += [_entry(_entry(table, "sources"), key), LIMITS[key].source]
+    stated.append(_entry(table, "source"))
+    return next((text for text in stated if isinstance(text, str) and text), "")
+
+
+def _entry(table: TomlValue | None, key: str) -> TomlValue:
+    return table.get(key, "") if isinstance(table, dict) else ""
+
+
+def require_known(tables: Tables, field: str, value: str) -> None:
+    """Refuse the name of a value that the case does not state.
+
+    Raises
+    ------
+    InputError
+        With the closest name.
+    """
+    known = tuple(values_in(tables))
+    if value not in known and not value.startswith(OF_A_CHECK):
+        close = get_close_matches(value, known, n=1)
+        hint = f"; did you mean {close[0]}?" if close else ", by its dotted name"
+        raise InputError(field, value, f"a value of the case{hint}")
+
+
+def put_sources(case: Tables, field: str, table: TomlValue, words: Mapping[str, str]) -> None:
+    """Add the sources of the numbers of a table, unless the case states them itself."""
+    stated, numbers = case.setdefault("sources", {}), set(values_in(table, field))
+    if isinstance(stated, dict):
+        for key, text in words.items():
+            if f"{field}.{key}" in numbers:
+                stated.setdefault(f"{field}.{key}", text)
+
+
+def forget_sources(tables: Tables, part: str) -> None:
+    """Remove sources and confirmations of the values of a part that is replaced."""
+    sources, confirmed = tables.get("sources"), tables.get("confirmed")
+    if isinstance(sources, dict):
+        tables["sources"] = {k: v for k, v in sources.items() if not k.startswith(f"{part}.")}
+    if isinstance(confirmed, list):
+        tables["confirmed"] = [
+            each for each in confirmed if not str(_entry(each, "value")).startswith(f"{part}.")
+        ]

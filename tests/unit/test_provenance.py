@@ -1,0 +1,187 @@
+"""Provenance of the shipped cards; source and confirmation of the values of a case."""
+
+import re
+import tomllib
+from datetime import date
+
+import pytest
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.cards.card_filling import FOLDER, KINDS, known_cards
+from camwright.pipeline.case.cards.provenance import (
+    PROVENANCE,
+    numbers_of,
+    provenance_of,
+    source_words,
+    titles,
+)
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.requirements_section import Confirmation
+from camwright.pipeline.case.template import template
+from camwright.pipeline.case.value_sources import confirms, source_of, values_at, values_in
+
+CARDS = known_cards(None)
+SPRINGS = tomllib.loads((FOLDER / "springs.toml").read_text(encoding="utf-8"))
+WITH_NUMBERS = [
+    *((f"{kind}.{name}", card) for kind in KINDS for name, card in CARDS[kind].items()),
+    *((f"wires.{name}", card) for name, card in SPRINGS["wires"].items()),
+]
+
+
+@pytest.mark.parametrize(("name", "card"), WITH_NUMBERS, ids=[name for name, _ in WITH_NUMBERS])
+def test_every_number_of_every_card_has_its_provenance(name, card):
+    """A title with its edition or address, and whether the number was read or recalled."""
+    numbers = list(numbers_of(card))
+    assert numbers
+    for key in numbers:
+        entry = provenance_of(card, key, name)
+        assert entry is not None, f"{name}.{key}"
+        assert entry.source in titles(), f"{name}.{key}: {entry.source} is not in sources.toml"
+        assert entry.known in ("read", "recalled"), f"{name}.{key}"
+        assert confirms(entry.words) == (entry.known == "read"), f"{name}.{key}: {entry.words}"
+
+
+def test_a_number_read_has_an_address_or_an_edition():
+    for name, card in WITH_NUMBERS:
+        for key in numbers_of(card):
+            entry = provenance_of(card, key, name)
+            assert entry is not None
+            title = titles()[entry.source]
+            placed = re.search(r"\.(com|se|in|dk|de|ch|html)\b|\b(19|20)\d\d\b", title)
+            assert entry.known == "recalled" or placed, f"{name}.{key}: {title}"
+
+
+def test_every_title_is_cited():
+    cited = {entry["source"] for _, card in WITH_NUMBERS for entry in card[PROVENANCE].values()}
+    assert cited <= set(titles())
+    assert set(titles()) - cited == set()
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ('"*" = {source = "book", known = "guessed"}', "known = guessed, must be 'read'"),
+        ('"*" = {source = "book"}', "known = missing"),
+        ('"*" = "book"', r"provenance\.\* = book, must be a table"),
+        ('nu = {source = "book", known = "read"}', r"provenance\.E = missing"),
+    ],
+)
+def test_a_users_provenance_that_is_incomplete(tmp_path, entry, message):
+    (tmp_path / "cards.toml").write_text(
+        '[materials.own]\nE = "200 GPa"\nnu = 0.29\nyield_strength = "300 MPa"\n'
+        f'density = "7800 kg/m^3"\nsource = "mill"\n[materials.own.provenance]\n{entry}\n'
+    )
+    with pytest.raises(InputError, match=message):
+        parse_case(template("cards") + '\n[materials.extra]\ncard = "own"\n', tmp_path)
+
+
+def extra(*lines):
+    """The template with a material more."""
+    return parse_case("\n".join([template("cards"), "[materials.extra]", *lines]))
+
+
+def test_the_resolved_case_has_the_source_of_every_number_of_a_card():
+    case = extra('card = "pa66"')
+    read, recalled = (
+        case.sources[f"materials.extra.{key}"] for key in ("yield_strength", "swelling")
+    )
+    assert "Ultramid A3K" in read
+    assert "conditioned at 50 % RH" in read
+    assert confirms(read)
+    assert not confirms(recalled)
+    again = parse_case(case.to_toml())
+    assert again.sources == case.sources
+    assert again.to_toml() == case.to_toml()
+
+
+def test_a_number_of_the_case_has_the_source_of_the_case():
+    """With a source of its own it is confirmed; without one it is not, beside a card."""
+    own = extra('card = "pa66"', 'yield_strength = "48 MPa"', 'source = "certificate 4711"')
+    bare = extra('card = "pa66"', 'yield_strength = "48 MPa"')
+    value = "materials.extra.yield_strength"
+    assert source_of(own.tables(), value) == "certificate 4711"
+    assert not confirms(source_of(own.tables(), "materials.extra.swelling"))
+    assert not confirms(source_of(bare.tables(), value))
+
+
+def test_the_case_may_state_the_source_of_a_single_number():
+    text = template("cards") + '\n[sources]\n"materials.extra.swelling" = "measured, report 12"\n'
+    case = parse_case(text + '[materials.extra]\ncard = "pa66"\n')
+    assert case.sources["materials.extra.swelling"] == "measured, report 12"
+    assert "Ultramid" in case.sources["materials.extra.E"]
+
+
+@pytest.mark.parametrize(
+    "text", ["", "  ", "recalled", "makers: verify", "assumed", "an Estimate", "Assumption of C25"]
+)
+def test_texts_that_confirm_nothing(text):
+    assert not confirms(text)
+
+
+@pytest.mark.parametrize("text", ["EN 10025-2", "certificate 4711", "verified by test 12"])
+def test_texts_that_confirm(text):
+    assert confirms(text)
+
+
+def test_the_source_of_a_bearing_reaches_its_ring():
+    tables = parse_case(template("cards")).tables()
+    ring = {"outer_diameter": "16 mm", "balls": 6, "source": "ring"}
+    tables["roller"] = {"bearing": {"C": "1 kN", "ring": ring, "source": "maker"}}
+    assert source_of(tables, "roller.bearing.C") == "maker"
+    assert source_of(tables, "roller.bearing.ring.balls") == "ring"
+
+
+def test_values_of_a_role_are_those_of_its_material():
+    tables = {
+        "cam": {"material": "steel", "width": "5 mm"},
+        "materials": {"steel": {"E": "210 GPa", "endurance_slope": 7.0, "endurance_pressure": "1"}},
+    }
+    assert values_at(tables, "cam.material.E") == ("materials.steel.E",)
+    assert values_at(tables, "cam.material.endurance_*") == (
+        "materials.steel.endurance_slope", "materials.steel.endurance_pressure",
+    )  # fmt: skip
+    assert values_at(tables, "cam.material.hardness") == ()
+    assert values_at(tables, "cam.width") == ("cam.width",)
+    assert values_at(tables, "spring.design.coils") == ()
+    assert "materials.steel.E" in set(values_in(tables))
+
+
+@pytest.mark.parametrize(
+    ("section", "message"),
+    [
+        (
+            '[sources]\n"materials.structurel.E" = "x"\n',
+            "a value of the case; did you mean materials.structural.E?",
+        ),
+        (
+            '[[confirmed]]\nvalue = "materials.structural.e"\nsource = "x"\n',
+            "confirmed.value = materials.structural.e, must be a value of the case; did you mean",
+        ),
+        (
+            '[[confirmed]]\nvalue = "zzz"\nsource = "x"\n',
+            "confirmed.value = zzz, must be a value of the case, by its dotted name",
+        ),
+        (
+            '[[confirmed]]\nvalue = "materials.structural.E"\nsource = "recalled"\n',
+            "confirmed.materials.structural.E.source = recalled, must be a source that is neither",
+        ),
+        (
+            '[[confirmed]]\nvalue = "materials.structural.E"\nname = "A. Engineer"\n',
+            "confirmed.materials.structural.E.source = missing",
+        ),
+    ],
+)
+def test_sources_and_confirmations_that_are_refused(section, message):
+    text = template("cards") + '\n[materials.structural]\ncard = "structural"\n'
+    with pytest.raises(InputError, match=re.escape(message)):
+        parse_case(text.replace("\n[[load_case]]", f"\n{section}\n[[load_case]]", 1))
+
+
+def test_a_confirmation_is_a_source_or_a_name_with_a_date():
+    signed = {"name": "A. Engineer", "date": date(2025, 1, 2)}
+    assert Confirmation(value="materials.a.E", source="certificate").date is None
+    assert Confirmation.model_validate({"value": "materials.a.E", **signed}).name == "A. Engineer"
+
+
+def test_source_words_of_a_card_without_provenance_are_its_source():
+    assert source_words({"E": "200 GPa", "source": "mill"}, "E", "x") == "mill"
