@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -404,50 +403,6 @@ def verdict(checks: Iterable[Check]) -> Verdict:
     if not deciding or "fail" in deciding:
         return "fail"
     return "incomplete" if "not_evaluated" in deciding else "pass"
-
-
-def verdict_line(checks: Iterable[Check | Mapping[str, object]]) -> str:
-    """Verdict of the must-have checks in one line, such as ``PASS, 2 waived``.
-
-    Parameters
-    ----------
-    checks : iterable   checks, or their records of a run; a record of an earlier release may lack
-                        ``to_be_confirmed``
-
-    The values to be confirmed are counted once, however many checks rest on them.
-    """
-    records: list[Mapping[str, object]] = [
-        each.as_record() if isinstance(each, Check) else each for each in checks
-    ]
-    deciding = [record for record in records if record["must_have"]]
-    counts = Counter(str(record["status"]) for record in deciding)
-    unproven = sum(record["status"] == "fail" and bool(record["not_proven"]) for record in deciding)
-    values = {value for record in deciding for value in _keys(record.get("to_be_confirmed"))}
-    beyond, missing, excused = counts["fail"] - unproven, counts["not_evaluated"], counts["waived"]
-    reasons = [
-        _counted(beyond, "check beyond its limit", "checks beyond their limit"),
-        _counted(unproven, "check not proven", "checks not proven"),
-        _counted(missing, "check without data", "checks without data"),
-    ]
-    remarks = [
-        f"{excused} waived" if excused else "",
-        _counted(len(values), "value to be confirmed", "values to be confirmed"),
-    ]
-    if not deciding:
-        return "FAIL: no check decides"
-    stated = ", ".join(each for each in (*reasons, *remarks) if each)
-    if counts["fail"] or missing:
-        return f"{'FAIL' if counts['fail'] else 'INCOMPLETE'}: {stated}"
-    return f"PASS, {stated}" if stated else "PASS"
-
-
-def _keys(recorded: object) -> list[str]:
-    return [str(key) for key in recorded] if isinstance(recorded, list) else []
-
-
-def _counted(number: int, one: str, many: str) -> str:
-    """A number with its noun; empty for zero."""
-    return f"{number} {one if number == 1 else many}" if number else ""
 
 
 def binding(checks: Iterable[Check]) -> tuple[str, ...]:

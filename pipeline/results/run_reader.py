@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Collection, Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypedDict
@@ -306,17 +307,36 @@ def verdict_of(checks: Iterable[AnyCheck]) -> str:
     return "incomplete" if "not_evaluated" in deciding else "pass"
 
 
-def verdict_line(records: Collection[AnyCheck]) -> str:
-    """Verdict, number of waived checks and of values to be confirmed.
+def verdict_line(records: Iterable[AnyCheck]) -> str:
+    """Verdict of the must-have checks in one line, such as ``PASS, 2 waived``.
 
-    Such as ``PASS, 2 waived, 3 values to be confirmed``.
+    The values to be confirmed are counted once, however many checks rest on them.
     """
-    waived = sum(record["status"] == "waived" for record in records)
-    values = len(to_be_confirmed(records))
-    parts = [verdict_of(records).upper()]
-    parts += [f"{waived} waived"] if waived else []
-    parts += [f"{values} value{'s' if values > 1 else ''} to be confirmed"] if values else []
-    return ", ".join(parts)
+    deciding = [record for record in records if record["must_have"]]
+    counts = Counter(str(record["status"]) for record in deciding)
+    unproven = sum(record["status"] == "fail" and bool(record["not_proven"]) for record in deciding)
+    values = to_be_confirmed(deciding)
+    beyond, missing, excused = counts["fail"] - unproven, counts["not_evaluated"], counts["waived"]
+    reasons = [
+        _counted(beyond, "check beyond its limit", "checks beyond their limit"),
+        _counted(unproven, "check not proven", "checks not proven"),
+        _counted(missing, "check without data", "checks without data"),
+    ]
+    remarks = [
+        f"{excused} waived" if excused else "",
+        _counted(len(values), "value to be confirmed", "values to be confirmed"),
+    ]
+    if not deciding:
+        return "FAIL: no check decides"
+    stated = ", ".join(each for each in (*reasons, *remarks) if each)
+    if counts["fail"] or missing:
+        return f"{'FAIL' if counts['fail'] else 'INCOMPLETE'}: {stated}"
+    return f"PASS, {stated}" if stated else "PASS"
+
+
+def _counted(number: int, one: str, many: str) -> str:
+    """A number with its noun; empty for zero."""
+    return f"{number} {one if number == 1 else many}" if number else ""
 
 
 def to_be_confirmed(records: Iterable[AnyCheck]) -> list[str]:

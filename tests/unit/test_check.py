@@ -14,8 +14,8 @@ from camwright.pipeline.checks.check import (
     binding,
     in_order,
     verdict,
-    verdict_line,
 )
+from camwright.pipeline.results.run_reader import verdict_line
 
 
 def at_most(demand, limit=2.0, **more) -> Check:
@@ -258,7 +258,6 @@ def test_a_check_prints_as_a_line():
     ],
 )
 def test_the_verdict_in_one_line_from_checks_and_from_records(checks, line):
-    assert verdict_line(checks) == line
     assert verdict_line([one.as_record() for one in checks]) == line
 
 

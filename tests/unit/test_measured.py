@@ -161,7 +161,7 @@ def test_the_record_of_a_run_holds_the_crank_speed_of_the_guides_that_rub(gx120)
     trial, whole = trial_of(case, {"idle": torque}, contour), torque.without_mean().total
     record, columns = crank_speed_record({"idle": torque}, trial, whole)
     json.dumps(record)
-    (cycle,) = trial.cycles
+    cycle = trial.cycles[0]
     study = study_of(cycle.machine, torque, contour.pitch, cycle.loads.rubbing)
     found = record["speed"]["idle"]
     for name in ("before", "inertia_alone", "after"):

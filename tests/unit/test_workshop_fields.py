@@ -23,11 +23,14 @@ LIMITS = "[limits]\n"
 ORDER = '[workshop]\ntable_step = "0.25 deg"\ntool_radius = "6 mm"\nchord_error = "2 um"\n'
 
 
-def case(workshop: str = ORDER, limits: str = "", cam: str = "") -> Case:
+GROUND = '\n[tolerances]\nsource = "ground track"\n'
+
+
+def case(workshop: str = ORDER, limits: str = "", cam: str = "", tail: str = "") -> Case:
     text = template("part")
     own = text[text.index("[workshop]") : text.index("# --- Load cases")]
     text = text.replace(own, workshop).replace(LIMITS, LIMITS + limits)
-    return parse_case(text.replace("[cam]\n", "[cam]\n" + cam))
+    return parse_case(text.replace("[cam]\n", "[cam]\n" + cam) + tail)
 
 
 def contour(of: Case) -> Contour:
@@ -42,7 +45,7 @@ def rows(path: Path) -> list[dict[str, str]]:
 def test_the_files_are_those_ordered(tmp_path: Path) -> None:
     import ezdxf
 
-    of = case(cam='profile_tolerance = "16 um"\n')
+    of = case(cam='profile_tolerance = "16 um"\n', tail=GROUND)
     drawn, said = contour(of), []
     write_workshop(tmp_path, of, drawn, said.append)
     assert said == []
@@ -62,7 +65,7 @@ def test_the_files_are_those_ordered(tmp_path: Path) -> None:
 def test_without_an_order_the_tables_are_half_a_degree_apart_and_the_roller_is_the_tool() -> None:
     order = case("").workshop_order
     assert np.degrees(order.step) == pytest.approx(0.5)
-    assert (order.tool_radius, order.chord_error, order.tolerance) == (None, None, 20e-6)
+    assert (order.tool_radius, order.chord_error, order.tolerance) == (None, None, 1e-4)
 
 
 def test_the_tool_of_the_limits_is_the_workshops_unless_it_has_its_own() -> None:
