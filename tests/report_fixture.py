@@ -432,6 +432,7 @@ def write_run(
     load_case: str = "idle",
     records: list[dict[str, Any]] | None = None,
     field: bool = True,
+    scope: dict[str, Any] | None = None,
 ) -> Path:
     """Write the whole run folder and return it."""
     t = turn(positions)
@@ -444,6 +445,10 @@ def write_run(
         title=quoted(title), notes=quoted(notes), positions=positions,
         load_case=quoted(load_case),
     )  # fmt: skip
+    left_out = Scope.model_validate(scope or {})
+    if scope:
+        parts = quoted(scope["not_covered"])
+        text += f"\n[scope]\nnot_covered = {parts}\nreason = {quoted(scope['reason'])}\n"
     (folder / "case.toml").write_text(text, encoding="utf-8")
     write_columns(folder / "1_torque.csv", {
         "crank_angle_deg": t["crank"], "total_Nm": t["total"], "gas_Nm": t["gas"],
@@ -505,7 +510,7 @@ def write_run(
         "platform": "Linux x86_64", "prices": None, "benchmarks": None, "speed": None,
         "consistency": [], "files": {},
         "trials": 2, "verdict": verdict_of(records), "binding": list(binding_of(records)),
-        "scope": Scope().as_record(),
+        "scope": left_out.as_record(),
         "headline": {
             "torque_std_before_Nm": float(before.std()), "torque_std_after_Nm": float(after.std()),
             "torque_p2p_before_Nm": float(np.ptp(before)),

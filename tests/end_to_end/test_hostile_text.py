@@ -73,15 +73,15 @@ def test_a_run_keeps_them_in_a_folder_of_any_name(tmp_path: Path) -> None:
 
 def test_junit_is_whole_xml() -> None:
     odd = small_run.check("fail", id="odd", title="bell \x07 and \x00 nothing")
-    suite = ET.fromstring(junit([*records(), odd], "hostile", "must"))
+    suite = ET.fromstring(junit([*records(), odd], "hostile", "must", {"scope": HARM + ABROAD}))
     told = " ".join(
         text for node in suite.iter() for text in (*node.attrib.values(), node.text or "")
     )
-    assert told.count(LONG) == 3
+    assert told.count(LONG) == 4  # titles, and the note of the check without data
     assert HARM in told and ABROAD in told
     assert "bell \ufffd and \ufffd nothing" in told
     assert {node.tag for node in suite.iter()} <= {
-        "testsuite", "testcase", "failure", "skipped", "system-out"
+        "testsuite", "properties", "property", "testcase", "failure", "error", "system-out"
     }  # fmt: skip
 
 

@@ -235,6 +235,36 @@ def test_a_passing_run_says_pass(tmp_path, undrawn):
     assert "FAIL" not in html
 
 
+def test_an_incomplete_run_says_first_what_to_confirm_and_what_is_missing(tmp_path, undrawn):
+    records = [r for r in report_fixture.checks() if r["status"] in ("pass", "waived")]
+    records[0]["to_be_confirmed"] = [HOSTILE]
+    missing = {"title": "Shaft stress", "note": HOSTILE, "demand": None, "limit": None}
+    for name, required in (("shaft", True), ("film", False)):
+        record = records[0] | missing | {"id": name, "must_have": required, "utilisation": None}
+        records.append(record | {"status": "not_evaluated", "to_be_confirmed": []})
+    scope = {"not_covered": ["key"], "reason": HOSTILE.replace("\u202e", "")}
+    folder = report_fixture.write_run(
+        tmp_path / "run", positions=36, records=records, field=False, scope=scope
+    )  # fmt: skip
+    html = report_fixture.page_of(folder).read_text(encoding="utf-8")
+    assert "<script>alert" not in html
+    assert "<title>INCOMPLETE, 1 waived, 1 value to be confirmed: " in html
+    assert ">INCOMPLETE</h2>" in html
+    top = html[html.index('id="verdict"') : html.index('id="checks"')]
+    said = [
+        "INCOMPLETE, 1 waived, 1 value to be confirmed", "Values to be confirmed:",
+        "Not covered by this sign-off: key: &lt;script&gt;", "required checks pass, 1 lacks data",
+        "Missing data:", "Shaft stress: \u2068&lt;script&gt;", "Waived:", "accepted up to 2",
+    ]  # fmt: skip
+    places = [top.index(text) for text in said]
+    assert places == sorted(places)
+    groups = html[html.index('id="checks"') :]
+    missing_group = groups[groups.index("<h3>Missing data</h3>") : groups.index("<h3>Required")]
+    assert missing_group.count("not evaluated") == 2
+    assert "Optional: Shaft stress." in missing_group
+    assert Outline(html).stack == []
+
+
 def test_what_is_not_a_run_is_refused_and_left_alone(tmp_path):
     with pytest.raises(ResultError, match=r"run\.json is missing"):
         report_fixture.page_of(tmp_path)
