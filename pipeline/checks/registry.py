@@ -36,6 +36,7 @@ from camwright.pipeline.checks.check import (
     in_order,
     made_from_others,
 )
+from camwright.pipeline.checks.confirmation import with_values_to_confirm
 from camwright.pipeline.checks.error_bars import with_error_bars
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution
@@ -109,11 +110,11 @@ def checks_of(
 
 
 def all_checks(solution: Solution) -> tuple[Check, ...]:
-    """All checks of a solution, and one for waivers without effect.
+    """All checks of a solution with their values to be confirmed, and one for idle waivers.
 
     A solution without a certificate has one more check, not evaluated, and cannot pass.
     """
-    made = checks_of(solution)
+    made = with_values_to_confirm(checks_of(solution), solution.case)
     if not solution.final:
         note = "camwright run solves and certifies the case"
         made = (UNSIGNED.judged(solution.machine, Demand(None, 1.0, note=note)), *made)

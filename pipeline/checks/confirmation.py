@@ -1,0 +1,219 @@
+"""Values on which each check rests, and those of them that no source confirms.
+
+A value is confirmed by its source, or by an entry ``[[confirmed]]`` of the case.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.section import suggestion
+from camwright.pipeline.case.toml_text import Tables
+from camwright.pipeline.case.value_sources import OF_A_CHECK, confirms, source_of, values_at
+from camwright.pipeline.checks.check import Check
+
+_SPRING = ("spring.rate", "spring.preload")
+_MOTION = (*_SPRING, "follower.mass")
+_LOADS = (
+    *_MOTION,
+    *("guides.a.friction*", "guides.a.material.E", "guides.a.material.nu"),
+    *("guides.b.friction*", "guides.b.material.E", "guides.b.material.nu"),
+    *("follower.stem_material.E", "follower.stem_material.nu"),
+)
+_BODIES = ("cam.material", "roller.material", "follower.face.material")
+_CAM_FATIGUE = ("cam.material.fatigue_torsion", "cam.material.fatigue_bending")
+_WIRE = ("spring.design.strength_at_1mm", "spring.design.strength_exponent")
+_RATE = ("spring.design.shear_modulus",)
+
+
+def _bodies(*keys: str) -> tuple[str, ...]:
+    """Keys of the materials of cam and follower."""
+    return tuple(f"{body}.{key}" for body in _BODIES for key in keys)
+
+
+_CONTACT = (*_LOADS, *_bodies("E", "nu"))
+
+
+def _guides(name: str, *keys: str) -> dict[str, tuple[str, ...]]:
+    """A check of each guide."""
+    return {
+        f"{name}_{side.upper()}": (
+            *_LOADS,
+            *(key.replace("guide.", f"guides.{side}.") for key in keys),
+        )
+        for side in ("a", "b")
+    }
+
+
+RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "torque_reduction": _LOADS,
+        "speed_reduction": (*_LOADS, "crankshaft.inertia", "crankshaft.mechanism_inertia"),
+        "closure": (),
+        "acceleration_step": (),
+        "pressure_angle": (),
+        "curvature_ratio": (),
+        "undercut": (),
+        "self_intersection": (),
+        "second_contact": (),
+        "concave_radius": (),
+        "curvature_rate": (),
+        "minimum_wall": (),
+        "spring_travel": ("spring.travel_max",),
+        "contact_force_margin": _LOADS,
+        "jump": _MOTION,
+        "jam_index": _LOADS,
+        "jam_index_friction_max": _LOADS,
+        "jump_speed": (*_MOTION, "limits.overspeed"),
+        "contact_at_overspeed": (*_LOADS, "limits.overspeed"),
+        "elastic_contact": (
+            *_LOADS, "follower.stiffness", "follower.damping_ratio", "follower.stem_material.E",
+        ),
+        "contact_pressure": (*_CONTACT, *_bodies("*endurance_pressure")),
+        "first_yield": (*_CONTACT, *_bodies("yield_strength")),
+        "shakedown": (*_CONTACT, *_bodies("yield_strength")),
+        "contact_pressure_at_life": (
+            *_CONTACT, *_bodies("*endurance_slope", "*endurance_intercept"),
+            "limits.contact_safety",
+        ),
+        "edge_pressure": (*_CONTACT, *_bodies("*endurance_pressure"), "limits.contact_safety"),
+        "shakedown_traction": (
+            *_CONTACT, *_bodies("yield_strength"), "roller.friction", "follower.face.friction",
+        ),
+        "traction_demand": (
+            *_LOADS, "roller.friction", "roller.inertia", "roller.material.density",
+            "roller.bearing.drag_torque", "roller.bearing.friction",
+        ),
+        "film_ratio": (
+            *_CONTACT, "lubricant.*viscosity", "cam.roughness", "roller.roughness",
+            "follower.face.roughness",
+        ),
+        "surface_fatigue": (*_CONTACT, *_CAM_FATIGUE),
+        "dang_van": (*_CONTACT, *_CAM_FATIGUE),
+        "hardened_case": (
+            *_CONTACT, "cam.material.yield_strength", "cam.material.core_yield_strength",
+            "cam.material.case_depth",
+        ),
+        "case_depth": (*_CONTACT, "cam.material.case_depth"),
+        "pressure_by_hardness": (*_CONTACT, "cam.material.hardness*"),
+        "pressure_by_gear_limits": (*_CONTACT, "cam.material.hardness*"),
+        "roller_static": (*_LOADS, "roller.bearing.C0"),
+        "roller_life": (
+            *_LOADS, "roller.bearing.C", "roller.bearing.fatigue_load_limit",
+            "roller.bearing.viscosity",
+        ),
+        "roller_speed": ("roller.bearing.speed_limit",),
+        "roller_radial": (*_LOADS, "roller.bearing.*radial_limit"),
+        **_guides("guide_pressure", "guide.pressure_limit"),
+        **_guides("guide_pv", "guide.pv_limit"),
+        **_guides(
+            "guide_edge_pressure", "guide.material.yield_strength", "guide.material.E",
+            "guide.material.nu",
+        ),
+        **_guides(
+            "guide_temperature", "guide.material.temperature_limit", "guide.material.conductivity",
+            "guides.ambient_temperature", "guide.thermal_resistance",
+        ),
+        **_guides(
+            "guide_expansion", "guide.material.expansion", "guide.material.swelling",
+            "guide.material.conductivity", "guides.ambient_temperature",
+            "follower.stem_material.expansion", "guide.thermal_resistance",
+        ),
+        **_guides("guide_wear", "guide.wear_rate", "limits.target_life"),
+        "guide_length": (),
+        "spring_stress": (*_SPRING, *_RATE, *_WIRE),
+        "spring_fatigue": (*_SPRING, *_RATE, *_WIRE),
+        "spring_solid": (*_SPRING, *_RATE),
+        "spring_buckling": (),
+        "spring_rate": ("spring.rate", *_RATE),
+        "spring_surge": (*_RATE, "spring.design.density"),
+        "roller_pin": (*_LOADS, "roller.pin.material.yield_strength"),
+        "roller_ring_fatigue": (
+            *_LOADS, "roller.material.E", "roller.material.nu", "roller.bearing.C0",
+            "roller.bearing.ring.fatigue_bending", "roller.bearing.ring.tensile_strength",
+            "roller.bearing.ring.thickness", "roller.bearing.ring.balls",
+            "roller.bearing.ring.rows", "roller.bearing.ring.pitch_diameter",
+        ),
+        "key_pressure": _LOADS,
+        "bore_pressure": _LOADS,
+        "key_shear": _LOADS,
+        "torque_reversals": _LOADS,
+        "cam_unbalance": (),
+        "shaft_fatigue": (
+            *_LOADS, "camshaft.material.tensile_strength", "camshaft.material.fatigue_bending",
+            "camshaft.notch_*", "cam.material.density",
+        ),
+        "shaft_bearing_life": (*_LOADS, "camshaft.bearing_rating", "cam.material.density"),
+        "gear_bending": (
+            *_LOADS, "camshaft.gear.bending_limit", "camshaft.gear.application_factor",
+            "camshaft.drag",
+        ),
+        "gear_contact": (
+            *_LOADS, "camshaft.gear.contact_limit", "camshaft.gear.application_factor",
+            "camshaft.drag", "camshaft.gear.material.E", "camshaft.gear.material.nu",
+        ),
+        "face_width": (),
+        "face_pv": (*_CONTACT, "follower.face.pv_limit"),
+        "bearing_lubrication": ("roller.bearing.viscosity", "roller.bearing.*pitch_diameter"),
+        "guide_gap": (),
+        "cam_radius": (),
+        "profile_waviness": _LOADS,
+        "chord_error": (),
+        "phase_tolerance": _LOADS,
+        "bore_stress": (
+            *_CONTACT, "cam.material.yield_strength", "cam.material.core_yield_strength",
+        ),
+    }
+)  # fmt: skip
+"""Values besides its own limit on which a check of the design rests, by its id: dotted names in a
+case, with wildcards in the last word, a material by the part made of it. A length that the design
+chooses is none of them, as it is drawn and not known from a source."""
+
+
+def with_values_to_confirm(checks: Iterable[Check], case: Case) -> tuple[Check, ...]:
+    """The checks with the values on which they rest and which nothing confirms.
+
+    The source that a check declares for its limit counts as a value, ``checks.ID``, where it is
+    recalled. A check without data rests on none.
+
+    Raises
+    ------
+    InputError
+        If the case confirms the source of an unknown check.
+    """
+    tables = case.tables()
+    confirmed = {each.value for each in case.confirmed}
+    for value in confirmed:
+        if value.startswith(OF_A_CHECK) and value.removeprefix(OF_A_CHECK) not in RESTS_ON:
+            known = [f"{OF_A_CHECK}{name}" for name in RESTS_ON]
+            limit = f"the source of a known check{suggestion(value, known)}"
+            raise InputError("confirmed.value", value, limit)
+    return tuple(
+        replace(
+            one,
+            unconfirmed=tuple(
+                value
+                for value in dict.fromkeys(_open_values(one, tables))
+                if value not in confirmed
+            ),
+        )
+        for one in checks
+    )
+
+
+def _open_values(one: Check, tables: Tables) -> Iterator[str]:
+    """Values on which a check rests and whose source does not confirm them."""
+    if not one.evaluated or one.evidence:
+        return
+    declared, limit = one.declaration.source, one.declaration.limit
+    if limit is None and declared and not confirms(declared):
+        yield f"{OF_A_CHECK}{one.id}"
+    own = () if limit is None else (f"limits.{limit.id}",)
+    for path in (*own, *RESTS_ON[one.id]):
+        for value in values_at(tables, path):
+            if not confirms(source_of(tables, value)):
+                yield value

@@ -1,0 +1,172 @@
+"""Values on which a verdict rests and which nothing confirms."""
+
+import tomllib
+from copy import deepcopy
+from dataclasses import replace
+from typing import Any
+
+import made_trial as made
+import pytest
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import case_of
+from camwright.pipeline.case.value_sources import values_at
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.confirmation import RESTS_ON, with_values_to_confirm
+from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.preview import preview_case
+
+ENDURANCE = "materials.steel.endurance_pressure"
+
+
+def tables() -> dict[str, Any]:
+    """The case that describes every part, at the fewest positions."""
+    read = tomllib.loads(made.CASE_FILE.read_text(encoding="utf-8"))
+    read["solver"]["positions"] = 36
+    return read
+
+
+def stated(**sections: Any) -> Case:
+    """That case with further tables, none of its own sources recalled."""
+    changed = tables()
+    for name, table in sections.items():
+        changed[name] = table
+    return case_of(changed)
+
+
+def contact(case: Case) -> Check:
+    solved = made.solution(case=case)
+    (declared,) = (each for each in CHECKS if each.id == "contact_pressure")
+    check = declared(solved)
+    assert check is not None
+    (checked,) = with_values_to_confirm([check], case)
+    return checked
+
+
+def sourced(text: str) -> dict[str, str]:
+    """Source of each value on which the contact pressure rests."""
+    own = case_of(tables()).tables()
+    rests = (value for path in RESTS_ON["contact_pressure"] for value in values_at(own, path))
+    return dict.fromkeys(rests, text)
+
+
+def test_every_check_of_the_design_states_the_values_it_rests_on():
+    assert {each.id for each in CHECKS if not each.evidence} == set(RESTS_ON)
+
+
+def test_values_with_a_source_leave_nothing_to_confirm():
+    assert contact(stated(sources=sourced("certificate 4711"))).unconfirmed == ()
+
+
+def test_a_recalled_value_is_to_be_confirmed():
+    sources = sourced("certificate 4711") | {ENDURANCE: "table 9.3, recalled: verify"}
+    check = contact(stated(sources=sources))
+    assert check.unconfirmed == (ENDURANCE,)
+    assert check.as_record()["to_be_confirmed"] == [ENDURANCE]
+
+
+@pytest.mark.parametrize(
+    "by", [{"source": "certificate 4711"}, {"name": "A. Engineer", "date": "2025-01-02"}]
+)
+def test_a_source_or_a_name_and_a_date_confirm_it(by):
+    sources = sourced("certificate 4711") | {ENDURANCE: "recalled"}
+    entry = tomllib.loads(
+        "\n".join(
+            f"{key} = {value}" if key == "date" else f'{key} = "{value}"'
+            for key, value in {"value": ENDURANCE, **by}.items()
+        )
+    )
+    assert contact(stated(sources=sources, confirmed=[entry])).unconfirmed == ()
+
+
+def test_a_limit_of_the_table_with_a_recalled_source_counts_until_the_case_states_its_own():
+    (declared,) = (each for each in CHECKS if each.id == "guide_gap")
+
+    def open_values(case):
+        check = declared(made.solution(case=case))
+        assert check is not None
+        return with_values_to_confirm([check], case)[0].unconfirmed
+
+    assert open_values(stated()) == ("limits.guide_gap",)
+    own = tables()["limits"] | {"sources": {"guide_gap": "drawing 12"}}
+    assert open_values(stated(limits=own)) == ()
+
+
+def test_the_recalled_source_that_a_check_declares_counts():
+    """The static strength of the spring is a share of R_m in the program."""
+    (declared,) = (each for each in CHECKS if each.id == "pressure_by_gear_limits")
+    case = stated()
+    check = declared(made.solution(case=case))
+    assert check is not None
+    assert "checks.pressure_by_gear_limits" in with_values_to_confirm([check], case)[0].unconfirmed
+    entry = {"value": "checks.pressure_by_gear_limits", "source": "ISO 6336-5:2016, figure 9"}
+    confirmed = with_values_to_confirm([check], stated(confirmed=[entry]))[0].unconfirmed
+    assert "checks.pressure_by_gear_limits" not in confirmed
+    entry["value"] = "checks.pressure_by_gear_limit"
+    with pytest.raises(InputError, match=r"did you mean checks\.pressure_by_gear_limits"):
+        with_values_to_confirm([check], stated(confirmed=[entry]))
+
+
+def test_a_check_without_data_rests_on_nothing():
+    case = stated(sources=sourced("recalled"))
+    check = contact(case)
+    assert check.unconfirmed
+    missing = with_values_to_confirm([replace(check, demand=None)], case)
+    assert missing[0].unconfirmed == ()
+
+
+def demands(case: dict[str, Any]) -> dict[str, tuple[float | None, float | None]]:
+    """Demand and limit of each check of the design."""
+    checks = preview_case(case_of(deepcopy(case))).checks
+    return {one.id: (one.demand, one.limit) for one in checks if not one.evidence}
+
+
+def moved(value: str, share: float = 0.01) -> set[str]:
+    """Checks whose demand or limit changes with a value."""
+    changed = tables()
+    *parents, key = value.split(".")
+    table: Any = changed
+    written: Any = case_of(tables()).tables()
+    for part in parents:
+        table = table.setdefault(part, {})
+        written = written[part]
+    entry = written[key]
+    number, _, unit = entry.partition(" ") if isinstance(entry, str) else (entry, "", "")
+    table[key] = f"{float(number) * (1 + share)!r} {unit}" if unit else float(number) * (1 + share)
+    before, after = demands(tables()), demands(changed)
+    return {
+        name
+        for name in before.keys() & after.keys()
+        for old, new in zip(before[name], after[name], strict=True)
+        if old is not None and new is not None and abs(new - old) > 1e-7 * abs(old)
+    }
+
+
+def resting_on(value: str) -> set[str]:
+    """Checks that state that they rest on a value, or whose limit it is."""
+    own = case_of(tables()).tables()
+    limits = {one.id for one in CHECKS if one.limit and value == f"limits.{one.limit.id}"}
+    named = (name for name, paths in RESTS_ON.items() for p in paths if value in values_at(own, p))
+    return limits | set(named)
+
+
+STRENGTHS = ("materials.steel.endurance_pressure", "roller.bearing.C0")
+
+
+@pytest.mark.parametrize("value", STRENGTHS)
+def test_a_check_moves_with_a_value_only_if_it_states_so(value):
+    assert moved(value) - resting_on(value) == set()
+
+
+def data() -> list[str]:
+    """Values that any check states, whole numbers left out."""
+    own = case_of(tables()).tables()
+    every = {value for paths in RESTS_ON.values() for p in paths for value in values_at(own, p)}
+    return sorted(every - {"roller.bearing.ring.balls", "roller.bearing.ring.rows"})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("value", data())
+def test_every_check_that_moves_with_a_value_states_so(value):
+    assert moved(value) - resting_on(value) == set()
