@@ -151,6 +151,6 @@ def _judged(
 
 
 def _reverses(solution: Solution) -> bool:
-    """Whether the torque through the key changes sign in a load case."""
+    """Whether the torque through the key changes sign in a load case, or is unknown."""
     torques = [cycle.loads.cam_torque for cycle in solution.cycles]
-    return any((torque < 0.0).any() and (torque > 0.0).any() for torque in torques)
+    return any(not (torque >= 0.0).all() and not (torque <= 0.0).all() for torque in torques)

@@ -12,6 +12,7 @@ from scipy.special import ndtri
 
 from camwright.geometry.arrays import Array, finite, uniform_turn
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
     ShaftLoads,
@@ -120,7 +121,7 @@ def surface_factor(surface: Surface, tensile: float) -> float:
     Shigley's Mechanical Engineering Design, 10th ed., table 6-2 (recalled, verify).
     """
     factor, exponent = _FINISH[surface]
-    return float(min(1.0, factor * (tensile / 1e6) ** exponent))
+    return float(min(1.0, factor * in_unit(tensile, "MPa") ** exponent))
 
 
 def size_factor(diameter: float) -> float:
@@ -130,8 +131,8 @@ def size_factor(diameter: float) -> float:
     ----------
     Shigley's Mechanical Engineering Design, 10th ed., eq. 6-20 (recalled, verify).
     """
-    d = diameter / 1e-3
-    return float(min(1.0, 1.24 * d**-0.107 if d <= 51.0 else 1.51 * d**-0.157))
+    d = in_unit(diameter, "mm")
+    return float(min(1.0, (d / 7.62) ** -0.107 if d <= 51.0 else 1.51 * d**-0.157))
 
 
 def reliability_factor(reliability: float) -> float:
