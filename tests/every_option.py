@@ -8,7 +8,12 @@ from camwright.pipeline.case.case_file import case_of
 
 GX120 = Path(__file__).resolve().parents[1] / "cases" / "gx120.toml"
 OPTIONS = {
-    "cam": {"roughness": "0.3 um", "profile_tolerance": "0.02 mm", "counter_hole": {}},
+    "cam": {
+        "roughness": "0.3 um",
+        "profile_tolerance": "0.02 mm",
+        "counter_hole": {},
+        "key": {"length": "10 mm", "material": "c45"},
+    },
     "spring": {"travel_max": "25 mm", "catalogue": "shipped"},
     "camshaft": {
         "bearing_spacing": "60 mm",
@@ -16,6 +21,21 @@ OPTIONS = {
         "gear_position": "75 mm",
         "gear_radius": "30 mm",
         "drag": "0.05 N m",
+        "diameter": "17 mm",
+        "material": "c45",
+        "bearing_rating": "10.1 kN",
+        "bearing_static_rating": "4.75 kN",
+        "rotor_mass": "1 kg",
+        "slip_torque": "0 N m",
+        "sections": [
+            {
+                "name": "groove",
+                "position": "10 mm",
+                "diameter": "16 mm",
+                "notch_bending": 2.0,
+                "notch_torsion": 1.5,
+            }
+        ],
     },
     "roller": {
         "roughness": "0.1 um",

@@ -165,6 +165,7 @@ def _check_geometry(case: Case) -> None:
             cam.keyway.width < 1.8 * cam.bore_radius,
             "< 1.8 bore radii",
         )
+    _check_key(cam)
     for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
         _require(
             f"guides.{side}.diameter",
@@ -172,6 +173,22 @@ def _check_geometry(case: Case) -> None:
             guide.diameter >= case.follower.stem_diameter,
             ">= follower.stem_diameter",
         )
+
+
+def _check_key(cam: CamBody) -> None:
+    if cam.key is None:
+        return
+    if cam.keyway is None:
+        raise InputError("cam.key", "a table", "given with cam.keyway")
+    flanks, data = cam.key_flanks, cam.key_data
+    if flanks is None:
+        return
+    length, depth, height = data["length"], data["shaft_depth"], data["height"]
+    width = f"> {cam.keyway.width:.6g} m, the round ends of form A"
+    _require("cam.key.length", length or 0.0, flanks.length > 0.0, width)
+    _require("cam.key.shaft_depth", depth or 0.0, flanks.shaft_height > 0.0, "> cam.key.chamfer")
+    limit = "> cam.key.shaft_depth + cam.key.chamfer"
+    _require("cam.key.height", height or 0.0, flanks.hub_height > 0.0, limit)
 
 
 def _check_roller(cam: CamBody, roller: Roller) -> None:

@@ -197,21 +197,46 @@ SPRING_SURGE = Limit(
     "spring_surge", "surge frequency over cam frequency", In(above=0, at_most=1e4), 13.0,
     "13 to 20 times the cam's frequency, Norton (2009), Shigley ch. 10", "at_least",
 )  # fmt: skip
-KEY_PRESSURE = Limit(
-    "key_pressure", "key flank pressure", _PRESSURE, 100e6,
-    "100 to 150 MPa static, DIN 6892: verify",
+KEY_SHARE = Limit(
+    "key_share", "key stress over yield strength", _SHARE, 0.9,
+    "0.9 R_e of the weaker part, DIN 6892 method C: verify",
 )  # fmt: skip
-BORE_PRESSURE = Limit(
-    "bore_pressure", "bore pressure on the shaft", _PRESSURE, 100e6,
-    "100 MPa as for a key, DIN 6892: verify",
+KEY_REVERSAL = Limit(
+    "key_reversal", "share of the key stress under reversed torque", _SHARE, 0.5,
+    "half under alternating torque, textbooks of machine elements; DIN 6892 has a curve by the"
+    " number of reversals: verify",
 )  # fmt: skip
-KEY_SHEAR = Limit(
-    "key_shear", "key shear stress", _PRESSURE, 60e6,
-    "60 MPa under reversed torque, DIN 6892: verify",
+CAM_SLIP = Limit(
+    "cam_slip", "slip torque of the cam seat over its torque", _SAFETY, 1.5,
+    "1.5 against slip under alternating torque, DIN 7190: verify", "at_least",
+)  # fmt: skip
+BORE_SHARE = Limit(
+    "bore_share", "bore pressure over tensile strength", _SHARE, 0.25,
+    "0.25 R_m of a pulsating joint without sliding, Roloff/Matek, bolts and pins: verify",
 )  # fmt: skip
 SHAFT_SAFETY = Limit(
     "shaft_safety", "fatigue safety of the camshaft", _SAFETY, 1.5,
-    "Goodman, Shigley sec. 7-4; notch of an end-milled key, table 7-1: verify", "at_least",
+    "Goodman, Shigley sec. 7-4; notch factors, table 7-1: verify", "at_least",
+)  # fmt: skip
+SHAFT_RELIABILITY = Limit(
+    "shaft_reliability", "reliability of the fatigue strength of the camshaft",
+    In(at_least=0.5, below=1), 0.99, "99 %, Shigley table 6-5: verify", "at_least", "rest",
+)  # fmt: skip
+SHAFT_YIELD_SAFETY = Limit(
+    "shaft_yield_safety", "safety of the camshaft against yield", _SAFETY, 1.2,
+    "1.2, DIN 743-1: verify",
+)  # fmt: skip
+SHAFT_DEFLECTION = Limit(
+    "shaft_deflection", "deflection at the cam over bearing spacing", _SHARE, 1.0 / 3000.0,
+    "l/3000, general machinery, Roloff/Matek: verify",
+)  # fmt: skip
+SHAFT_SLOPE = Limit(
+    "shaft_slope", "slope of the camshaft at a bearing", In("mrad", above=0, at_most=100), 1e-3,
+    "0.001 to 0.003 rad of deep-groove ball bearings, Shigley table 7-2: verify",
+)  # fmt: skip
+SHAFT_BEARING_STATIC_SAFETY = Limit(
+    "shaft_bearing_static_safety", "static safety of the camshaft bearings", _SAFETY, 1.5,
+    "s0 = C0/P0, ISO 76; 1.5 under shocks, bearing makers: verify", "at_least",
 )  # fmt: skip
 SHAFT_BEARING_LIFE = OpenLimit(
     "shaft_bearing_life", "rating life of the camshaft bearings", _LIFE, "ISO 281", "at_least",
@@ -223,9 +248,9 @@ GEAR_BENDING_SAFETY = Limit(
 GEAR_CONTACT_SAFETY = Limit(
     "gear_contact_safety", "safety of tooth contact", _SAFETY, 1.0, "ISO 6336-2: verify",
 )  # fmt: skip
-UNBALANCE = OpenLimit(
-    "unbalance", "cam unbalance", In("mm/s", above=0, at_most=1e4),
-    "e w of the balance grade, ISO 21940-11: verify",
+UNBALANCE = Limit(
+    "unbalance", "unbalance of the camshaft", In("mm/s", above=0, at_most=1e4), 6.3e-3,
+    "e w of grade G 6.3, general machinery, ISO 21940-11: verify",
 )  # fmt: skip
 FILM_RATIO = Limit(
     "film_ratio", "lambda ratio", In(above=0, at_most=100), 1.0,

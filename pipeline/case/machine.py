@@ -133,7 +133,8 @@ class Machine:
             "spring": self.spring.design is not None,
             "guides": True,
             "camshaft": shaft is not None,
-            "camshaft_bearings": shaft is not None and shaft.bearing_rating is not None,
+            "camshaft_bearings": shaft is not None
+            and (shaft.bearing_rating is not None or shaft.bearing_static_rating is not None),
             "key": self.cam.keyway is not None,
             "gear": shaft is not None and shaft.gear is not None,
         }[part]

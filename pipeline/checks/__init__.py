@@ -16,8 +16,9 @@ In the order of the calculation:
 | `roller_bearing`        | rating, life, speed of the roller bearing  | s0; L10, s; n, rad/s     |
 | `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
 | `spring_strength`       | strength, solid length, buckling, surge    | tau, Pa; f, Hz           |
-| `part_strength`         | pin, outer ring, key, bore, unbalance      | sigma, Pa; e w, m/s      |
-| `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s        |
+| `part_strength`         | pin, outer ring, bore, unbalance           | sigma, Pa; e w, m/s      |
+| `key_strength`          | key of the cam, slip of its seat           | p, tau, Pa               |
+| `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s; rad   |
 | `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |
 | `wear_and_grease`       | lubrication, expansion and wear            | kappa; m                 |
 | `manufacture`           | space, waviness, chord error, phase        | m                        |

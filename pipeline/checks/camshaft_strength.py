@@ -1,19 +1,29 @@
-"""Checks of the camshaft: key shear, fatigue, bearings, driving gear."""
+"""Checks of the camshaft: fatigue, yield, deflection, bearings, driving gear."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     GEAR_BENDING_SAFETY,
     GEAR_CONTACT_SAFETY,
-    KEY_SHEAR,
     SHAFT_BEARING_LIFE,
+    SHAFT_BEARING_STATIC_SAFETY,
+    SHAFT_DEFLECTION,
+    SHAFT_RELIABILITY,
     SHAFT_SAFETY,
+    SHAFT_SLOPE,
+    SHAFT_YIELD_SAFETY,
 )
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Demand, check
-from camwright.pipeline.checks.extremes import greatest, worst_case
+from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.contact.hertz import contact_modulus
 from camwright.pipeline.cycle.cam_balance import unbalance_force
 from camwright.pipeline.cycle.cycle import Cycle
@@ -22,101 +32,274 @@ from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
     CamshaftGear,
     ShaftLoads,
-    key_stress,
+    ShaftSection,
     shaft_loads,
 )
-from camwright.pipeline.follower.roller_motion import rating_life
+from camwright.pipeline.follower.roller_motion import rating_life, static_safety
 from camwright.pipeline.follower.shaft_strength import (
     Section,
+    ShaftBending,
     bending_moment,
     fatigue_safety,
+    greatest_stress,
+    judged_sections,
+    reliability_factor,
+    shaft_bending,
+    size_factor,
+    surface_factor,
     tooth_contact_stress,
     tooth_root_stress,
+    torque_at,
 )
 
-NO_SHAFT = "no camshaft is given"
 REVERSED = 0.7  # of the bending limit, for reversed torque
+BREAKS = "a broken or seized camshaft stops the engine"
 
 
-@check(
-    KEY_SHEAR,
-    title="Key shear stress",
-    method="2 T/(d b l) at the greatest cam torque",
-    must_have=False,
-    lift_can_help=True,
-)
-def key_shear(solution: Solution) -> Demand:
-    """Shear stress in the section of the cam's key, Pa."""
-    cam = solution.machine.cam
-    key = cam.keyway
-    if key is None:
-        return Demand(None, None, note="no keyway is given")
-    diameter, height = 2.0 * cam.bore_radius, 2.0 * key.depth
+@dataclass(frozen=True)
+class _Shaft:
+    """Camshaft with the data of its strength: diameter, material and judged sections."""
 
-    def shear(cycle: Cycle) -> Array:
-        torque = cycle.loads.cam_torque
-        known = np.where(np.isnan(torque), 0.0, torque)
-        stress = np.abs(key_stress(known, diameter, key.width, height, cam.width).shear)
-        return np.where(np.isnan(torque), np.nan, stress)
+    camshaft: Camshaft
+    material: Material
+    least_diameter: float
+    sections: tuple[ShaftSection, ...]
 
-    worst = greatest(solution.cycles, shear)
-    return Demand(worst.value, solution.machine.limits[KEY_SHEAR], worst)
+
+def _camshaft(machine: Machine) -> Camshaft:
+    """Camshaft of the machine; its checks are made only where it is described."""
+    if machine.camshaft is None:
+        raise InputError("camshaft", "missing", "described for its checks")
+    return machine.camshaft
+
+
+def _gear(shaft: Camshaft) -> CamshaftGear:
+    """Gear of the camshaft; its checks are made only where it is described."""
+    if shaft.gear is None:
+        raise InputError("camshaft.gear", "missing", "described for its checks")
+    return shaft.gear
+
+
+def _described(machine: Machine) -> _Shaft | str:
+    """Camshaft with its diameter and material, or the missing ones."""
+    shaft, cam = _camshaft(machine), machine.cam
+    if shaft.diameter is None or shaft.material is None:
+        data = {"diameter": shaft.diameter, "material": shaft.material}
+        names = (name for name, value in data.items() if value is None)
+        return f"no {' and no '.join(names)} of the camshaft is given"
+    key_length = 0.0 if cam.key is None else cam.key.length or 0.0
+    reach = 0.5 * max(cam.width, key_length)
+    gear_reach = 0.0 if shaft.gear is None else 0.5 * shaft.gear.width
+    sections = judged_sections(shaft, shaft.diameter, reach, gear_reach)
+    least = min(shaft.diameter, *(one.diameter for one in sections))
+    return _Shaft(shaft, shaft.material, least, sections)
+
+
+def _by_value(each: tuple[Extreme, ShaftSection]) -> float:
+    return each[0].value
+
+
+def _place(section: ShaftSection) -> str:
+    return f"{section.name}, {shown(section.position, 'mm')} from bearing 1"
 
 
 @check(
     SHAFT_SAFETY,
     id="shaft_fatigue",
-    title="Fatigue safety factor of the camshaft at the cam keyway",
-    method="rotating bending and torsion of the cam torque",
-    must_have=False,
+    title="Fatigue safety factor of the camshaft, least of all sections",
+    method="rotating bending and torsion at every section, unbalance included; Goodman line",
     lift_can_help=True,
+    part="camshaft",
+    formula="1/(s_a/S_e + s_m/R_m) >= S; s_a, s_m: von Mises amplitude and mean of bending K_f M"
+    " and torsion K_fs (T + drag) of the turning fibre, S_e = k_a k_b k_e S_e': endurance with"
+    " factors of surface, size and reliability, S: limits.shaft_safety. Least over cam, gear, both"
+    " bearings and camshaft.sections, and over all load cases",
+    reason=f"must-have: {BREAKS}",
 )
 def shaft_fatigue(solution: Solution) -> Demand:
-    """Fatigue safety of the shaft at the cam in bending and torsion."""
-    shaft = solution.machine.camshaft
-    if shaft is None or shaft.diameter is None or shaft.material is None:
-        note = NO_SHAFT if shaft is None else "no diameter or no material of the camshaft is given"
-        return Demand(None, None, note=note)
+    """Least fatigue safety of the sections of the camshaft in bending and torsion."""
+    machine, limit = solution.machine, solution.machine.limits[SHAFT_SAFETY]
+    shaft = _described(machine)
+    if isinstance(shaft, str):
+        return Demand(None, limit, note=shaft)
     card = shaft.material
     endurance, tensile = card.fatigue_bending, card.tensile_strength
-    known = endurance is not None and tensile is not None
-    section = Section(
-        shaft.diameter, shaft.notch_bending, shaft.notch_torsion, endurance or 1.0, tensile or 1.0
+    if endurance is None or tensile is None:
+        note = f"the card of {card.name} gives no fatigue or tensile strength"
+        return Demand(None, limit, note=note)
+    finish = surface_factor(shaft.camshaft.surface, tensile)
+    rest = reliability_factor(machine.limits[SHAFT_RELIABILITY])
+
+    loads = {cycle.load_case: _loads(cycle) for cycle in solution.cycles}
+
+    def least(section: ShaftSection) -> Extreme:
+        strength = finish * size_factor(section.diameter) * rest * endurance
+        notches = (section.notch_bending, section.notch_torsion)
+        notched = Section(section.diameter, *notches, strength, tensile)
+
+        def safety(cycle: Cycle) -> float:
+            moment = bending_moment(loads[cycle.load_case], shaft.camshaft, section.position)
+            torque = torque_at(cycle.loads.cam_torque, shaft.camshaft, section.position)
+            return fatigue_safety(cycle.theta, moment, torque, notched)
+
+        return worst_case(solution.cycles, safety, at_least=True)
+
+    worst, section = min(((least(one), one) for one in shaft.sections), key=_by_value)
+    size = size_factor(section.diameter)
+    return Demand(
+        worst.value,
+        limit,
+        worst,
+        note=f"governing section: {_place(section)}",
+        figures=(f"{card.name}: {card.source}", "Shigley, 10th ed., sec. 6-9: verify"),
+        method="rotating bending and torsion at every section, unbalance included; Goodman line;"
+        f" fatigue notch factors {section.notch_bending:g} and {section.notch_torsion:g},"
+        f" k_a {finish:.3f} ({shaft.camshaft.surface}), k_b {size:.3f}, k_e {rest:.3f}",
     )
 
-    def safety(cycle: Cycle) -> float:
-        moment = bending_moment(_loads(cycle, shaft), shaft, shaft.cam_position)
-        return fatigue_safety(cycle.theta, moment, cycle.loads.cam_torque, section)
 
-    worst = worst_case(solution.cycles, safety, at_least=True)
+@check(
+    SHAFT_YIELD_SAFETY,
+    id="shaft_yield",
+    title="Greatest von Mises stress of the camshaft at a notch",
+    unit="MPa",
+    method="bending and torsion at every section, with the fatigue notch factors",
+    lift_can_help=True,
+    part="camshaft",
+    formula="sqrt((K_f M/W)^2 + 3 (K_fs (T + drag)/(2 W))^2) <= R_p / S; M, T: bending moment and"
+    " torque at one angle, W = pi d^3/32, R_p: yield strength of the core, S:"
+    " limits.shaft_yield_safety. Greatest over all sections, angles and load cases",
+    reason=f"must-have: a bent camshaft turns out of true; {BREAKS}",
+)
+def shaft_yield(solution: Solution) -> Demand:
+    """Greatest von Mises stress of the sections of the camshaft, Pa."""
+    safety, shaft = solution.machine.limits[SHAFT_YIELD_SAFETY], _described(solution.machine)
+    if isinstance(shaft, str):
+        return Demand(None, None, note=shaft)
+
+    loads = {cycle.load_case: _loads(cycle) for cycle in solution.cycles}
+
+    def most(section: ShaftSection) -> Extreme:
+        def stress(cycle: Cycle) -> Array:
+            moment = bending_moment(loads[cycle.load_case], shaft.camshaft, section.position)
+            torque = torque_at(cycle.loads.cam_torque, shaft.camshaft, section.position)
+            return greatest_stress(moment, torque, section)
+
+        return greatest(solution.cycles, stress)
+
+    worst, section = max(((most(one), one) for one in shaft.sections), key=_by_value)
+    card = shaft.material
     return Demand(
-        worst.value if known else None,
-        solution.machine.limits[SHAFT_SAFETY],
+        worst.value,
+        (card.core_yield_strength or card.yield_strength) / safety,
         worst,
-        note="" if known else f"the card of {card.name} gives no fatigue or tensile strength",
+        note=f"governing section: {_place(section)}",
         figures=(f"{card.name}: {card.source}",),
-        method="rotating bending and torsion of the cam torque; fatigue notch factors"
-        f" {shaft.notch_bending:g} and {shaft.notch_torsion:g}",
+    )
+
+
+@check(
+    SHAFT_DEFLECTION,
+    title="Deflection of the camshaft at the cam over its bearing spacing",
+    unit="-",
+    method="beam of the least diameter of the sections on two rigid bearings, without shear",
+    lift_can_help=True,
+    part="camshaft",
+    formula="f/l <= limits.shaft_deflection; f: greatest deflection at the cam by the unit-load"
+    " method, l: bearing spacing",
+    reason="must-have: the deflection is an error of the lift and tilts the contact line",
+)
+def shaft_deflection(solution: Solution) -> Demand:
+    """Greatest deflection of the camshaft at the cam over the bearing spacing."""
+    limit, shaft = solution.machine.limits[SHAFT_DEFLECTION], _described(solution.machine)
+    if isinstance(shaft, str):
+        return Demand(None, limit, note=shaft)
+    spacing = shaft.camshaft.bearing_spacing
+
+    def share(cycle: Cycle) -> Array:
+        return np.asarray(np.hypot(*_bending(cycle, shaft).deflection) / spacing)
+
+    worst = greatest(solution.cycles, share)
+    amount = shown(worst.value * spacing, "um", 3)
+    return Demand(worst.value, limit, worst, note=f"{amount} at the cam")
+
+
+@check(
+    SHAFT_SLOPE,
+    title="Slope of the camshaft at a bearing",
+    method="beam of the least diameter of the sections on two rigid bearings, without shear",
+    lift_can_help=True,
+    part="camshaft",
+    formula="phi <= limits.shaft_slope; phi: greatest slope at either bearing by the unit-load"
+    " method",
+    reason="must-have: beyond their slope the balls run on the edge of the groove, and the rating"
+    " life does not hold",
+)
+def shaft_slope(solution: Solution) -> Demand:
+    """Greatest slope of the camshaft at its bearings, rad."""
+    limit, shaft = solution.machine.limits[SHAFT_SLOPE], _described(solution.machine)
+    if isinstance(shaft, str):
+        return Demand(None, limit, note=shaft)
+
+    def slope(cycle: Cycle) -> Array:
+        bent = _bending(cycle, shaft)
+        return np.asarray(np.maximum(np.hypot(*bent.slope_1), np.hypot(*bent.slope_2)))
+
+    worst = greatest(solution.cycles, slope)
+    return Demand(worst.value, limit, worst)
+
+
+@check(
+    SHAFT_BEARING_STATIC_SAFETY,
+    id="shaft_bearing_static",
+    title="Static safety factor of the camshaft bearings",
+    method="static rating over the greatest load of either bearing, unbalance included",
+    lift_can_help=True,
+    part="camshaft_bearings",
+    formula="C0/P0 >= limits.shaft_bearing_static_safety; C0: camshaft.bearing_static_rating, P0:"
+    " greatest radial load of either bearing over all load cases and angles",
+    reason="must-have: dents of the raceway under the greatest load are permanent",
+)
+def shaft_bearing_static(solution: Solution) -> Demand:
+    """Static safety factor s0 of the camshaft bearing with the greater load."""
+    shaft = _camshaft(solution.machine)
+    rating = shaft.bearing_static_rating
+
+    def load(cycle: Cycle) -> Array:
+        loads = _loads(cycle)
+        return np.maximum(loads.load_1, loads.load_2)
+
+    worst = greatest(solution.cycles, load)
+    rated = rating is not None and worst.value > 0
+    return Demand(
+        static_safety(worst.value, rating) if rated and rating is not None else None,
+        solution.machine.limits[SHAFT_BEARING_STATIC_SAFETY],
+        worst,
+        note="" if rating is not None else "no static rating of the camshaft bearings is given",
+        figures=(shaft.source,),
     )
 
 
 @check(
     SHAFT_BEARING_LIFE,
     title="L10 rating life of the camshaft bearings",
-    method="(C/P_m)^3 million turns, P_m the cube mean of the bearing's load",
-    must_have=False,
+    method="(C/P_m)^3 million turns, P_m the cube mean of the bearing's load, unbalance included",
     lift_can_help=True,
+    part="camshaft_bearings",
+    formula="L10 >= limits.shaft_bearing_life; L10 = (C/P_m)^3 10^6 turns, C:"
+    " camshaft.bearing_rating, P_m: cube mean of the radial load over the turn. Least over both"
+    " bearings and all load cases",
+    reason=f"must-have: {BREAKS}",
 )
 def shaft_bearing_life(solution: Solution) -> Demand:
     """Rating life of the camshaft bearing with the greater load, s."""
-    shaft = solution.machine.camshaft
-    rating = None if shaft is None else shaft.bearing_rating
-    if shaft is None or rating is None:
-        note = NO_SHAFT if shaft is None else "no rating of the camshaft's bearings is given"
-        return Demand(None, None, note=note)
+    shaft = _camshaft(solution.machine)
+    rating, target = shaft.bearing_rating, solution.machine.limits[SHAFT_BEARING_LIFE]
+    if rating is None:
+        return Demand(None, target, note="no dynamic rating of the camshaft bearings is given")
 
     def life(cycle: Cycle) -> float:
-        loads = _loads(cycle, shaft)
+        loads = _loads(cycle)
         both = (loads.load_1, loads.load_2)
         if not all(np.isfinite(load).all() for load in both):
             return float(np.nan)
@@ -124,7 +307,6 @@ def shaft_bearing_life(solution: Solution) -> Demand:
         return min(rating_life(load, spin, rating).seconds for load in both)
 
     worst = worst_case(solution.cycles, life, at_least=True)
-    target = solution.machine.limits[SHAFT_BEARING_LIFE]
     return Demand(
         worst.value,
         target,
@@ -140,28 +322,57 @@ def shaft_bearing_life(solution: Solution) -> Demand:
     title="Tooth root bending stress of the driving gear",
     unit="MPa",
     method="F K/(b m pi y) at the greatest torque, load on the tip of one tooth",
-    must_have=False,
     lift_can_help=True,
+    part="gear",
+    formula="F K_A/(b m pi y) <= 0.7 s_F / S; F = |T + drag|/r, y = 0.154 - 0.912/z: Lewis, s_F:"
+    " camshaft.gear.bending_limit, 0.7: reversed torque, S: limits.gear_bending_safety",
+    reason="must-have: a broken tooth stops the camshaft",
 )
-def gear_bending(solution: Solution) -> Demand | None:
-    """Tooth root bending stress of the driving gear, Pa; None without a gear."""
-    shaft = solution.machine.camshaft
-    gear = None if shaft is None else shaft.gear
-    if shaft is None or gear is None:
-        return None
+def gear_bending(solution: Solution) -> Demand:
+    """Tooth root bending stress of the gear on the camshaft, Pa."""
+    gear = _gear(_camshaft(solution.machine))
+    figure = f"{gear.material.name}: {gear.source}".rstrip(": ")
+    return _bending_of(solution, gear.teeth, gear.bending_limit, "gear", figure)
+
+
+@check(
+    GEAR_BENDING_SAFETY,
+    id="pinion_bending",
+    title="Tooth root bending stress of the pinion on the crankshaft",
+    unit="MPa",
+    method="F K/(b m pi y) at the greatest torque, load on the tip of one tooth",
+    lift_can_help=True,
+    part="gear",
+    formula="as gear_bending, with the teeth of the pinion and camshaft.gear.pinion_bending_limit;"
+    " fewer teeth are thinner at the root",
+    reason="must-have: a broken tooth stops the camshaft, and the pinion has the weaker tooth",
+)
+def pinion_bending(solution: Solution) -> Demand:
+    """Tooth root bending stress of the pinion on the crankshaft, Pa."""
+    gear = _gear(_camshaft(solution.machine))
+    figure = f"{(gear.pinion_material or gear.material).name}: {gear.source}".rstrip(": ")
+    return _bending_of(solution, gear.pinion_teeth, gear.pinion_bending_limit, "pinion", figure)
+
+
+def _bending_of(
+    solution: Solution, teeth: int, limit: float | None, word: str, figure: str
+) -> Demand:
+    """Tooth root stress of a wheel with its own form factor."""
+    shaft = _camshaft(solution.machine)
+    gear = _gear(shaft)
     module = 2.0 * shaft.gear_radius / gear.teeth
 
     def stress(cycle: Cycle) -> Array:
-        return tooth_root_stress(_tooth_force(cycle, shaft, gear), gear.width, module, gear.teeth)
+        return tooth_root_stress(_tooth_force(cycle, shaft, gear), gear.width, module, teeth)
 
-    worst, limit = greatest(solution.cycles, stress), gear.bending_limit
     safety = solution.machine.limits[GEAR_BENDING_SAFETY]
+    worst = greatest(solution.cycles, stress)
     return Demand(
         worst.value,
         None if limit is None else REVERSED * limit / safety,
         worst,
-        note="" if limit is not None else "no bending limit of the gear is given",
-        figures=(f"{gear.material.name}: {gear.source}".rstrip(": "),),
+        note="" if limit is not None else f"no bending limit of the {word} is given",
+        figures=(figure,),
     )
 
 
@@ -171,32 +382,37 @@ def gear_bending(solution: Solution) -> Demand | None:
     title="Tooth flank contact pressure of the driving gear",
     unit="MPa",
     method="Z_H Z_E sqrt(F K (u + 1)/(b d u)) at the pitch point, at the greatest torque",
-    must_have=False,
     lift_can_help=True,
+    part="gear",
+    formula="Z_H Z_E sqrt(F K_A (u + 1)/(b d u)) <= s_H / S; d, u: pitch diameter of the smaller"
+    " wheel and ratio of teeth, s_H: lower contact limit of gear and pinion, S:"
+    " limits.gear_contact_safety",
+    reason="must-have: pitted flanks break",
 )
-def gear_contact(solution: Solution) -> Demand | None:
-    """Contact pressure on the tooth flanks of the driving gear, Pa; None without a gear."""
-    shaft = solution.machine.camshaft
-    gear = None if shaft is None else shaft.gear
-    if shaft is None or gear is None:
-        return None
-    card = gear.material
+def gear_contact(solution: Solution) -> Demand:
+    """Contact pressure on the tooth flanks of the driving gear, Pa."""
+    shaft = _camshaft(solution.machine)
+    gear = _gear(shaft)
+    card, mate = gear.material, gear.pinion_material or gear.material
     ratio = max(gear.teeth, gear.pinion_teeth) / min(gear.teeth, gear.pinion_teeth)
     pinion = 2.0 * shaft.gear_radius * min(1.0, gear.pinion_teeth / gear.teeth)
-    modulus = contact_modulus(card.E, card.nu, card.E, card.nu)
+    modulus = contact_modulus(card.E, card.nu, mate.E, mate.nu)
 
     def stress(cycle: Cycle) -> Array:
         force = _tooth_force(cycle, shaft, gear)
         angle = shaft.pressure_angle
         return tooth_contact_stress(force, gear.width, pinion, ratio, angle, modulus)
 
-    worst, limit = greatest(solution.cycles, stress), gear.contact_limit
+    limits = {"gear": gear.contact_limit, "pinion": gear.pinion_contact_limit}
+    known = [limit for limit in limits.values() if limit is not None]
+    missing = [f"no contact limit of the {name} is given" for name in limits if not limits[name]]
     safety = solution.machine.limits[GEAR_CONTACT_SAFETY]
+    worst = greatest(solution.cycles, stress)
     return Demand(
         worst.value,
-        None if limit is None else limit / safety,
+        None if missing else min(known) / safety,
         worst,
-        note="" if limit is not None else "no contact limit of the gear is given",
+        note="; ".join(missing),
         figures=(f"{card.name}: {gear.source}".rstrip(": "),),
     )
 
@@ -207,8 +423,12 @@ def _tooth_force(cycle: Cycle, shaft: Camshaft, gear: CamshaftGear) -> Array:
     return np.asarray(gear.application_factor * torque / shaft.gear_radius)
 
 
-def _loads(cycle: Cycle, shaft: Camshaft) -> ShaftLoads:
+def _loads(cycle: Cycle) -> ShaftLoads:
     loads, speed = cycle.loads, cycle.cam_speed
     thrown = unbalance_force(cycle.machine.cam, cycle.contour, speed, cycle.theta)
     forces = (loads.axial_force, loads.tangential_force, loads.cam_torque)
-    return shaft_loads(*forces, shaft, thrown)
+    return shaft_loads(*forces, _camshaft(cycle.machine), thrown)
+
+
+def _bending(cycle: Cycle, shaft: _Shaft) -> ShaftBending:
+    return shaft_bending(_loads(cycle), shaft.camshaft, shaft.least_diameter, shaft.material.E)

@@ -1,4 +1,4 @@
-"""Checks of the parts at the cam: roller pin, outer ring, key, bore, unbalance."""
+"""Checks of the parts at the cam: roller pin, outer ring, bore, unbalance."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
-    BORE_PRESSURE,
-    KEY_PRESSURE,
+    BORE_SHARE,
     PIN_SHARE,
     UNBALANCE,
     LimitValues,
@@ -97,31 +96,40 @@ def _ring_amplitude(parts: PartLoads, tensile_strength: float | None) -> Array:
 
 
 @check(
-    KEY_PRESSURE,
-    title="Key flank pressure",
-    method="4 T/(d h l) at the greatest cam torque; key height twice the keyway depth",
-    must_have=False,
-    lift_can_help=True,
-)
-def key_pressure(solution: Solution) -> Demand:
-    """Flank pressure of the key of the cam, Pa."""
-    if solution.machine.cam.keyway is None:
-        return Demand(None, None, note="no keyway is given")
-    worst = greatest(solution.cycles, lambda cycle: np.abs(_known(cycle.parts.key_pressure)))
-    return Demand(worst.value, solution.machine.limits[KEY_PRESSURE], worst)
-
-
-@check(
-    BORE_PRESSURE,
+    BORE_SHARE,
+    id="bore_pressure",
     title="Mean bore pressure on the camshaft",
+    unit="MPa",
     method="greatest normal force over bore diameter and cam width",
-    must_have=False,
     lift_can_help=True,
+    formula="F_n/(d b) <= limits.bore_share R_m; F_n: greatest normal force over all load cases and"
+    " angles, d: bore diameter, b: cam width, R_m: lower tensile strength of cam and camshaft",
+    reason="must-have: a widened bore loosens the cam on its shaft",
 )
 def bore_pressure(solution: Solution) -> Demand:
     """Mean pressure of the bore on the shaft, Pa."""
+    machine = solution.machine
     worst = greatest(solution.cycles, lambda cycle: cycle.parts.bore_pressure)
-    return Demand(worst.value, solution.machine.limits[BORE_PRESSURE], worst)
+    shaft = machine.camshaft
+    cards = [machine.cam.material]
+    missing = []
+    if machine.scope.covers("camshaft"):
+        card = None if shaft is None else shaft.material
+        cards += [] if card is None else [card]
+        missing += ["no material of the camshaft is given"] if card is None else []
+    known = [card.tensile_strength for card in cards if card.tensile_strength is not None]
+    missing += [
+        f"the card of {card.name} gives no tensile strength"
+        for card in cards
+        if card.tensile_strength is None
+    ]
+    return Demand(
+        worst.value,
+        None if missing else machine.limits[BORE_SHARE] * min(known),
+        worst,
+        note="; ".join(missing),
+        figures=tuple(dict.fromkeys(f"{card.name}: {card.source}" for card in cards)),
+    )
 
 
 @check(
@@ -130,6 +138,9 @@ def bore_pressure(solution: Solution) -> Demand:
     source="crossover shock, Rothbart, Cam Design Handbook (2004)",
     method="sign changes of cam torque plus drag",
     must_have=False,
+    formula="n <= 0; n: sign changes of T + drag over the turn, greatest over the load cases",
+    reason="not a must-have: the torque of a balancing cam reverses by its purpose; the effects"
+    " decide: key_pressure, key_shear, cam_slip, gear_bending, pinion_bending",
 )
 def torque_reversals(solution: Solution) -> Demand:
     """Number of torque reversals at gear and key per turn."""
@@ -143,20 +154,25 @@ def torque_reversals(solution: Solution) -> Demand:
 @check(
     UNBALANCE,
     id="cam_unbalance",
-    title="Cam unbalance",
+    title="Unbalance of the camshaft with its cam",
     method="exact first moment of the area of the contour less bore, keyway and counter-hole",
-    must_have=False,
     moved_by_tolerance=False,
+    formula="e w <= limits.unbalance; e = U/m, U: unbalance of the cam, kg m, m:"
+    " camshaft.rotor_mass, or the mass of the cam alone, w: greatest cam speed of all load cases",
+    reason="must-have: the force m e w^2 loads shaft, bearings and frame at every speed",
 )
 def cam_unbalance(solution: Solution) -> Demand:
-    """Eccentricity times speed of the finished cam, m/s, and the counter-hole for it."""
-    balanced = balance(solution.machine.cam, solution.contour)
+    """Eccentricity times speed of the rotor, m/s, and the counter-hole for it."""
+    balanced, shaft = balance(solution.machine.cam, solution.contour), solution.machine.camshaft
     made, speed = balanced.as_made, max(machine.cam_speed for machine in solution.machines)
+    rotor = made.mass if shaft is None else max(made.mass, shaft.rotor_mass or 0.0)
     angle = f"{np.degrees(made.angle) % 360:.1f} deg"
+    whole = "cam alone" if rotor == made.mass else "cam, shaft and gear"
     return Demand(
-        made.eccentricity * speed,
+        made.product / rotor * speed,
         solution.machine.limits[UNBALANCE],
-        note=f"{made.force(speed):.1f} N at {angle} of the cam{_hole(balanced)}",
+        note=f"{made.force(speed):.1f} N at {angle} of the cam; mass of {whole},"
+        f" {shown(rotor, 'g')}{_hole(balanced)}",
     )
 
 

@@ -6,7 +6,7 @@ In the order of the calculation:
 | -------------------- | ---------------------------------------------- | -------------------- |
 | `elasticity`         | plane-strain elasticity of bodies and surfaces |                      |
 | `tiers`              | tiers of a solution: preview, finite elements  |                      |
-| `cam_body`           | cam disc: radii, width, bore, keyway, material | m                    |
+| `cam_body`           | cam disc: radii, width, bore, key, material    | m                    |
 | `hertz`              | line contact, subsurface stress                | a, m; p0, Pa; E*, Pa |
 | `follower_body`      | roller or flat face in contact with the cam    | m                    |
 | `contact_pair`       | cam and follower: relative radius, gap         | R, m; gap, m         |

@@ -1,9 +1,10 @@
-"""The cam disc: base shape, bore, keyway and material."""
+"""The cam disc: base shape, bore, keyway, key and material."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import Angle, In, Length, Part
@@ -19,6 +20,70 @@ class Keyway(Part):
     width: Length
     depth: Length
     angle: Angle = 0.0
+
+
+class StandardKey(NamedTuple):
+    """Row of DIN 6885-1, m: key height h, depth t1 in the shaft, greatest key chamfer s, least
+    fillet radius r of the keyways.
+    """
+
+    height: float
+    shaft_depth: float
+    chamfer: float
+    fillet: float
+
+
+_MM = 1e-3
+STANDARD_KEYS: Mapping[int, StandardKey] = {
+    width: StandardKey(height * _MM, depth * _MM, chamfer * _MM, fillet * _MM)
+    for width, height, depth, chamfer, fillet in (
+        (2, 2, 1.2, 0.25, 0.08), (3, 3, 1.8, 0.25, 0.08), (4, 4, 2.5, 0.25, 0.08),
+        (5, 5, 3.0, 0.40, 0.16), (6, 6, 3.5, 0.40, 0.16), (8, 7, 4.0, 0.40, 0.16),
+        (10, 8, 5.0, 0.60, 0.25), (12, 8, 5.0, 0.60, 0.25), (14, 9, 5.5, 0.60, 0.25),
+        (16, 10, 6.0, 0.60, 0.25), (18, 11, 7.0, 0.60, 0.25), (20, 12, 7.5, 0.80, 0.40),
+        (22, 14, 9.0, 0.80, 0.40), (25, 14, 9.0, 0.80, 0.40), (28, 16, 10.0, 0.80, 0.40),
+    )
+}  # fmt: skip
+"""Parallel keys of DIN 6885-1 by their width, mm (recalled, verify)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Key(Part):
+    """Parallel key of the cam.
+
+    height, h; shaft_depth, t1: of its keyway in the shaft; chamfer: of its edges; form A has round
+    ends, which do not transmit torque, and length includes them. application_factor: K_A, on the
+    solved torque, for impact where the torque reverses.
+    """
+
+    table: ClassVar[str] = "cam.key"
+    defaults: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("height", "shaft_depth", "chamfer"), "DIN 6885-1, by a standard width of the keyway"
+    )
+
+    length: Length | None = None
+    height: Length | None = None
+    shaft_depth: Length | None = None
+    chamfer: Length | None = None
+    form: Literal["A", "B"] = "A"
+    material: Material | None = None
+    application_factor: Annotated[float, In(at_least=1, at_most=10)] = 1.5
+    source: str = ""
+
+
+class KeyFlanks(NamedTuple):
+    """Flanks of a key that transmit torque, m: width b, bearing length l_tr, height in hub and in
+    shaft.
+    """
+
+    width: float
+    length: float
+    hub_height: float
+    shaft_height: float
+
+
+EFFECTIVE_LENGTH = 1.3
+"""Bearing length of a key over the shaft diameter, at most: DIN 6892 (recalled, verify)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,6 +114,7 @@ class CamBody(Part):
     bore_radius: Length
     material: Material
     keyway: Keyway | None = None
+    key: Key | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     profile_tolerance: Annotated[float, In("mm", above=0, at_most=10)] = 1e-4
     waviness_length: Length = 0.005
@@ -59,3 +125,42 @@ class CamBody(Part):
     def held_radius(self) -> float:
         """Maximum radius of the held surface, m: bore and keyway."""
         return self.bore_radius + (0.0 if self.keyway is None else self.keyway.depth)
+
+    @property
+    def key_data(self) -> Mapping[str, float | None]:
+        """Length, height, shaft depth and chamfer of the key, m, standard ones filled in.
+
+        None: not stated, and of no standard width.
+        """
+        key, width = self.key or Key(), 0.0 if self.keyway is None else self.keyway.width
+        row = next((row for b, row in STANDARD_KEYS.items() if abs(b * _MM - width) < 1e-6), None)
+        return {
+            "length": key.length,
+            "height": key.height or (row and row.height),
+            "shaft_depth": key.shaft_depth or (row and row.shaft_depth),
+            "chamfer": key.chamfer or (row and row.chamfer),
+        }
+
+    @property
+    def key_flanks(self) -> KeyFlanks | None:
+        """Flanks of the key; None without a key or a datum of it.
+
+        References
+        ----------
+        DIN 6892: bearing length without round ends, heights without the chamfer (recalled, verify).
+        """
+        data = self.key_data
+        length, height, depth, chamfer = (
+            data[name] for name in ("length", "height", "shaft_depth", "chamfer")
+        )
+        if self.key is None or self.keyway is None:
+            return None
+        if length is None or height is None or depth is None or chamfer is None:
+            return None
+        ends = self.keyway.width if self.key.form == "A" else 0.0
+        return KeyFlanks(
+            self.keyway.width,
+            min(length - ends, self.width, EFFECTIVE_LENGTH * 2.0 * self.bore_radius),
+            min(height - depth, self.keyway.depth) - chamfer,
+            depth - chamfer,
+        )

@@ -221,13 +221,12 @@ def _friction_bounds(turn: Turn, contour: Contour) -> tuple[FrictionBounds, Guid
 
 
 def _key_pressure(machine: Machine, loads: Loads) -> Array | None:
-    """Pressure on the flank of the keyway, whose depth is half the height of the key."""
+    """Pressure of the key on the flank of the keyway in the cam, application factor included."""
     cam = machine.cam
-    key = cam.keyway
-    if key is None:
+    key, flanks = cam.key, cam.key_flanks
+    if key is None or flanks is None:
         return None
-    diameter = 2.0 * cam.bore_radius
-    return key_stress(loads.cam_torque, diameter, key.width, 2.0 * key.depth, cam.width).pressure
+    return key_stress(key.application_factor * loads.cam_torque, 2.0 * cam.bore_radius, flanks).hub
 
 
 def _shaft(machine: Machine, contour: Contour, loads: Loads) -> ShaftLoads | None:

@@ -24,7 +24,7 @@ In the order of the calculation:
 | `roller`                | roller: geometry, contact body, rolling    | r, m                  |
 | `flat_face`             | flat face: geometry, contact body, sliding | m                     |
 | `camshaft_loads`        | key, bearings, unbalance, counter-hole     | N; Pa; kg m           |
-| `shaft_strength`        | fatigue of the camshaft, gear teeth        | Pa; safety, -         |
+| `shaft_strength`        | camshaft sections, bending; gear teeth     | Pa; safety, -; rad    |
 
 A further kind of follower is a class with the attributes of `follower_kind.FollowerKind`, a contour
 in `geometry`, a contact body in `contact` and a section in `case`.

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
-from typing import Annotated, ClassVar, NamedTuple
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,25 +16,36 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import KeywayLike
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import Angle, Count, Force, In, Length, Part, Pressure
+from camwright.pipeline.base.quantities import (
+    Angle,
+    Characters,
+    Count,
+    Force,
+    In,
+    Length,
+    Mass,
+    Part,
+    Pressure,
+)
+from camwright.pipeline.contact.cam_body import KeyFlanks
 
 
 class KeyStress(NamedTuple):
-    """Flank pressure and shear stress of the key, Pa, signed like the torque."""
+    """Pressure of the key on hub and shaft, and its shear stress, Pa, signed like the torque."""
 
-    pressure: Array
+    hub: Array
+    shaft: Array
     shear: Array
 
 
-def key_stress(
-    torque: ArrayLike, shaft_diameter: float, key_width: float, key_height: float, length: float
-) -> KeyStress:
-    """p = 4 T/(d h l) and tau = 2 T/(d b l) of a parallel key, half of its height in the hub.
+def key_stress(torque: ArrayLike, shaft_diameter: float, flanks: KeyFlanks) -> KeyStress:
+    """p = 2 T/(d l_tr h_tr) on hub and shaft, and tau = 2 T/(d b l_tr), of a parallel key.
 
     Parameters
     ----------
-    torque : array (...)   N m
-    shaft_diameter, key_width, key_height, length : float   d, b, h, l, m, > 0
+    torque : array (...)      application factor included, N m
+    shaft_diameter : float    d, m, > 0
+    flanks : KeyFlanks        l_tr, heights h_tr, width b, m, > 0
 
     Raises
     ------
@@ -42,18 +54,13 @@ def key_stress(
 
     References
     ----------
-    DIN 6892 (recalled, verify); Shigley's Mechanical Engineering Design, ch. 7.
+    DIN 6892, method C (recalled, verify); Shigley's Mechanical Engineering Design, ch. 7.
     """
-    for name, value in (
-        ("shaft_diameter", shaft_diameter),
-        ("width", key_width),
-        ("height", key_height),
-        ("length", length),
-    ):
+    for name, value in (("shaft_diameter", shaft_diameter), *flanks._asdict().items()):
         if not 0.0 < value < np.inf:
             raise InputError(f"key.{name}", value, "> 0 m")
-    push = 2.0 * finite("torque", torque) / (shaft_diameter * length)
-    return KeyStress(np.asarray(2.0 * push / key_height), np.asarray(push / key_width))
+    push = 2.0 * finite("torque", torque) / (shaft_diameter * flanks.length)
+    return KeyStress(push / flanks.hub_height, push / flanks.shaft_height, push / flanks.width)
 
 
 class Reversal(NamedTuple):
@@ -107,10 +114,12 @@ _BALANCED = 1e-9
 class CamshaftGear(Part):
     """Spur gear on the camshaft, 20 deg full depth; the pinion is on the crankshaft.
 
-    bending_limit and contact_limit: endurance limits.
+    bending_limit and contact_limit: endurance limits of the gear, those of the pinion apart; both
+    have the same width.
     """
 
     table: ClassVar[str] = "camshaft.gear"
+    defaults: ClassVar[Mapping[str, str]] = {"pinion_material": "that of the gear"}
 
     teeth: Annotated[int, Count(10, 1000)]
     pinion_teeth: Annotated[int, Count(10, 1000)]
@@ -119,7 +128,28 @@ class CamshaftGear(Part):
     application_factor: Annotated[float, In(at_least=1, at_most=10)] = 1.5
     bending_limit: Pressure | None = None
     contact_limit: Pressure | None = None
+    pinion_material: Material | None = None
+    pinion_bending_limit: Pressure | None = None
+    pinion_contact_limit: Pressure | None = None
     source: str = ""
+
+
+Surface = Literal["ground", "machined", "hot_rolled", "forged"]
+Notch = Annotated[float, In(at_least=1, at_most=10)]
+Place = Annotated[float, In("mm", above=-10_000, below=10_000)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShaftSection(Part):
+    """Section of the camshaft beside its seats, or, at the position of a seat, in its place."""
+
+    table: ClassVar[str] = "camshaft.sections"
+
+    name: Annotated[str, Characters(1, 40)]
+    position: Place
+    diameter: Length
+    notch_bending: Notch
+    notch_torsion: Notch
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,24 +158,39 @@ class Camshaft(Part):
 
     A negative position or one beyond the spacing is overhung. mesh_angle: direction of the gear
     mesh from the follower axis, counter-clockwise; gear_radius: pitch radius; pressure_angle: of
-    the teeth; notch factors: of the end-milled keyway at the cam; bearing_rating: dynamic rating C
-    of each bearing.
+    the teeth; drag: torque of bearings and seals; diameter: at every seat without a section of its
+    own; surface: finish; notch_bending, notch_torsion: fatigue notch factors at cam and gear,
+    end-milled keyway; seat_notch_bending, seat_notch_torsion: at the bearings, shoulder with a
+    sharp fillet; sections: further sections, or seats of another diameter or notch; bearing_rating,
+    bearing_static_rating: C and C0 of each bearing; rotor_mass: of cam, shaft and gear together;
+    slip_torque: at which the cam slips on its seat without its key, 0 for a sliding fit. The
+    fatigue_bending of its material is that of a polished specimen under rotating bending.
     """
 
     table: ClassVar[str] = "camshaft"
+    defaults: ClassVar[Mapping[str, str]] = {
+        "rotor_mass": "that of the cam alone, on the safe side"
+    }
 
     bearing_spacing: Length
-    cam_position: Annotated[float, In("mm", above=-10_000, below=10_000)]
-    gear_position: Annotated[float, In("mm", above=-10_000, below=10_000)]
+    cam_position: Place
+    gear_position: Place
     gear_radius: Length
     mesh_angle: Angle = pi
     pressure_angle: Annotated[float, In("deg", at_least=0, below=45)] = pi / 9.0
     drag: Annotated[float, In("N m", at_least=0, at_most=1e6)] = 0.0
     diameter: Length | None = None
     material: Material | None = None
-    notch_bending: Annotated[float, In(at_least=1, at_most=10)] = 2.14
-    notch_torsion: Annotated[float, In(at_least=1, at_most=10)] = 3.0
+    surface: Surface = "machined"
+    notch_bending: Notch = 2.14
+    notch_torsion: Notch = 3.0
+    seat_notch_bending: Notch = 2.7
+    seat_notch_torsion: Notch = 2.2
+    sections: tuple[ShaftSection, ...] = ()
     bearing_rating: Force | None = None
+    bearing_static_rating: Force | None = None
+    rotor_mass: Mass | None = None
+    slip_torque: Annotated[float, In("N m", at_least=0, at_most=1e6)] | None = None
     gear: CamshaftGear | None = None
     source: str = ""
 
@@ -186,7 +231,7 @@ def shaft_loads(
     """Bearing loads of the camshaft from contact force and gear force.
 
     The follower exerts -F_a along its axis and -F_t across it on the cam. The tangential gear force
-    supplies the cam torque; the radial gear force separates the gears.
+    supplies cam torque and drag; the radial gear force separates the gears.
 
     Parameters
     ----------
@@ -203,7 +248,7 @@ def shaft_loads(
     across = finite("tangential_force", tangential_force)
     torque = finite("cam_torque", cam_torque)
     cam = np.stack([-along, -across]) + finite("unbalance_force", unbalance_force)
-    tooth = torque / shaft.gear_radius
+    tooth = (torque + shaft.drag) / shaft.gear_radius
     outward = np.array([np.cos(shaft.mesh_angle), np.sin(shaft.mesh_angle)])[:, None]
     sideways = np.array([-np.sin(shaft.mesh_angle), np.cos(shaft.mesh_angle)])[:, None]
     gear = tooth * sideways - np.abs(tooth) * np.tan(shaft.pressure_angle) * outward

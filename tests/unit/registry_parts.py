@@ -15,12 +15,14 @@ from trial_variants import (
     with_gear,
     with_guide,
     with_guides,
+    with_key,
     with_limits,
     with_loads,
     with_material,
     with_part,
     with_parts,
     with_ring,
+    with_shaft,
     with_speed,
     with_temperature,
     with_worst_friction,
@@ -120,28 +122,36 @@ tried(
 )
 by_limit("guide_length", "guide_length", unknown, 2.5, "80 + 20 mm over 30 + 10, Rothbart ch. 6")
 # shaft
+for _name, _area, _strength, _how in (
+    ("key_pressure", 9e-3 * (5e-3 - 3e-3 - 0.4e-3), 400e6, "2 K T/(d l (h - t1 - s)), DIN 6892"),
+    ("key_pressure_shaft", 9e-3 * (3e-3 - 0.4e-3), 400e6, "2 K T/(d l (t1 - s)), DIN 6892"),
+    ("key_shear", 9e-3 * 5e-3, 400e6 / np.sqrt(3.0), "2 K T/(d b l), DIN 6892"),
+):
+    by_limit(
+        _name,
+        "key_share",
+        lambda: with_loads(cam_torque=NAN),
+        1e-6 * by_hand.KEY_PUSH / _area,
+        _how,
+        factor=1.0 / (0.5 * _strength),
+        missing=lambda: with_key(length=None),
+    )
 by_limit(
-    "key_shear",
-    "key_shear",
+    "cam_slip",
+    "cam_slip",
     lambda: with_loads(cam_torque=NAN),
-    1e-6 * 2.0 * float(by_hand.TORQUE.max()) / (17e-3 * 5e-3 * 0.01),
-    "2 T/(d b l), DIN 6892",
-    missing=lambda: with_part("cam", keyway=None),
-)
-by_limit(
-    "key_pressure",
-    "key_pressure",
-    lambda: with_parts(key_pressure=NAN),
-    100.0,
-    "4 T/(d h l), test_cam_body",
-    missing=lambda: with_part("cam", keyway=None),
+    100.0 / (1.5 * float(by_hand.TORQUE.max())),
+    "slip torque over 1.5 T",
+    missing=lambda: with_shaft(slip_torque=None),
 )
 by_limit(
     "bore_pressure",
-    "bore_pressure",
+    "bore_share",
     lambda: with_parts(bore_pressure=NAN),
     30.0,
     "20 + 10 sin; N/(d w) in test_parts_checks",
+    factor=1.0 / 900e6,
+    missing=lambda: with_material("steel", tensile_strength=None),
 )
 by_limit(
     "shaft_fatigue",
@@ -150,6 +160,38 @@ by_limit(
     by_hand.shaft_safety(),
     "Shigley sec. 7-4",
     missing=lambda: with_material("steel", tensile_strength=None),
+)
+tried(
+    "shaft_yield",
+    limited("shaft_yield", lambda p: with_limits(shaft_yield_safety=400e6 / p)),
+    lambda: with_shaft(material=None),
+    lambda: with_loads(cam_torque=NAN),
+    1e-6 * by_hand.shaft_stress(),
+    "Mohr's circle at the notch",
+)
+by_limit(
+    "shaft_deflection",
+    "shaft_deflection",
+    lambda: with_loads(axial_force=NAN),
+    by_hand.shaft_sag(),
+    "M/(E I) integrated twice",
+    missing=lambda: with_shaft(diameter=None),
+)
+by_limit(
+    "shaft_slope",
+    "shaft_slope",
+    lambda: with_loads(axial_force=NAN),
+    by_hand.shaft_slope(),
+    "M/(E I) integrated once",
+    missing=lambda: with_shaft(diameter=None),
+)
+by_limit(
+    "shaft_bearing_static",
+    "shaft_bearing_static_safety",
+    lambda: with_loads(axial_force=NAN),
+    4750.0 / max(float(load.max()) for load in by_hand.bearing_loads()),
+    "C0/P0",
+    missing=lambda: with_shaft(bearing_static_rating=None),
 )
 by_limit(
     "shaft_bearing_life",
@@ -168,8 +210,16 @@ tried(
     "Lewis: F/(b m pi y), module 1 mm",
 )
 tried(
+    "pinion_bending",
+    limited("pinion_bending", lambda p: with_gear(pinion_bending_limit=1.4 / 0.7 * p)),
+    lambda: with_gear(pinion_bending_limit=None),
+    lambda: with_loads(cam_torque=NAN),
+    1e-6 * by_hand.TOOTH / (0.01 * 1e-3 * np.pi * (0.154 - 0.912 / 20)),
+    "Lewis: F/(b m pi y), module 1 mm",
+)
+tried(
     "gear_contact",
-    limited("gear_contact", lambda p: with_gear(contact_limit=p)),
+    limited("gear_contact", lambda p: with_gear(contact_limit=p, pinion_contact_limit=2 * p)),
     lambda: with_gear(contact_limit=None),
     lambda: with_loads(cam_torque=NAN),
     1e-6
@@ -255,9 +305,8 @@ by_limit(
     "cam_unbalance",
     "unbalance",
     lambda: with_speed(np.nan),
-    414.7306657858135,
-    "e w; e of an eccentric disc by hand in test_cam_body",
-    missing=unlimited("unbalance"),
+    1e3 * float(np.hypot(*by_hand.thrown()).max()) / 80.0 / 0.9,
+    "m_cam e w over the 900 g of the rotor; the force is m e w^2",
 )
 for _side, _load in (("a", 500.0), ("b", 200.0)):
     _name = f"guide_wear_{_side.upper()}"

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import made_trial as made
 import numpy as np
 import pytest
 
@@ -11,7 +12,8 @@ from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
-from camwright.pipeline.contact.cam_body import Keyway
+from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.contact.cam_body import KeyFlanks, Keyway
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
     counter_hole,
@@ -35,13 +37,56 @@ def eccentric():
 
 
 def test_key():
-    found = key_stress(np.array([20.0, -10.0]), 17e-3, 5e-3, 5e-3, 5e-3)
-    np.testing.assert_allclose(
-        found.pressure, [4 * 20 / (17e-3 * 25e-6), -4 * 10 / (17e-3 * 25e-6)]
-    )
-    np.testing.assert_allclose(found.shear, found.pressure / 2)  # square key
+    flanks = KeyFlanks(width=5e-3, length=9e-3, hub_height=1.6e-3, shaft_height=2.6e-3)
+    stress = key_stress(np.array([20.0, -10.0]), 17e-3, flanks)
+    force = np.array([20.0, -10.0]) / 8.5e-3
+    np.testing.assert_allclose(stress.hub, force / (9e-3 * 1.6e-3))
+    np.testing.assert_allclose(stress.shaft, force / (9e-3 * 2.6e-3))
+    np.testing.assert_allclose(stress.shear, force / (9e-3 * 5e-3))
     with pytest.raises(InputError, match="length"):
-        key_stress(1.0, 17e-3, 5e-3, 5e-3, 0.0)
+        key_stress(1.0, 17e-3, flanks._replace(length=0.0))
+
+
+@pytest.mark.parametrize(
+    ("changes", "flanks"),
+    [
+        ({}, (5e-3, 9e-3, 1.6e-3, 2.6e-3)),  # DIN 6885-1: 5 x 5, t1 3 mm, chamfer up to 0.4 mm
+        ({"form": "B"}, (5e-3, 10e-3, 1.6e-3, 2.6e-3)),  # 14 mm long in a cam of 10 mm
+        ({"chamfer": 0.25e-3}, (5e-3, 9e-3, 1.75e-3, 2.75e-3)),
+        ({"height": 6e-3}, (5e-3, 9e-3, 1.9e-3, 2.6e-3)),  # the hub is 2.3 mm deep
+        ({"length": 8e-3, "shaft_depth": 3.2e-3}, (5e-3, 3e-3, 1.4e-3, 2.8e-3)),
+    ],
+)
+def test_flanks_of_a_key(changes, flanks):
+    cam = made.case().cam
+    assert replace(cam, key=replace(cam.key, **changes)).key_flanks == pytest.approx(flanks)
+
+
+def test_flanks_of_a_key_need_every_datum():
+    cam = made.case().cam
+    assert replace(cam, key=None).key_flanks is None
+    assert replace(cam, key=replace(cam.key, length=None)).key_flanks is None
+    odd = replace(cam, keyway=replace(cam.keyway, width=5.5e-3))
+    assert odd.key_flanks is None
+    missing = {name for name, value in odd.key_data.items() if value is None}
+    assert missing == {"height", "shaft_depth", "chamfer"}
+    stated = replace(cam.key, height=5e-3, shaft_depth=3e-3, chamfer=3e-4)
+    assert replace(odd, key=stated).key_flanks is not None
+
+
+@pytest.mark.parametrize(
+    ("line", "field"),
+    [
+        ('length = "5 mm"', r"cam\.key\.length"),
+        ('shaft_depth = "0.3 mm"', r"cam\.key\.shaft_depth"),
+        ('height = "3.2 mm"', r"cam\.key\.height"),
+    ],
+)
+def test_a_key_that_cannot_be_is_refused(line, field):
+    text = made.CASE_FILE.read_text().replace('length = "14 mm"', "LINE")
+    more = line if "length" in line else f'length = "14 mm"\n{line}'
+    with pytest.raises(InputError, match=field):
+        parse_case(text.replace("LINE", more))
 
 
 def test_reversals():
@@ -75,7 +120,9 @@ def test_shaft_is_in_equilibrium():
     np.testing.assert_allclose(total, 0.0, atol=1e-9)
     moment = 0.02 * found.cam - 0.015 * found.gear + 0.06 * found.bearing_2
     np.testing.assert_allclose(moment, 0.0, atol=1e-9)
-    # the gear's force turns the shaft with the cam's torque: mesh at (-r, 0)
+    # the gear's force turns the shaft with cam torque and drag: mesh at (-r, 0)
+    dragged = shaft_loads(along, across, torque, replace(SHAFT, drag=0.5))
+    np.testing.assert_allclose(-SHAFT.gear_radius * dragged.gear[1], torque + 0.5, rtol=1e-12)
     np.testing.assert_allclose(-SHAFT.gear_radius * found.gear[1], torque, rtol=1e-12)
     assert (found.load_1 >= 0).all()
     assert (found.load_2 >= 0).all()

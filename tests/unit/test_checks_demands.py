@@ -30,6 +30,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.machine import CREEP
 from camwright.pipeline.case.requirements_section import Waiver
+from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.checks import (
     cam_shape,
     contact_strength,
@@ -72,11 +73,25 @@ def test_the_made_up_solution_passes_and_leaves_nothing_open():
 def test_a_shaft_and_a_key_that_are_not_described_stay_open_and_come_first():
     cam = made.changed(made.case().cam, keyway=None)
     checks = all_checks(made.solution(case=made.case(cam=cam, camshaft=None)))
-    unread = ["key_pressure", "key_shear", "shaft_bearing_life", "shaft_fatigue"]
-    assert [c.id for c in checks[:4]] == unread
-    assert not any(c.status == "not_evaluated" for c in checks[4:])
-    assert not any(c.must_have for c in checks[:4])
+    unread = [
+        *("bore_pressure", "cam_slip", "gear_bending", "gear_contact", "key_pressure"),
+        *("key_pressure_shaft", "key_shear", "pinion_bending", "shaft_bearing_life"),
+        *("shaft_bearing_static", "shaft_deflection", "shaft_fatigue", "shaft_slope"),
+        "shaft_yield",
+    ]
+    assert [c.id for c in checks[: len(unread)]] == unread
+    assert not any(c.status == "not_evaluated" for c in checks[len(unread) :])
+    assert all(c.must_have and c.note for c in checks[: len(unread)])
+    assert verdict(checks) == "incomplete"
+
+
+def test_a_shaft_and_a_key_that_the_scope_leaves_out_are_not_judged():
+    cam = made.changed(made.case().cam, keyway=None)
+    parts = ("camshaft", "camshaft_bearings", "key", "gear")
+    scope = Scope(not_covered=parts, reason="engine shaft of the maker")
+    checks = all_checks(made.solution(case=made.case(cam=cam, camshaft=None, scope=scope)))
     assert verdict(checks) == "pass"
+    assert not any(c.id.startswith(("shaft", "key", "gear", "pinion", "cam_slip")) for c in checks)
 
 
 @pytest.mark.parametrize(

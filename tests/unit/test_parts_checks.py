@@ -20,6 +20,7 @@ from camwright.pipeline.checks import (
     camshaft_strength,
     guide_strength,
     jump_and_jamming,
+    key_strength,
     part_strength,
     spring_strength,
     wear_and_grease,
@@ -55,6 +56,10 @@ KEYWAY = """
 [cam.keyway]
 width = "6 mm"
 depth = "2.8 mm"
+
+[cam.key]
+length = "20 mm"
+material = "hardened_steel"
 """
 SHAFT = """
 [camshaft]
@@ -81,6 +86,7 @@ PARTS = (
     guide_strength.guide_temperature_a,
     guide_strength.guide_temperature_b,
     *declared_in(part_strength),
+    *declared_in(key_strength),
     *declared_in(spring_strength),
     *declared_in(wear_and_grease),
 )
@@ -120,12 +126,14 @@ def parts_checks(solved):
 def test_every_part_described_is_evaluated(full):
     checks = parts_checks(full)
     open_ones = {name for name, check in checks.items() if not check.evaluated}
-    # no friction bounds, heat path, balance grade or bearing card in the case
+    # no friction bounds, heat path, bearing card, material or fit of the shaft in the case
     assert open_ones <= {
         "jam_index_friction_max",
         "guide_temperature_A",
         "guide_temperature_B",
-        "cam_unbalance",
+        "bore_pressure",
+        "key_pressure_shaft",
+        "cam_slip",
         "roller_ring_fatigue",
     }
     assert all(check.source and check.method for check in checks.values())
@@ -135,8 +143,9 @@ def test_a_must_have_that_is_not_described_is_not_evaluated_and_blocks(bare):
     checks = parts_checks(bare)
     must = {
         *("spring_stress", "spring_fatigue", "spring_solid", "spring_buckling", "roller_pin"),
+        *("key_pressure", "key_pressure_shaft", "key_shear", "cam_slip"),
     }
-    for name in (*must, "key_pressure", "roller_ring_fatigue", "spring_surge"):
+    for name in (*must, "roller_ring_fatigue", "spring_surge"):
         assert checks[name].status == "not_evaluated"
         assert checks[name].blocks is (name in must)
         assert checks[name].note
@@ -185,8 +194,10 @@ def test_pin_and_key_by_hand(full):
     assert checks["roller_pin"].demand == pytest.approx(stress, rel=1e-9)
     assert checks["roller_pin"].must_have
     torque = max(np.abs(c.loads.cam_torque).max() for c in full.cycles)
-    area = 2 * case.cam.bore_radius * 2 * 2.8e-3 * case.cam.width
-    assert checks["key_pressure"].demand == pytest.approx(4 * torque / area, rel=1e-9)
+    # 6 x 6, 3.5 mm deep in the shaft, 0.4 mm of chamfer; the cam is 10 mm wide
+    area = (6 - 3.5 - 0.4) * 1e-3 * 10e-3
+    push = 1.5 * torque / case.cam.bore_radius
+    assert checks["key_pressure"].demand == pytest.approx(push / area, rel=1e-9)
 
 
 def test_a_pin_span_inside_the_bearing_is_refused():
@@ -439,14 +450,20 @@ source = "made up"
     driven = harmonic(parse_case(text(KEYWAY + SHAFT + more)))
     checks = {check.id: check for check in checks_of(driven, declared_in(camshaft_strength))}
     assert set(checks) == {
-        *("key_shear", "shaft_fatigue", "shaft_bearing_life", "gear_bending", "gear_contact")
+        *("shaft_fatigue", "shaft_yield", "shaft_deflection", "shaft_slope"),
+        *("shaft_bearing_static", "shaft_bearing_life"),
+        *("gear_bending", "pinion_bending", "gear_contact"),
     }
     # Neither strength nor a target life is given: open, and the note says so.
     assert checks["shaft_fatigue"].status == "not_evaluated"
     assert "fatigue or tensile" in checks["shaft_fatigue"].note
     assert checks["shaft_bearing_life"].demand > 0
-    ratio = checks["gear_bending"].demand / checks["key_shear"].demand
-    assert ratio > 0
+    # The pinion of 20 teeth has the thinner root, and no limits of its own are stated.
+    ratio = checks["pinion_bending"].demand / checks["gear_bending"].demand
+    assert ratio == pytest.approx((0.154 - 0.912 / 40) / (0.154 - 0.912 / 20))
+    for name in ("pinion_bending", "gear_contact", "shaft_bearing_static"):
+        assert checks[name].status == "not_evaluated"
+        assert checks[name].blocks
     assert checks["gear_contact"].unit == "MPa"
 
 

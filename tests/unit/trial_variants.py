@@ -59,6 +59,10 @@ def with_shaft(**values: Any) -> Solution:
     return with_part("camshaft", **values)
 
 
+def with_key(**values: Any) -> Solution:
+    return with_part("cam", key=made.changed(made.case().cam.key, **values))
+
+
 def with_gear(**values: Any) -> Solution:
     return with_shaft(gear=made.changed(made.case().camshaft.gear, **values))
 

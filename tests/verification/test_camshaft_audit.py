@@ -1,0 +1,345 @@
+"""Checks of camshaft, key and gear, recomputed from a solved case by other formulations.
+
+Two load cases of the case that describes every part, its cam overhung beyond the first bearing.
+"""
+
+from dataclasses import replace
+from functools import cache
+from math import pi, radians
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.geometry.arrays import uniform_turn
+from camwright.geometry.lift import Lift
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.checks import camshaft_strength as shaft_checks
+from camwright.pipeline.checks import key_strength, part_strength
+from camwright.pipeline.contact.hertz import line_contact
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import Solution, solution
+from camwright.pipeline.follower.camshaft_loads import Camshaft, ShaftSection, shaft_loads
+from camwright.pipeline.follower.shaft_strength import (
+    bending_moment,
+    judged_sections,
+    reliability_factor,
+    shaft_bending,
+    size_factor,
+    surface_factor,
+)
+
+CASE = Path(__file__).parents[1] / "data" / "every_part.toml"
+CAM, GEAR, SPAN, GEAR_RADIUS, DIAMETER = -0.025, 0.045, 0.060, 0.020, 0.017
+DRAG, K = 0.5, 1.5
+YOUNG, YIELD, TENSILE, ENDURANCE = 210e9, 400e6, 900e6, 400e6  # of the core
+
+
+@cache
+def solved() -> Solution:
+    """Idle and twice its speed, by closed forms."""
+    case = read_case(CASE)
+    idle = case.load_cases[0]
+    shaft = replace(case.camshaft, cam_position=CAM, gear_position=GEAR)
+    case = case.model_copy(
+        update={
+            "camshaft": shaft,
+            "load_cases": (idle, idle.model_copy(update={"name": "fast", "speed": 2 * idle.speed})),
+        }
+    )
+    theta = uniform_turn(72)
+    contour = case.contour(Lift(theta, 0.005 * (1 - np.cos(theta))))
+    return solution(case, contour, Tier.PREVIEW, torques={}, positions=72)
+
+
+def demand(check) -> float:
+    made = check(solved())
+    assert made is not None
+    assert made.demand is not None
+    return made.demand
+
+
+def thrown(cycle):
+    """Centrifugal force on the shaft (2, n), N, of point masses in the cam, summed."""
+    cam, contour = cycle.machine.cam, cycle.contour
+    ring = contour.polygon(4000)
+    towards = np.roll(ring, -1, axis=1)
+    moment = np.zeros(2)
+    for low, high in zip(np.linspace(0, 1, 41)[:-1], np.linspace(0, 1, 41)[1:], strict=True):
+        share, middle = high**2 - low**2, 2 / 3 * (high**3 - low**3) / (high**2 - low**2)
+        area = 0.5 * (ring[0] * towards[1] - ring[1] * towards[0]) * share
+        moment += (middle * 0.5 * (ring + towards) * area).sum(axis=1)
+    width, depth = cam.keyway.width, cam.keyway.depth
+    y = (np.arange(400) + 0.5) / 400 * width - width / 2
+    for across in y:
+        inner, outer = np.sqrt(cam.bore_radius**2 - across**2), cam.bore_radius + depth
+        x = inner + (np.arange(50) + 0.5) / 50 * (outer - inner)
+        moment -= np.array([x.sum() * (outer - inner) / 50 * width / 400, 0.0])
+    force = 7850.0 * cam.width * moment * cycle.cam_speed**2
+    # A point of the cam at the angle a lies at theta - a from the follower: the cam turns past it.
+    at, size = np.arctan2(force[1], force[0]), np.hypot(*force)
+    return size * np.stack([np.cos(cycle.theta - at), np.sin(cycle.theta - at)])
+
+
+class Beam:
+    """Euler beam of Hermite elements with the forces (2, n) at cam and gear, of one load case."""
+
+    def __init__(self, cycle):
+        loads = cycle.loads
+        tooth = (loads.cam_torque + DRAG) / GEAR_RADIUS
+        gear = np.stack([np.abs(tooth) * np.tan(radians(20.0)), -tooth])
+        cam = -np.stack([loads.axial_force, loads.tangential_force]) + thrown(cycle)
+        self.x = np.array([CAM, CAM + 0.005, 0.0, 0.02, GEAR - 0.005, GEAR, GEAR + 0.005, SPAN])
+        stiffness, bend = np.zeros((16, 16)), YOUNG * pi * DIAMETER**4 / 64
+        self.blocks = []
+        for k, h in enumerate(np.diff(self.x)):
+            block = bend / h**3 * np.array(
+                [
+                    [12, 6 * h, -12, 6 * h],
+                    [6 * h, 4 * h * h, -6 * h, 2 * h * h],
+                    [-12, -6 * h, 12, -6 * h],
+                    [6 * h, 2 * h * h, -6 * h, 4 * h * h],
+                ]
+            )  # fmt: skip
+            self.blocks.append(block)
+            stiffness[2 * k : 2 * k + 4, 2 * k : 2 * k + 4] += block
+        force = np.zeros((16, 2, loads.theta.size))
+        force[0], force[10] = cam, gear
+        held = [4, 14]
+        free = np.setdiff1d(np.arange(16), held)
+        self.u = np.zeros_like(force)
+        flat = force[free].reshape(free.size, -1)
+        self.u[free] = np.linalg.solve(stiffness[np.ix_(free, free)], flat).reshape(
+            free.size, 2, -1
+        )
+        reactions = np.einsum("ij,jkn->ikn", stiffness, self.u) - force
+        self.bearings = reactions[held]
+
+    def moment(self, node):
+        """Bending moment (2, n), N m, at a node, from the element before it or after it."""
+        k = max(node - 1, 0)
+        ends = np.einsum("ij,jkn->ikn", self.blocks[k], self.u[2 * k : 2 * k + 4])
+        return ends[3] if node > k else ends[1]
+
+
+@cache
+def beams():
+    return {cycle.load_case: Beam(cycle) for cycle in solved().cycles}
+
+
+@pytest.mark.parametrize("load_case", ["idle", "fast"])
+def test_moments_and_bending_agree_with_beam_elements(load_case):
+    cycle = next(c for c in solved().cycles if c.load_case == load_case)
+    shaft, loads, beam = cycle.machine.camshaft, cycle.loads, beams()[load_case]
+    forces = (loads.axial_force, loads.tangential_force, loads.cam_torque)
+    acting = shaft_loads(*forces, shaft, thrown(cycle))
+    scale = np.abs(beam.moment(2)).max()
+    for node, place in enumerate(beam.x):
+        one, other = np.hypot(*bending_moment(acting, shaft, place)), np.hypot(*beam.moment(node))
+        np.testing.assert_allclose(one, other, atol=1e-9 * scale)
+    bent = shaft_bending(acting, shaft, DIAMETER, YOUNG)
+    for one, other in ((bent.deflection, 0), (bent.slope_1, 5), (bent.slope_2, 15)):
+        np.testing.assert_allclose(np.hypot(*one), np.hypot(*beam.u[other]), rtol=1e-8)
+
+
+def test_no_place_of_the_shaft_has_a_greater_moment_than_the_judged_sections():
+    cycle = solved().cycles[1]
+    shaft, loads = cycle.machine.camshaft, cycle.loads
+    acting = shaft_loads(loads.axial_force, loads.tangential_force, loads.cam_torque, shaft)
+    everywhere = np.linspace(-0.05, 0.09, 1401)
+    judged = [one.position for one in judged_sections(shaft, DIAMETER, 0.005, 0.005)]
+    greatest, least = (
+        max(np.hypot(*bending_moment(acting, shaft, x)).max() for x in places)
+        for places in (everywhere, judged)
+    )
+    assert least == pytest.approx(greatest, rel=1e-12)
+
+
+# Nodes of the beam, notch factors and whether the torque passes: keyways, then shoulders.
+NODES = (
+    *((node, 2.14, 3.0, node != 6) for node in (0, 1, 4, 5, 6)),
+    *((node, 2.7, 2.2, node == 2) for node in (2, 7)),
+)
+
+
+def utilisation() -> tuple[float, int]:
+    """Haigh diagram: greatest of amplitude over endurance plus mean over strength, and its node."""
+    # Shigley: 4.51 x 900^-0.265 = 0.7436; (17/7.62)^-0.107 = 0.9177; 0.814 at 99 %.
+    strength = 0.7436 * 0.9177 * 0.8139 * ENDURANCE
+    worst = (0.0, -1)
+    for cycle in solved().cycles:
+        beam, turning = beams()[cycle.load_case], np.exp(-1j * cycle.theta)
+        torque = cycle.loads.cam_torque + DRAG
+        for node, bending, torsion, twisted in NODES:
+            moment = beam.moment(node)
+            # On the turning shaft; a fibre takes the part along its own direction.
+            rotating = (moment[0] + 1j * moment[1]) * turning
+            stress = np.real(np.exp(-1j * np.radians(np.arange(360)))[:, None] * rotating)
+            stress *= bending * 32 / (pi * DIAMETER**3)
+            shear = torsion * 16 / (pi * DIAMETER**3) * torque * twisted
+            a, m = (
+                np.sqrt((stress.max(1) + s * stress.min(1)) ** 2
+                        + 3 * (shear.max() + s * shear.min()) ** 2) / 2
+                for s in (-1, 1)
+            )  # fmt: skip
+            worst = max(worst, (float((a / strength + m / TENSILE).max()), node))
+    return worst
+
+
+def test_fatigue_of_the_governing_section():
+    used, node = utilisation()
+    assert demand(shaft_checks.shaft_fatigue) == pytest.approx(1 / used, rel=1e-3)
+    assert node == 2  # at the first bearing: the cam beyond it has no moment under its own force
+    assert "bearing 1" in shaft_checks.shaft_fatigue(solved()).note
+
+
+def test_yield_by_principal_stresses():
+    worst = 0.0
+    for cycle in solved().cycles:
+        torque = cycle.loads.cam_torque + DRAG
+        for node, bending, torsion, twisted in NODES:
+            moment = np.hypot(*beams()[cycle.load_case].moment(node))
+            for k, bend in enumerate(moment):
+                pull = bending * 32 * bend / (pi * DIAMETER**3)
+                shear = torsion * 16 * torque[k] * twisted / (pi * DIAMETER**3)
+                p, q = np.linalg.eigvalsh([[pull, shear], [shear, 0.0]])
+                worst = max(worst, np.sqrt(p * p + q * q - p * q))
+    assert demand(shaft_checks.shaft_yield) == pytest.approx(worst, rel=1e-6)
+    assert shaft_checks.shaft_yield(solved()).limit == pytest.approx(YIELD / 1.2)
+
+
+def test_deflection_and_slope_by_beam_elements():
+    sag = max(np.hypot(*beam.u[0]).max() for beam in beams().values())
+    slope = max(np.hypot(*beam.u[at]).max() for beam in beams().values() for at in (5, 15))
+    assert demand(shaft_checks.shaft_deflection) == pytest.approx(sag / SPAN, rel=1e-6)
+    assert demand(shaft_checks.shaft_slope) == pytest.approx(slope, rel=1e-6)
+
+
+def test_bearings_by_reactions_of_the_elements_and_damage_sums():
+    loads = [np.hypot(*force) for beam in beams().values() for force in beam.bearings]
+    assert demand(shaft_checks.shaft_bearing_static) == pytest.approx(
+        4750 / max(load.max() for load in loads), rel=1e-6
+    )
+    lives = []
+    for cycle in solved().cycles:
+        for force in beams()[cycle.load_case].bearings:
+            damage = sum(1 / 72 / (1e6 * (9950 / load) ** 3) for load in np.hypot(*force))
+            lives.append(2 * pi / cycle.cam_speed / damage)  # Miner, turn by turn
+    assert demand(shaft_checks.shaft_bearing_life) == pytest.approx(min(lives), rel=1e-6)
+
+
+def cam_torque() -> float:
+    """Greatest cam torque, N m: moment of the contact force about the cam axis.
+
+    Force along and across the stem at the contact, in the frame of the follower.
+    """
+    worst = 0.0
+    for cycle in solved().cycles:
+        loads, slope = cycle.loads, cycle.contour.pitch.lift.spline(cycle.theta, 1)
+        # Virtual power: the follower moves by s' for a radian of the cam.
+        worst = max(worst, float(np.abs(loads.axial_force * slope).max()))
+    return worst
+
+
+def test_key_by_the_flank_that_bears():
+    push = K * cam_torque() / 8.5e-3
+    length = np.linspace(2.5e-3, 14e-3 - 2.5e-3, 901)  # between the round ends of form A
+    hub = np.trapezoid(np.full(901, 5e-3 - 3e-3 - 0.4e-3), length)
+    shaft = np.trapezoid(np.full(901, 3e-3 - 0.4e-3), length)
+    section = np.trapezoid(np.full(901, 5e-3), length)
+    for check, area in (
+        (key_strength.key_pressure, hub),
+        (key_strength.key_pressure_shaft, shaft),
+        (key_strength.key_shear, section),
+    ):
+        assert demand(check) == pytest.approx(push / area, rel=1e-6)
+    assert key_strength.key_pressure(solved()).limit == pytest.approx(0.5 * 0.9 * YIELD)
+    tresca_free = 0.5 * 0.9 * YIELD / np.sqrt(3)
+    assert key_strength.key_shear(solved()).limit == pytest.approx(tresca_free)
+
+
+def test_slip_and_bore():
+    assert demand(key_strength.cam_slip) == pytest.approx(100 / (K * cam_torque()), rel=1e-6)
+    force = max(
+        np.hypot(c.loads.axial_force, c.loads.tangential_force).max() for c in solved().cycles
+    )
+    # Uniform radial pressure over half of the bore: its component along the force.
+    angle = np.linspace(-pi / 2, pi / 2, 2001)
+    area = np.trapezoid(np.cos(angle), angle) * 8.5e-3 * 10e-3
+    assert demand(part_strength.bore_pressure) == pytest.approx(force / area, rel=1e-6)
+
+
+def test_reversals_by_the_sign_of_the_torque():
+    torques = [cycle.loads.cam_torque + DRAG for cycle in solved().cycles]
+    counts = [np.count_nonzero(np.diff(np.sign([*torque, torque[0]]))) for torque in torques]
+    assert demand(part_strength.torque_reversals) == max(counts) > 0
+
+
+def test_unbalance_by_point_masses():
+    fast = solved().cycles[1]
+    force = np.hypot(*thrown(fast)).max()  # m e w^2
+    assert demand(part_strength.cam_unbalance) == pytest.approx(
+        force / fast.cam_speed / 0.9, rel=1e-4
+    )
+
+
+def tooth_force() -> float:
+    torque = max(np.abs(c.loads.cam_torque + DRAG).max() for c in solved().cycles)
+    return K * float(torque) / GEAR_RADIUS
+
+
+@pytest.mark.parametrize(
+    ("check", "form"), [(shaft_checks.gear_bending, 0.389), (shaft_checks.pinion_bending, 0.322)]
+)
+def test_tooth_root_by_the_tabulated_form_factor(check, form):
+    """Lewis' formula is within 6 % of the layouts of Shigley's table 14-2, 40 and 20 teeth."""
+    assert demand(check) == pytest.approx(tooth_force() / (0.01 * 0.001 * form), rel=0.06)
+
+
+def test_tooth_flank_by_hertz_at_the_pitch_point():
+    normal = tooth_force() / np.cos(radians(20.0)) / 0.01
+    radii = np.array([10e-3, 20e-3]) * np.sin(radians(20.0))
+    _, peak = line_contact(normal, 1 / np.sum(1 / radii), YOUNG / 2 / (1 - 0.3**2))
+    assert demand(shaft_checks.gear_contact) == pytest.approx(float(peak), rel=1e-9)
+
+
+def test_marin_factors_of_the_book():
+    """Shigley, 10th ed.: examples 6-3 and 6-4, table 6-5."""
+    assert surface_factor("machined", 520e6) == pytest.approx(0.860, abs=1e-3)
+    assert size_factor(32e-3) == pytest.approx(0.858, abs=1e-3)
+    assert size_factor(60e-3) == pytest.approx(1.51 * 60**-0.157)
+    for reliability, factor in ((0.5, 1.0), (0.9, 0.897), (0.95, 0.868), (0.99, 0.814)):
+        assert reliability_factor(reliability) == pytest.approx(factor, abs=6e-4)
+    assert surface_factor("ground", 200e6) == size_factor(5e-3) == 1.0
+
+
+def test_a_listed_section_takes_the_place_of_a_seat():
+    """A seat of 15 mm at the bearing, and a groove between the seats."""
+    seat = ShaftSection(
+        name="seat", position=0.0, diameter=0.015, notch_bending=1.7, notch_torsion=1.5
+    )
+    groove = ShaftSection(
+        name="groove", position=0.03, diameter=0.016, notch_bending=5.0, notch_torsion=3.0
+    )
+    shaft = Camshaft(
+        bearing_spacing=SPAN, cam_position=CAM, gear_position=GEAR, gear_radius=GEAR_RADIUS,
+        sections=(seat, groove),
+    )  # fmt: skip
+    judged = judged_sections(shaft, DIAMETER, 0.0, 0.0)
+    assert [one.name for one in judged] == ["cam", "gear", "seat", "bearing 2", "groove"]
+    base = solved()
+    weaker = base.case.camshaft
+    case = base.case.model_copy(
+        update={"camshaft": replace(weaker, sections=(replace(seat, notch_bending=2.7),))}
+    )
+    states = {one.load_case: one for one in machines(case)}
+    cycles = tuple(
+        replace(c, turn=replace(c.turn, machine=states[c.load_case])) for c in base.cycles
+    )
+    thin = replace(base, case=case, machines=tuple(states.values()), cycles=cycles)
+    share = (15 / 17) ** 3 * (15 / 17) ** -0.107
+    assert shaft_checks.shaft_fatigue(thin).demand < demand(shaft_checks.shaft_fatigue)
+    assert shaft_checks.shaft_fatigue(thin).demand == pytest.approx(
+        share * demand(shaft_checks.shaft_fatigue), rel=0.02
+    )
