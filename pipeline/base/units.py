@@ -162,7 +162,7 @@ def column(name: str, unit: str) -> str:
     return "_".join([name, above, *(word for part in below for word in ("per", part))])
 
 
-COUNTS = ("crossings", "checks", "waivers")
+COUNTS = ("crossings", "checks", "waivers", "rotations")
 _PURE = ("", "-", "degC", *COUNTS)  # a Celsius temperature is a number of degrees
 _ZERO_CELSIUS = 273.15
 
