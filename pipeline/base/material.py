@@ -2,10 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Annotated, ClassVar, Literal
 
+import numpy as np
+
+from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
+
+ROOM = 293.15
+"""Temperature of cards and drawings, K: 20 degC, ISO 1."""
+
+METAL_MODULUS = 40e9
+"""Young's modulus from which a material counts as metal, Pa: above plastics, below magnesium."""
+
+STRENGTH_HOLDS_TO = {True: 373.15, False: 303.15}
+"""Temperature to which the yield strength of a metal (True) or of a plastic holds, K.
+
+Metals: EN 1993-1-2, table 3.1, has no reduction of the yield strength of steel to 400 degC; copper
+alloys of bushes to 100 degC: verify. Plastics: the standard atmosphere of 23 degC, ISO 291, and a
+margin of 7 K, in which polyamide loses up to a twentieth: verify.
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class StrengthAt(Part):
+    """Yield strength at a temperature above 20 degC."""
+
+    table: ClassVar[str] = "strength_at"
+
+    temperature: Temperature
+    yield_strength: Pressure
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -13,11 +42,21 @@ class Material(Part):
     """Material card: elastic constants, strengths and their source.
 
     swelling is the relative growth of a length from dry to fully moist, hardness Brinell or
-    Vickers, name that of the card in the case.
+    Vickers, name that of the card in the case. strength_at are yield strengths by temperature, in
+    ascending order; the strength is linear between them and from that at 20 degC.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its bounds, or the temperatures do not ascend from 20 degC.
     """
 
     table: ClassVar[str] = "material"
     labels: ClassVar[tuple[str, ...]] = ("name",)
+    defaults: ClassVar[Mapping[str, str]] = {
+        "swelling": "0 of a metal (Young's modulus of at least 40 GPa), else missing",
+        "strength_at": "the yield strength holds to 100 degC of a metal, to 30 degC of a plastic",
+    }
 
     E: Annotated[float, In("GPa", above=0, at_most=1e5)]
     nu: Annotated[float, In(at_least=0, below=0.5)]
@@ -34,9 +73,38 @@ class Material(Part):
     case_depth: Length | None = None
     core_yield_strength: Pressure | None = None
     expansion: Annotated[float, In("1/K", at_least=0, at_most=1e-2)] | None = None
-    swelling: Annotated[float, In(at_least=0, below=1)] = 0.0
+    swelling: Annotated[float, In(at_least=0, below=1)] | None = None
+    strength_at: tuple[StrengthAt, ...] = ()
     treatment: Literal["case_hardened", "induction_hardened", "through_hardened"] | None = None
     density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
     condition: str = ""
     source: str
     name: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        temperatures = [ROOM, *(each.temperature for each in self.strength_at)]
+        for before, after in pairwise(temperatures):
+            if not before < after:
+                raise InputError("material.strength_at", f"{after:g} K", f"> {before:g} K")
+
+    @property
+    def is_metal(self) -> bool:
+        """Whether Young's modulus is that of a metal."""
+        return self.E >= METAL_MODULUS
+
+    @property
+    def moisture_growth(self) -> float | None:
+        """Relative growth of a length by moisture; 0 of a metal, None: not known."""
+        return 0.0 if self.swelling is None and self.is_metal else self.swelling
+
+    def yield_strength_at(self, temperature: float) -> float:
+        """Yield strength, Pa, at a temperature, K; NaN above the temperatures of the card."""
+        if np.isnan(temperature):
+            return np.nan
+        if not self.strength_at:
+            holds = temperature <= STRENGTH_HOLDS_TO[self.is_metal]
+            return self.yield_strength if holds else np.nan
+        at = [ROOM, *(each.temperature for each in self.strength_at)]
+        strengths = [self.yield_strength, *(each.yield_strength for each in self.strength_at)]
+        return float(np.interp(temperature, at, strengths, right=np.nan))

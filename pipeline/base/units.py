@@ -162,7 +162,7 @@ def column(name: str, unit: str) -> str:
     return "_".join([name, above, *(word for part in below for word in ("per", part))])
 
 
-COUNTS = ("corners", "crossings", "data", "waivers")
+COUNTS = ("corners", "crossings", "data", "rotations", "waivers")
 _PURE = ("", "-", "degC", *COUNTS)  # a Celsius temperature is a number of degrees
 _ZERO_CELSIUS = 273.15
 

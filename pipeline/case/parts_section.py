@@ -24,7 +24,8 @@ class ValveTrain(Section):
 class Follower(Section):
     """Translating follower with a roller or a flat face.
 
-    The overhang is from guide A to the roller centre, or to the face.
+    The overhang is from guide A to the roller centre, or to the face. anti_rotation: means that
+    keeps the stem from turning about its axis.
     """
 
     defaults: ClassVar[Mapping[str, str]] = {
@@ -43,6 +44,7 @@ class Follower(Section):
     viscous_damping: Annotated[float, In("N s/m", at_least=0, at_most=1e6)] = 0.0
     stiffness: Annotated[float, In("N/mm", above=0, at_most=1e12)] | None = None
     damping_ratio: Annotated[float, In(at_least=0, below=1)] = 0.05
+    anti_rotation: Literal["flat", "key", "square", "guided_fork", "not_needed"] | None = None
     source: Text = ""
 
     @model_validator(mode="after")

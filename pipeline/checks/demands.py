@@ -32,9 +32,12 @@ def jam_outward(lift_slope: Array, jam_index: Array) -> Array:
     return np.where(np.real(lift_slope) > 0, jam_index, 0.0 * jam_index)
 
 
-def guide_pressure(reaction: Array, area: float) -> Array:
-    """Mean guide pressure, Pa, from the reaction, N, and the projected area, m^2."""
-    return magnitude(reaction) / area
+def guide_pressure(bearing_load: Array, area: float) -> Array:
+    """Mean guide pressure, Pa, from the bearing load, N, and the projected area, m^2.
+
+    Bearing load: greater push on one side over the loaded share of the length.
+    """
+    return magnitude(bearing_load) / area
 
 
 def guide_pv(normal_load: Array, velocity: Array, area: float) -> Array:

@@ -1,12 +1,14 @@
-"""Checks of the guides of the stem: pressure, PV value, temperature, length."""
+"""Checks of the guides of the stem: pressure, PV value, temperature, speed, length, rotation."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
@@ -27,13 +29,55 @@ def guide_of(machine: Machine, side: Side) -> Guide:
     return machine.guides.a if side == "A" else machine.guides.b
 
 
-def heat_of(parts: PartLoads, side: Side) -> GuideHeat:
-    """Friction heat of guide A or B."""
-    return parts.heat_a if side == "A" else parts.heat_b
+def heat_max_of(parts: PartLoads, side: Side) -> GuideHeat:
+    """Friction heat of guide A or B at the greatest friction."""
+    return parts.heat_max_a if side == "A" else parts.heat_max_b
 
 
 def _reaction(cycle: Cycle, side: Side) -> Array:
     return cycle.guides.reaction_a if side == "A" else cycle.guides.reaction_b
+
+
+def _rubbing_load(cycle: Cycle, side: Side) -> Array:
+    return cycle.guides.rubbing_load_a if side == "A" else cycle.guides.rubbing_load_b
+
+
+def _bearing_load(cycle: Cycle, side: Side) -> Array:
+    return cycle.guides.bearing_load_a if side == "A" else cycle.guides.bearing_load_b
+
+
+def hottest(solution: Solution, side: Side) -> Extreme:
+    """Temperature of guide A or B at the greatest friction, K, of the hottest load case.
+
+    NaN where ambient or thermal resistance is not known.
+    """
+    return worst_case(solution.cycles, lambda cycle: heat_max_of(cycle.parts, side).temperature)
+
+
+def _at_temperature(
+    solution: Solution, side: Side, demand: float, limit_at: Callable[[float], float | None]
+) -> tuple[float | None, list[str]]:
+    """Limit at the temperature of a guide, and notes.
+
+    Without a temperature it is the limit at 20 degC: the check of the temperature is then missing.
+    Where the card ends below the temperature the limit is missing, unless the demand is above that
+    at 20 degC, which a warm bush does not exceed.
+
+    Parameters
+    ----------
+    limit_at : callable   temperature, K -> limit; None without one, NaN beyond the card
+    """
+    cold, temperature = limit_at(ROOM), hottest(solution, side).value
+    if cold is None:
+        return None, []
+    if np.isnan(temperature):
+        return cold, ["the temperature of the guide is not known: limit at 20 degC"]
+    limit = limit_at(temperature)
+    at = shown(celsius(temperature), "degC", 3)
+    if limit is None or np.isnan(limit):
+        name = guide_of(solution.machine, side).material.name
+        return cold if demand > cold else None, [f"no strength of {name} at {at} is given"]
+    return limit, [f"limit at {at}"] if limit < cold else []
 
 
 def _guide_pressure(side: Side) -> Declaration:
@@ -41,26 +85,31 @@ def _guide_pressure(side: Side) -> Declaration:
         id=f"guide_pressure_{side}",
         title=f"Mean bearing pressure in guide {side}",
         unit="MPa",
-        method="greatest reaction over diameter x length",
+        method="greatest push on one side of the bore over diameter x loaded length; at most"
+        " the limit at the temperature of the guide",
         lift_can_help=True,
         forecast=True,
         error="guides",
+        part="guides",
+        formula="F / (d l) <= p R(T) / R(T_p); F: push on one side of the bore, the integral of its"
+        " line load, l: loaded length of that side, d: diameter of the bore, of the side and angle"
+        " with the greatest quotient; p: guides.*.pressure_limit, R: yield strength of the bush at"
+        " its temperature T and at T_p, guides.*.pressure_limit_temperature.",
+        reason="Must-have: a bush above the pressure of its maker creeps and wears; opposite pushes"
+        " at both ends of a guide load it although they cancel in the reaction.",
     )
     def pressure(solution: Solution) -> Demand:
         """Maximum over the turn of the mean pressure in a guide, Pa."""
         guide = guide_of(solution.machine, side)
         worst = greatest(
             solution.cycles,
-            lambda c: demands.guide_pressure(_reaction(c, side), guide.projected_area),
+            lambda c: demands.guide_pressure(_bearing_load(c, side), guide.projected_area),
         )
-        missing = [] if guide.pressure_limit is not None else [_no_limit("pressure", side)]
-        return Demand(
-            worst.value,
-            guide.pressure_limit,
-            worst,
-            note="; ".join([*missing, _contributions(solution, side, worst)]),
-            source=_maker(guide),
-        )
+        limit, notes = _at_temperature(solution, side, worst.value, guide.pressure_limit_at)
+        if guide.pressure_limit is None:
+            notes = [_no_limit("pressure", side)]
+        notes.append(_pushes(solution, side, worst))
+        return Demand(worst.value, limit, worst, note="; ".join(notes), source=_maker(guide))
 
     return pressure
 
@@ -73,28 +122,22 @@ def _maker(guide: Guide) -> str:
     return guide.source or f"{guide.material.name} bush"
 
 
-def _contributions(solution: Solution, side: Side, worst: Extreme) -> str:
-    """Contributions of point supports, length and clearance to the maximum pressure."""
-    if solution.coarse:
-        return ""
+def _pushes(solution: Solution, side: Side, worst: Extreme) -> str:
+    """Pushes on both sides of the bore at the maximum pressure, and the pressure by the reaction.
+
+    Their sum is the rubbing load, their difference the reaction.
+    """
     cycle = next(each for each in solution.cycles if each.load_case == worst.load_case)
-    share, guides = cycle.parts.shares.reaction_a, cycle.guides
-    statics = guides.statics_a if side == "A" else guides.statics_b
-    reaction = _reaction(cycle, side)
-    k = int(np.argmax(np.abs(reaction)))
-    per_newton = np.sign(reaction[k]) / guide_of(cycle.machine, side).projected_area
-    points, length, clearance = (
-        shown(float(per_newton * each[k]), "MPa", 3)
-        for each in (statics, share.by_length, share.by_clearance)
-    )
-    return f"{points} on point supports, {length} from length, {clearance} from clearance"
+    k = int(np.argmax(_bearing_load(cycle, side)))
+    both, net = float(_rubbing_load(cycle, side)[k]), abs(float(_reaction(cycle, side)[k]))
+    greater, less = (shown(0.5 * each, "N", 4) for each in (both + net, both - net))
+    alone = shown(net / guide_of(cycle.machine, side).projected_area, "MPa", 3)
+    return f"pushes of {greater} and {less} on opposite sides; {alone} by the net reaction"
 
 
 def mean_pv(cycle: Cycle, side: Side) -> float:
     """PV value in guide A or B, mean over the turn, Pa m/s."""
-    guides = cycle.guides
-    load = guides.rubbing_load_a if side == "A" else guides.rubbing_load_b
-    area = guide_of(cycle.machine, side).projected_area
+    load, area = _rubbing_load(cycle, side), guide_of(cycle.machine, side).projected_area
     return float(np.mean(demands.guide_pv(load, cycle.loads.velocity, area)))
 
 
@@ -114,6 +157,12 @@ def _guide_pv(side: Side) -> Declaration:
         lift_can_help=True,
         forecast=True,
         error="guides",
+        part="guides",
+        formula="mean(|R v|) / (d L) <= PV; R: sum of the pushes on both sides of the bore, v:"
+        " sliding speed, mean over the turn, d, L: diameter and length of the guide; PV:"
+        " guides.*.pv_limit, or the limit of nylon by guides.*.lubrication.",
+        reason="Must-have: the heat that a bush can carry off and its wear rate are stated by its"
+        " maker as a PV value.",
     )
     def pv(solution: Solution) -> Demand:
         """PV value in a guide, mean over the turn, Pa m/s."""
@@ -168,17 +217,23 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         title=f"Guide edge pressure in guide {side} vs. yield strength",
         unit="MPa",
         method="pin in a bore with clearance, bush in a rigid housing, at the greatest line load of"
-        " the beam",
-        must_have=False,
+        " the beam; modulus at 20 degC, an upper bound; yield strength at the temperature of the"
+        " guide",
         lift_can_help=True,
         error="guides",
+        part="guides",
+        formula="p <= R(T); p: greatest pressure between stem and bore, where the line load along"
+        " the guide is greatest, R: yield strength of the bush at its temperature T.",
+        reason="Must-have: an edge above the yield strength is pressed out, and the guide loses its"
+        " length and its clearance.",
     )
     def edge(solution: Solution) -> Demand:
         """Maximum guide edge pressure, Pa."""
         card = guide_of(solution.machine, side).material
         worst = greatest(solution.cycles, lambda cycle: _edge(cycle.parts, side))
+        limit, notes = _at_temperature(solution, side, worst.value, card.yield_strength_at)
         source = f"yield strength of {card.name}: {card.source}"
-        return Demand(worst.value, card.yield_strength, worst, source=source)
+        return Demand(worst.value, limit, worst, note="; ".join(notes), source=source)
 
     return edge
 
@@ -192,25 +247,28 @@ def _guide_temperature(side: Side) -> Declaration:
         id=f"guide_temperature_{side}",
         title=f"Temperature of guide {side}",
         unit="degC",
-        method="friction heat through the wall of the bush, or the thermal resistance of the case;"
-        " an estimate",
-        must_have=False,
+        method="ambient plus mean friction power at the greatest friction times the thermal"
+        " resistance of wall and housing, steady state",
         lift_can_help=True,
+        part="guides",
+        formula="T_amb + Q (R_wall + R_housing) <= T_max; Q: mean friction power over the turn at"
+        " the greatest friction, R_wall: ln(1 + 2 t/d) / (2 pi lambda L) of a wall t, R_housing:"
+        " guides.*.housing_resistance; guides.*.thermal_resistance in place of both; T_amb:"
+        " guides.ambient_temperature; T_max: temperature limit of the bush.",
+        reason="Must-have: strength, clearance and wear of a bush depend on its temperature.",
     )
     def temperature(solution: Solution) -> Demand:
         """Steady temperature of a guide, degC."""
-        guide = guide_of(solution.machine, side)
-        card = guide.material
-        worst = worst_case(solution.cycles, lambda c: celsius(heat_of(c.parts, side).temperature))
-        limit = card.temperature_limit
-        notes = _hottest(solution, side, worst.value)
-        if guide.thermal_resistance is None and card.conductivity is None:
-            notes.append("no thermal resistance and no conductivity are given")
-        if limit is None:
+        machine = solution.machine
+        card, worst = guide_of(machine, side).material, hottest(solution, side)
+        notes = _unknown_heat_path(machine, side)
+        if card.temperature_limit is None:
             notes.append(f"no temperature limit of {card.name} is given")
+        if not machine.friction.bounded:
+            notes.append("at nominal friction: no greatest friction is given for both guides")
         return Demand(
-            worst.value,
-            None if limit is None else celsius(limit),
+            celsius(worst.value),
+            None if card.temperature_limit is None else celsius(card.temperature_limit),
             worst,
             note="; ".join(notes),
             source=f"{card.name}: {card.source}",
@@ -219,24 +277,50 @@ def _guide_temperature(side: Side) -> Declaration:
     return temperature
 
 
-def _hottest(solution: Solution, side: Side, nominal: float) -> list[str]:
-    """Temperature at maximum friction, if above the nominal one, degC."""
-    ambient, hot = solution.machine.guides.ambient_temperature, []
-    for cycle in solution.cycles:
-        heat, worst = heat_of(cycle.parts, side), cycle.parts.friction.greatest
-        friction = worst.friction_force_a if side == "A" else worst.friction_force_b
-        power = float(np.mean(friction * np.abs(worst.velocity)))
-        if heat.mean_power > 0.0:
-            rise = (heat.temperature - ambient) * power / heat.mean_power
-            hot.append(celsius(ambient + rise))
-    hottest = max(hot, default=np.nan)
-    return [f"{shown(hottest, 'degC', 3)} at maximum friction"] if hottest > nominal else []
+def _unknown_heat_path(machine: Machine, side: Side) -> list[str]:
+    """Data that the temperature of a guide lacks."""
+    guide, guides = guide_of(machine, side), machine.guides
+    ambient = [] if guides.ambient_temperature is not None else ["guides.ambient_temperature"]
+    if guide.thermal_resistance is not None:
+        path = []
+    else:
+        values = {
+            f"conductivity of {guide.material.name}": guide.material.conductivity,
+            f"guides.{side.lower()}.wall": guide.wall,
+            f"guides.{side.lower()}.housing_resistance": guide.housing_resistance,
+        }
+        path = [name for name, value in values.items() if value is None]
+    return [f"no {name} is given" for name in (*ambient, *path)]
+
+
+def _guide_speed(side: Side) -> Declaration:
+    @check(
+        id=f"guide_speed_{side}",
+        title=f"Maximum sliding speed in guide {side}",
+        unit="m/s",
+        method="greatest speed of the follower over the turn",
+        lift_can_help=True,
+        moved_by_tolerance=False,
+        part="guides",
+        formula="max |v| <= v_max; v: speed of the stem in the bush, v_max: guides.*.speed_limit.",
+        reason="Must-have: a PV limit holds up to the greatest speed of the bush; above it the"
+        " rubbing surface overheats at any load.",
+    )
+    def speed(solution: Solution) -> Demand:
+        """Maximum sliding speed, m/s."""
+        guide = guide_of(solution.machine, side)
+        worst = greatest(solution.cycles, lambda cycle: np.abs(cycle.loads.velocity))
+        note = "" if guide.speed_limit is not None else _no_limit("speed", side)
+        return Demand(worst.value, guide.speed_limit, worst, note=note, source=_maker(guide))
+
+    return speed
 
 
 guide_pressure_a, guide_pressure_b = _guide_pressure("A"), _guide_pressure("B")
 guide_pv_a, guide_pv_b = _guide_pv("A"), _guide_pv("B")
 guide_edge_pressure_a, guide_edge_pressure_b = _guide_edge_pressure("A"), _guide_edge_pressure("B")
 guide_temperature_a, guide_temperature_b = _guide_temperature("A"), _guide_temperature("B")
+guide_speed_a, guide_speed_b = _guide_speed("A"), _guide_speed("B")
 
 
 @check(
@@ -246,6 +330,11 @@ guide_temperature_a, guide_temperature_b = _guide_temperature("A"), _guide_tempe
     must_have=False,
     lift_can_help=True,
     moved_by_tolerance=False,
+    part="guides",
+    formula="(b + (L_A + L_B) / 2) / a >= n; b: spacing of guides, L: their lengths, a: overhang"
+    " of the roller centre or face at minimum lift, n: limits.guide_length.",
+    reason="Optional: a rule of proportion; the reactions, jam index and pressures that it"
+    " guards on the drawing board are computed, and are must-have.",
 )
 def guide_length(solution: Solution) -> Demand:
     """Distance of the outer ends of the guides over the maximum overhang."""
@@ -253,3 +342,27 @@ def guide_length(solution: Solution) -> Demand:
     overhang = machine.overhang_at_max_lift + solution.contour.pitch.lift.highest.value
     spread = guides.spacing + 0.5 * (guides.a.length + guides.b.length)
     return Demand(spread / overhang, machine.limits[GUIDE_LENGTH])
+
+
+@check(
+    id="anti_rotation",
+    title="Free rotation of the stem",
+    unit="rotations",
+    source="a round stem turns freely in round guides; a cylindrical roller follows the cam only"
+    " with its axis parallel to the camshaft",
+    method="0 where the case states a means against rotation, or a flat face that needs none",
+    moved_by_tolerance=False,
+    part="guides",
+    formula="n <= 0; n: rotations of the stem about its axis that nothing prevents, by"
+    ' follower.anti_rotation; "not_needed" holds for a flat face alone.',
+    reason="Must-have: a roller that turns about the stem runs on its edge, and no other check sees"
+    " it.",
+)
+def anti_rotation(solution: Solution) -> Demand:
+    """Number of free rotations of the stem about its axis."""
+    means = solution.case.follower.anti_rotation
+    if means is None:
+        return Demand(None, 0.0, note="no follower.anti_rotation is given")
+    free = means == "not_needed" and solution.machine.face is None
+    note = "a roller needs a means against rotation" if free else means.replace("_", " ")
+    return Demand(float(free), 0.0, note=note)

@@ -60,6 +60,10 @@ def jump(solution: Solution) -> Demand:
     " length with clearance",
     lift_can_help=True,
     forecast=True,
+    part="guides",
+    formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise; R: sum of the pushes on both sides"
+    " of a guide, mu: its nominal friction, F_a: axial force of the cam, j: limits.jam_index.",
+    reason="Must-have: at 1 the follower locks on the rise and the cam or the stem breaks.",
 )
 def jam_index(solution: Solution) -> Demand:
     """Friction of the guides over the axial cam force on the rise."""
@@ -82,6 +86,12 @@ def jam_index(solution: Solution) -> Demand:
     method="greatest friction of both guides over the axial cam force on the rise, at the maximum"
     " friction coefficients",
     lift_can_help=True,
+    part="guides",
+    formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise, at guides.*.friction_max or the"
+    " tolerance of friction; R: sum of the pushes on both sides of a guide, F_a: axial force of the"
+    " cam, j: limits.jam_index.",
+    reason="Must-have: friction of bushes scatters by a factor, and it is the greatest that locks"
+    " the follower.",
 )
 def jam_index_friction_max(solution: Solution) -> Demand:
     """Jam index at the maximum friction coefficients of both guides."""

@@ -7,17 +7,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.material import ROOM
+from camwright.pipeline.base.units import in_unit, shown
 from camwright.pipeline.case.limits import TARGET_LIFE, VISCOSITY_RATIO, WEAR_DEPTH
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import worst_case
-from camwright.pipeline.checks.guide_strength import Side, guide_of, heat_of, mean_pv
+from camwright.pipeline.checks.guide_strength import Side, guide_of, hottest, mean_pv
 from camwright.pipeline.checks.roller_bearing import bearing_of, spin
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.guide_reactions import WALL_SHARE
+from camwright.pipeline.follower.guide_friction import bore_closure
 
-ROOM = 293.15  # K, temperature of the clearance measurement
 STANDSTILL = 1.0  # rpm of the roller, below which the viscosity ratio does not apply
 
 
@@ -71,29 +71,50 @@ def _guide_expansion(side: Side) -> Declaration:
         id=f"guide_expansion_{side}",
         title=f"Thermal and moisture expansion vs. clearance in guide {side}",
         unit="mm",
-        source="no seizure at temperature and moisture, bush makers",
-        method="inward expansion of a wall of a quarter of the bore, in a rigid housing, at the"
-        " running temperature",
-        must_have=False,
+        source="no seizure at temperature and moisture: Lame, thick ring in a rigid housing",
+        method="closure of the bore of an axially held bush in a rigid housing, and growth of the"
+        " stem, at the temperature at the greatest friction",
         lift_can_help=True,
+        part="guides",
+        formula="c d e + d a_s (T - 20 degC) <= C; e = a_b (T - 20 degC) + w: free strain of the"
+        " bush by heat and moisture, c = (k - 1)(1 + nu) / (1 + (1 - 2 nu) k) with"
+        " k = (1 + 2 t/d)^2: Lame's closure of the bore of a wall t held axially, the greater of"
+        " the bounds, d: bore, a_b, a_s: thermal expansion of bush and stem, T: temperature of the"
+        " guide, C: guides.*.clearance.",
+        reason="Must-have: a stem that binds in a hot or wet bush jams, whatever its loads.",
     )
-    def expansion(solution: Solution) -> Demand | None:
+    def expansion(solution: Solution) -> Demand:
         """Expansion of guide and stem, m, against the clearance between them."""
         guide = guide_of(solution.machine, side)
         bush, stem = guide.material, solution.case.follower.stem_material
-        coefficient, of_stem = bush.expansion, stem.expansion or 0.0
-        if coefficient is None:
-            return None
-
-        def growth(cycle: Cycle) -> float:
-            warmer = heat_of(cycle.parts, side).temperature - ROOM
-            swelling = coefficient * warmer + bush.swelling
-            wall = 2.0 * WALL_SHARE * guide.diameter * swelling
-            return float(wall + guide.diameter * of_stem * warmer)
-
-        worst = worst_case(solution.cycles, growth)
-        note = "the temperature of the guide is not known" if np.isnan(worst.value) else ""
-        return Demand(worst.value, guide.clearance, worst, note=note, figures=(bush.source,))
+        growth_of_stem, moisture = stem.expansion, bush.moisture_growth
+        hot = hottest(solution, side)
+        values = {
+            f"guides.{side.lower()}.wall": guide.wall,
+            f"expansion of {bush.name}": bush.expansion,
+            f"expansion of {stem.name}": growth_of_stem,
+            f"swelling of {bush.name}": moisture,
+        }
+        missing = [f"no {name} is given" for name, value in values.items() if value is None]
+        if np.isnan(hot.value):
+            missing.append("the temperature of the guide is not known")
+        if guide.wall is None or bush.expansion is None or growth_of_stem is None:
+            return Demand(None, guide.clearance, note="; ".join(missing))
+        if moisture is None:
+            return Demand(None, guide.clearance, note="; ".join(missing))
+        warmer = hot.value - ROOM
+        swelling = guide.diameter * (bush.expansion * warmer + moisture)
+        free, held = (c * swelling for c in bore_closure(guide.wall_share, bush.nu))
+        of_stem = guide.diameter * growth_of_stem * warmer
+        if not missing:
+            missing = [f"{shown(free + of_stem, 'mm', 3)} with a bush free to lengthen"]
+        return Demand(
+            max(free, held) + of_stem,
+            guide.clearance,
+            hot,
+            note="; ".join(missing),
+            figures=(bush.source, stem.source),
+        )
 
     return expansion
 
@@ -105,21 +126,25 @@ def _guide_wear(side: Side) -> Declaration:
         title=f"Wear depth of guide {side} at target life",
         method="wear rate times mean pressure times sliding distance, all of the life in the worst"
         " load case",
-        must_have=False,
         lift_can_help=True,
+        part="guides",
+        formula="K PV t <= h; K: guides.*.wear_rate, volume per load and distance, PV: mean PV"
+        " value of the guide, t: limits.target_life, h: limits.wear_depth.",
+        reason="Must-have: wear opens the clearance that jamming and edge pressure are computed"
+        " with, and no other check limits it over the life.",
     )
-    def wear(solution: Solution) -> Demand | None:
-        """Wear depth of a guide over the target life, m; None without a wear rate."""
+    def wear(solution: Solution) -> Demand:
+        """Wear depth of a guide over the target life, m."""
         guide, limits = guide_of(solution.machine, side), solution.machine.limits
         rate, life = guide.wear_rate, limits[TARGET_LIFE]
-        if rate is None:
-            return None
         worst = worst_case(solution.cycles, lambda cycle: mean_pv(cycle, side))
+        values = {f"guides.{side.lower()}.wear_rate": rate, "limits.target_life": life}
+        missing = [f"no {name} is given" for name, value in values.items() if value is None]
         return Demand(
-            None if life is None else rate * worst.value * life,
+            None if life is None or rate is None else rate * worst.value * life,
             limits[WEAR_DEPTH],
             worst,
-            note="" if life is not None else "no target life is given",
+            note="; ".join(missing),
             figures=(guide.source,),
         )
 

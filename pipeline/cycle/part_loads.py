@@ -28,11 +28,11 @@ from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_friction import (
     FrictionBounds,
     GuideHeat,
-    bush_resistance,
     friction_bounds,
     guide_heat,
+    thermal_resistance,
 )
-from camwright.pipeline.follower.guide_reactions import WALL_SHARE, Guide
+from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motion
 from camwright.pipeline.follower.spring import surge_force
 
@@ -41,7 +41,8 @@ from camwright.pipeline.follower.spring import surge_force
 class PartLoads:
     """One turn; arrays (n,) SI, None where the case does not describe the part.
 
-    guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest.
+    guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest;
+    heat_max_* is the heat at the greatest friction of both guides.
     shares are the changes of reaction and contact force by length and clearance of the guides.
     ring_amplitude and ring_mean are of the stress in the groove of the bearing's outer ring, which
     rotates under the load; ring_correction is the relative change of the maximum contact pressure
@@ -52,6 +53,8 @@ class PartLoads:
     guide_edge_pressure_b: Array
     heat_a: GuideHeat
     heat_b: GuideHeat
+    heat_max_a: GuideHeat
+    heat_max_b: GuideHeat
     friction: FrictionBounds
     viscous_force: Array
     shares: GuideShares
@@ -148,12 +151,15 @@ def part_loads(
     spring, shaft = machine.spring.design, _shaft(machine, contour, loads)
     amplitude, mean, correction = _ring(machine, contour, loads, contact_width)
     motion, pair = _roller_motion(machine, contour, loads), machine.guides
+    nominal = machine.friction.nominal
     pin = None if machine.roller is None else machine.roller.pin_stress_per_newton
     return PartLoads(
         guide_edge_pressure_a=_edge_pressure(machine, pair.a, guides.line_pressure_max_a),
         guide_edge_pressure_b=_edge_pressure(machine, pair.b, guides.line_pressure_max_b),
-        heat_a=_heat(machine, 0, guides.rubbing_load_a, loads.velocity),
-        heat_b=_heat(machine, 1, guides.rubbing_load_b, loads.velocity),
+        heat_a=_heat(machine, pair.a, nominal[0] * guides.rubbing_load_a, loads),
+        heat_b=_heat(machine, pair.b, nominal[1] * guides.rubbing_load_b, loads),
+        heat_max_a=_heat(machine, pair.a, friction.greatest.friction_force_a, friction.greatest),
+        heat_max_b=_heat(machine, pair.b, friction.greatest.friction_force_b, friction.greatest),
         friction=friction,
         viscous_force=loads.viscous_force,
         shares=shares,
@@ -185,7 +191,9 @@ def part_loads(
 def guide_bodies(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:
     """Stem and bore of a guide as pin and hole."""
     stem, bush = machine.stem, guide.material
-    return Pin(stem.elastic_modulus, stem.poisson_ratio), Bush(bush.E, bush.nu, 2.0 * WALL_SHARE)
+    return Pin(stem.elastic_modulus, stem.poisson_ratio), Bush(
+        bush.E, bush.nu, 2.0 * guide.wall_share
+    )
 
 
 def _edge_pressure(machine: Machine, guide: Guide, line_pressure: Array) -> Array:
@@ -194,13 +202,9 @@ def _edge_pressure(machine: Machine, guide: Guide, line_pressure: Array) -> Arra
     return peak
 
 
-def _heat(machine: Machine, side: int, rubbing: Array, velocity: Array) -> GuideHeat:
-    guide = machine.guides.both[side][1]
-    resistance, conductivity = guide.thermal_resistance, guide.material.conductivity
-    if resistance is None and conductivity is not None:
-        resistance = bush_resistance(guide.diameter, guide.length, conductivity)
+def _heat(machine: Machine, guide: Guide, friction_force: Array, loads: Loads) -> GuideHeat:
     ambient = machine.guides.ambient_temperature
-    return guide_heat(rubbing, velocity, machine.friction.nominal[side], resistance, ambient)
+    return guide_heat(friction_force, loads.velocity, thermal_resistance(guide), ambient)
 
 
 def _friction_bounds(turn: Turn, contour: Contour) -> tuple[FrictionBounds, GuideShares]:

@@ -1,4 +1,4 @@
-"""Guide friction within its bounds: contact force, jam index, heat, temperature."""
+"""Guide friction within its bounds: contact force, jam index, heat, temperature, growth."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
 from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
-from camwright.pipeline.follower.guide_reactions import WALL_SHARE, GuidePair
+from camwright.pipeline.follower.guide_reactions import Guide, GuidePair
 
 # pv limits of nylon by lubrication, Pa m/s, of a manufacturer of bushes. Dry: 0.105 MPa m/s in
 # Mott, Machine Elements in Mechanical Design, table 16-1.
@@ -132,7 +132,7 @@ def friction_bounds(
 class GuideHeat:
     """Friction power of one guide (n,), W, and bush temperature, K.
 
-    The temperature is NaN without a thermal resistance.
+    The temperature is NaN without a thermal resistance or an ambient temperature.
     """
 
     power: Array
@@ -148,42 +148,51 @@ class GuideHeat:
 
 
 def guide_heat(
-    rubbing_load: ArrayLike,
+    friction_force: ArrayLike,
     velocity: ArrayLike,
-    friction: float,
     resistance: float | None,
-    ambient: float,
+    ambient: float | None,
 ) -> GuideHeat:
     """Friction power at equal cam angles, and temperature of the bush.
 
     Parameters
     ----------
-    rubbing_load : array (n,)   N, >= 0; see `GuideReactions`
-    velocity : array (n,)       m/s
-    friction : float            mu, >= 0
-    resistance : float          thermal, from rubbing surface to ambient, K/W; None: unknown
-    ambient : float             K
+    friction_force : array (n,)   N, >= 0
+    velocity : array (n,)         m/s
+    resistance : float            thermal, from rubbing surface to ambient, K/W; None: unknown
+    ambient : float               K; None: unknown
 
     Raises
     ------
     InputError
         If a value is not finite or negative.
     """
-    load = finite("guide.rubbing_load", rubbing_load)
-    if (load < 0.0).any():
-        raise InputError("guide.rubbing_load", float(load.min()), ">= 0 N")
-    if not 0.0 <= friction < np.inf:
-        raise InputError("guide.friction", friction, ">= 0")
-    power = friction * load * np.abs(finite("velocity", velocity))
-    rise = np.nan if resistance is None else resistance * float(np.mean(power))
-    return GuideHeat(power, ambient + rise)
+    force = finite("guide.friction_force", friction_force)
+    if (force < 0.0).any():
+        raise InputError("guide.friction_force", float(force.min()), ">= 0 N")
+    power = force * np.abs(finite("velocity", velocity))
+    if resistance is None or ambient is None:
+        return GuideHeat(power, np.nan)
+    return GuideHeat(power, ambient + resistance * float(np.mean(power)))
 
 
-def bush_resistance(bore: float, length: float, conductivity: float) -> float:
-    """Thermal resistance of the wall of a bush to a housing at ambient temperature, K/W.
+def thermal_resistance(guide: Guide) -> float | None:
+    """Thermal resistance from the rubbing surface of a guide to the ambient, K/W.
 
-    ln(D_o/D)/(2 pi lambda l). An estimate: heat flow through the stem lowers, heating of the
-    housing raises the temperature.
+    That of the case, else wall and housing in series; None: not known. All friction heat flows
+    through bush and housing: heat flow through the stem lowers the temperature.
+    """
+    conductivity = guide.material.conductivity
+    if guide.thermal_resistance is not None:
+        return guide.thermal_resistance
+    if guide.wall is None or guide.housing_resistance is None or conductivity is None:
+        return None
+    wall = bush_resistance(guide.diameter, guide.wall, guide.length, conductivity)
+    return wall + guide.housing_resistance
+
+
+def bush_resistance(bore: float, wall: float, length: float, conductivity: float) -> float:
+    """Thermal resistance of the wall of a bush, ln(1 + 2 t/D)/(2 pi lambda l), K/W.
 
     Raises
     ------
@@ -194,7 +203,38 @@ def bush_resistance(bore: float, length: float, conductivity: float) -> float:
     ----------
     Incropera and DeWitt, Fundamentals of Heat and Mass Transfer, sec. 3.3: radial conduction.
     """
-    for name, value in (("diameter", bore), ("length", length), ("conductivity", conductivity)):
+    values = {"diameter": bore, "wall": wall, "length": length, "conductivity": conductivity}
+    for name, value in values.items():
         if not 0.0 < value < np.inf:
             raise InputError(f"guide.{name}", value, "> 0")
-    return float(np.log(1.0 + 2.0 * WALL_SHARE) / (2.0 * np.pi * conductivity * length))
+    return float(np.log(1.0 + 2.0 * wall / bore) / (2.0 * np.pi * conductivity * length))
+
+
+def bore_closure(wall_share: float, poisson_ratio: float) -> tuple[float, float]:
+    """Closure of a bore over bore and free strain: axially free, and axially held.
+
+    The bush expands by an isotropic free strain in a rigid housing: no radial displacement at its
+    outer radius, no radial stress at the bore. Axially free is plane stress, held is plane strain.
+
+    Parameters
+    ----------
+    wall_share : float      wall over bore, > 0
+    poisson_ratio : float   nu, 0 <= nu < 0.5
+
+    Raises
+    ------
+    InputError
+        If a value is out of these bounds.
+
+    References
+    ----------
+    Lame's thick cylinder with a uniform free strain; Timoshenko and Goodier, Theory of Elasticity.
+    """
+    if not 0.0 < wall_share < np.inf:
+        raise InputError("guide.wall", wall_share, "> 0 of the bore")
+    if not 0.0 <= poisson_ratio < 0.5:
+        raise InputError("guide.poisson_ratio", poisson_ratio, ">= 0 and < 0.5")
+    nu, square = poisson_ratio, (1.0 + 2.0 * wall_share) ** 2
+    stretched = (square - 1.0) * (1.0 + nu)
+    free = stretched / ((1.0 + nu) + (1.0 - nu) * square)
+    return free, stretched / (1.0 + (1.0 - 2.0 * nu) * square)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Annotated, ClassVar, Literal, NamedTuple
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import ContactError, InputError
-from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.quantities import In, Length, Part, Pressure, Temperature
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.follower.guide_contact import BearingLine, settle
@@ -21,7 +22,7 @@ from camwright.pipeline.follower.stem_beam import Stem, end_flexibility, stem_co
 KNOTS = 25  # per guide; odd: the middle of the guide is a knot
 RESIDUAL_LIMIT = 1e-9
 _NO_LOAD = 1e-290  # N, of a dwell: smaller ones are denormal
-WALL_SHARE = 0.25  # wall of a plain bush over its bore, assumed
+WALL_SHARE = 0.25  # of the bore: wall of a bush in its elasticity where the case has none
 
 
 def _no_press_fit(field: str, clearance: float) -> None:
@@ -33,8 +34,12 @@ def _no_press_fit(field: str, clearance: float) -> None:
 class Guide(Part):
     """Guide of the stem; its limits hold for dry running unless the source states otherwise.
 
-    clearance: diametral; friction: Coulomb coefficient, with bounds where known; stiffness: of the
-    whole bush, None: from the elasticity of its wall.
+    wall: thickness of the bush; clearance: diametral, as mounted; friction: Coulomb coefficient,
+    with bounds where known; stiffness: of the whole bush, None: from the elasticity of its wall.
+    housing_resistance: thermal, from the outside of the bush to the ambient; thermal_resistance:
+    the total from the rubbing surface to the ambient, in place of wall and housing.
+    pressure_limit_temperature: up to which the pressure limit holds; above, it falls with the yield
+    strength of the material. speed_limit: greatest sliding speed.
 
     Raises
     ------
@@ -43,9 +48,18 @@ class Guide(Part):
     """
 
     table: ClassVar[str] = "guide"
+    defaults: ClassVar[Mapping[str, str]] = {
+        "friction_min": "friction less the tolerance of friction",
+        "friction_max": "friction plus the tolerance of friction",
+        "lubrication": "none assumed: the limits are those stated",
+        "stiffness": "from the elasticity of the wall; of a quarter of the bore without a wall",
+        "thermal_resistance": "wall and housing in series",
+        "pressure_limit_temperature": "20 degC",
+    }
 
     length: Length
     diameter: Length
+    wall: Length | None = None
     friction: Annotated[float, In(at_least=0, below=2)]
     friction_min: Annotated[float, In(at_least=0, below=2)] | None = None
     friction_max: Annotated[float, In(at_least=0, below=2)] | None = None
@@ -53,8 +67,11 @@ class Guide(Part):
     clearance: Annotated[float, In("mm", at_least=-100, at_most=100)] = 0.0
     material: Material
     pressure_limit: Pressure | None = None
+    pressure_limit_temperature: Temperature | None = None
+    speed_limit: Annotated[float, In("m/s", above=0, at_most=1000)] | None = None
     pv_limit: Annotated[float, In("MPa m/s", above=0, at_most=1e6)] | None = None
     stiffness: Annotated[float, In("N/mm", above=0, at_most=1e9)] | None = None
+    housing_resistance: Annotated[float, In("K/W", above=0, at_most=1e6)] | None = None
     thermal_resistance: Annotated[float, In("K/W", above=0, at_most=1e6)] | None = None
     wear_rate: Annotated[float, In("mm^3/N/m", above=0, at_most=1e3)] | None = None
     source: str = ""
@@ -74,12 +91,30 @@ class Guide(Part):
         if self.stiffness is not None:
             return self.stiffness / self.length
         bore, card = self.diameter, self.material
-        return bush_foundation_modulus(bore, WALL_SHARE * bore, card.E, card.nu)
+        return bush_foundation_modulus(bore, self.wall_share * bore, card.E, card.nu)
+
+    @property
+    def wall_share(self) -> float:
+        """Wall over bore; `WALL_SHARE` without a wall."""
+        return WALL_SHARE if self.wall is None else self.wall / self.diameter
 
     @property
     def projected_area(self) -> float:
         """Diameter times length, m2."""
         return self.diameter * self.length
+
+    def pressure_limit_at(self, temperature: float) -> float | None:
+        """Pressure limit at a temperature, K, Pa: falls with the yield strength.
+
+        None without a limit, NaN where the strength at the temperature is not known.
+        """
+        stated = self.pressure_limit_temperature or ROOM
+        if self.pressure_limit is None or temperature <= stated:
+            return self.pressure_limit
+        strength = self.material.yield_strength_at
+        return self.pressure_limit * float(
+            np.minimum(1.0, strength(temperature) / strength(stated))
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,7 +124,7 @@ class GuidePair(Part):
     table: ClassVar[str] = "guides"
 
     spacing: Length
-    ambient_temperature: Temperature = 293.15
+    ambient_temperature: Temperature | None = None
     a: Guide
     b: Guide
 
@@ -157,6 +192,20 @@ class GuideReactions:
         """Maximum line pressure in guide B (n,), N/m, >= 0."""
         return np.asarray(np.abs(self.line_pressure_b).max(axis=0))
 
+    @cached_property
+    def bearing_load_a(self) -> Array:
+        """Push on one side of guide A over the loaded share of its length, (n,), N.
+
+        Of the side with the greater quotient; the reaction where one side is loaded over the whole
+        length.
+        """
+        return np.asarray(np.ptp(self.knots_a) * mean_line_load(self.line_pressure_a, self.knots_a))
+
+    @cached_property
+    def bearing_load_b(self) -> Array:
+        """Push on one side of guide B over the loaded share of its length, (n,), N."""
+        return np.asarray(np.ptp(self.knots_b) * mean_line_load(self.line_pressure_b, self.knots_b))
+
     @property
     def pressure_max_a(self) -> Array:
         """Maximum projected pressure in guide A (n,), Pa: line pressure over stem diameter."""
@@ -166,6 +215,60 @@ class GuideReactions:
     def pressure_max_b(self) -> Array:
         """Maximum projected pressure in guide B (n,), Pa: line pressure over stem diameter."""
         return self.line_pressure_max_b / self.stem_diameter
+
+
+def mean_line_load(line_load: ArrayLike, knots: ArrayLike) -> Array:
+    """Greater of the mean line loads on the two sides of a bore, over the loaded length, N/m.
+
+    The push on a side is the integral of its line load. The loaded length ends where the line
+    load, extrapolated from the last two loaded knots, falls to zero, at most at the next knot.
+
+    Parameters
+    ----------
+    line_load : array (k, n)   N/m, of either sign
+    knots : array (k,)         Lobatto knots from the middle of the guide, m; see `lobatto`
+
+    Returns
+    -------
+    array (n,)   N/m; 0 without load, NaN where a line load is NaN
+    """
+    load, at = np.asarray(line_load, dtype=float), np.asarray(knots, dtype=float)
+    weights = at[-1] * lobatto(at.size)[1]
+    greater = np.zeros(load.shape[1])
+    for side in (load, -load):
+        push = weights @ np.maximum(side, 0.0)
+        length = _loaded_length(side, at, weights)
+        mean = np.divide(push, length, out=np.zeros_like(push), where=length > 0.0)
+        greater = np.maximum(greater, np.where(np.isnan(push), np.nan, mean))
+    return greater
+
+
+def _loaded_length(side: Array, knots: Array, weights: Array) -> Array:
+    """Length with a positive line load (n,), m, of loads (k, n)."""
+    on = side > 0.0
+    between = np.diff(knots)[:, None]
+    length = (between * (on[:-1] & on[1:])).sum(axis=0)
+    for load, gaps, near in (
+        (side, between, weights),
+        (side[::-1], between[::-1], weights[::-1]),
+    ):
+        length += _beyond(load, gaps, near[:, None]).sum(axis=0)
+    return np.asarray(length)
+
+
+def _beyond(load: Array, gaps: Array, weights: Array) -> Array:
+    """Loaded length beyond a loaded knot before an unloaded one (k - 1, n), m."""
+    here, after = np.maximum(load[:-1], 0.0), load[1:]
+    before = np.vstack([np.zeros_like(load[:1]), here[:-1]])
+    back = np.vstack([gaps[:1], gaps[:-1]])
+    # A single loaded knot p of weight w: a triangle of area p w, half of it at the end of a guide.
+    alone = weights[:-1] * np.r_[2.0, np.ones(len(load) - 2)][:, None]
+    falls = before > here
+    reach = np.where(falls, back * here / np.where(falls, before - here, 1.0), alone)
+    # The line load passes through zero where the next knot is loaded on the other side.
+    crosses = gaps * here / np.where(after < 0.0, here - after, 1.0)
+    beyond = np.where(after < 0.0, crosses, np.minimum(reach, gaps))
+    return np.where((here > 0.0) & (after <= 0.0), beyond, 0.0)
 
 
 def bush_foundation_modulus(

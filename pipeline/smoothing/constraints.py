@@ -93,7 +93,8 @@ def motion(jet: Jet, variables: DesignVariables, offset: float) -> Motion:
 class Forces(NamedTuple):
     """Forces of one scenario, N; factors of the side force on guides A and B.
 
-    lever: reactions of point supports; push: of the guides; rub: normal load of their friction.
+    lever: reactions of point supports; push: bearing load of the guides; rub: normal load of their
+    friction.
     """
 
     spring: Array
@@ -324,8 +325,8 @@ def _guide_pressure(side: Literal["A", "B"]) -> Constraint[Loads]:
     place = "AB".index(side)
 
     def utilisation(at: Loads, limit: float) -> Array:
-        reaction = at.side * at.force.push[place]
-        return demands.guide_pressure(reaction, at.ratings.guide_area[place]) / limit
+        load = at.side * at.force.push[place]
+        return demands.guide_pressure(load, at.ratings.guide_area[place]) / limit
 
     return Constraint(
         f"guide_pressure_{side}", lambda ratings: ratings.guide_pressure[place], utilisation

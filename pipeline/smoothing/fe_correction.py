@@ -118,8 +118,8 @@ def _correction(cycle: Cycle) -> Correction:
     worst = cycle.parts.friction.greatest
     return Correction(
         contact=_ratio(contact.p0, contact.p0_hertz),
-        guide_a=_ratio(guides.reaction_a, guides.statics_a),
-        guide_b=_ratio(guides.reaction_b, guides.statics_b),
+        guide_a=_ratio(guides.bearing_load_a, guides.statics_a),
+        guide_b=_ratio(guides.bearing_load_b, guides.statics_b),
         rubbing_a=_ratio(guides.rubbing_load_a, guides.statics_a, _RUBBING),
         rubbing_b=_ratio(guides.rubbing_load_b, guides.statics_b, _RUBBING),
         jam=_ratio(worst.jam_index, worst.jam_index_statics),

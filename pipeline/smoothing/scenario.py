@@ -73,8 +73,9 @@ class Ratings:
 class Correction:
     """Finite-element result over closed form at n equally spaced cam angles, each (n,).
 
-    Of the contact pressure, the reactions and the normal loads of guides A and B, and the jam
-    index at maximum friction.
+    Of the contact pressure, the bearing loads and the normal loads of guides A and B, and the jam
+    index at maximum friction. Point supports have neither length nor opposite pushes: without the
+    correction the synthesis sees a lower bound of the guide pressure.
     """
 
     contact: Array

@@ -235,6 +235,8 @@ def cycle(
             statics_b=-150.0 * WAVE,
             rubbing_load_a=np.abs(500.0 * WAVE),
             rubbing_load_b=np.abs(200.0 * WAVE),
+            line_pressure_a=_even(-500.0 * WAVE, base.guides.knots_a),
+            line_pressure_b=_even(-200.0 * WAVE, base.guides.knots_b),
             force_residual=np.full(POSITIONS, 1e-13),
             moment_residual=np.full(POSITIONS, 1e-12),
         ),
@@ -242,6 +244,11 @@ def cycle(
         "parts": _parts(base),
     }
     return changed_cycle(base, **(plain | values))
+
+
+def _even(force: np.ndarray, knots: np.ndarray) -> np.ndarray:
+    """Line load (knots, n) of a force spread evenly over the length of a guide."""
+    return np.tile(force / np.ptp(knots), (knots.size, 1))
 
 
 def _rolling(base: Cycle) -> RollingHistory:
@@ -294,6 +301,8 @@ def _parts(base: Cycle) -> PartLoads:
         guide_edge_pressure_b=20e6 + 10e6 * WAVE,
         heat_a=heat,
         heat_b=heat,
+        heat_max_a=heat,
+        heat_max_b=heat,
         pin_stress=200e6 + 100e6 * WAVE,
         ring_amplitude=300e6 + 100e6 * WAVE,
         ring_mean=np.full(POSITIONS, 400e6),

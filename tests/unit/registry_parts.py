@@ -314,18 +314,18 @@ for _side, _load in (("a", 500.0), ("b", 200.0)):
         _name,
         "wear_depth",
         lambda s=_side: with_guides(**{f"rubbing_load_{s}": NAN}),
-        1e3 * 1e-16 * 1e6 * _load * 0.4 / 2.0 / 200.0 * 3.6e6,
-        "Archard: 1e-16 m2/N times PV times 1000 h",
-        missing=unlimited("target_life"),
+        1e3 * 1e-17 * 1e6 * _load * 0.4 / 2.0 / 200.0 * 3.6e6,
+        "Archard: 1e-17 m2/N times PV times 1000 h",
+        missing=lambda s=_side: with_guide(s, wear_rate=None),
     )
     _name = f"guide_expansion_{_side.upper()}"
     tried(
         _name,
         limited(_name, lambda gap, s=_side: with_guide(s, clearance=gap)),
-        None,
+        lambda s=_side: with_guide(s, wall=None),
         lambda s=_side: with_temperature(s, np.nan),
-        2.0 * 0.25 * 10.0 * (8e-5 * (330.0 - 293.15) + 0.01),
-        "two walls of a quarter of 10 mm, warmer by 36.85 K and wet",
+        10.0 * (1.25 * 1.4 / 1.45 * (8e-5 * 36.85 + 0.002) + 1.2e-5 * 36.85),
+        "Lame, held axially: (k - 1)(1 + nu)/(1 + (1 - 2 nu) k) of k = 1.5^2; and the stem",
     )
 by_limit(
     "bearing_lubrication",

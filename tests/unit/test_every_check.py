@@ -36,7 +36,10 @@ MUST_HAVE = {
     *("shakedown", "shakedown_traction", "edge_pressure"),
     # parts
     *("roller_static", "roller_life", "roller_radial", "roller_speed", "roller_pin"),
-    *("guide_pressure_A", "guide_pressure_B", "guide_pv_A", "guide_pv_B"),
+    *("guide_pressure_A", "guide_pressure_B", "guide_pv_A", "guide_pv_B", "anti_rotation"),
+    *("guide_edge_pressure_A", "guide_edge_pressure_B", "guide_temperature_A"),
+    *("guide_temperature_B", "guide_speed_A", "guide_speed_B", "guide_expansion_A"),
+    *("guide_expansion_B", "guide_wear_A", "guide_wear_B"),
     *("spring_stress", "spring_fatigue", "spring_solid", "spring_buckling"),
     # camshaft
     *("key_pressure", "key_pressure_shaft", "key_shear", "cam_slip", "bore_pressure"),

@@ -151,18 +151,19 @@ def test_viscous_drag_and_rubbing_together():
 
 def test_heat_and_temperature():
     """mu R v in the mean, and its way out."""
-    found = guide_heat(np.full(4, 100.0), np.array([1.0, -1.0, 2.0, 0.0]), 0.1, 5.0, 300.0)
+    found = guide_heat(np.full(4, 10.0), np.array([1.0, -1.0, 2.0, 0.0]), 5.0, 300.0)
     np.testing.assert_allclose(found.power, [10.0, 10.0, 20.0, 0.0])
     assert found.mean_power == pytest.approx(10.0)
     assert found.temperature == pytest.approx(350.0)
-    assert np.isnan(guide_heat([1.0], [1.0], 0.1, None, 300.0).temperature)
+    assert np.isnan(guide_heat([1.0], [1.0], None, 300.0).temperature)
+    assert np.isnan(guide_heat([1.0], [1.0], 5.0, None).temperature)
 
 
 def test_heat_of_the_guides_is_the_cycle_s_friction():
     """With point supports the rubbing loads are the reactions: the same power."""
     loads = follower_loads(PITCH, SYSTEM, SPEED, THETA)
     both = [
-        guide_heat(np.abs(reaction), loads.velocity, mu, None, 300.0).power
+        guide_heat(mu * np.abs(reaction), loads.velocity, None, 300.0).power
         for reaction, mu in ((loads.reaction_a, 0.04), (loads.reaction_b, 0.2))
     ]
     np.testing.assert_allclose(sum(both), loads.friction_power, rtol=1e-12, atol=1e-12)
@@ -170,9 +171,9 @@ def test_heat_of_the_guides_is_the_cycle_s_friction():
 
 def test_resistance_of_a_wall():
     """A quarter of the bore thick: ln(1.5)/(2 pi lambda l)."""
-    assert bush_resistance(0.01, 0.02, 0.25) == pytest.approx(np.log(1.5) / (0.01 * np.pi))
+    assert bush_resistance(0.01, 0.0025, 0.02, 0.25) == pytest.approx(np.log(1.5) / (0.01 * np.pi))
     with pytest.raises(InputError, match="conductivity"):
-        bush_resistance(0.01, 0.02, 0.0)
+        bush_resistance(0.01, 0.0025, 0.02, 0.0)
 
 
 def test_nylon_bears_more_the_better_it_is_greased():
@@ -180,7 +181,7 @@ def test_nylon_bears_more_the_better_it_is_greased():
 
 
 def test_heat_refusals():
-    with pytest.raises(InputError, match="rubbing_load"):
-        guide_heat([-1.0], [1.0], 0.1, 5.0, 300.0)
-    with pytest.raises(InputError, match="friction"):
-        guide_heat([1.0], [1.0], np.nan, 5.0, 300.0)
+    with pytest.raises(InputError, match="friction_force"):
+        guide_heat([-1.0], [1.0], 5.0, 300.0)
+    with pytest.raises(InputError, match="friction_force"):
+        guide_heat([np.nan], [1.0], 5.0, 300.0)

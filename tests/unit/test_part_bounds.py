@@ -56,7 +56,9 @@ def parts_in(value: object) -> Iterator[Part]:
         else list(getattr(type(value), "model_fields", ()))
     )
     for name in names:
-        yield from parts_in(getattr(value, name))
+        held = getattr(value, name)
+        for each in held if isinstance(held, tuple) else (held,):
+            yield from parts_in(each)
 
 
 @cache

@@ -115,8 +115,8 @@ def with_parts(**values: Any) -> Solution:
 
 
 def with_temperature(side: str, temperature: float) -> Solution:
-    heat = getattr(made.cycle().parts, f"heat_{side}")
-    return with_parts(**{f"heat_{side}": GuideHeat(heat.power, temperature)})
+    heat = getattr(made.cycle().parts, f"heat_max_{side}")
+    return with_parts(**{f"heat_max_{side}": GuideHeat(heat.power, temperature)})
 
 
 def with_worst_friction(**values: Any) -> Solution:

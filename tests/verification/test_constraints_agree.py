@@ -93,7 +93,8 @@ def corrected(scenario, cycle):
     worst = cycle.parts.friction.greatest
     correction = Correction(
         one,
-        np.abs(guides.reaction_a / guides.statics_a), np.abs(guides.reaction_b / guides.statics_b),
+        guides.bearing_load_a / np.abs(guides.statics_a),
+        guides.bearing_load_b / np.abs(guides.statics_b),
         np.abs(guides.rubbing_load_a / guides.statics_a),
         np.abs(guides.rubbing_load_b / guides.statics_b),
         worst.jam_index / worst.jam_index_statics,
