@@ -315,6 +315,7 @@ def test_an_unrated_bearing_is_not_evaluated_and_fails():
     plain = with_bearing(name="plain", C=None, C0=None, radial_limit=None, speed_limit=None)
     checks = all_checks(plain)
     missing = {"roller_static", "roller_speed", "roller_life", "roller_radial"}
+    missing |= {"roller_modified_life", "roller_load_share"}
     assert set(binding(checks)) == missing
     notes = {c.id: c.note for c in checks}
     assert notes["roller_static"] == "no static rating is given for plain"
