@@ -230,55 +230,53 @@ def cheek_pressure(solution: Solution) -> Demand:
 )
 def follower_mass(solution: Solution) -> Demand:
     """Mass of the parts that move with the follower, kg, against the stated mass."""
-    masses = moving_masses(solution)
-    missing = [f"no {name} is given" for name, mass in masses.items() if mass is None]
-    known = [mass for mass in masses.values() if mass is not None]
-    shown_masses = ", ".join(
-        f"{name} {shown(mass, 'g')}" for name, mass in masses.items() if mass is not None
-    )
-    return Demand(
-        None if missing else sum(known),
-        solution.machine.limits[FOLLOWER_MASS_RATIO] * solution.case.follower.mass,
-        note="; ".join((*missing, shown_masses)),
-    )
+    masses, missing = moving_masses(solution)
+    allowed = solution.machine.limits[FOLLOWER_MASS_RATIO] * solution.case.follower.mass
+    total = sum(masses.values())
+    parts = ", ".join(f"{name} {shown(mass, 'g')}" for name, mass in masses.items())
+    notes = [f"no {name} is given" for name in missing]
+    notes.append(f"at least {shown(total, 'g')}: {parts}" if missing else parts)
+    return Demand(None if missing else total, allowed, note="; ".join(notes))
 
 
-def moving_masses(solution: Solution) -> dict[str, float | None]:
-    """Mass of each part that moves with the follower, kg, by its name.
+def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Masses of the parts that move with the follower, kg, by name, and the keys that are missing.
 
-    None where a dimension is missing, by the name of the key; a part outside the scope is left out.
+    A stem without a length counts up to its far guide. A part outside the scope is left out.
     """
     machine, follower = solution.machine, solution.case.follower
     roller, face, design = machine.roller, machine.face, machine.spring.design
-    masses: dict[str, float | None] = {}
-    length = follower.stem_length
+    masses: dict[str, float] = {}
+    missing: list[str] = []
+    shorter = 0.0
     if face is not None:
-        block = face.width * face.depth * face.thickness
-        masses["face"] = face.material.density * block
-        length = None if length is None else length - face.thickness
+        masses["face"] = face.material.density * face.width * face.depth * face.thickness
+        shorter = face.thickness
     if roller is not None:
         pin, fork = roller.pin, roller.fork
         masses["roller"] = roller.drawn_mass
-        if machine.scope.covers("pin"):
-            beside = 0.0 if fork is None else fork.cheek_width
-            masses["roller.pin"] = None if pin is None else pin.mass(beside)
+        if pin is not None:
+            masses["pin"] = pin.mass(0.0 if fork is None else fork.cheek_width)
+        elif machine.scope.covers("pin"):
+            missing.append("roller.pin")
         held = None if fork is None or pin is None else fork.mass(pin)
         if held is not None:
             masses["fork"] = held
         elif machine.scope.covers("fork"):
-            masses["roller.fork with its cheek and bridge lengths"] = None
-        if length is not None and fork is not None and fork.cheek_length is not None:
-            length -= fork.cheek_length + (fork.bridge_length or 0.0)
+            missing.append("roller.fork with its lengths and height")
+        if fork is not None:
+            shorter = (fork.cheek_length or 0.0) + (fork.bridge_length or 0.0)
+    length = follower.stem_length
     if length is None:
-        masses["follower.stem_length"] = None
-    else:
-        section = 0.25 * np.pi * follower.stem_diameter**2
-        masses["stem"] = float(follower.stem_material.density * section * max(length, 0.0))
+        length = follower.overhang_at_max_lift + machine.guides.spacing
+        missing.append("follower.stem_length")
+    section = 0.25 * np.pi * follower.stem_diameter**2
+    masses["stem"] = float(follower.stem_material.density * section * max(length - shorter, 0.0))
     if design is not None:
         masses["spring"] = follower.spring_share * design.mass
     elif machine.scope.covers("spring"):
-        masses["spring.design"] = None
-    return masses
+        missing.append("spring.design")
+    return masses, tuple(missing)
 
 
 @check(
