@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from camwright.geometry.arrays import Array
@@ -26,9 +28,8 @@ from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import pin_strength
 from camwright.pipeline.follower.bearing_ring import goodman
-from camwright.pipeline.follower.pin_strength import pin_shear_stress
 from camwright.pipeline.follower.roller import Roller
-from camwright.pipeline.follower.roller_parts import Pin
+from camwright.pipeline.follower.roller_parts import Fork, Pin
 
 
 @check(
@@ -61,6 +62,36 @@ def roller_pin(solution: Solution) -> Demand:
 def allowed_pin_stress(pin: Pin, limits: LimitValues) -> float:
     """Maximum bending stress of the roller pin, Pa."""
     return limits[PIN_SHARE] * pin.material.yield_strength
+
+
+class Stress(NamedTuple):
+    """Stress of a part per newton of normal force, Pa/N, and its limit, Pa; None: missing."""
+
+    per_newton: float
+    allowed: float | None
+
+
+def pin_shear(pin: Pin, limits: LimitValues) -> Stress:
+    """Shear stress of the roller pin; by von Mises the share of the yield strength in bending."""
+    allowed = allowed_pin_stress(pin, limits) / 3.0**0.5
+    return Stress(pin_strength.pin_shear_stress(1.0, pin.diameter, pin.overhung), allowed)
+
+
+def seat_pressure(roller: Roller, pin: Pin, limits: LimitValues) -> Stress:
+    """Pressure of the pin in the bore of its bearing."""
+    tensile, share = pin.material.tensile_strength, limits[PIN_PRESSURE_SHARE]
+    area = pin.diameter * roller.width
+    return Stress(1.0 / area, None if tensile is None else share * tensile)
+
+
+def fork_pressure(fork: Fork, pin: Pin, limits: LimitValues) -> Stress:
+    """Pressure of the pin in the cheeks of its fork."""
+    sizes = (pin.diameter, fork.cheek_width, pin.span, pin.overhung)
+    per_newton = pin_strength.cheek_pressure(1.0, *sizes)
+    one, other = fork.material.tensile_strength, pin.material.tensile_strength
+    if fork.pressure_limit is not None or one is None or other is None:
+        return Stress(per_newton, fork.pressure_limit)
+    return Stress(per_newton, limits[PIN_PRESSURE_SHARE] * min(one, other))
 
 
 def _roller_and_pin(solution: Solution) -> tuple[Roller, Pin]:
@@ -141,9 +172,9 @@ def _without(card: Material, **values: float | None) -> str:
 def roller_pin_shear(solution: Solution) -> Demand:
     """Shear stress of the roller pin, Pa."""
     pin = _roller_and_pin(solution)[1]
-    worst = _normal_force(solution, pin_shear_stress(1.0, pin.diameter, pin.overhung))
-    allowed = allowed_pin_stress(pin, solution.machine.limits) / np.sqrt(3.0)
-    return Demand(worst.value, float(allowed), worst, figures=_sources(pin.material))
+    stress = pin_shear(pin, solution.machine.limits)
+    worst = _normal_force(solution, stress.per_newton)
+    return Demand(worst.value, stress.allowed, worst, figures=_sources(pin.material))
 
 
 @check(
@@ -163,16 +194,10 @@ def roller_pin_shear(solution: Solution) -> Demand:
 def roller_pin_pressure(solution: Solution) -> Demand:
     """Pressure of the roller pin in the bore of its bearing, Pa."""
     roller, pin = _roller_and_pin(solution)
-    worst = _normal_force(solution, 1.0 / (pin.diameter * roller.width))
-    tensile = pin.material.tensile_strength
-    share = solution.machine.limits[PIN_PRESSURE_SHARE]
-    return Demand(
-        worst.value,
-        None if tensile is None else share * tensile,
-        worst,
-        _without(pin.material, tensile_strength=tensile),
-        _sources(pin.material),
-    )
+    stress = seat_pressure(roller, pin, solution.machine.limits)
+    worst, card = _normal_force(solution, stress.per_newton), pin.material
+    missing = _without(card, tensile_strength=card.tensile_strength)
+    return Demand(worst.value, stress.allowed, worst, missing, _sources(card))
 
 
 @check(
@@ -197,23 +222,14 @@ def cheek_pressure(solution: Solution) -> Demand:
     fork = None if roller is None else roller.fork
     if fork is None or pin is None:
         return Demand(None, None, note="no pin is given")
-    per_newton = pin_strength.cheek_pressure(
-        1.0, pin.diameter, fork.cheek_width, pin.span, pin.overhung
-    )
-    worst, allowed = _normal_force(solution, per_newton), fork.pressure_limit
-    if allowed is not None:
-        return Demand(worst.value, allowed, worst, source=fork.source or "roller.fork")
+    stress = fork_pressure(fork, pin, solution.machine.limits)
+    worst = _normal_force(solution, stress.per_newton)
+    if fork.pressure_limit is not None:
+        return Demand(worst.value, stress.allowed, worst, source=fork.source or "roller.fork")
     cards = (fork.material, pin.material)
     missing = [_without(card, tensile_strength=card.tensile_strength) for card in cards]
-    known = [card.tensile_strength for card in cards if card.tensile_strength is not None]
-    share = solution.machine.limits[PIN_PRESSURE_SHARE]
-    return Demand(
-        worst.value,
-        share * min(known) if len(known) == len(cards) else None,
-        worst,
-        "; ".join(each for each in dict.fromkeys(missing) if each),
-        _sources(*cards),
-    )
+    note = "; ".join(each for each in dict.fromkeys(missing) if each)
+    return Demand(worst.value, stress.allowed, worst, note, _sources(*cards))
 
 
 @check(
