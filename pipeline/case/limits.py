@@ -172,11 +172,20 @@ JAM_INDEX = Limit(
     "self-locking at 1, Rothbart (2004) eq. 6.8; safety factor 2",
 )  # fmt: skip
 ROLLER_STATIC_SAFETY = Limit(
-    "roller_static_safety", "static safety of the roller bearing", _SAFETY, 1.0,
-    "s0 = C0/P0, ISO 76", "at_least",
+    "roller_static_safety", "static safety of the roller bearing", _SAFETY, 1.5,
+    "s0 = C0/P0 >= 1.5 with shocks, makers' guides after ISO 76: a roller that leaves the cam or"
+    " crosses its backlash lands with a shock", "at_least",
 )  # fmt: skip
 ROLLER_LIFE = OpenLimit(
     "roller_life", "rating life of the roller bearing", _LIFE, "ISO 281", "at_least",
+)  # fmt: skip
+ROLLER_RELIABILITY = Limit(
+    "roller_reliability", "reliability of the rating life", In(at_least=0.9, at_most=0.9995), 0.9,
+    "90 %: rating life of ISO 281:2007, table 12", "at_least",
+)  # fmt: skip
+ROLLER_LOAD_SHARE = Limit(
+    "roller_load_share", "roller load over dynamic rating", _SHARE, 0.5,
+    "rating life holds up to P = 0.5 C, ISO 281:2007, 1: verify",
 )  # fmt: skip
 ROLLER_SPEED_SHARE = Limit(
     "roller_speed_share", "roller speed over limiting speed", _SHARE, 0.7,
@@ -184,6 +193,18 @@ ROLLER_SPEED_SHARE = Limit(
 )  # fmt: skip
 PIN_SHARE = Limit(
     "pin_share", "pin stress over yield strength", _SHARE, 0.6, "0.6 of the yield strength",
+)  # fmt: skip
+PIN_FATIGUE_SAFETY = Limit(
+    "pin_fatigue_safety", "fatigue safety of the roller pin", _SAFETY, 1.5,
+    "Goodman, Shigley ch. 6; 1.5 covers size and surface of a ground pin: verify", "at_least",
+)  # fmt: skip
+PIN_PRESSURE_SHARE = Limit(
+    "pin_pressure_share", "pressure in the pin's seats over tensile strength", _SHARE, 0.25,
+    "0.25 R_m under pulsating load in a seat without sliding, Roloff/Matek, table of pins: verify",
+)  # fmt: skip
+FOLLOWER_MASS_RATIO = Limit(
+    "follower_mass_ratio", "drawn mass over stated mass of the follower", In(above=0, at_most=2),
+    1.03, "3 %, scatter of weighed parts, shop practice: verify",
 )  # fmt: skip
 SPRING_FATIGUE = Limit(
     "spring_fatigue", "fatigue safety of the spring", _SAFETY, 1.2,

@@ -19,6 +19,14 @@ from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.follower_forces import FollowerSystem
 from camwright.pipeline.follower.follower_kind import FollowerKind
+from camwright.pipeline.follower.follower_stiffness import (
+    bearing_compliance,
+    fork_compliance,
+    in_series,
+    pin_compliance,
+    shaft_compliance,
+    stem_compliance_along,
+)
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.follower.guide_reactions import GuidePair
 from camwright.pipeline.follower.roller import Roller
@@ -67,7 +75,7 @@ class Machine:
     viscous_damping : float    of the guides, N s/m
     stem : Stem
     overhang_at_max_lift : float    guide A to roller centre or face, m
-    axial_stiffness : float    of the stem, N/m
+    stiffness : float          from cam to follower mass, N/m; None: of the members described
     damping_ratio : float      of the elastic stem
     guides : GuidePair
     friction : FrictionRange   of both guides
@@ -87,7 +95,7 @@ class Machine:
     viscous_damping: float
     stem: Stem
     overhang_at_max_lift: float
-    axial_stiffness: float
+    stiffness: float | None
     damping_ratio: float
     guides: GuidePair
     friction: FrictionRange
@@ -129,7 +137,7 @@ class Machine:
         return {
             "roller_bearing": roller is not None,
             "pin": roller is not None and roller.pin is not None,
-            "fork": False,
+            "fork": roller is not None and roller.fork is not None,
             "spring": self.spring.design is not None,
             "guides": True,
             "camshaft": shaft is not None,
@@ -159,6 +167,40 @@ class Machine:
     def softer(self) -> Material:
         """Material of cam or follower, that with the lower yield strength."""
         return min(self.cam.material, self.follower.material, key=lambda card: card.yield_strength)
+
+    @property
+    def compliances(self) -> dict[str, float]:
+        """Compliance of each member described between cam and follower mass by its name, m/N.
+
+        The stem counts to its far guide; the line contact and the cam are taken as rigid.
+        """
+        roller, reach = self.roller, self.overhang_at_max_lift + self.guides.spacing
+        pin = None if roller is None else roller.pin
+        fork = None if roller is None else roller.fork
+        ring = None if roller is None else roller.bearing.ring
+        held = None if fork is None or pin is None else fork_compliance(fork, pin)
+        if fork is not None and fork.cheek_length is not None and held is not None:
+            reach -= fork.cheek_length
+        solved = None
+        if roller is not None:
+            solved = roller.ring(self.contact_width, self.spring.preload)
+        members = {
+            "bearing": bearing_compliance(solved, ring, self.spring.preload)
+            if solved is not None and ring is not None
+            else None,
+            "pin": pin_compliance(pin, roller.width)
+            if roller is not None and pin is not None
+            else None,
+            "fork": held,
+            "stem": stem_compliance_along(self.stem, reach),
+            "camshaft": None if self.camshaft is None else shaft_compliance(self.camshaft),
+        }
+        return {name: each for name, each in members.items() if each is not None}
+
+    @property
+    def axial_stiffness(self) -> float:
+        """Stiffness from cam to follower mass, N/m: of the case, else its members in series."""
+        return in_series(self.compliances.values()) if self.stiffness is None else self.stiffness
 
     @property
     def system(self) -> FollowerSystem:
@@ -222,10 +264,6 @@ def machine(case: Case, state: LoadCase) -> Machine:
     card = follower.stem_material
     length = np.inf if follower.stem_length is None else follower.stem_length
     stem = Stem(follower.stem_diameter, card.E, card.nu, length=length)
-    stiffness = follower.stiffness
-    if stiffness is None:
-        reach = follower.overhang_at_max_lift + guides.spacing
-        stiffness = stem.elastic_modulus * 0.25 * np.pi * stem.diameter**2 / reach
     return Machine(
         load_case=state.name,
         speed=state.speed,
@@ -237,7 +275,7 @@ def machine(case: Case, state: LoadCase) -> Machine:
         viscous_damping=follower.viscous_damping,
         stem=stem,
         overhang_at_max_lift=follower.overhang_at_max_lift,
-        axial_stiffness=stiffness,
+        stiffness=follower.stiffness,
         damping_ratio=follower.damping_ratio,
         guides=guides,
         friction=FrictionRange.of(guides, case.tolerances.friction),

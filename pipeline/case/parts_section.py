@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import In, Length, Mass
+from camwright.pipeline.base.quantities import In, Length, Mass, Share
 from camwright.pipeline.case.section import MaterialName, Section, Table, Text
 from camwright.pipeline.follower.flat_face import FlatFace
 
@@ -24,14 +24,16 @@ class ValveTrain(Section):
 class Follower(Section):
     """Translating follower with a roller or a flat face.
 
-    The overhang is from guide A to the roller centre, or to the face. anti_rotation: means that
-    keeps the stem from turning about its axis.
+    The overhang is from guide A to the roller centre, or to the face. stiffness: from cam to
+    follower mass; left out, bearing, pin, fork, stem and camshaft in series. mass: of all that
+    moves, with spring_share of the spring, a third by Rayleigh. anti_rotation: means that keeps
+    the stem from turning about its axis.
     """
 
     defaults: ClassVar[Mapping[str, str]] = {
         "face": "the follower has a roller",
         "stem_length": "the stem is long",
-        "stiffness": "that of the stem's section",
+        "stiffness": "bearing, pin, fork, stem and camshaft in series",
     }
 
     kind: Literal["roller", "flat"] = "roller"
@@ -45,6 +47,7 @@ class Follower(Section):
     stiffness: Annotated[float, In("N/mm", above=0, at_most=1e12)] | None = None
     damping_ratio: Annotated[float, In(at_least=0, below=1)] = 0.05
     anti_rotation: Literal["flat", "key", "square", "guided_fork", "not_needed"] | None = None
+    spring_share: Share = 1.0 / 3.0
     source: Text = ""
 
     @model_validator(mode="after")

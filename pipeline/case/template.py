@@ -87,7 +87,26 @@ name = "track roller, 32 mm"
 C = "6.8 kN"
 C0 = "8.3 kN"
 speed_limit = "6500 rpm"
+# fatigue_load_limit = "350 N"       # P_u; with viscosity and contamination for the modified life
+# viscosity = "30 mm^2/s"            # of oil, or of grease's oil, at the bearing's temperature
+# contamination = "normal_cleanliness"
+# lubrication = "grease_for_life"    # or "grease_relubricated", "oil"
+# temperature = "343.15 K"           # for the life of the grease
+# radial_limit = "4 kN"              # F_r,max and F_0r,max of an outer ring that rolls on a cam
+# static_radial_limit = "6 kN"
 source = "made up for this template: replace by the maker's table"
+
+# [roller.pin]
+# diameter = "10 mm"
+# span = "17 mm"                     # between the middles of the cheeks
+# material = "hardened_steel"
+
+# [roller.fork]
+# cheek_width = "6 mm"               # of each of two cheeks; height, length and bridge for the mass
+# cheek_height = "16 mm"
+# cheek_length = "22 mm"
+# bridge_length = "8 mm"
+# material = "hardened_steel"
 
 [follower]
 mass = "250 g"                       # with the roller and half of the spring

@@ -13,14 +13,14 @@ In the order of the calculation:
 | `jump_and_jamming`      | contact force, follower jump, jam index    | F_n, N; n, rad/s         |
 | `contact_strength`      | endurance, yield, shakedown                | p0, Pa                   |
 | `surface_durability`    | traction, oil film, fatigue, hardened case | T/F_n; lambda; sigma, Pa |
-| `roller_bearing`        | rating, life, speed of the roller bearing  | s0; L10, s; n, rad/s     |
+| `roller_bearing`        | rating, life, speed, grease of the bearing | s0; L10, s; n, rad/s     |
 | `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
 | `spring_strength`       | strength, solid length, buckling, surge    | tau, Pa; f, Hz           |
-| `part_strength`         | pin, outer ring, bore, unbalance           | sigma, Pa; e w, m/s      |
+| `part_strength`         | pin, fork, ring, mass, bore, balance       | sigma, Pa; kg; e w, m/s  |
 | `key_strength`          | key of the cam, slip of its seat           | p, tau, Pa               |
 | `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s; rad   |
 | `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |
-| `wear_and_grease`       | lubrication, expansion and wear            | kappa; m                 |
+| `wear_and_grease`       | expansion and wear of the guides           | m                        |
 | `manufacture`           | space, waviness, chord error, phase        | m                        |
 | `plane_strain_validity` | validity limits of the plane-strain model  | half-widths              |
 | `solution_verification` | residuals, meshes, certificate, benchmarks | relative                 |

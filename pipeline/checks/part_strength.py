@@ -1,24 +1,34 @@
-"""Checks of the parts at the cam: roller pin, outer ring, bore, unbalance."""
+"""Checks of the parts at the cam: pin, fork, outer ring, follower mass, bore, unbalance."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     BORE_SHARE,
+    FOLLOWER_MASS_RATIO,
+    PIN_FATIGUE_SAFETY,
+    PIN_PRESSURE_SHARE,
     PIN_SHARE,
     UNBALANCE,
     LimitValues,
 )
 from camwright.pipeline.checks.check import Demand, check
-from camwright.pipeline.checks.extremes import greatest, worst_case
+from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cam_balance import Balance, balance
+from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.follower import pin_strength
 from camwright.pipeline.follower.bearing_ring import goodman
-from camwright.pipeline.follower.roller_parts import Pin
+from camwright.pipeline.follower.roller import Roller
+from camwright.pipeline.follower.roller_parts import Fork, Pin
 
 
 @check(
@@ -29,19 +39,21 @@ from camwright.pipeline.follower.roller_parts import Pin
     method="32 M/(pi d^3), load uniform over the bearing width",
     lift_can_help=True,
     needs="roller",
+    part="pin",
+    formula="32 M/(pi d^3) <= x Y; M: N (l/4 - b/8) of a pin held at both ends, N l of an overhung"
+    " one, N: greatest normal force over all load cases and angles, l: span, b: roller width, d:"
+    " pin diameter, Y: yield strength, x: limits.pin_share. Fatigue: roller_pin_fatigue.",
+    reason="a bent pin drops the roller",
 )
 def roller_pin(solution: Solution) -> Demand:
     """Bending stress of the roller pin, Pa."""
-    roller = solution.machine.roller
-    pin = None if roller is None else roller.pin
-    if pin is None:
-        return Demand(None, None, note="no pin is given")
+    pin = _roller_and_pin(solution)[1]
     worst = greatest(solution.cycles, lambda cycle: _known(cycle.parts.pin_stress))
     return Demand(
         worst.value,
         allowed_pin_stress(pin, solution.machine.limits),
         worst,
-        figures=(f"{pin.material.name}: {pin.material.source}",),
+        figures=_sources(pin.material),
         method=f"32 M/(pi d^3), {pin.mounting}, load uniform over the bearing width",
     )
 
@@ -51,6 +63,237 @@ def allowed_pin_stress(pin: Pin, limits: LimitValues) -> float:
     return limits[PIN_SHARE] * pin.material.yield_strength
 
 
+class Stress(NamedTuple):
+    """Stress of a part per newton of normal force, Pa/N, and its limit, Pa; None: missing."""
+
+    per_newton: float
+    allowed: float | None
+
+
+def pin_shear(pin: Pin, limits: LimitValues) -> Stress:
+    """Shear stress of the roller pin; by von Mises the share of the yield strength in bending."""
+    allowed = allowed_pin_stress(pin, limits) / 3.0**0.5
+    return Stress(pin_strength.pin_shear_stress(1.0, pin.diameter, pin.overhung), allowed)
+
+
+def seat_pressure(roller: Roller, pin: Pin, limits: LimitValues) -> Stress:
+    """Pressure of the pin in the bore of its bearing."""
+    tensile, share = pin.material.tensile_strength, limits[PIN_PRESSURE_SHARE]
+    area = pin.diameter * roller.width
+    return Stress(1.0 / area, None if tensile is None else share * tensile)
+
+
+def fork_pressure(fork: Fork, pin: Pin, limits: LimitValues) -> Stress:
+    """Pressure of the pin in the cheeks of its fork."""
+    sizes = (pin.diameter, fork.cheek_width, pin.span, pin.overhung)
+    per_newton = pin_strength.cheek_pressure(1.0, *sizes)
+    one, other = fork.material.tensile_strength, pin.material.tensile_strength
+    if fork.pressure_limit is not None or one is None or other is None:
+        return Stress(per_newton, fork.pressure_limit)
+    return Stress(per_newton, limits[PIN_PRESSURE_SHARE] * min(one, other))
+
+
+def _roller_and_pin(solution: Solution) -> tuple[Roller, Pin]:
+    """Roller and its pin.
+
+    Raises
+    ------
+    InputError
+        If the case describes none.
+    """
+    roller = solution.machine.roller
+    if roller is None or roller.pin is None:
+        raise InputError("roller.pin", "missing", "given for its checks")
+    return roller, roller.pin
+
+
+def _sources(*cards: Material) -> tuple[str, ...]:
+    return tuple(f"{card.name}: {card.source}" for card in cards)
+
+
+def _normal_force(solution: Solution, factor: float) -> Extreme:
+    """Greatest normal force times a factor."""
+    return greatest(solution.cycles, lambda cycle: factor * cycle.loads.normal_force)
+
+
+@check(
+    PIN_FATIGUE_SAFETY,
+    id="roller_pin_fatigue",
+    title="Fatigue safety factor of the roller pin in bending",
+    method="Goodman line, bending stress between its extremes over the turn on the pin at rest",
+    lift_can_help=True,
+    needs="roller",
+    part="pin",
+    formula="s_W (1 - s_m/R_m)/s_a >= S; s_a, s_m: amplitude and mean of the bending stress over a"
+    " turn, s_W: fatigue strength in bending, R_m: tensile strength, S: limits.pin_fatigue_safety;"
+    " worst load case.",
+    reason="the pin does not turn: each turn of the cam bends it one way and back",
+)
+def roller_pin_fatigue(solution: Solution) -> Demand:
+    """Fatigue safety factor of the roller pin."""
+    card = _roller_and_pin(solution)[1].material
+    tensile, endured = card.tensile_strength, card.fatigue_bending
+    missing = _without(card, fatigue_bending=endured, tensile_strength=tensile)
+
+    def safety(cycle: Cycle) -> float:
+        stress = _known(cycle.parts.pin_stress)
+        if tensile is None or endured is None or np.isnan(stress).any():
+            return np.nan
+        high, low = stress.max(), stress.min()
+        reversed_ = goodman(np.array(0.5 * (high - low)), np.array(0.5 * (high + low)), tensile)
+        return endured / float(reversed_) if reversed_ > 0.0 else np.inf
+
+    worst = worst_case(solution.cycles, safety, at_least=True)
+    limit = solution.machine.limits[PIN_FATIGUE_SAFETY]
+    return Demand(worst.value, limit, worst, missing, _sources(card))
+
+
+def _without(card: Material, **values: float | None) -> str:
+    """Note on the values of a card that are None."""
+    names = [name.replace("_", " ") for name, value in values.items() if value is None]
+    return "; ".join(f"no {name} of {card.name} is given" for name in names)
+
+
+@check(
+    PIN_SHARE,
+    id="roller_pin_shear",
+    title="Shear stress of the roller pin",
+    unit="MPa",
+    method="4/3 of the mean shear stress over the section beside the bearing",
+    lift_can_help=True,
+    needs="roller",
+    part="pin",
+    formula="4 Q/(3 A) <= x Y/sqrt(3); Q: N/2 of a pin held at both ends, N of an overhung one, N:"
+    " greatest normal force over all load cases and angles, A: section, Y: yield strength, x:"
+    " limits.pin_share.",
+    reason="a short pin shears before it bends",
+)
+def roller_pin_shear(solution: Solution) -> Demand:
+    """Shear stress of the roller pin, Pa."""
+    pin = _roller_and_pin(solution)[1]
+    stress = pin_shear(pin, solution.machine.limits)
+    worst = _normal_force(solution, stress.per_newton)
+    return Demand(worst.value, stress.allowed, worst, figures=_sources(pin.material))
+
+
+@check(
+    PIN_PRESSURE_SHARE,
+    id="roller_pin_pressure",
+    title="Pressure of the roller pin in the bore of its bearing",
+    unit="MPa",
+    method="normal force over the projected area of the seat",
+    lift_can_help=True,
+    needs="roller",
+    part="pin",
+    formula="N/(d b) <= x R_m; N: greatest normal force over all load cases and angles, d: pin"
+    " diameter, b: roller width, R_m: tensile strength of the pin, softer than the ring, x:"
+    " limits.pin_pressure_share.",
+    reason="a seat that yields comes loose and frets",
+)
+def roller_pin_pressure(solution: Solution) -> Demand:
+    """Pressure of the roller pin in the bore of its bearing, Pa."""
+    roller, pin = _roller_and_pin(solution)
+    stress = seat_pressure(roller, pin, solution.machine.limits)
+    worst, card = _normal_force(solution, stress.per_newton), pin.material
+    missing = _without(card, tensile_strength=card.tensile_strength)
+    return Demand(worst.value, stress.allowed, worst, missing, _sources(card))
+
+
+@check(
+    PIN_PRESSURE_SHARE,
+    id="cheek_pressure",
+    title="Pressure of the roller pin in its fork",
+    unit="MPa",
+    method="force and moment of the pin over the projected area of a cheek",
+    lift_can_help=True,
+    needs="roller",
+    part="fork",
+    formula="p <= roller.fork.pressure_limit, else x R_m; p: N/(2 d t) under a pin held at both"
+    " ends, N (6 l + 4 t)/(d t^2) beside an overhung one, N: greatest normal force over all load"
+    " cases and angles, d: pin diameter, t: cheek width, l: cheek to bearing centre, R_m: lower"
+    " tensile strength of fork and pin, x: limits.pin_pressure_share.",
+    reason="a seat that yields lets the pin tilt and the roller run on its edge",
+)
+def cheek_pressure(solution: Solution) -> Demand:
+    """Pressure of the roller pin in its fork, Pa."""
+    roller = solution.machine.roller
+    pin = None if roller is None else roller.pin
+    fork = None if roller is None else roller.fork
+    if fork is None or pin is None:
+        return Demand(None, None, note="no pin is given")
+    stress = fork_pressure(fork, pin, solution.machine.limits)
+    worst = _normal_force(solution, stress.per_newton)
+    if fork.pressure_limit is not None:
+        return Demand(worst.value, stress.allowed, worst, source=fork.source or "roller.fork")
+    cards = (fork.material, pin.material)
+    missing = [_without(card, tensile_strength=card.tensile_strength) for card in cards]
+    note = "; ".join(each for each in dict.fromkeys(missing) if each)
+    return Demand(worst.value, stress.allowed, worst, note, _sources(*cards))
+
+
+@check(
+    FOLLOWER_MASS_RATIO,
+    id="follower_mass",
+    title="Mass of the parts that move with the follower, as described, vs. its stated mass",
+    unit="g",
+    method="volumes times densities, and a share of the spring",
+    moved_by_tolerance=False,
+    formula="m_d <= x m; m_d: roller with bearing, or face, pin, fork, stem and"
+    " follower.spring_share of the spring, of the parts that the scope covers, m: follower.mass,"
+    " x: limits.follower_mass_ratio.",
+    reason="every force of inertia and the jump speed rest on a mass that the parts exceed",
+)
+def follower_mass(solution: Solution) -> Demand:
+    """Mass of the parts that move with the follower, kg, against the stated mass."""
+    masses, missing = moving_masses(solution)
+    allowed = solution.machine.limits[FOLLOWER_MASS_RATIO] * solution.case.follower.mass
+    total = sum(masses.values())
+    parts = ", ".join(f"{name} {shown(mass, 'g')}" for name, mass in masses.items())
+    notes = [f"no {name} is given" for name in missing]
+    notes.append(f"at least {shown(total, 'g')}: {parts}" if missing else parts)
+    return Demand(None if missing else total, allowed, note="; ".join(notes))
+
+
+def moving_masses(solution: Solution) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Masses of the parts that move with the follower, kg, by name, and the keys that are missing.
+
+    A stem without a length counts up to its far guide. A part outside the scope is left out.
+    """
+    machine, follower = solution.machine, solution.case.follower
+    roller, face, design = machine.roller, machine.face, machine.spring.design
+    masses: dict[str, float] = {}
+    missing: list[str] = []
+    shorter = 0.0
+    if face is not None:
+        masses["face"] = face.material.density * face.width * face.depth * face.thickness
+        shorter = face.thickness
+    if roller is not None:
+        pin, fork = roller.pin, roller.fork
+        masses["roller"] = roller.drawn_mass
+        if pin is not None:
+            masses["pin"] = pin.mass(0.0 if fork is None else fork.cheek_width)
+        elif machine.scope.covers("pin"):
+            missing.append("roller.pin")
+        held = None if fork is None or pin is None else fork.mass(pin)
+        if held is not None:
+            masses["fork"] = held
+        elif machine.scope.covers("fork"):
+            missing.append("roller.fork with its lengths and height")
+        if fork is not None:
+            shorter = (fork.cheek_length or 0.0) + (fork.bridge_length or 0.0)
+    length = follower.stem_length
+    if length is None:
+        length = follower.overhang_at_max_lift + machine.guides.spacing
+        missing.append("follower.stem_length")
+    section = 0.25 * np.pi * follower.stem_diameter**2
+    masses["stem"] = float(follower.stem_material.density * section * max(length - shorter, 0.0))
+    if design is not None:
+        masses["spring"] = follower.spring_share * design.mass
+    elif machine.scope.covers("spring"):
+        missing.append("spring.design")
+    return masses, tuple(missing)
+
+
 @check(
     id="roller_ring_fatigue",
     title="Bending fatigue of the roller's outer ring",
@@ -58,9 +301,13 @@ def allowed_pin_stress(pin: Pin, limits: LimitValues) -> float:
     source="fatigue strength in bending",
     method="stress at the groove of the turning ring, finite elements on balls without tension, all"
     " ball positions; amplitude reduced to zero mean stress by the Goodman line",
-    must_have=False,
     lift_can_help=True,
     needs="roller",
+    part="roller_bearing",
+    formula="s_a/(1 - s_m/R_m) <= s_W; s_a, s_m: amplitude and mean of the stress at the groove per"
+    " newton, times the greatest normal force over all load cases and angles, R_m, s_W: tensile and"
+    " fatigue strength of the ring. A ring in a roller of its own is held by it: not judged.",
+    reason="the ring without a housing bends at every ball",
 )
 def roller_ring_fatigue(solution: Solution) -> Demand:
     """Stress amplitude of the outer ring rolling on the cam, Pa."""
@@ -68,7 +315,8 @@ def roller_ring_fatigue(solution: Solution) -> Demand:
     ring = None if roller is None else roller.bearing.ring
     if roller is None or ring is None or roller.solid_reason:
         reason = "there is no roller" if roller is None else roller.solid_reason
-        return Demand(None, None, note=f"{reason}: the roller is modelled as solid on its hub")
+        note = f"{reason}: the roller is modelled as solid on its hub"
+        return Demand(None, None, note=note, must_have=ring is None)
     tensile = ring.tensile_strength
     worst = greatest(solution.cycles, lambda cycle: _ring_amplitude(cycle.parts, tensile))
     missing = [

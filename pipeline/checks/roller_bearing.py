@@ -1,19 +1,42 @@
-"""Checks of the roller bearing: static rating, life, speed, outer ring."""
+"""Checks of the roller bearing: ratings, life, speed, outer ring, lubrication.
+
+The load of the bearing is the normal force: radial, without an axial share. A life is that in the
+worst load case, run all the time.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.limits import ROLLER_LIFE, ROLLER_SPEED_SHARE, ROLLER_STATIC_SAFETY
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.limits import (
+    ROLLER_LIFE,
+    ROLLER_LOAD_SHARE,
+    ROLLER_RELIABILITY,
+    ROLLER_SPEED_SHARE,
+    ROLLER_STATIC_SAFETY,
+    TARGET_LIFE,
+    VISCOSITY_RATIO,
+)
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
-from camwright.pipeline.follower.roller_motion import rating_life, roller_motion, static_safety
+from camwright.pipeline.follower import bearing_life
+from camwright.pipeline.follower.roller_motion import (
+    equivalent_load,
+    rating_life,
+    roller_motion,
+    static_safety,
+)
 from camwright.pipeline.follower.roller_parts import Bearing
+
+STANDSTILL = 1.0  # rpm of the roller, below which the viscosity ratio does not apply
 
 
 def bearing_of(solution: Solution) -> Bearing:
@@ -46,6 +69,21 @@ def _force(solution: Solution) -> Extreme:
     return greatest(solution.cycles, lambda cycle: cycle.loads.normal_force)
 
 
+def _card(bearing: Bearing) -> tuple[str]:
+    return (f"{bearing.name}: {bearing.source}".rstrip(": "),)
+
+
+def _known(force: Array) -> bool:
+    return bool(np.isfinite(force).all())
+
+
+def _without(**values: object) -> list[str]:
+    """Notes on the values that are None, by their words with underscores."""
+    return [
+        f"no {name.replace('_', ' ')} is given" for name, each in values.items() if each is None
+    ]
+
+
 @check(
     ROLLER_STATIC_SAFETY,
     id="roller_static",
@@ -54,6 +92,10 @@ def _force(solution: Solution) -> Extreme:
     lift_can_help=True,
     forecast=True,
     needs="roller",
+    part="roller_bearing",
+    formula="C0/N >= S; C0: static rating, N: greatest normal force over all load cases and angles,"
+    " S: limits.roller_static_safety",
+    reason="beyond it the balls dent the raceways",
 )
 def roller_static(solution: Solution) -> Demand:
     """Static safety factor s0 of the bearing."""
@@ -65,7 +107,32 @@ def roller_static(solution: Solution) -> Demand:
         solution.machine.limits[ROLLER_STATIC_SAFETY],
         worst,
         note="" if rating is not None else f"no static rating is given for {bearing.name}",
-        figures=(f"{bearing.name}: {bearing.source}",),
+        figures=_card(bearing),
+    )
+
+
+@check(
+    ROLLER_LOAD_SHARE,
+    id="roller_load_share",
+    title="Greatest load over dynamic rating of the roller bearing",
+    method="greatest normal force over the dynamic rating",
+    lift_can_help=True,
+    needs="roller",
+    part="roller_bearing",
+    formula="N/C <= x; N: greatest normal force over all load cases and angles, C: dynamic rating,"
+    " x: limits.roller_load_share",
+    reason="beyond it the balls yield in their raceways and no rating life is valid",
+)
+def roller_load_share(solution: Solution) -> Demand:
+    """Greatest normal force over the dynamic rating."""
+    bearing, worst = bearing_of(solution), _force(solution)
+    rating = bearing.C
+    return Demand(
+        worst.value / rating if rating else None,
+        solution.machine.limits[ROLLER_LOAD_SHARE],
+        worst,
+        note="" if rating else f"no dynamic rating is given for {bearing.name}",
+        figures=_card(bearing),
     )
 
 
@@ -76,6 +143,11 @@ def roller_static(solution: Solution) -> Demand:
     lift_can_help=True,
     forecast=True,
     needs="roller",
+    part="roller_bearing",
+    formula="(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the normal force over the"
+    " revolutions of the roller, n: its mean speed, L: limits.roller_life. The worst load case"
+    " counts for the whole life.",
+    reason="the bearing has to last; a clean bearing that lasts longer is not credited",
 )
 def roller_life(solution: Solution) -> Demand:
     """L10 rating life of the bearing, s."""
@@ -88,16 +160,69 @@ def roller_life(solution: Solution) -> Demand:
         target,
         worst,
         note="; ".join(missing),
-        figures=(f"{bearing.name}: {bearing.source}".rstrip(": "),),
+        figures=_card(bearing),
     )
 
 
 def _life(cycle: Cycle, rating: float | None) -> float:
     """L10, s; NaN without a rating or a force."""
     force = cycle.loads.normal_force
-    if rating is None or not np.isfinite(force).all():
+    if rating is None or not _known(force):
         return np.nan
     return rating_life(force, spin(cycle), rating).seconds
+
+
+@check(
+    ROLLER_LIFE,
+    id="roller_modified_life",
+    title="Modified rating life of the roller bearing",
+    method="a1 a_ISO (C / P)^3 million revolutions, the damage of the positions of a turn added;"
+    " infinite at rest",
+    lift_can_help=True,
+    needs="roller",
+    part="roller_bearing",
+    formula="a1 a_ISO (C/P)^3 10^6/n >= L; a1: of limits.roller_reliability, a_ISO: of the"
+    " viscosity ratio and of e_C P_u/P, e_C: of roller.bearing.contamination, P_u: fatigue load"
+    " limit, L: limits.roller_life. The worst load case counts for the whole life.",
+    reason="a thin or dirty film shortens the life to a tenth",
+)
+def roller_modified_life(solution: Solution) -> Demand:
+    """Modified rating life L_nm of the bearing, s."""
+    bearing, limits = bearing_of(solution), solution.machine.limits
+    rating, endured, circle = bearing.C, bearing.fatigue_load_limit, bearing.ball_circle
+    cleanliness, viscosity = bearing.contamination, bearing.viscosity
+    missing = _without(
+        dynamic_rating=rating,
+        fatigue_load_limit=endured,
+        contamination=cleanliness,
+        viscosity=viscosity,
+        pitch_diameter=circle,
+    )
+    missing += ["no life is required"] if limits[ROLLER_LIFE] is None else []
+    worst = Extreme(np.nan)
+    if rating and endured and cleanliness and viscosity and circle:
+        share = bearing_life.contamination_factor(cleanliness, circle)
+
+        def life(cycle: Cycle) -> float:
+            force, kappa = cycle.loads.normal_force, _viscosity_ratio(cycle, bearing)
+            if np.isinf(kappa):
+                return np.inf
+            if not _known(force) or not kappa >= bearing_life.LEAST_VISCOSITY_RATIO:
+                return np.nan
+            return bearing_life.modified_life(
+                force, spin(cycle), rating, share * endured, kappa, limits[ROLLER_RELIABILITY]
+            )
+
+        worst = worst_case(solution.cycles, life, at_least=True)
+        if np.isnan(worst.value):
+            missing.append("not known for a viscosity ratio below 0.1: outside of ISO 281")
+    return Demand(
+        worst.value,
+        limits[ROLLER_LIFE],
+        worst,
+        note="; ".join(missing),
+        figures=(limits.source(ROLLER_RELIABILITY), *_card(bearing)),
+    )
 
 
 @check(
@@ -109,6 +234,10 @@ def _life(cycle: Cycle, rating: float | None) -> float:
     lift_can_help=True,
     forecast=True,
     needs="roller",
+    part="roller_bearing",
+    formula="w (|dP/dtheta| - r)/r <= x n_g; P: pitch curve, r: roller radius, n_g: limiting speed,"
+    " x: limits.roller_speed_share",
+    reason="beyond it seals and grease overheat",
 )
 def roller_speed(solution: Solution) -> Demand:
     """Maximum speed of the roller on its pin, rad/s."""
@@ -123,23 +252,139 @@ def roller_speed(solution: Solution) -> Demand:
     )
 
 
-@check(
-    title="Normal force vs. maximum radial load of the outer ring",
-    unit="N",
-    source="F_r,max of a track roller",
-    method="greatest normal force over the turn",
-    lift_can_help=True,
-    needs="roller",
+def _outer_ring(
+    name: str, words: str, symbol: str, reason: str, rated: Callable[[Bearing], float | None]
+) -> Declaration:
+    @check(
+        id=name,
+        title=f"Normal force vs. maximum {words} load of the outer ring",
+        unit="N",
+        source=f"{symbol} of a track roller",
+        method="greatest normal force over the turn",
+        lift_can_help=True,
+        needs="roller",
+        part="roller_bearing",
+        formula=f"N <= {symbol}; N: greatest normal force over all load cases and angles, {symbol}:"
+        f" maximum {words} load of an outer ring without a housing",
+        reason=reason,
+    )
+    def against_the_ring(solution: Solution) -> Demand:
+        """Maximum normal force, N, against the rating of an unsupported outer ring."""
+        bearing, worst = bearing_of(solution), _force(solution)
+        allowed = rated(bearing)
+        return Demand(
+            worst.value,
+            allowed,
+            worst,
+            note=""
+            if allowed is not None
+            else f"{bearing.name} has no {symbol}, the rating of an outer ring without a housing",
+            figures=_card(bearing),
+        )
+
+    return against_the_ring
+
+
+roller_radial = _outer_ring(
+    "roller_radial",
+    "dynamic radial",
+    "F_r,max",
+    "an outer ring on a cam bends, and breaks in fatigue",
+    lambda bearing: bearing.radial_limit,
 )
-def roller_radial(solution: Solution) -> Demand:
-    """Maximum normal force, N, against the rating of an unsupported outer ring."""
-    bearing, worst = bearing_of(solution), _force(solution)
+roller_static_radial = _outer_ring(
+    "roller_static_radial",
+    "static radial",
+    "F_0r,max",
+    "an outer ring on a cam bends, and breaks under a single overload",
+    lambda bearing: bearing.static_radial_limit,
+)
+
+
+@check(
+    VISCOSITY_RATIO,
+    id="bearing_lubrication",
+    title="Viscosity ratio (kappa) of the roller bearing",
+    method="viscosity over v1 at the mean speed of the roller; infinite at rest",
+    needs="roller",
+    part="roller_bearing",
+    formula="v/v1 >= k; v: viscosity in operation, v1: rated viscosity of ISO 281 at the mean speed"
+    " of the roller and the pitch diameter of its balls, k: limits.viscosity_ratio",
+    reason="below it the film is torn, and the modified life does not count the wear",
+)
+def bearing_lubrication(solution: Solution) -> Demand:
+    """Viscosity ratio of the roller bearing."""
+    bearing = bearing_of(solution)
+    worst = worst_case(
+        solution.cycles, lambda cycle: _viscosity_ratio(cycle, bearing), at_least=True
+    )
+    missing = _without(viscosity=bearing.viscosity, pitch_diameter_of_the_balls=bearing.ball_circle)
     return Demand(
         worst.value,
-        bearing.radial_limit,
+        solution.machine.limits[VISCOSITY_RATIO],
         worst,
-        note=""
-        if bearing.radial_limit is not None
-        else f"{bearing.name} has no rating for an outer ring without a housing",
-        figures=(f"{bearing.name}: {bearing.source}",),
+        note="; ".join(missing),
+        figures=(bearing.source,),
     )
+
+
+def _viscosity_ratio(cycle: Cycle, bearing: Bearing) -> float:
+    """Viscosity ratio at the mean speed; infinite at rest, NaN without its data."""
+    speed, viscosity, circle = _mean_speed(cycle), bearing.viscosity, bearing.ball_circle
+    if viscosity is None or circle is None or np.isnan(speed):
+        return np.nan
+    if speed < STANDSTILL:
+        return np.inf
+    return viscosity / bearing_life.rated_viscosity(speed, circle)
+
+
+def _mean_speed(cycle: Cycle) -> float:
+    """Mean speed of the roller, rpm."""
+    return in_unit(float(np.mean(np.abs(spin(cycle)))), "rpm")
+
+
+@check(
+    id="grease_life",
+    title="Life of the grease in the roller bearing",
+    unit="h",
+    sense="at_least",
+    source="JTEKT's estimate for sealed ball bearings, with n D for a turning outer ring as SKF"
+    " does: recalled, verify",
+    method="of n D, P/C and temperature; the manufacturer's where it is given",
+    lift_can_help=True,
+    needs="roller",
+    part="roller_bearing",
+    formula="log10 F = 6.10 - 4.40e-6 D n - 2.50 (P/C - 0.05) - (0.021 - 1.80e-8 D n) T; F >= L;"
+    " D: outer diameter in mm, n: mean speed in rpm, P: equivalent load, C: dynamic rating, T:"
+    " temperature in degC, L: limits.target_life of a bearing greased for life, else"
+    " roller.bearing.relubrication_interval. Oil has no such life.",
+    reason="a bearing greased for life ends with its grease",
+)
+def grease_life(solution: Solution) -> Demand | None:
+    """Life of the grease, s; None with oil."""
+    bearing = bearing_of(solution)
+    if bearing.lubrication == "oil":
+        return None
+    if bearing.lubrication is None:
+        return Demand(None, None, note="no lubrication of the roller bearing is given")
+    for_life = bearing.lubrication == "grease_for_life"
+    target = solution.machine.limits[TARGET_LIFE] if for_life else bearing.relubrication_interval
+    missing = _without(**{"target_life" if for_life else "relubrication_interval": target})
+    if bearing.grease_life is not None:
+        stated = Extreme(bearing.grease_life)
+        return Demand(stated.value, target, stated, "; ".join(missing), _card(bearing))
+    missing += _without(dynamic_rating=bearing.C, temperature=bearing.temperature)
+    worst = worst_case(solution.cycles, lambda cycle: _grease_life(cycle, solution), at_least=True)
+    if np.isnan(worst.value) and not missing:
+        missing.append("outside the range of the estimate: give roller.bearing.grease_life")
+    return Demand(worst.value, target, worst, "; ".join(missing), _card(bearing))
+
+
+def _grease_life(cycle: Cycle, solution: Solution) -> float:
+    """Estimated life of the grease in a load case, s; NaN without its data or out of its range."""
+    bearing, force, roller = bearing_of(solution), cycle.loads.normal_force, solution.machine.roller
+    if not bearing.C or bearing.temperature is None or roller is None or not _known(force):
+        return np.nan
+    across = 2.0 * roller.radius if bearing.ring is None else bearing.ring.outer_diameter
+    share = equivalent_load(force, spin(cycle)) / bearing.C
+    return bearing_life.grease_life(_mean_speed(cycle), across, share, bearing.temperature)

@@ -1,4 +1,4 @@
-"""Checks of service life: lubrication of the roller bearing, expansion and wear of the guides.
+"""Checks of service life: expansion and wear of the guides.
 
 A check without data in the case is left out.
 """
@@ -8,62 +8,13 @@ from __future__ import annotations
 import numpy as np
 
 from camwright.pipeline.base.material import ROOM
-from camwright.pipeline.base.units import in_unit, shown
-from camwright.pipeline.case.limits import TARGET_LIFE, VISCOSITY_RATIO, WEAR_DEPTH
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import worst_case
 from camwright.pipeline.checks.guide_strength import Side, guide_of, hottest, mean_pv
-from camwright.pipeline.checks.roller_bearing import bearing_of, spin
-from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_friction import bore_closure
-
-STANDSTILL = 1.0  # rpm of the roller, below which the viscosity ratio does not apply
-
-
-@check(
-    VISCOSITY_RATIO,
-    id="bearing_lubrication",
-    title="Viscosity ratio (kappa) of the roller bearing",
-    method="viscosity over v1 at the mean speed of the roller; infinite at rest",
-    must_have=False,
-    needs="roller",
-)
-def bearing_lubrication(solution: Solution) -> Demand | None:
-    """Viscosity ratio of the roller bearing; None without a viscosity."""
-    bearing = bearing_of(solution)
-    viscosity, ring, pitch = bearing.viscosity, bearing.ring, bearing.pitch_diameter
-    if viscosity is None:
-        return None
-    if pitch is None and ring is not None:
-        pitch = ring.pitch_diameter
-
-    def ratio(cycle: Cycle) -> float:
-        speed = in_unit(float(np.mean(np.abs(spin(cycle)))), "rpm")
-        if pitch is None or np.isnan(speed):
-            return np.nan
-        return np.inf if speed < STANDSTILL else viscosity / rated_viscosity(speed, pitch)
-
-    worst = worst_case(solution.cycles, ratio, at_least=True)
-    return Demand(
-        worst.value,
-        solution.machine.limits[VISCOSITY_RATIO],
-        worst,
-        note="" if pitch is not None else "no pitch diameter of the bearing is given",
-        figures=(bearing.source,),
-    )
-
-
-def rated_viscosity(speed: float, pitch_diameter: float) -> float:
-    """Rated kinematic viscosity v1 of a bearing, m2/s, at a speed, rpm, > 0; diameter in m.
-
-    References
-    ----------
-    ISO 281:2007, 9.3.3.2: 45000 n^-0.83 D^-0.5 below 1000 rpm, 4500 n^-0.5 D^-0.5 above, in
-    mm2/s and mm; recalled: verify.
-    """
-    slow = 45_000.0 * speed**-0.83 if speed < 1000.0 else 4500.0 * speed**-0.5
-    return float(1e-6 * slow / np.sqrt(1e3 * pitch_diameter))
 
 
 def _guide_expansion(side: Side) -> Declaration:

@@ -14,17 +14,20 @@ In the order of the calculation:
 | `guide_friction`        | friction bounds and power, temperature     | mu, -; W; K           |
 | `elastic_follower`      | elastic follower, periodic response        | x, m; N, N            |
 | `follower_flight`       | flights and landings in time               | m; m/s; J             |
-| `roller_parts`          | bearing, outer ring and pin of the roller  |                       |
+| `roller_parts`          | bearing, outer ring, pin, fork             |                       |
 | `roller_motion`         | spin, traction demand, rating life         | rad/s; L10, s         |
-| `bearing_ring`          | bending of outer ring and pin              | M, N m; sigma, Pa     |
+| `bearing_life`          | lubrication, modified life, grease life    | kappa; a_ISO; L, s    |
+| `bearing_ring`          | bending of the outer ring                  | M, N m; sigma, Pa     |
 | `bearing_ring_elements` | outer ring on balls by finite elements     | m/N; Pa/N             |
 | `ring_on_balls`         | outer ring as roller                       |                       |
+| `pin_strength`          | bending, shear, pressure of the pin        | sigma, Pa             |
 | `flat_face_motion`      | sliding and entrainment speed of a face    | m/s; pv, Pa m/s       |
 | `follower_kind`         | protocol of the kinds of follower          |                       |
 | `roller`                | roller: geometry, contact body, rolling    | r, m                  |
 | `flat_face`             | flat face: geometry, contact body, sliding | m                     |
 | `camshaft_loads`        | key, bearings, unbalance, counter-hole     | N; Pa; kg m           |
 | `shaft_strength`        | camshaft sections, bending; gear teeth     | Pa; safety, -; rad    |
+| `follower_stiffness`    | bearing, pin, fork, stem, shaft in series  | m/N; N/m              |
 
 A further kind of follower is a class with the attributes of `follower_kind.FollowerKind`, a contour
 in `geometry`, a contact body in `contact` and a section in `case`.

@@ -1,4 +1,4 @@
-"""Outer ring of a bearing that rolls on the cam on its balls; bending of the roller pin."""
+"""Outer ring of a bearing that rolls on the cam on its balls."""
 
 from __future__ import annotations
 
@@ -131,33 +131,3 @@ def ball_stiffness(force: float, diameter: float, modulus: float, poisson: float
     contact = modulus / (2.0 * (1.0 - poisson**2))
     way = (9.0 * force**2 / (16.0 * contact**2 * 0.5 * diameter)) ** (1.0 / 3.0)
     return float(1.3 * force / (2.0 * way))
-
-
-def pin_bending_stress(
-    force: float, diameter: float, width: float, span: float, overhung: bool = False
-) -> float:
-    """Maximum bending stress of the roller pin, Pa, under a load uniform over the bearing width.
-
-    Parameters
-    ----------
-    force : float      N, >= 0
-    diameter : float   of the pin, m, > 0
-    width : float      of the bearing, m, > 0
-    span : float       between the middles of the supports (straddled) or from the face of the
-                       support to the middle of the bearing (overhung), m, > 0
-    overhung : bool
-
-    Raises
-    ------
-    InputError
-        If a value is out of these bounds, or a straddled span is below the bearing width.
-    """
-    for name, value in (("diameter", diameter), ("width", width), ("span", span)):
-        if not 0.0 < value < np.inf:
-            raise InputError(f"roller.pin_{name}", value, "> 0 m")
-    if not 0.0 <= force < np.inf:
-        raise InputError("roller.force", force, ">= 0 N")
-    if not overhung and span < width:
-        raise InputError("roller.pin_span", span, f">= {width:g} m, the width of the bearing")
-    moment = force * span if overhung else force * (span / 4.0 - width / 8.0)
-    return 32.0 * moment / (np.pi * diameter**3)

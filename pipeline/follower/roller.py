@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
@@ -12,18 +13,18 @@ from camwright.geometry.contour import Contour, RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.base.quantities import In, Length, Part
+from camwright.pipeline.base.quantities import In, Length, Mass, Part
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
 from camwright.pipeline.contact.follower_body import FollowerBody, RollerBody
 from camwright.pipeline.contact.oil_film import entrainment_speed
 from camwright.pipeline.contact.traction import Drag, RollingContact, ring_inertia, rolling_contact
-from camwright.pipeline.follower.bearing_ring import pin_bending_stress
 from camwright.pipeline.follower.follower_kind import SurfaceMotion
+from camwright.pipeline.follower.pin_strength import pin_bending_stress
 from camwright.pipeline.follower.ring_on_balls import RingOnBalls, ring_on_balls, solid_reason
 from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motion
-from camwright.pipeline.follower.roller_parts import Bearing, Pin
+from camwright.pipeline.follower.roller_parts import Bearing, Fork, Pin
 from camwright.pipeline.follower.stem_beam import Stem
 
 _NO_SLIP = 1e6  # friction coefficient of rolling without slip
@@ -34,23 +35,29 @@ class Roller(Part):
     """Roller of the follower.
 
     hub_radius: of its pin or inner ring; friction: coefficient of sliding on the cam; roughness:
-    rms.
+    rms; mass: with its bearing, without the pin.
     """
 
     table: ClassVar[str] = "roller"
     word: ClassVar[str] = "roller"
+    defaults: ClassVar[Mapping[str, str]] = {
+        "inertia": "that of a solid ring from hub to surface",
+        "mass": "that of a solid ring from pin, or else hub, to surface",
+    }
 
     radius: Length
     width: Length
     chamfer: Annotated[float, In("mm", at_least=0, at_most=1000)] = 0.0
     hub_radius: Length
     inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
+    mass: Mass | None = None
     crowned: bool = False
     friction: Annotated[float, In(above=0, below=2)] | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     material: Material
     bearing: Bearing
     pin: Pin | None = None
+    fork: Fork | None = None
 
     @property
     def line_width(self) -> float:
@@ -98,12 +105,21 @@ class Roller(Part):
         return ring_inertia(self.radius, self.hub_radius, self.width, self.material.density)
 
     @property
+    def drawn_mass(self) -> float:
+        """Mass with its bearing, kg: of the case, else of the solid ring about the pin."""
+        if self.mass is not None:
+            return self.mass
+        inside = self.hub_radius if self.pin is None else 0.5 * self.pin.diameter
+        area = np.pi * (self.radius**2 - inside**2)
+        return float(self.material.density * self.width * area)
+
+    @property
     def pin_stress_per_newton(self) -> float | None:
         """Bending stress of the pin per newton of contact force, Pa/N; None without a pin."""
         pin = self.pin
         if pin is None:
             return None
-        overhung = pin.mounting == "overhung"
+        overhung = pin.overhung
         return float(pin_bending_stress(1.0, pin.diameter, self.width, pin.span, overhung))
 
     def contour(self, lift: Lift, cam: CamBody) -> Contour:

@@ -12,7 +12,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import PitchCurve, magnitude
 
 BALL_LIFE_EXPONENT = 3.0  # ISO 281: 3 for ball bearings, 10/3 for roller bearings
-_RATED_REVOLUTIONS = 1e6  # of the dynamic rating, ISO 281
+RATED_REVOLUTIONS = 1e6  # of the dynamic rating, ISO 281
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,7 +176,7 @@ def rating_life(
     spin_mean = float(np.mean(np.abs(spin)))
     revolutions = np.inf
     if mean_load > 0.0:
-        revolutions = _RATED_REVOLUTIONS * (dynamic_rating / mean_load) ** exponent
+        revolutions = RATED_REVOLUTIONS * (dynamic_rating / mean_load) ** exponent
     return RatingLife(mean_load, revolutions, revolutions * FULL_TURN / spin_mean)
 
 

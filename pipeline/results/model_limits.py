@@ -41,7 +41,8 @@ MODEL_LIMITS = (
     ModelLimit(
         "The roller is solid on its hub unless the case states outer ring and balls; the ring then"
         " has one thickness, its balls no clearance, and the contact is over a ball. Bearing"
-        " ratings are those of the manufacturer.",
+        " ratings are those of the manufacturer; its load is radial, the normal force, and every"
+        " load case counts as if it ran for the whole life.",
         "roller_radial",
     ),
     ModelLimit(
@@ -52,8 +53,9 @@ MODEL_LIMITS = (
         "Camshaft, camshaft bearings and the drive from crank to cam are rigid, without backlash."
     ),
     ModelLimit(
-        "The follower is rigid. One mass on an elastic stem, with impacts after loss of contact,"
-        " and the surge of the spring are solved in addition, without effect on the loads."
+        "The follower is rigid. One mass on bearing, pin, fork, stem and camshaft in series, as far"
+        " as the case describes them, with impacts after loss of contact, and the surge of the"
+        " spring are solved in addition, without effect on the loads."
     ),
     ModelLimit(
         "Guide friction is Coulomb friction with constant coefficients, and viscous drag where the"

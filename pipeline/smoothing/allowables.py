@@ -11,6 +11,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
     JUMP_SPEED,
     ROLLER_LIFE,
+    ROLLER_LOAD_SHARE,
     ROLLER_STATIC_SAFETY,
     SPRING_FATIGUE,
     SPRING_SOLID,
@@ -20,7 +21,12 @@ from camwright.pipeline.checks.cam_shape import least_concave_radius
 from camwright.pipeline.checks.contact_strength import life_turns, pressure_allowables
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.jump_and_jamming import overspeed
-from camwright.pipeline.checks.part_strength import allowed_pin_stress
+from camwright.pipeline.checks.part_strength import (
+    allowed_pin_stress,
+    fork_pressure,
+    pin_shear,
+    seat_pressure,
+)
 from camwright.pipeline.checks.roller_bearing import allowed_spin
 from camwright.pipeline.checks.spring_strength import Work, hardest_work
 from camwright.pipeline.smoothing.constraints import ROWS
@@ -114,8 +120,21 @@ def force_limits(case: Case) -> dict[str, float]:
         allowed["roller_static"] = bearing.C0 / limits[ROLLER_STATIC_SAFETY]
     if bearing.radial_limit is not None:
         allowed["roller_radial"] = bearing.radial_limit
+    if bearing.static_radial_limit is not None:
+        allowed["roller_static_radial"] = bearing.static_radial_limit
+    if bearing.C is not None:
+        allowed["roller_load_share"] = bearing.C * limits[ROLLER_LOAD_SHARE]
     if pin is not None and roller.pin_stress_per_newton is not None:
         allowed["roller_pin"] = allowed_pin_stress(pin, limits) / roller.pin_stress_per_newton
+    stresses = {}
+    if pin is not None:
+        stresses["roller_pin_shear"] = pin_shear(pin, limits)
+        stresses["roller_pin_pressure"] = seat_pressure(roller, pin, limits)
+    if pin is not None and roller.fork is not None:
+        stresses["cheek_pressure"] = fork_pressure(roller.fork, pin, limits)
+    for name, stress in stresses.items():
+        if stress.allowed is not None:
+            allowed[name] = stress.allowed / stress.per_newton
     return allowed
 
 

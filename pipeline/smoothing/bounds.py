@@ -20,8 +20,13 @@ _PRESSURES = {
 }
 _FORCES = {
     "roller_static": "static load rating of the roller",
+    "roller_load_share": "share of the dynamic load rating of the roller",
     "roller_radial": "maximum radial load of the roller's outer ring",
+    "roller_static_radial": "maximum static radial load of the roller's outer ring",
     "roller_pin": "normal force at the maximum stress of the roller pin",
+    "roller_pin_shear": "normal force at the maximum shear stress of the roller pin",
+    "roller_pin_pressure": "normal force at the maximum pressure in the bearing's bore",
+    "cheek_pressure": "normal force at the maximum pressure of the pin in its fork",
 }
 
 Change = Callable[[Ratings, float], Ratings]

@@ -210,6 +210,22 @@ by_limit(
     "ISO 281 over the turn",
     missing=unlimited("roller_life"),
 )
+by_limit(
+    "roller_load_share",
+    "roller_load_share",
+    lambda: with_loads(normal_force=NAN),
+    400.0 / 1140.0,
+    "N/C",
+    missing=lambda: with_bearing(C=None),
+)
+by_limit(
+    "roller_modified_life",
+    "roller_life",
+    lambda: with_loads(normal_force=NAN),
+    by_hand.modified_life(),
+    "ISO 281, 9.3: damage of each position",
+    missing=lambda: with_bearing(contamination=None),
+)
 tried(
     "roller_speed",
     limited("roller_speed", lambda n: with_bearing(speed_limit=n / 0.7)),

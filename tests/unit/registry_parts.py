@@ -120,6 +120,22 @@ tried(
     400.0,
     "300 + 100 sin",
 )
+tried(
+    "roller_static_radial",
+    limited("roller_static_radial", lambda f: with_bearing(static_radial_limit=f)),
+    lambda: with_bearing(static_radial_limit=None),
+    lambda: with_loads(normal_force=NAN),
+    400.0,
+    "300 + 100 sin",
+)
+tried(
+    "grease_life",
+    limited("grease_life", limit_of("target_life")),
+    lambda: with_bearing(lubrication=None),
+    None,  # the manufacturer's, a constant
+    2000.0,
+    "as stated; the estimate in test_roller_audit",
+)
 by_limit("guide_length", "guide_length", unknown, 2.5, "80 + 20 mm over 30 + 10, Rothbart ch. 6")
 # shaft
 for _name, _area, _strength, _how in (
@@ -285,6 +301,50 @@ by_limit(
     factor=1.0 / 1500e6,
     missing=lambda: with_part("roller", pin=None),
 )
+by_limit(
+    "roller_pin_fatigue",
+    "pin_fatigue_safety",
+    lambda: with_parts(pin_stress=NAN),
+    700.0 * (1.0 - 200.0 / 2000.0) / 100.0,
+    "Goodman: 100 MPa about 200 of 2000, Shigley ch. 6",
+    missing=lambda: with_material("hard", fatigue_bending=None),
+)
+by_limit(
+    "roller_pin_shear",
+    "pin_share",
+    lambda: with_loads(normal_force=NAN),
+    4.0 / 3.0 * 200.0 / (np.pi * 2.5**2),
+    "half of 400 N in a round section, 4/3 of the mean, Shigley sec. 3-11",
+    factor=3.0**0.5 / 1500e6,
+    missing=lambda: with_part("roller", pin=None),
+)
+by_limit(
+    "roller_pin_pressure",
+    "pin_pressure_share",
+    lambda: with_loads(normal_force=NAN),
+    400.0 / (5.0 * 10.0),
+    "N/(d b)",
+    factor=1.0 / 2000e6,
+    missing=lambda: with_material("hard", tensile_strength=None),
+)
+by_limit(
+    "cheek_pressure",
+    "pin_pressure_share",
+    lambda: with_loads(normal_force=NAN),
+    200.0 / (5.0 * 4.0),
+    "half of 400 N on a cheek of 4 mm",
+    factor=1.0 / 900e6,
+    missing=lambda: with_part("roller", fork=None),
+)
+by_limit(
+    "follower_mass",
+    "follower_mass_ratio",
+    None,  # lengths and densities of the case, which refuses a NaN
+    by_hand.moving_mass(),
+    "volumes times densities",
+    factor=1.0 / 0.175,
+    missing=lambda: with_part("follower", stem_length=None),
+)
 tried(
     "roller_ring_fatigue",
     limited("roller_ring_fatigue", lambda p: with_ring(fatigue_bending=p)),
@@ -333,5 +393,5 @@ by_limit(
     lambda: with_speed(np.nan),
     by_hand.viscosity_ratio(),
     "kappa of ISO 281",
-    missing=lambda: with_bearing(pitch_diameter=None, ring=None),
+    missing=lambda: with_bearing(viscosity=None),
 )

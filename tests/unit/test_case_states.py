@@ -80,8 +80,11 @@ def test_the_machine_of_a_case_by_hand():
     stem, follower = found.stem, case.follower
     assert (stem.diameter, stem.elastic_modulus) == (0.010, follower.stem_material.E)
     reach = follower.overhang_at_max_lift + case.guides.spacing
-    stiffness = stem.elastic_modulus * np.pi / 4 * 0.010**2 / reach
-    assert found.axial_stiffness == pytest.approx(stiffness, rel=1e-12)
+    compliance = reach / (stem.elastic_modulus * np.pi / 4 * 0.010**2)
+    assert found.compliances["stem"] == pytest.approx(compliance, rel=1e-12)
+    assert set(found.compliances) == {"stem", "bearing"}
+    series = sum(found.compliances.values())
+    assert found.axial_stiffness == pytest.approx(1.0 / series, rel=1e-12)
     assert found.system.spring is found.spring
     assert found.system.face_friction == 0.0
     assert (found.roller, found.face) == (case.roller, None)

@@ -86,7 +86,7 @@ def test_a_tolerance_is_tightened_with_a_source_and_never_dropped(table, line):
     text = text.replace(header, header + line + "\n") if header in text else text + header + line
     with pytest.raises(InputError, match=line.split(" = ")[0]):
         parse_case(text)
-    zero = line.endswith(("= 0.0", "\"0 deg\""))
+    zero = line.endswith(("= 0.0", '"0 deg"'))
     source = '\nsource = "measured on ten parts"\n'
     text = text + f"[tolerances]{source}" if table != "tolerances" else text + source
     if zero:

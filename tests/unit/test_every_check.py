@@ -36,6 +36,9 @@ MUST_HAVE = {
     *("shakedown", "shakedown_traction", "edge_pressure"),
     # parts
     *("roller_static", "roller_life", "roller_radial", "roller_speed", "roller_pin"),
+    *("roller_static_radial", "roller_load_share", "roller_modified_life", "grease_life"),
+    *("bearing_lubrication", "roller_ring_fatigue", "roller_pin_fatigue", "roller_pin_shear"),
+    *("roller_pin_pressure", "cheek_pressure", "follower_mass"),
     *("guide_pressure_A", "guide_pressure_B", "guide_pv_A", "guide_pv_B", "anti_rotation"),
     *("guide_edge_pressure_A", "guide_edge_pressure_B", "guide_temperature_A"),
     *("guide_temperature_B", "guide_speed_A", "guide_speed_B", "guide_expansion_A"),

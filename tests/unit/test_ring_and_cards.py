@@ -14,9 +14,9 @@ from camwright.pipeline.follower.bearing_ring import (
     Ring,
     ball_stiffness,
     goodman,
-    pin_bending_stress,
 )
 from camwright.pipeline.follower.bearing_ring_elements import ring_bending
+from camwright.pipeline.follower.pin_strength import pin_bending_stress
 
 RING = Ring(7.5e-3, 1e-3, 5e-3, 210e9, 6, 1e8)
 

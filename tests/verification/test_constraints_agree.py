@@ -19,6 +19,7 @@ from camwright.pipeline.checks.contact_strength import life_turns, pressure_allo
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solution
+from camwright.pipeline.follower.roller_parts import Fork
 from camwright.pipeline.smoothing.allowables import force_limits, ratings_of, travel_limits
 from camwright.pipeline.smoothing.constraints import (
     Jet,
@@ -38,7 +39,11 @@ SHAPE = ("spring_travel", "pressure_angle", "curvature_ratio", "undercut", "conc
 LOAD = ("contact_force_margin", "contact_at_overspeed", "jump", "jump_speed", "jam_index",
         "jam_index_friction_max", "roller_static", "roller_radial", "roller_pin", "roller_life",
         "roller_speed", "guide_pressure_A", "guide_pressure_B", "guide_pv_A",
-        "guide_pv_B")  # fmt: skip
+        "guide_pv_B", "roller_static_radial", "roller_load_share", "roller_pin_shear",
+        "roller_pin_pressure", "cheek_pressure")  # fmt: skip
+FORCE = {"roller_radial", "roller_static_radial", "roller_load_share", "roller_pin",
+         "roller_pin_shear", "roller_pin_pressure", "cheek_pressure"}  # fmt: skip
+"""Limits on the normal force besides the static rating, of which the synthesis keeps the least."""
 
 
 @pytest.fixture(scope="module")
@@ -51,11 +56,16 @@ def case():
         "overspeed": 420.0,
     }  # fmt: skip
     steel = replace(cam.material, endurance_slope=14.15, endurance_intercept=66.22)
+    strong = replace(roller.pin.material, tensile_strength=600e6)
     parts = {
         "limits": signed.limits.model_copy(update=limits),
         "cam": replace(cam, material=steel),
         "roller_given": replace(
-            roller, friction=0.1, bearing=replace(roller.bearing, radial_limit=4000.0)
+            roller,
+            friction=0.1,
+            bearing=replace(roller.bearing, radial_limit=4000.0, static_radial_limit=5000.0),
+            pin=replace(roller.pin, material=strong),
+            fork=Fork(cheek_width=6e-3, material=strong),
         ),
         "guides": replace(
             guides, a=replace(guides.a, friction_max=0.12), b=replace(guides.b, friction_max=0.1)
@@ -204,8 +214,7 @@ def test_no_constraint_goes_without_its_check(case, judged):
     ratings = ratings_of(case)
     shape = shape_utilisations(jet(judged[0].contour, np.zeros(1)), variables_of(case), ratings)
     assert set(shape) == set(SHAPE)
-    others = {"roller_radial", "roller_pin"}  # of the same force
-    assert set(worst_loads(case, judged, ratings)) == {*LOAD, "contact_pressure"} - others
+    assert set(worst_loads(case, judged, ratings)) == {*LOAD, "contact_pressure"} - FORCE
 
 
 RANGES = {
@@ -257,7 +266,7 @@ def test_gradients_match_differences(free):
         assert smooth.mean() > 0.95, limit.name
         seen.add(limit.name)
     shape = set(SHAPE) | {LEAST_ENERGY, INITIAL_ENERGY, "contact_pressure"}
-    assert seen == shape | set(LOAD) - {"roller_radial", "roller_pin"}
+    assert seen == shape | set(LOAD) - FORCE
 
 
 @pytest.mark.parametrize("free", [(), tuple(RANGES)])

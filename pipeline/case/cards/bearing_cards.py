@@ -28,7 +28,8 @@ _OF_THE_RING = {
 class BearingCard(Part):
     """A ball bearing with its maker's ratings.
 
-    radial_limit is the load limit of the outer ring without a housing; fatigue_load_limit is P_u.
+    radial_limit and static_radial_limit are the load limits of the outer ring without a housing;
+    fatigue_load_limit is P_u.
     balls is the number in one row, pitch_diameter that of the ball centres, ring_thickness that
     of the outer ring under the groove; the ring is described completely or not at all.
 
@@ -50,6 +51,7 @@ class BearingCard(Part):
     source: str
     fatigue_load_limit: _Rating | None = None
     radial_limit: _Rating | None = None
+    static_radial_limit: _Rating | None = None
     balls: Annotated[int, Count(3, 100)] | None = None
     pitch_diameter: Length | None = None
     ring_thickness: Length | None = None
@@ -90,7 +92,9 @@ class BearingCard(Part):
             name=self.name,
             C=self.C,
             C0=self.C0,
+            fatigue_load_limit=self.fatigue_load_limit,
             radial_limit=self.radial_limit,
+            static_radial_limit=self.static_radial_limit,
             speed_limit=self.speed_limit,
             ring=ring,
             source=self.source,

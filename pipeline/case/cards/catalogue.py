@@ -111,9 +111,10 @@ def undominated(
 
 
 def better_roller(one: BearingCard, other: BearingCard) -> bool:
-    """Whether a bearing of the same size has no lower rating or radial limit."""
+    """Whether a bearing of the same size has no lower rating or load limit."""
     same = (one.outer_diameter, one.width) == (other.outer_diameter, other.width)
-    ring = (one.radial_limit or 0.0) >= (other.radial_limit or 0.0)
+    limits = ("radial_limit", "static_radial_limit", "fatigue_load_limit")
+    ring = all((getattr(one, name) or 0.0) >= (getattr(other, name) or 0.0) for name in limits)
     rated = one.C >= other.C and one.C0 >= other.C0 and one.speed_limit >= other.speed_limit
     return same and ring and rated
 

@@ -11,7 +11,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import ROLLER_STATIC_SAFETY
+from camwright.pipeline.case.limits import ROLLER_LOAD_SHARE, ROLLER_STATIC_SAFETY
 from camwright.pipeline.smoothing.cone_program import Norm, Rows, solved
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.scenario import Scenario
@@ -61,9 +61,14 @@ class RippleBound:
 
 
 def bearable_force(card: BearingCard, case: Case) -> float:
-    """Maximum normal force (N) of a roller, by static rating and outer ring."""
-    static = card.C0 / case.limits[ROLLER_STATIC_SAFETY]
-    return static if card.radial_limit is None else min(static, card.radial_limit)
+    """Maximum normal force (N) of a roller, by its ratings and its outer ring."""
+    limits = (
+        card.C0 / case.limits[ROLLER_STATIC_SAFETY],
+        card.C * case.limits[ROLLER_LOAD_SHARE],
+        card.radial_limit,
+        card.static_radial_limit,
+    )
+    return min(limit for limit in limits if limit is not None)
 
 
 def bearable_energy(force: float, rate: float, preload: float, relief: float) -> float:

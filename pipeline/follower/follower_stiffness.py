@@ -1,0 +1,97 @@
+"""Stiffness of the train from cam to follower mass: compliances of its members in series."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.follower.bearing_ring import ball_stiffness
+from camwright.pipeline.follower.camshaft_loads import Camshaft
+from camwright.pipeline.follower.ring_on_balls import RingOnBalls
+from camwright.pipeline.follower.roller_parts import Fork, OuterRing, Pin
+from camwright.pipeline.follower.stem_beam import Stem
+
+
+def in_series(compliances: Iterable[float]) -> float:
+    """Stiffness of members in series, N/m, of their compliances, m/N.
+
+    Raises
+    ------
+    InputError
+        If the sum is not positive; NaN included.
+    """
+    total = sum(compliances)
+    if not total > 0.0:
+        raise InputError("follower compliance", total, "> 0 m/N")
+    return 1.0 / total
+
+
+def bearing_compliance(solved: RingOnBalls, ring: OuterRing, load: float) -> float:
+    """Compliance of outer ring and balls at a load (N), m/N, mean over the ball positions.
+
+    The ring was solved with other balls; by Castigliano's theorem its compliance changes by the
+    sum of squared ball loads per newton times the change of the balls' compliance.
+    """
+    steel, bending = solved.body.material, solved.bending
+    per_row = ball_stiffness(load / ring.rows, ring.ball_diameter, steel.modulus, steel.poisson)
+    softer = 1.0 / (ring.rows * per_row) - 1.0 / solved.ring.ball_stiffness
+    squares = np.sum(bending.ball_load**2, axis=1)
+    return float(np.mean(bending.compliance + squares * softer))
+
+
+def pin_compliance(pin: Pin, width: float) -> float:
+    """Deflection of the pin at the middle of the bearing per newton, m/N, with shear.
+
+    Straddled: simply supported under a load uniform over the bearing width (m). Overhung: clamped,
+    load at the middle of the bearing.
+
+    References
+    ----------
+    Timoshenko, Strength of Materials I: beams; II: effect of shear.
+    """
+    bar = Stem(pin.diameter, pin.material.E, pin.material.nu, shear=True)
+    span = pin.span
+    if pin.overhung:
+        return span**3 / (3.0 * bar.bending_stiffness) + span * bar.shear_flexibility
+    bend = (8.0 * span**3 - 4.0 * span * width**2 + width**3) / (384.0 * bar.bending_stiffness)
+    return bend + (0.25 * span - 0.125 * width) * bar.shear_flexibility
+
+
+def fork_compliance(fork: Fork, pin: Pin) -> float | None:
+    """Shortening of the cheeks per newton, m/N; None without their height or length."""
+    height, length = fork.cheek_height, fork.cheek_length
+    if height is None or length is None:
+        return None
+    return length / (fork.material.E * fork.cheeks(pin) * fork.cheek_width * height)
+
+
+def stem_compliance_along(stem: Stem, length: float) -> float:
+    """Shortening of the stem over a length (m) per newton, m/N."""
+    area = 0.25 * np.pi * (stem.diameter**2 - stem.bore**2)
+    return float(length / (stem.elastic_modulus * area))
+
+
+def shaft_compliance(shaft: Camshaft) -> float | None:
+    """Deflection of the camshaft at the cam per newton there, m/N, with shear.
+
+    A plain bar on two hinged bearings, the cam between or beyond them; None without diameter or
+    material.
+
+    References
+    ----------
+    Timoshenko, Strength of Materials I: beams; II: effect of shear.
+    """
+    if shaft.diameter is None or shaft.material is None:
+        return None
+    card = shaft.material
+    bar = Stem(shaft.diameter, card.E, card.nu, shear=True)
+    spacing, first = shaft.bearing_spacing, shaft.cam_position
+    second = spacing - first
+    if first >= 0.0 and second >= 0.0:
+        bend = (first * second) ** 2 / (3.0 * bar.bending_stiffness * spacing)
+        return bend + first * second / spacing * bar.shear_flexibility
+    over = -min(first, second)
+    bend = over**2 * (spacing + over) / (3.0 * bar.bending_stiffness)
+    return bend + over * (1.0 + over / spacing) * bar.shear_flexibility
