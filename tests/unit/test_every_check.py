@@ -37,7 +37,9 @@ MUST_HAVE = {
     # parts
     *("roller_static", "roller_life", "roller_radial", "roller_speed", "roller_pin"),
     *("guide_pressure_A", "guide_pressure_B", "guide_pv_A", "guide_pv_B"),
-    *("spring_stress", "spring_fatigue", "spring_solid", "spring_buckling"),
+    *("spring_stress", "spring_fatigue", "spring_solid", "spring_buckling", "spring_surge"),
+    *("spring_coil_gap", "spring_solid_stress", "spring_relaxation", "spring_rate"),
+    *("contact_over_speed", "elastic_contact"),
     # manufacture
     *("profile_waviness", "chord_error"),
     # verification
