@@ -59,9 +59,9 @@ by_limit(
     "contact_over_speed",
     "contact_force_margin",
     unknown,
-    by_hand.fast_contact(350.0),
+    by_hand.fast_contact(520.0),
     "P + k a + a |m w^2 - k phi cot(phi)| cos(theta), without friction",
-    base=lambda: frictionless(700.0),
+    base=lambda: frictionless(1040.0),
     missing=lambda: with_part("spring", design=None),
 )
 tried(
