@@ -59,7 +59,9 @@ class SpeedSweep:
 
     def columns(self) -> dict[Column, Array]:
         """Columns of ``5_speed_sweep.csv``."""
+        preload = np.full(self.crank_speed.size, self.preload)
         return {
+            Column("preload", "N", "Preload of the spring"): preload,
             Column("crank_speed", "rpm", "Crank speed"): self.crank_speed,
             Column(
                 "contact_force_min", "N", "Least normal force over the turn, surge included"
