@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 
 from camwright.geometry.arrays import Array
@@ -16,10 +18,13 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import Demand, check
-from camwright.pipeline.checks.extremes import greatest, least
+from camwright.pipeline.checks.extremes import Extreme, greatest, least
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.cycle.speed_sweep import SpeedSweep, highest_speed
+
+NO_OVERSPEED = "no limits.overspeed is given"
 
 
 @check(
@@ -28,6 +33,9 @@ from camwright.pipeline.cycle.solution import Solution
     method="least normal force over the turn, guide friction and inertia included",
     lift_can_help=True,
     forecast=True,
+    formula="N_min / P >= limits.contact_force_margin; N_min: least normal force over all load"
+    " cases and angles with guide friction and inertia, without surge, P: preload",
+    reason="Decides: a follower that leaves the cam lands on it with an impact.",
 )
 def contact_force_margin(solution: Solution) -> Demand:
     """Minimum contact force over the preload."""
@@ -41,6 +49,9 @@ def contact_force_margin(solution: Solution) -> Demand:
     method="greatest -m w^2 s'' / F_s over the turn; the jump speed is w / sqrt of it",
     lift_can_help=True,
     forecast=True,
+    formula="max(-m w^2 s'' / F_s) <= limits.jump over all load cases and angles; m: moving mass,"
+    " w: cam speed, s'': second derivative of the lift, F_s: spring force",
+    reason="Decides: at 1 the inertia of the follower lifts it off the cam.",
 )
 def jump(solution: Solution) -> Demand:
     """Maximum unloading inertia force over the spring force."""
@@ -111,13 +122,18 @@ def jam_index_friction_max(solution: Solution) -> Demand:
     unit="rpm",
     method="least w sqrt(F_s / (-m w^2 s'')) where the follower decelerates, without friction",
     lift_can_help=True,
+    formula="min(w sqrt(F_s / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
+    " speed, F_s: spring force, m: moving mass, s'': second derivative of the lift",
+    reason="Decides: an engine exceeds its governed speed, and damping and tolerances are not known"
+    " closely.",
 )
 def jump_speed(solution: Solution) -> Demand:
     """Minimum crank speed of follower jump, rad/s."""
-    worst = least(solution.cycles, _jump_speed)
-    over, note = _overspeed(solution)
-    allowed = solution.machine.limits[JUMP_SPEED] * over
-    return Demand(worst.value, allowed, worst._replace(load_case=""), note=note)
+    worst = least(solution.cycles, _jump_speed)._replace(load_case="")
+    over = overspeed(solution.machines)
+    if over is None:
+        return Demand(worst.value, None, worst, note=NO_OVERSPEED)
+    return Demand(worst.value, solution.machine.limits[JUMP_SPEED] * over, worst)
 
 
 @check(
@@ -126,10 +142,16 @@ def jump_speed(solution: Solution) -> Demand:
     title="Minimum contact force / preload at overspeed",
     method="least spring force plus m w^2 s'' at the overspeed, without friction",
     lift_can_help=True,
+    formula="min(F_s + m w^2 s'') / P >= limits.contact_force_margin at w of limits.overspeed; F_s:"
+    " spring force, m: moving mass, s'': second derivative of the lift, P: preload",
+    reason="Decides: the synthesis keeps the contact by this closed form; the sweep adds friction"
+    " and surge.",
 )
 def contact_at_overspeed(solution: Solution) -> Demand:
     """Minimum contact force at the overspeed over the preload."""
-    over, note = _overspeed(solution)
+    limit, over = solution.machine.limits[CONTACT_FORCE_MARGIN], overspeed(solution.machines)
+    if over is None:
+        return Demand(None, limit, note=NO_OVERSPEED)
 
     def force(cycle: Cycle) -> Array:
         scale, loads = (over / cycle.machine.crank_speed) ** 2, cycle.loads
@@ -138,6 +160,31 @@ def contact_at_overspeed(solution: Solution) -> Demand:
         return np.asarray(demands.force_left(loads.spring_force, inertia, preload))
 
     worst = least(solution.cycles, force)._replace(load_case="")
+    return Demand(worst.value, limit, worst)
+
+
+@check(
+    CONTACT_FORCE_MARGIN,
+    id="contact_over_speed",
+    title="Minimum contact force / preload over the speed range",
+    method="normal force of the rigid follower with inertia, guide friction and the surge of the"
+    " spring by the wave equation, at each speed from standstill to over-speed",
+    lift_can_help=True,
+    part="spring",
+    formula="min N(w, theta) / P >= limits.contact_force_margin over all speeds from standstill to"
+    " over-speed; N = (P + k s + m w^2 s'' + c w s' + F_w) / ((1 - j) cos(alpha)), F_w: sum over"
+    " the harmonics of k (phi cot phi - 1) s_h, phi = pi h w / w_1 sqrt(1 - 2 i zeta), j: jam"
+    " index with the sign of the motion, w_1: first natural frequency of the spring, zeta:"
+    " spring.design.damping_ratio",
+    reason="Decides: between the load cases a harmonic of the lift may meet a natural frequency of"
+    " the spring and lift the follower off the cam.",
+)
+def contact_over_speed(solution: Solution) -> Demand:
+    """Minimum contact force over the preload, surge included, from standstill to over-speed."""
+    worst, note = _least_over_speed(
+        solution,
+        lambda sweep: (sweep.contact_force_min, sweep.contact_angle, sweep.contact_error),
+    )
     return Demand(worst.value, solution.machine.limits[CONTACT_FORCE_MARGIN], worst, note=note)
 
 
@@ -146,8 +193,12 @@ def contact_at_overspeed(solution: Solution) -> Demand:
     id="elastic_contact",
     title="Minimum contact force / preload with elastic stem",
     method="one mass on the stiffness of the stem, without friction",
-    must_have=False,
     lift_can_help=True,
+    formula="min N(w, theta) / P >= limits.contact_force_margin over all speeds from standstill to"
+    " over-speed and over the load cases at their varying speed; N: contact force of one mass on"
+    " the stiffness between cam and mass, on the spring with its surge",
+    reason="Decides: the resonance of the follower on its own stiffness unloads the contact more"
+    " than the rigid follower shows.",
 )
 def elastic_contact(solution: Solution) -> Demand:
     """Minimum contact force with an elastic stem over the preload."""
@@ -155,15 +206,50 @@ def elastic_contact(solution: Solution) -> Demand:
         solution.cycles,
         lambda c: c.parts.elastic.response.contact_force / c.machine.spring.preload,
     )
+    swept, note = _least_over_speed(
+        solution,
+        lambda sweep: (sweep.elastic_force_min, sweep.elastic_angle, sweep.elastic_error),
+    )
     histories = [cycle.parts.elastic for cycle in solution.cycles]
     methods = "; ".join(dict.fromkeys(history.method for history in histories))
+    if np.isnan(swept.value) or swept.value < worst.value:
+        worst = swept
+    else:
+        note = ""
     return Demand(
         worst.value,
         solution.machine.limits[CONTACT_FORCE_MARGIN],
         worst,
-        note=_flights(histories),
-        method=f"one mass on the stiffness of the stem, without friction: {methods}",
+        note="; ".join(each for each in (note, _flights(histories)) if each),
+        method="one mass on the stiffness of the stem, without friction: harmonic response with the"
+        f" surge of the spring over the speed range; load cases by {methods}",
     )
+
+
+def _least_over_speed(
+    solution: Solution, measure: Callable[[SpeedSweep], tuple[Array, Array, Array]]
+) -> tuple[Extreme, str]:
+    """Least force over the preload in all sweeps with its angle, and its speed in words.
+
+    Parameters
+    ----------
+    measure : callable   sweep -> force, N, cam angle and sampling error of the force, (m,)
+    """
+    worst, at = Extreme(np.inf), 0.0
+    for sweep in solution.speed_sweeps:
+        force, angle, error = measure(sweep)
+        k = int(np.argmin(force))  # the first NaN, where there is one
+        value = float(force[k]) / sweep.preload
+        if np.isnan(value) or value < worst.value:
+            share = float(error[k] / abs(force[k])) if force[k] else 0.0
+            worst = Extreme(value, "", float(angle[k]), share)
+            at = float(sweep.crank_speed[k])
+        if np.isnan(value):
+            break
+    top = max(float(sweep.crank_speed[-1]) for sweep in solution.speed_sweeps)
+    stated = overspeed(solution.machines) is not None
+    end = shown(top, "rpm", 4) + ("" if stated else f", the fastest load case: {NO_OVERSPEED}")
+    return worst, f"at {shown(at, 'rpm', 4)} of the crank; swept from standstill to {end}"
 
 
 def _flights(histories: list[ElasticHistory]) -> str:
@@ -192,14 +278,7 @@ def _jump_speed(cycle: Cycle) -> Array:
     return np.where(slows, cycle.machine.crank_speed * ratio, free)
 
 
-def overspeed(machines: tuple[Machine, ...]) -> float:
-    """Overspeed of the crank, rad/s; at least the speed of the fastest load case."""
-    fastest = max(machine.crank_speed for machine in machines)
-    return max(machines[0].limits[OVERSPEED] or fastest, fastest)
-
-
-def _overspeed(solution: Solution) -> tuple[float, str]:
-    """Overspeed of the crank, rad/s, and a note where the case has none."""
-    over = overspeed(solution.machines)
-    prescribed = solution.machine.limits[OVERSPEED] == over
-    return over, "" if prescribed else "no overspeed is given: speed of the fastest load case"
+def overspeed(machines: Sequence[Machine]) -> float | None:
+    """Overspeed of the crank, rad/s, at least the fastest load case; None: the case has none."""
+    stated = machines[0].limits[OVERSPEED] is not None
+    return highest_speed(machines) if stated else None

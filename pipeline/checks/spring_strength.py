@@ -1,4 +1,4 @@
-"""Checks of the spring design: strength, fatigue, solid length, buckling, surge."""
+"""Checks of the spring design: strength, fatigue, solid length, buckling, surge, relaxation."""
 
 from __future__ import annotations
 
@@ -7,30 +7,30 @@ from typing import NamedTuple
 
 import numpy as np
 
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import (
-    SPRING_FATIGUE,
-    SPRING_SOLID,
-    SPRING_SURGE,
-    Limit,
-)
+from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit
 from camwright.pipeline.checks.check import Declaration, Demand, check
-from camwright.pipeline.checks.extremes import worst_case
-from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.cycle.speed_sweep import SpringSweep, highest_speed
 from camwright.pipeline.follower.spring import HelicalSpring, Spring, surge_harmonics
 
-NOT_WOUND = "no wire, diameter and coils of the spring are given"
 RATE_TOLERANCE = 0.05  # of the rate, where the case has none
+PRELOAD_TOLERANCE = 0.05  # of the preload, where the case has none
 HARDEST = "preload and rate high"
+RATE_ENDS = "preload high, worst end of the rate"
+STABLE = "stable at any deflection"
 
 
 class Work(NamedTuple):
-    """Working range of the hardest spring in tolerance: preload, maximum force, N; travel, m."""
+    """Hardest spring in tolerance: preload, maximum force, N; travel, m; rate, N/m."""
 
     preload: float
     greatest: float
     travel: float
+    rate: float
 
 
 Measure = Callable[[HelicalSpring, Work], float]
@@ -46,78 +46,197 @@ def hardest_work(spring: Spring, design: HelicalSpring, preload: float, travel: 
     """
     hard = preload * (1.0 + spring.preload_tolerance)
     rate = design.rate * (1.0 + spring.rate_tolerance)
-    return Work(hard, hard + rate * travel, travel)
+    return Work(hard, hard + rate * travel, travel, rate)
 
 
-def _wound(
+def relaxation_allowed(spring: Spring) -> float:
+    """Permissible loss of preload by relaxation, relative: the tolerance of the preload."""
+    return spring.preload_tolerance or PRELOAD_TOLERANCE
+
+
+def _design(solution: Solution) -> HelicalSpring:
+    design = solution.machine.spring.design
+    if design is None:
+        raise InputError("spring.design", "missing", "given for the checks of the spring")
+    return design
+
+
+def _work(solution: Solution) -> Work:
+    preload = max(machine.spring.preload for machine in solution.machines)
+    travel = solution.contour.pitch.lift.highest.value
+    return hardest_work(solution.machine.spring, _design(solution), preload, travel)
+
+
+def _slow(
     name: str,
     measure: Measure,
     *,
     title: str,
     method: str,
+    formula: str,
+    reason: str,
     limit: Limit | None = None,
+    allowed: Callable[[HelicalSpring], float] = lambda _: 1.0,
+    sense: str = "at_most",
+    unit: str = "-",
     source: str = "",
+    note: Callable[[HelicalSpring], str] = lambda _: "",
     lift_can_help: bool = True,
 ) -> Declaration:
-    """Check of the spring design at the upper ends of its tolerances."""
+    """Check of the spring design at the upper ends of its tolerances, without surge."""
 
     @check(
         limit,
         id=name,
         title=title,
-        unit="-",
+        unit=unit,
+        sense="at_least" if sense == "at_least" else "at_most",
         method=method,
         source=source,
         lift_can_help=lift_can_help,
         moved_by_tolerance=False,
+        part="spring",
+        formula=formula,
+        reason=reason,
     )
     def demand(solution: Solution) -> Demand:
-        spring = solution.machine.spring
-        design = spring.design
-        if design is None:
-            return Demand(None, None, note=NOT_WOUND)
-        preload = max(machine.spring.preload for machine in solution.machines)
-        travel = solution.contour.pitch.lift.highest.value
-        bound = 1.0 if limit is None else solution.machine.limits[limit]
-        value = measure(design, hardest_work(spring, design, preload, travel))
-        return Demand(value, bound, figures=(design.source,), corner=_corner(spring))
+        design = _design(solution)
+        bound = allowed(design) if limit is None else solution.machine.limits[limit]
+        return Demand(
+            measure(design, _work(solution)),
+            bound,
+            note=note(design),
+            figures=(design.source,),
+            corner=_corner(solution.machine.spring, HARDEST),
+        )
 
     return demand
 
 
-def _corner(spring: Spring) -> str:
-    toleranced = spring.preload_tolerance > 0 or spring.rate_tolerance > 0
-    return HARDEST if toleranced else ""
+def _corner(spring: Spring, words: str) -> str:
+    return words if spring.preload_tolerance > 0 or spring.rate_tolerance > 0 else ""
 
 
-spring_stress = _wound(
-    "spring_stress",
-    lambda design, work: design.static_use(work.greatest),
+def _worst_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> tuple[float, str]:
+    """Greatest value over the ends of the spring, speeds and ends of the rate, with its speed."""
+    worst, at = -np.inf, 0.0
+    for sweep in solution.spring_sweeps:
+        values = np.max(use(sweep), axis=0)
+        k = int(np.argmax(values))  # the first NaN, where there is one
+        if np.isnan(values[k]) or values[k] > worst:
+            worst, at = float(values[k]), float(sweep.crank_speed[k])
+        if np.isnan(worst):
+            break
+    return worst, f"at {shown(at, 'rpm', 4)} of the crank"
+
+
+@check(
+    id="spring_stress",
     title="Spring shear stress / static strength",
+    unit="-",
     source="0.56 R_m, EN 13906-1: verify",
-    method="Wahl factor, force at maximum lift",
+    method="Wahl factor, greatest force at either end of the spring over the speed range, surge"
+    " included",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    part="spring",
+    formula="tau_max / (0.56 R_m) <= 1, tau = K_w 8 D F / (pi d^3); F: greatest force in the coils"
+    " from standstill to over-speed, preload high and rate at either end, K_w: Wahl factor, R_m:"
+    " tensile strength of the wire",
+    reason="Decides: a spring beyond its yield strength sets and loses the preload that keeps the"
+    " follower on the cam.",
 )
-spring_fatigue = _wound(
-    "spring_fatigue",
-    lambda design, work: design.fatigue_safety(work.preload, work.greatest),
+def spring_stress(solution: Solution) -> Demand:
+    """Greatest shear stress of the wire with surge over the static strength."""
+    design = _design(solution)
+    worst, note = _worst_speed(
+        solution, lambda sweep: design.stress(sweep.greatest) / design.static_strength
+    )
+    corner = _corner(solution.machine.spring, RATE_ENDS)
+    return Demand(worst, 1.0, note=note, figures=(design.source,), corner=corner)
+
+
+@check(
+    SPRING_FATIGUE,
     title="Fatigue safety factor of the spring",
-    limit=SPRING_FATIGUE,
-    method="Wahl factor, from preload to force at maximum lift",
+    method="Wahl factor, range of force at either end of the spring over the speed range, surge"
+    " included",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    part="spring",
+    formula="1 / (tau_a / S_e + tau_m / S_su) >= limits.spring_fatigue; tau_a, tau_m: amplitude and"
+    " mean at the end of the spring with the greater range, over all speeds from standstill to"
+    " over-speed, S_su = 0.67 R_m, S_e: endurance by Zimmerli's point",
+    reason="Decides: a broken spring releases the follower.",
 )
-spring_solid = _wound(
+def spring_fatigue(solution: Solution) -> Demand:
+    """Least fatigue safety of the wire with surge over the speed range."""
+    design = _design(solution)
+    use, note = _worst_speed(
+        solution, lambda sweep: design.fatigue_use(sweep.least, sweep.greatest)
+    )
+    return Demand(
+        np.inf if use == 0.0 else 1.0 / use,
+        solution.machine.limits[SPRING_FATIGUE],
+        note=note,
+        figures=(design.source,),
+        corner=_corner(solution.machine.spring, RATE_ENDS),
+    )
+
+
+spring_solid = _slow(
     "spring_solid",
     lambda design, work: design.solid_clearance(work.preload, work.travel),
     title="Spring solid-height clearance",
     limit=SPRING_SOLID,
+    sense="at_least",
     method="free length less solid length less deflection at maximum lift, over that deflection",
+    formula="(L0 - Lc - s_max) / s_max >= limits.spring_solid; L0, Lc: free and solid length,"
+    " s_max = P/k + h: deflection at maximum lift h, preload P high",
+    reason="Decides: a spring that goes solid stops the follower.",
 )
-spring_buckling = _wound(
-    "spring_buckling",
-    lambda design, _: design.buckling_use,
-    title="Spring free length / buckling length",
-    source="L0 < 2.63 D over the end factor, Shigley ch. 10",
-    method="free length over 2.63 D / end factor",
+spring_coil_gap = _slow(
+    "spring_coil_gap",
+    lambda design, work: design.gap_left(work.preload, work.travel),
+    title="Sum of the gaps between the coils at maximum lift",
+    allowed=lambda design: design.minimum_gaps,
+    sense="at_least",
+    unit="mm",
+    source="1.5 S_a, dynamic load, cold coiled, EN 13906-1:2013, 9.9: verify",
+    method="free length less solid length less deflection at maximum lift",
+    formula="L0 - Lc - s_max >= 1.5 n (0.0015 D^2/d + 0.1 d); L0, Lc: free and solid length, s_max:"
+    " deflection at maximum lift with the preload high, n: active coils, D: mean diameter, d: wire",
+    reason="Decides: below it coils touch before the solid length, the rate rises and the wire"
+    " wears.",
+)
+spring_solid_stress = _slow(
+    "spring_solid_stress",
+    lambda design, work: design.solid_stress(work.rate),
+    title="Shear stress of the spring at its solid length",
+    allowed=lambda design: design.static_strength,
+    unit="MPa",
+    source="0.56 R_m, cold coiled, EN 13906-1:2013, 10.1.1: verify",
+    method="rate times free less solid length, without correction factor, rate high",
+    formula="tau_c = 8 D F_c / (pi d^3) <= 0.56 R_m; F_c = k (L0 - Lc): force at solid length with"
+    " the rate high, R_m: tensile strength of the wire",
+    reason="Decides: a spring is pressed solid when it is coiled, mounted and over-run, and sets"
+    " beyond this stress.",
     lift_can_help=False,
+)
+spring_buckling = _slow(
+    "spring_buckling",
+    lambda design, work: (
+        (design.deflection(work.preload) + work.travel) / design.buckling_deflection
+    ),
+    title="Spring deflection / buckling deflection",
+    source="EN 13906-1:2013, 9.14, after Haringx: verify",
+    method="deflection at maximum lift over s_K with the seating coefficient"
+    " spring.design.end_factor; 0: stable at any deflection",
+    formula="s_max / s_K <= 1, s_K = L0 / (2 (1 - G/E)) (1 - sqrt(1 - (1 - G/E) / (0.5 + G/E)"
+    " (pi D / (nu L0))^2)); s_max: deflection at maximum lift with the preload high, nu: seating"
+    " coefficient",
+    reason="Decides: a spring that buckles rubs on the stem and loses its force.",
+    note=lambda design: STABLE if np.isinf(design.buckling_deflection) else "",
 )
 
 
@@ -127,44 +246,70 @@ spring_buckling = _wound(
     source="tolerance of the rate in the case, else 5 %",
     method="G d^4/(8 D^3 n) of the spring design against spring.rate",
     moved_by_tolerance=False,
+    part="spring",
+    formula="|G d^4 / (8 D^3 n) / k - 1| <= tolerance of the rate; k: spring.rate",
+    reason="Decides: all loads are those of spring.rate, all stresses those of the design.",
 )
 def spring_rate(solution: Solution) -> Demand:
     """Deviation of the rate of the spring design from that of the case, relative."""
-    spring = solution.machine.spring
-    if spring.design is None:
-        return Demand(None, None, note=NOT_WOUND)
+    spring, design = solution.machine.spring, _design(solution)
     allowed = spring.rate_tolerance or RATE_TOLERANCE
-    error = abs(spring.design.rate / spring.rate - 1.0)
-    figures, corner = (spring.design.source,), _corner(spring)
-    return Demand(error, allowed, figures=figures, corner=corner)
+    error = abs(design.rate / spring.rate - 1.0)
+    return Demand(error, allowed, figures=(design.source,), corner=_corner(spring, HARDEST))
 
 
 @check(
     SPRING_SURGE,
     title="Spring surge frequency / cam frequency",
-    method="sqrt(k/m)/2 of the active coils; modes driven by the harmonics of the lift",
-    must_have=False,
+    method="sqrt(k/m)/2 of the active coils over the highest speed of the sweep",
     moved_by_tolerance=False,
+    part="spring",
+    formula="f1 / f_cam >= limits.spring_surge; f1 = sqrt(k/m)/2: first natural frequency of the"
+    " active coils, f_cam: turns of the cam at over-speed, at least at the fastest load case",
+    reason="Decides: below it strong harmonics of the lift drive the coils, and the force on the"
+    " cam depends on a damping that is hardly known.",
 )
 def spring_surge(solution: Solution) -> Demand:
-    """First natural frequency of the spring over the cam frequency."""
-    design = solution.machine.spring.design
-    if design is None:
-        return Demand(None, None, note=NOT_WOUND)
-    lift, fundamental = solution.contour.pitch.lift.values, design.surge_frequency
-
-    def ratio(cycle: Cycle) -> float:
-        return surge_harmonics(lift, cycle.cam_speed, fundamental)[1]
-
-    worst = worst_case(solution.cycles, ratio, at_least=True)
-    fastest = max(machine.cam_speed for machine in solution.machines)
-    highest, _, margin = surge_harmonics(lift, fastest, fundamental)
-    surges = [cycle.parts.surge_force for cycle in solution.cycles]
-    added = max((float(np.abs(each).max()) for each in surges if each is not None), default=0.0)
+    """First natural frequency of the spring over the highest cam frequency."""
+    machine, design = solution.machine, _design(solution)
+    top = highest_speed(solution.machines) / machine.gear_ratio
+    lift = solution.contour.pitch.lift.values
+    highest, ratio, margin = surge_harmonics(lift, top, design.surge_frequency)
+    worst = [(float(each.surge_force.max()), each) for each in solution.speed_sweeps]
+    added, sweep = max(worst, key=lambda each: each[0])
+    speed = float(sweep.crank_speed[int(np.argmax(sweep.surge_force))])
     return Demand(
-        worst.value,
-        solution.machine.limits[SPRING_SURGE],
-        worst,
+        ratio,
+        machine.limits[SPRING_SURGE],
+        Extreme(ratio),
         note=f"highest harmonic of at least 1 % of the acceleration: {highest}; surge lies"
-        f" {margin:.2f} times above it and adds up to {shown(added, 'N', 3)}",
+        f" {margin:.2f} times above it and adds up to {shown(added, 'N', 3)} at"
+        f" {shown(speed, 'rpm', 4)} of the crank with a damping ratio of"
+        f" {design.damping_ratio:g}",
+    )
+
+
+@check(
+    title="Loss of preload by relaxation / preload",
+    unit="-",
+    source="tolerance of the preload in the case, else 5 %",
+    method="spring.design.relaxation of the greatest force, lost at every deflection",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    part="spring",
+    formula="R F_max / P <= tolerance of the preload; R: spring.design.relaxation, share of the"
+    " force lost in 48 h at spring.design.temperature, F_max: force at maximum lift, P: preload",
+    reason="Decides: a relaxed spring no longer has the preload on which every force is based.",
+)
+def spring_relaxation(solution: Solution) -> Demand:
+    """Loss of preload by relaxation at temperature, relative."""
+    spring, design = solution.machine.spring, _design(solution)
+    work = _work(solution)
+    missing = [name for name in ("temperature", "relaxation") if getattr(design, name) is None]
+    return Demand(
+        design.relaxed_preload(work.preload, work.greatest),
+        relaxation_allowed(spring),
+        note="" if not missing else f"no spring.design.{' or '.join(missing)} is given",
+        figures=(design.source,),
+        corner=_corner(spring, HARDEST),
     )

@@ -18,7 +18,7 @@ from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.part_loads import PartLoads, part_loads
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
-from camwright.pipeline.follower.follower_forces import Loads
+from camwright.pipeline.follower.follower_forces import Loads, share_left
 from camwright.pipeline.follower.guide_reactions import GuideReactions
 
 LIFT = Column("lift", "mm", "Lift")
@@ -66,6 +66,16 @@ class Cycle:
     def guides(self) -> GuideReactions:
         """Reactions of the guides."""
         return self.turn.guides
+
+    @property
+    def surged_force(self) -> Array:
+        """Normal force with the surge of the spring, N, >= 0; without a spring design as solved."""
+        loads, surge = self.loads, self.parts.surge_force
+        if surge is None:
+            return loads.normal_force
+        share = share_left(loads.lift_slope, loads.jam_index)
+        added = surge / (share * np.cos(loads.pressure_angle))
+        return np.asarray(np.maximum(loads.normal_force + added, 0.0))
 
     @property
     def cam_speed(self) -> float:

@@ -34,7 +34,7 @@ from camwright.pipeline.follower.guide_friction import (
 )
 from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.follower.roller_motion import RollerMotion, roller_motion
-from camwright.pipeline.follower.spring import surge_force
+from camwright.pipeline.follower.spring import natural_frequency, surge_force
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +112,7 @@ class PartLoads:
             Column("shaft_bearing_load_2", "N", "Load on camshaft bearing 2"): self.shaft_bearing_2,
             Column("spring_stress", "MPa", "Shear stress of the spring wire"): self.spring_stress,
             Column(
-                "spring_surge_force", "N", "Change of the spring force by surge"
+                "spring_surge_force", "N", "Change of the spring force on the follower by surge"
             ): self.surge_force,
             Column("pin_stress", "MPa", "Bending stress of the roller pin"): self.pin_stress,
             Column("roller_speed", "rpm", "Rotational speed of the roller"): self.roller_spin,
@@ -178,7 +178,13 @@ def part_loads(
         spring_stress=None if spring is None else spring.stress(loads.spring_force),
         surge_force=None
         if spring is None
-        else surge_force(loads.lift, machine.cam_speed, spring.rate, spring.surge_frequency),
+        else surge_force(
+            loads.lift,
+            machine.cam_speed,
+            machine.spring.rate,
+            natural_frequency(machine.spring.rate, spring.active_mass),
+            spring.damping_ratio,
+        ),
         pin_stress=None if pin is None else pin * loads.normal_force,
         roller_spin=None if motion is None else motion.spin,
         roller_spin_acceleration=None if motion is None else motion.spin_acceleration,

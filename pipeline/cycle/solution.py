@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -28,6 +29,13 @@ from camwright.pipeline.cycle.certificate_angles import certified, positions_to_
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.crank_speed import speed_ripple
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.speed_sweep import (
+    SpeedSweep,
+    SpringSweep,
+    highest_speed,
+    speed_sweep,
+    spring_sweep,
+)
 from camwright.pipeline.cycle.turn import Turn, turn
 from camwright.pipeline.engine.torque import Torque
 
@@ -85,6 +93,46 @@ class Solution:
     def machine(self) -> Machine:
         """The machine in the design load case."""
         return self.machines[0]
+
+    @cached_property
+    def speed_sweeps(self) -> tuple[SpeedSweep, ...]:
+        """Sweeps from standstill to over-speed, one for each preload of the load cases."""
+        first = {cycle.machine.spring.preload: cycle for cycle in reversed(self.cycles)}
+        return tuple(
+            speed_sweep(each.machine, self.contour, each.loads.rubbing, self._speeds)
+            for each in first.values()
+        )
+
+    @cached_property
+    def spring_sweeps(self) -> tuple[SpringSweep, ...]:
+        """Forces in the spring over the speed, at the highest preload and each end of the rate.
+
+        Empty without a spring design.
+        """
+        spring = self.machine.spring
+        design = spring.design
+        if design is None:
+            return ()
+        preload = max(machine.spring.preload for machine in self.machines)
+        hard = preload * (1.0 + spring.preload_tolerance)
+        shares = dict.fromkeys((1.0 - spring.rate_tolerance, 1.0, 1.0 + spring.rate_tolerance))
+        return tuple(
+            spring_sweep(
+                replace(
+                    self.machine, spring=replace(spring, rate=design.rate * share, preload=hard)
+                ),
+                design,
+                self.contour.pitch,
+                self._speeds,
+            )
+            for share in shares
+        )
+
+    @property
+    def _speeds(self) -> tuple[float, ...]:
+        """Crank speeds of the load cases and over-speed, rad/s."""
+        speeds = [machine.crank_speed for machine in self.machines]
+        return (*speeds, highest_speed(self.machines))
 
 
 class ContactStore(Protocol):

@@ -2,21 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, Literal
+from types import MappingProxyType
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array, finite
 from camwright.geometry.errors import InputError
-from camwright.pipeline.base.quantities import In, Length, Part, Preload, Pressure, Rate
+from camwright.pipeline.base.quantities import (
+    In,
+    Length,
+    Part,
+    Preload,
+    Pressure,
+    Rate,
+    Share,
+    Temperature,
+)
 
 DEAD_COILS = 2.0  # of squared and ground ends
 SHEAR_STRENGTH_SHARE = 0.67  # shear over tensile strength, S_su / R_m
 ZIMMERLI = {"plain": (241e6, 379e6), "peened": (398e6, 534e6)}  # S_sa, S_sm by treatment, Pa
 _STRENGTH_DIAMETER = 0.001  # m, of strength_at_1mm
-BUCKLING = 2.63  # stability limit of free length times end factor over mean diameter, steel
+STATIC_STRENGTH = 0.56  # permissible shear stress over R_m, also at solid length, cold coiled
+DYNAMIC_GAP = 1.5  # minimum gaps of a dynamic load over those of a static one, cold coiled
+ISOTROPIC = 2.6  # E / G at a Poisson ratio of 0.3
 
 WireModulus = Annotated[float, In("GPa", above=0, at_most=1e5)]
 WireDensity = Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
@@ -28,9 +41,12 @@ Treatment = Literal["plain", "peened"]
 class HelicalSpring(Part):
     """Cylindrical compression spring of round wire with squared and ground ends.
 
-    mean_diameter D over wire_diameter d from 3 to 20; coils: active; end_factor: 1 pivoted at both
-    ends, 0.707 pivoted and fixed, 0.5 flat; tensile strength of the wire
-    R_m = strength_at_1mm (d / 1 mm)^-strength_exponent; name: of a catalogue.
+    mean_diameter D over wire_diameter d from 3 to 20; coils: active; end_factor: seating
+    coefficient, 1 pivoted at both ends, 0.7 pivoted and fixed, 0.5 flat; tensile strength of the
+    wire R_m = strength_at_1mm (d / 1 mm)^-strength_exponent; damping_ratio: of each mode of the
+    surge, 0.002 to 0.02 without a damper coil or friction insert (practice of valve springs,
+    recalled: verify); relaxation: share of the greatest force that is lost at `temperature` in
+    48 h at its stress, of the maker or EN 13906-1 annex A; name: of a catalogue.
 
     Raises
     ------
@@ -41,6 +57,9 @@ class HelicalSpring(Part):
 
     table: ClassVar[str] = "spring.design"
     labels: ClassVar[tuple[str, ...]] = ("name",)
+    defaults: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"elastic_modulus": "2.6 times the shear modulus: isotropic, Poisson ratio 0.3"}
+    )
 
     wire_diameter: Length
     mean_diameter: Length
@@ -48,10 +67,14 @@ class HelicalSpring(Part):
     free_length: Length
     end_factor: Annotated[float, In(above=0, at_most=2)] = 0.5
     shear_modulus: WireModulus
+    elastic_modulus: WireModulus | None = None
     density: WireDensity
     strength_at_1mm: Pressure
     strength_exponent: WireExponent
     treatment: Treatment = "plain"
+    damping_ratio: Annotated[float, In(above=0, at_most=0.5)] = 0.01
+    temperature: Temperature | None = None
+    relaxation: Share | None = None
     source: str = ""
     name: str = ""
 
@@ -111,12 +134,16 @@ class HelicalSpring(Part):
     @property
     def surge_frequency(self) -> float:
         """First natural frequency between fixed ends, sqrt(k/m)/2, Hz."""
-        return 0.5 * float(np.sqrt(self.rate / self.active_mass))
+        return natural_frequency(self.rate, self.active_mass)
+
+    @property
+    def _stress_per_newton(self) -> float:
+        """Shear stress of the wire without correction factor, 8 D / (pi d^3), Pa/N."""
+        return 8.0 * self.mean_diameter / (np.pi * self.wire_diameter**3)
 
     def stress(self, force: ArrayLike) -> Array:
         """Maximum shear stress (...) of the wire with Wahl factor, Pa."""
-        plain = 8.0 * self.mean_diameter / (np.pi * self.wire_diameter**3)
-        return self.wahl_factor * plain * finite("spring.force", force)
+        return self.wahl_factor * self._stress_per_newton * finite("spring.force", force)
 
     def deflection(self, force: float) -> float:
         """Deflection from the free length, m."""
@@ -130,6 +157,37 @@ class HelicalSpring(Part):
         deflection = self.deflection(preload) + travel
         return (self.free_length - self.solid_length - deflection) / deflection
 
+    def gap_left(self, preload: float, travel: float) -> float:
+        """Sum of the gaps between the active coils at full lift, m; negative: solid."""
+        return self.free_length - self.solid_length - self.deflection(preload) - travel
+
+    @property
+    def minimum_gaps(self) -> float:
+        """Minimum sum of the gaps between the active coils under a dynamic load, 1.5 S_a, m.
+
+        S_a = n (0.0015 D^2/d + 0.1 d) of a cold-coiled spring.
+
+        References
+        ----------
+        EN 13906-1:2013, 9.9 (by the formulas of an open implementation of it: verify).
+        """
+        D, d = self.mean_diameter, self.wire_diameter
+        return DYNAMIC_GAP * self.coils * (0.0015 * D**2 / d + 0.1 * d)
+
+    def solid_stress(self, rate: float) -> float:
+        """Shear stress at the solid length with a rate, N/m, without correction factor, Pa.
+
+        References
+        ----------
+        EN 13906-1:2013, 10.1.1 (recalled, verify): at most 0.56 R_m, cold coiled.
+        """
+        return self._stress_per_newton * rate * (self.free_length - self.solid_length)
+
+    @property
+    def static_strength(self) -> float:
+        """Permissible shear stress under a static load and at solid length, 0.56 R_m, Pa."""
+        return STATIC_STRENGTH * self.tensile_strength
+
     def static_use(self, force: float) -> float:
         """Static utilisation: shear stress over 0.56 R_m.
 
@@ -137,41 +195,69 @@ class HelicalSpring(Part):
         ----------
         EN 13906-1 (recalled, verify); Shigley's Mechanical Engineering Design, ch. 10.
         """
-        strength = 0.56 * self.tensile_strength
-        return float(self.stress(force)) / strength
+        return float(self.stress(force)) / self.static_strength
 
-    def fatigue_safety(self, force_min: float, force_max: float) -> float:
-        """Fatigue safety factor by the Goodman line through the point of Zimmerli.
+    def fatigue_use(self, force_min: ArrayLike, force_max: ArrayLike) -> Array:
+        """Utilisation (...) by the Goodman line through the point of Zimmerli.
 
         The line passes the shear strength 0.67 R_m on the axis of mean stress and the amplitude and
-        mean of Zimmerli for infinite life. Infinite without load, 0 for a shear strength below the
-        mean stress of Zimmerli.
+        mean of Zimmerli for infinite life. Infinite for a shear strength below the mean stress of
+        Zimmerli. A mean below zero counts as zero.
+
+        Raises
+        ------
+        InputError
+            If a minimum is above its maximum, or a force is not finite.
 
         References
         ----------
         Shigley's Mechanical Engineering Design, ch. 10: Zimmerli's data, torsional Goodman.
         """
-        if not 0.0 <= force_min <= force_max:
-            raise InputError("spring.force", force_min, "0 <= minimum <= maximum, N")
-        low, high = float(self.stress(force_min)), float(self.stress(force_max))
-        amplitude, mean = 0.5 * (high - low), 0.5 * (high + low)
+        low, high = self.stress(force_min), self.stress(force_max)
+        if not (low <= high).all():
+            raise InputError("spring.force", float(np.max(force_min)), "minimum <= maximum, N")
+        amplitude, mean = 0.5 * (high - low), np.maximum(0.5 * (high + low), 0.0)
         shear_strength = SHEAR_STRENGTH_SHARE * self.tensile_strength
         zimmerli_amplitude, zimmerli_mean = ZIMMERLI[self.treatment]
         endurance = zimmerli_amplitude / (1.0 - zimmerli_mean / shear_strength)
-        if not endurance > 0.0:
-            return 0.0
-        use = amplitude / endurance + mean / shear_strength
-        return 1.0 / use if use > 0.0 else np.inf
+        if endurance <= 0.0:
+            return np.full(amplitude.shape, np.inf)
+        return np.asarray(amplitude / endurance + mean / shear_strength)
+
+    def fatigue_safety(self, force_min: ArrayLike, force_max: ArrayLike) -> float:
+        """Least fatigue safety factor of ranges of force (...), see `fatigue_use`.
+
+        Infinite without load.
+        """
+        use = float(np.max(self.fatigue_use(force_min, force_max)))
+        return np.inf if use == 0.0 else 1.0 / use
 
     @property
-    def buckling_use(self) -> float:
-        """Free length over the limit of stability against buckling at any deflection.
+    def buckling_deflection(self) -> float:
+        """Deflection at which the spring buckles, m; infinite if it is stable at any.
+
+        s_K = L0 / (2 (1 - G/E)) (1 - sqrt(1 - (1 - G/E)/(0.5 + G/E) (pi D/(nu L0))^2)).
 
         References
         ----------
-        Shigley's Mechanical Engineering Design, ch. 10: L0 < 2.63 D/alpha for steel.
+        EN 13906-1:2013, 9.14 (by the formulas of an open implementation of it: verify); Haringx,
+        Philips Research Reports 3 (1948) 401-449.
         """
-        return self.free_length * self.end_factor / (BUCKLING * self.mean_diameter)
+        ratio = self.shear_modulus / (self.elastic_modulus or ISOTROPIC * self.shear_modulus)
+        slender = np.pi * self.mean_diameter / (self.end_factor * self.free_length)
+        root = 1.0 - (1.0 - ratio) / (0.5 + ratio) * slender**2
+        if root < 0.0:
+            return np.inf
+        return float(self.free_length * 0.5 / (1.0 - ratio) * (1.0 - np.sqrt(root)))
+
+    def relaxed_preload(self, preload: float, greatest: float) -> float | None:
+        """Loss of preload by relaxation over the preload; None without data.
+
+        The share of the greatest force that is lost acts at every deflection.
+        """
+        if self.temperature is None or self.relaxation is None:
+            return None
+        return self.relaxation * greatest / preload
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -231,42 +317,63 @@ def surge_harmonics(
     return highest, ratio, ratio / highest if highest else np.inf
 
 
-def surge_force(
-    lift_values: Array,
-    cam_speed: float,
-    rate: float,
-    frequency: float,
-    damping: float = 0.01,
-    modes: int = 8,
-) -> Array:
-    """Dynamic force of the surge of the spring at its fixed end, (n,), N.
+def natural_frequency(rate: float, active_mass: float) -> float:
+    """First natural frequency between fixed ends, sqrt(k/m)/2, Hz."""
+    return 0.5 * float(np.sqrt(rate / active_mass))
 
-    One end follows the lift, the other is fixed; the coils move as
-    s (1 - x) + sum q_j sin(j pi x), each mode driven by -2/(j pi) of the acceleration. Higher modes
-    respond quasi-statically, with a sum in closed form. Without damping the response to a harmonic
-    w is k (phi / sin(phi) - 1), phi = pi w / w_1.
+
+class DynamicStiffness(NamedTuple):
+    """Force per displacement of the moving end, less the rate, at moving and fixed end, N/m."""
+
+    moving: NDArray[np.complex128]
+    fixed: NDArray[np.complex128]
+
+
+def dynamic_stiffness(
+    drive: ArrayLike, rate: float, frequency: float, damping: float
+) -> DynamicStiffness:
+    """Dynamic stiffness (...) of the waves in the coils, less the rate.
+
+    One end moves harmonically, the other is fixed. The coils obey the wave equation with structural
+    damping, which gives each mode the same damping ratio; the forces less the static one are
+    k (phi cot phi - 1) and k (phi / sin phi - 1) per displacement, with
+    phi = pi w / w_1 sqrt(1 - 2 i zeta).
+
+    Parameters
+    ----------
+    drive : array (...)   w, rad/s, >= 0
+    rate : float          k, N/m
+    frequency : float     of the first mode between fixed ends, Hz
+    damping : float       damping ratio zeta of each mode, > 0
+
+    References
+    ----------
+    Norton, Cam Design and Manufacturing Handbook (2009), ch. 15: spring surge; waves in a bar,
+    one end fixed, Timoshenko, Vibration Problems in Engineering.
+    """
+    w = finite("drive", drive)
+    phi = 0.5 * w / frequency * np.sqrt(1.0 - 2.0j * damping)
+    still = phi == 0.0
+    phi = np.where(still, 1.0, phi)
+    decay = np.exp(-1.0j * phi)  # at most 1 in size
+    whole = 1.0 - decay**2
+    moving = rate * (1.0j * phi * (1.0 + decay**2) / whole - 1.0)
+    fixed = rate * (2.0j * phi * decay / whole - 1.0)
+    return DynamicStiffness(np.where(still, 0.0, moving), np.where(still, 0.0, fixed))
+
+
+def surge_force(
+    lift_values: Array, cam_speed: float, rate: float, frequency: float, damping: float
+) -> Array:
+    """Dynamic force of the surge at the moving end of the spring, (n,), N.
 
     Parameters
     ----------
     lift_values : array (n,)   at equal angles of one turn, m
     cam_speed : float          rad/s
-    rate : float               k, N/m
-    frequency : float          of the first mode, Hz
-    damping : float            damping ratio of each mode
-    modes : int
-
-    References
-    ----------
-    Norton, Cam Design and Manufacturing Handbook (2009), ch. 15: spring surge.
+    rate, frequency, damping   see `dynamic_stiffness`
     """
     spectrum = np.fft.rfft(finite("lift", lift_values))
     drive = np.arange(spectrum.size) * cam_speed
-    order = np.arange(1, modes + 1)
-    beyond = 1.0 / 6.0 + np.sum(2.0 * (-1.0) ** order / (order * np.pi) ** 2)
-    force = rate * beyond * (drive / (2.0 * frequency)) ** 2 * spectrum
-    for j in range(1, modes + 1):
-        own = 2.0 * np.pi * frequency * j
-        response = own**2 - drive**2 + 2.0j * damping * own * drive
-        q = 2.0 / (j * np.pi) * drive**2 * spectrum / response
-        force -= rate * j * np.pi * (-1.0) ** j * q
-    return np.fft.irfft(force, len(lift_values))
+    moving = dynamic_stiffness(drive, rate, frequency, damping).moving
+    return np.fft.irfft(moving * spectrum, len(lift_values))

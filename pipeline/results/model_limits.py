@@ -53,9 +53,13 @@ MODEL_LIMITS = (
         "Camshaft, camshaft bearings and the drive from crank to cam are rigid, without backlash."
     ),
     ModelLimit(
-        "The follower is rigid. One mass on bearing, pin, fork, stem and camshaft in series, as far"
-        " as the case describes them, with impacts after loss of contact, and the surge of the"
-        " spring are solved in addition, without effect on the loads."
+        "The loads are those of a rigid follower on a spring without mass. The surge of the spring"
+        " enters the contact force over the speed range, the stress of the spring and the life of"
+        " the roller bearing, with a damping ratio that is hardly known; coils that touch and the"
+        " motion after a loss of contact do not. One mass on bearing, pin, fork, stem and camshaft"
+        " in series, as far as the case describes them, with impacts after loss of contact, is"
+        " solved in addition.",
+        "contact_over_speed",
     ),
     ModelLimit(
         "Guide friction is Coulomb friction with constant coefficients, and viscous drag where the"

@@ -134,6 +134,10 @@ class RunFolder:
         """``5_pressure.npz``: contact pressure at every position of every load case."""
         write_atomic(self._file(f"trial_{trial}/5_pressure.npz"), npz_bytes(arrays))
 
+    def write_speed_sweep(self, trial: int, values: Values) -> None:
+        """``5_speed_sweep.csv``: extremes over the turn from standstill to over-speed."""
+        self._write_table(f"trial_{trial}/5_speed_sweep.csv", values)
+
     def write_guides(self, trial: int, arrays: Mapping[str, ArrayLike]) -> None:
         """``5_guides.npz``: line load of the guides at every position, pressure in the bores."""
         write_atomic(self._file(f"trial_{trial}/5_guides.npz"), npz_bytes(arrays))

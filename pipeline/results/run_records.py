@@ -27,6 +27,7 @@ from camwright.pipeline.cycle.cycle import (
     Cycle,
 )
 from camwright.pipeline.cycle.rolling_history import rolling_record
+from camwright.pipeline.cycle.speed_sweep import SpeedSweep
 from camwright.pipeline.engine.crankshaft import CrankMotion
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.results.trial import Trial
@@ -94,12 +95,19 @@ def cycle_columns(cycles: tuple[Cycle, ...]) -> dict[Column, Cells]:
     }
 
 
+def sweep_columns(sweeps: tuple[SpeedSweep, ...]) -> dict[Column, Array]:
+    """Columns of ``5_speed_sweep.csv``: one sweep a preload, one below the other."""
+    tables = [sweep.columns() for sweep in sweeps]
+    return {column: np.concatenate([each[column] for each in tables]) for column in tables[0]}
+
+
 def column_table(trial: Trial) -> dict[str, tuple[Column, ...]]:
     """Columns of a solved trial, with unit and meaning, by file of its folder."""
     tables: dict[str, Values] = {
         "2_lift.csv": lift_columns(trial.case, trial.lift),
         "3_contour.csv": contour_columns(trial.case, trial.contour),
         "5_cycle.csv": cycle_columns(trial.cycles),
+        "5_speed_sweep.csv": sweep_columns(trial.solution.speed_sweeps),
     }
     if trial.limits_in_use is not None:
         tables["2_limits.csv"] = limit_columns(*trial.limits_in_use)

@@ -13,6 +13,7 @@ from camwright.pipeline.results.run_records import (
     lift_columns,
     limit_columns,
     pressure_arrays,
+    sweep_columns,
     trial_record,
 )
 from camwright.pipeline.results.trial import Trial
@@ -41,6 +42,7 @@ class TrialWriter:
             turns = {cycle.load_case: cycle.rolling for cycle in trial.cycles}
             folder.write_envelope(number, envelope_arrays(turns))
         folder.write_cycle(number, cycle_columns(trial.cycles))
+        folder.write_speed_sweep(number, sweep_columns(trial.solution.speed_sweeps))
         folder.write_pressure(number, pressure_arrays(trial.cycles))
         folder.write_guides(number, guide_arrays(trial.cycles))
         self.judge(trial)

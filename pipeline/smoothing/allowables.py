@@ -20,7 +20,6 @@ from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.cam_shape import least_concave_radius
 from camwright.pipeline.checks.contact_strength import life_turns, pressure_allowables
 from camwright.pipeline.checks.guide_strength import pv_limit
-from camwright.pipeline.checks.jump_and_jamming import overspeed
 from camwright.pipeline.checks.part_strength import (
     allowed_pin_stress,
     fork_pressure,
@@ -28,7 +27,8 @@ from camwright.pipeline.checks.part_strength import (
     seat_pressure,
 )
 from camwright.pipeline.checks.roller_bearing import allowed_spin
-from camwright.pipeline.checks.spring_strength import Work, hardest_work
+from camwright.pipeline.checks.spring_strength import Work, hardest_work, relaxation_allowed
+from camwright.pipeline.cycle.speed_sweep import highest_speed
 from camwright.pipeline.smoothing.constraints import ROWS
 from camwright.pipeline.smoothing.scenario import Ratings
 
@@ -53,7 +53,8 @@ def ratings_of(case: Case) -> Ratings:
     pressure, pressure_by = _least(pressure_allowables(machine, life_turns(states)))
     normal_force, normal_force_by = _least(force_limits(case))
     by_rating = normal_force_by == "roller_static"
-    over = overspeed(states) / machine.gear_ratio
+    # Without a stated over-speed the contact is kept at the fastest load case.
+    over = highest_speed(states) / machine.gear_ratio
     return Ratings(
         roller_radius=roller.radius,
         offset=machine.cam.offset,
@@ -82,7 +83,8 @@ def travel_limits(case: Case) -> dict[str, float]:
     """Greatest lift allowed by each check of the spring, m, by its id.
 
     Where rate or preload is free, the spring design is open and the spring travel alone limits
-    the lift.
+    the lift. Stress and fatigue are those without surge, which depends on the lift: a lower bound
+    of their demands.
     """
     spring, limits = case.spring, case.limits
     allowed = {}
@@ -99,6 +101,16 @@ def travel_limits(case: Case) -> dict[str, float]:
         ),
         "spring_solid": lambda work: (
             limits[SPRING_SOLID] - design.solid_clearance(work.preload, work.travel)
+        ),
+        "spring_coil_gap": lambda work: (
+            design.minimum_gaps - design.gap_left(work.preload, work.travel)
+        ),
+        "spring_buckling": lambda work: (
+            design.deflection(work.preload) + work.travel - design.buckling_deflection
+        ),
+        "spring_relaxation": lambda work: (
+            (design.relaxed_preload(work.preload, work.greatest) or 0.0)
+            - relaxation_allowed(spring)
         ),
     }
     for name, excess in over.items():

@@ -20,16 +20,34 @@ WAHL = (4.0 * C - 1.0) / (4.0 * C - 4.0) + 0.615 / C
 SHEAR = WAHL * 8.0 * COIL / (np.pi * WIRE**3)  # Pa per N, Wahl
 TENSILE = 1974e6 * 6.0**-0.108
 ZIMMERLI = 398e6 / (1.0 - 534e6 / (0.67 * TENSILE))
-SWING, MIDDLE = (0.5 * SHEAR * (HARDEST + sign * made.PRELOAD * 1.05) for sign in (-1, 1))
 SOLID = FREE - WIRE * (COILS + 2.0)
 DEFLECTION = made.PRELOAD * 1.05 / RATE + made.STROKE
 COIL_MASS = 7850.0 * 0.25 * np.pi * WIRE**2 * np.pi * COIL * COILS
 SURGE = 0.5 * np.sqrt(RATE / COIL_MASS) * 2.0 * np.pi / made.CAM_SPEED
+PHI = np.pi / (SURGE * np.sqrt(1.05))  # of the stiffest spring at the fastest speed
+AT_REST = 0.5 * made.STROKE * 1.05 * RATE * (PHI / np.sin(PHI) - 1.0)  # surge at the fixed end
+TOP, LEAST = HARDEST + AT_REST, made.PRELOAD * 1.05 - AT_REST
+SWING, MIDDLE = (0.5 * SHEAR * (TOP + sign * LEAST) for sign in (-1, 1))
+ISOTROPIC = 1.0 / 2.6  # G/E
+SLENDER = (1.0 - ISOTROPIC) / (0.5 + ISOTROPIC) * (np.pi * COIL / FREE) ** 2
+BUCKLES = FREE * 0.5 / (1.0 - ISOTROPIC) * (1.0 - np.sqrt(1.0 - SLENDER))  # pivoted ends
+GAPS = 1.5 * COILS * (0.0015 * COIL**2 / WIRE + 0.1 * WIRE)
 DENSE = np.linspace(0.0, np.pi, 20001)
 RADIUS = made.BASE + 0.5 * made.STROKE * (1.0 - np.cos(DENSE))
 SLOPE, CURVE = 0.5 * made.STROKE * np.sin(DENSE), 0.5 * made.STROKE * np.cos(DENSE)
 PITCH_RADIUS = (RADIUS**2 + SLOPE**2) ** 1.5 / (RADIUS**2 + 2.0 * SLOPE**2 - RADIUS * CURVE)
 TORQUE = np.abs(made.cycle().loads.cam_torque)
+
+
+def fast_contact(cam_speed: float) -> float:
+    """Least contact force over the preload on 5 mm (1 - cos) without friction.
+
+    A + |B| cos: B = a (m w^2 - k phi cot phi), phi = pi w/w_1 sqrt(1 - 0.02 i).
+    """
+    own = np.pi * np.sqrt(made.RATE / COIL_MASS)
+    phi = np.pi * cam_speed / own * np.sqrt(1.0 - 0.02j)
+    swing = 0.5 * made.STROKE * (made.MASS * cam_speed**2 - made.RATE * phi / np.tan(phi))
+    return float((made.PRELOAD + 0.5 * made.RATE * made.STROKE - np.abs(swing)) / made.PRELOAD)
 
 
 def roller_spin() -> np.ndarray:

@@ -6,6 +6,7 @@ import numpy as np
 from check_tools import by_limit, check, counted, limit_of, limited, tried, unlimited
 from trial_variants import (
     NAN,
+    frictionless,
     reversing,
     unknown,
     with_bearing,
@@ -46,6 +47,7 @@ by_limit(
     ),
     "w sqrt(F_s/(-m w^2 s'')), Norton",
     factor=1.0 / (2.0 * made.CAM_SPEED),
+    missing=unlimited("overspeed"),
 )
 by_limit(
     "contact_at_overspeed",
@@ -53,6 +55,16 @@ by_limit(
     lambda: with_loads(spring_force=NAN),
     float((by_hand.SPRING + by_hand.INERTIA).min()) / made.PRELOAD,
     "F_s + m w^2 s''",
+    missing=unlimited("overspeed"),
+)
+by_limit(
+    "contact_over_speed",
+    "contact_force_margin",
+    unknown,
+    by_hand.fast_contact(520.0),
+    "P + k a + a |m w^2 - k phi cot(phi)| cos(theta), without friction",
+    base=lambda: frictionless(1040.0),
+    missing=lambda: with_part("spring", design=None),
 )
 tried(
     "contact_pressure_at_life",

@@ -31,14 +31,14 @@ tried(
         "spring_stress",
         lambda u: with_design(
             strength_at_1mm=1974e6
-            * float(by_hand.SHEAR * by_hand.HARDEST / (0.56 * by_hand.TENSILE))
+            * float(by_hand.SHEAR * by_hand.TOP / (0.56 * by_hand.TENSILE))
             / u
         ),
     ),
     lambda: with_part("spring", design=None),
     lambda: with_design(strength_at_1mm=np.nan),
-    float(by_hand.SHEAR * by_hand.HARDEST / (0.56 * by_hand.TENSILE)),
-    "Wahl; 0.56 R_m, EN 13906-1",
+    float(by_hand.SHEAR * by_hand.TOP / (0.56 * by_hand.TENSILE)),
+    "Wahl; 0.56 R_m, EN 13906-1; k (phi/sin(phi) - 1) at the fixed end",
 )
 by_limit(
     "spring_fatigue",
@@ -57,12 +57,68 @@ by_limit(
     missing=lambda: with_part("spring", design=None),
 )
 tried(
-    "spring_buckling",
-    loaded("spring_buckling", lambda u: with_design(free_length=u * 2.63 * by_hand.COIL / 0.5)),
+    "spring_coil_gap",
+    loaded(
+        "spring_coil_gap",
+        lambda gap: with_design(
+            free_length=by_hand.WIRE * (by_hand.COILS + 2.0) + by_hand.DEFLECTION + gap
+        ),
+    ),
     lambda: with_part("spring", design=None),
-    lambda: with_design(free_length=np.nan),
-    by_hand.FREE * 0.5 / (2.63 * by_hand.COIL),
-    "L0 < 2.63 D/alpha, Shigley ch. 10",
+    unknown,
+    1e3 * (by_hand.SOLID - by_hand.DEFLECTION),
+    "L0 - d (n + 2) - x; S_a of EN 13906-1 in test_spring",
+)
+tried(
+    "spring_solid_stress",
+    loaded(
+        "spring_solid_stress",
+        lambda stress: with_design(
+            free_length=by_hand.WIRE * (by_hand.COILS + 2.0)
+            + stress * by_hand.WAHL / (by_hand.SHEAR * 1.05 * by_hand.RATE)
+        ),
+    ),
+    lambda: with_part("spring", design=None),
+    lambda: with_design(strength_at_1mm=np.nan),
+    1e-6 * by_hand.SHEAR / by_hand.WAHL * 1.05 * by_hand.RATE * by_hand.SOLID,
+    "8 D k (L0 - Lc)/(pi d^3)",
+)
+tried(
+    "spring_buckling",
+    lambda share: with_design(
+        end_factor=float(
+            np.sqrt(
+                by_hand.SLENDER
+                / (
+                    1.0
+                    - (
+                        1.0
+                        - 2.0
+                        * (1.0 - by_hand.ISOTROPIC)
+                        * by_hand.DEFLECTION
+                        / (share * by_hand.FREE)
+                    )
+                    ** 2
+                )
+            )
+        )
+    ),
+    lambda: with_part("spring", design=None),
+    lambda: with_design(end_factor=np.nan),
+    by_hand.DEFLECTION / by_hand.BUCKLES,
+    "Haringx's s_K with pivoted ends",
+    base=lambda: with_design(end_factor=1.0),
+)
+tried(
+    "spring_relaxation",
+    loaded(
+        "spring_relaxation",
+        lambda loss: with_design(relaxation=loss * 1.05 * made.PRELOAD / by_hand.HARDEST),
+    ),
+    lambda: with_design(relaxation=None),
+    lambda: with_design(relaxation=np.nan),
+    0.02 * by_hand.HARDEST / (1.05 * made.PRELOAD),
+    "2 % of the greatest force over the preload",
 )
 tried(
     "spring_rate",

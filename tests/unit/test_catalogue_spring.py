@@ -11,7 +11,7 @@ WIRE = """
 [wires.steel]
 shear_modulus = "80 GPa"
 density = "7850 kg/m^3"
-strength_at_1mm = "2000 MPa"
+strength_at_1mm = "2400 MPa"
 strength_exponent = 0.1
 treatment = "peened"
 source = "a test"
@@ -177,7 +177,7 @@ def test_a_catalogue_with_the_keys_of_version_0_1_is_read(tmp_path, peened, trea
          "catalogue.wires.steel.shear_modulus = 80 mm, must be in a unit of the dimension of GPa"),
         ('"7850 kg/m^3"', "7850",
          "catalogue.wires.steel.density = 7850, must be a number with a unit"),
-        ('"2000 MPa"', '"-1 MPa"',
+        ('"2400 MPa"', '"-1 MPa"',
          "catalogue.wires.steel.strength_at_1mm = -1 MPa, must be > 0"),
         ('treatment = "peened"', 'treatment = "shot"',
          "catalogue.wires.steel.treatment = shot, must be 'plain' or 'peened'"),

@@ -34,7 +34,9 @@ def test_jump_speed_by_hand():
     record = check.as_record()
     assert record["demand"] == pytest.approx(RPM * speed, rel=1e-3)
     assert record["limit"] == pytest.approx(1.3 * RPM * 2.0 * made.CAM_SPEED)
-    assert "no overspeed is given" in check.note
+    bare = jump_and_jamming.jump_speed(with_limits(overspeed=None))
+    assert (bare.limit, bare.status) == (None, "not_evaluated")
+    assert "no limits.overspeed is given" in bare.note
     over = jump_and_jamming.jump_speed(with_limits(overspeed=400.0))
     assert over.as_record()["limit"] == pytest.approx(1.3 * RPM * 400.0)
 

@@ -45,6 +45,8 @@ density = "7850 kg/m^3"
 strength_at_1mm = "1974 MPa"
 strength_exponent = 0.108
 treatment = "peened"
+temperature = "60 degC"
+relaxation = 0.01
 """
 PIN = """
 [roller.pin]
@@ -147,8 +149,9 @@ def test_a_must_have_that_is_not_described_is_not_evaluated_and_blocks(bare):
         *("spring_stress", "spring_fatigue", "spring_solid", "spring_buckling", "roller_pin"),
         *("key_pressure", "key_pressure_shaft", "key_shear", "cam_slip"),
         *("roller_ring_fatigue", "cheek_pressure", "follower_mass"),
+        *("spring_surge", "spring_coil_gap", "spring_solid_stress", "spring_relaxation"),
     }
-    for name in (*must, "spring_surge"):
+    for name in must:
         assert checks[name].status == "not_evaluated"
         assert checks[name].blocks is (name in must)
         assert checks[name].note
@@ -170,9 +173,14 @@ def test_spring_by_hand(full):
     top = preload + rate * (1 + case.spring.rate_tolerance) * 0.02
     C = D / d
     wahl = (4 * C - 1) / (4 * C - 4) + 0.615 / C
+    # 10 mm (1 - cos): the surge adds k (phi / sin(phi) - 1) at the fixed end
+    frequency = 0.5 * np.sqrt(rate / (7850 * 0.25 * np.pi * d**2 * np.pi * D * n))
+    fastest = max(machine.cam_speed for machine in full.machines)
+    phi = 0.5 * fastest / frequency
+    top += rate * 0.01 * (phi / np.sin(phi) - 1)
     stress = wahl * 8 * top * D / (np.pi * d**3)
     strength = 0.56 * 1974e6 * 6**-0.108
-    assert checks["spring_stress"].demand == pytest.approx(stress / strength, rel=1e-9)
+    assert checks["spring_stress"].demand == pytest.approx(stress / strength, rel=1e-5)
     deflection = preload / rate + 0.02
     room = 0.13 - d * (n + 2) - deflection
     assert checks["spring_solid"].demand == pytest.approx(room / deflection, rel=1e-9)
@@ -348,7 +356,8 @@ def test_a_preview_loses_the_contact_but_follows_no_flight(bare):
     assert elastic.response.lost
     assert elastic.flights == ()
     check = jump_and_jamming.elastic_contact(preview)
-    assert (check.status, check.note) == ("fail", "")
+    assert check.status == "fail"
+    assert "losses of contact" not in check.note
     assert check.demand == jump_and_jamming.elastic_contact(harmonic(case)).demand
 
 

@@ -72,6 +72,17 @@ def with_guide(side: str, **values: Any) -> Solution:
     return with_part("guides", **{side: guide})
 
 
+def frictionless(overspeed: float) -> Solution:
+    """The solution without friction in the guides, up to an overspeed, rad/s of the crank."""
+    guides = made.case().guides
+    smooth = {
+        side: made.changed(getattr(guides, side), friction=0.0, friction_max=0.0)
+        for side in ("a", "b")
+    }
+    limits = made.changed(made.case().limits, overspeed=overspeed)
+    return with_case(guides=made.changed(guides, **smooth), limits=limits)
+
+
 def with_design(**values: Any) -> Solution:
     return with_part("spring", design=made.changed(made.case().spring.design, **values))
 

@@ -152,7 +152,7 @@ def test_shape_limit_is_that_of_its_check(case, judged, name):
 
 
 @pytest.mark.parametrize("name", ["spring_travel", "spring_stress", "spring_fatigue",
-                                  "spring_solid"])  # fmt: skip
+                                  "spring_solid", "spring_coil_gap"])  # fmt: skip
 def test_travel_of_each_check_of_the_spring_brings_it_to_its_limit(case, judged, name):
     solved, limits = judged[0], travel_limits(case)
     pitch = solved.contour.pitch
@@ -160,8 +160,19 @@ def test_travel_of_each_check_of_the_spring_brings_it_to_its_limit(case, judged,
     stretched = replace(lift, values=lift.values * (limits[name] / lift.highest.value))
     wider = replace(solved.contour, pitch=replace(pitch, lift=stretched))
     declared = [each for each in CHECKS if each.id == name]
-    (check,) = checks_of(replace(solved, contour=wider), declared)
-    assert check.utilisation == pytest.approx(1.0, rel=1e-9)
+    solved = replace(solved, contour=wider)
+    tolerance = 1e-9
+    if name in ("spring_stress", "spring_fatigue"):
+        # The synthesis bounds them without surge: at rest; the greatest force is sampled, and the
+        # least one is that of the lowest lift, above zero here, not the preload.
+        still = solved.case.limits.model_copy(update={"overspeed": None})
+        at_rest = tuple(replace(each, speed=0.0, limits=still) for each in solved.machines)
+        solved, tolerance = replace(solved, machines=at_rest), 1e-5
+        if name == "spring_fatigue":
+            lowest = solved.machines[0].spring.rate * solved.contour.pitch.lift.lowest.value
+            tolerance = lowest / solved.machines[0].spring.preload
+    (check,) = checks_of(solved, declared)
+    assert check.utilisation == pytest.approx(1.0, rel=tolerance)
     assert ratings_of(case).travel == min(limits.values())
 
 

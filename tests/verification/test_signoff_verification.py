@@ -194,6 +194,7 @@ def test_published_machine_by_finite_elements(hardened: bool) -> None:
 
 def states(overspeed: int) -> Case:
     text = GX120.read_text(encoding="utf-8")
+    text = text.replace("[limits]", f'[limits]\noverspeed = "{overspeed} rpm"', 1)
     text += '\n[[load_case]]\nname = "start"\nspeed = "0 rpm"\n'
     text += f'\n[[load_case]]\nname = "overspeed"\nspeed = "{overspeed} rpm"\n'
     return parse_case(text).with_positions(90)

@@ -68,7 +68,11 @@ class SpringDemand:
             reasons.append("shear stress")
         if spring.fatigue_safety(preload, greatest) < self.fatigue_safety:
             reasons.append("fatigue")
-        if spring.buckling_use > 1.0:
+        if spring.gap_left(preload, self.travel) < spring.minimum_gaps:
+            reasons.append("gap between coils")
+        if spring.solid_stress((1.0 + self.rate_spread) * spring.rate) > spring.static_strength:
+            reasons.append("stress at solid length")
+        if spring.deflection(preload) + self.travel > spring.buckling_deflection:
             reasons.append("buckling")
         return tuple(reasons)
 

@@ -1,0 +1,326 @@
+"""Sweep over the speed from standstill to over-speed: surge, contact forces, cam torque."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array, freeze, uniform_turn
+from camwright.geometry.contour import Contour
+from camwright.geometry.follower_path import FollowerPath
+from camwright.pipeline.base.tables import Column
+from camwright.pipeline.case.limits import OVERSPEED
+from camwright.pipeline.case.machine import Machine
+from camwright.pipeline.follower.follower_forces import Rubbing, follower_loads, share_left
+from camwright.pipeline.follower.spring import (
+    HelicalSpring,
+    Spring,
+    dynamic_stiffness,
+    natural_frequency,
+)
+
+ANGLES = 720
+UNIFORM = 61  # speeds at equal distances
+SIGNIFICANT = 0.01  # force of a harmonic at resonance over the preload
+# Speeds about a resonance, in widths: the damping ratio times its speed.
+_ABOUT = np.array([-2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0])
+_REFINED = 17
+
+
+@dataclass(frozen=True, eq=False)
+class SpeedSweep:
+    """Extremes over one turn at constant speeds from standstill; arrays (m,), SI.
+
+    contact_force_* are of the normal force of the rigid follower with inertia, viscous drag, guide
+    friction and the surge of the spring, negative where the contact is lost; elastic_force_min is
+    of the axial force on the elastic stem without friction, surge included; *_angle are the cam
+    angles of the minima; surge_force is the greatest magnitude at the moving end. preload is that
+    of the load cases swept; *_error are the sampling errors of the minima, N.
+    """
+
+    preload: float
+    crank_speed: Array
+    contact_force_min: Array
+    contact_force_max: Array
+    contact_angle: Array
+    contact_error: Array
+    elastic_force_min: Array
+    elastic_angle: Array
+    elastic_error: Array
+    surge_force: Array
+    torque_min: Array
+    torque_max: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, **{name: getattr(self, name) for name in _arrays(type(self))})
+
+    def columns(self) -> dict[Column, Array]:
+        """Columns of ``5_speed_sweep.csv``."""
+        preload = np.full(self.crank_speed.size, self.preload)
+        return {
+            Column("preload", "N", "Preload of the spring"): preload,
+            Column("crank_speed", "rpm", "Crank speed"): self.crank_speed,
+            Column(
+                "contact_force_min", "N", "Least normal force over the turn, surge included"
+            ): self.contact_force_min,
+            Column(
+                "contact_force_max", "N", "Greatest normal force over the turn, surge included"
+            ): self.contact_force_max,
+            Column("contact_angle", "deg", "Cam angle of the least normal force"): (
+                self.contact_angle
+            ),
+            Column(
+                "elastic_force_min", "N", "Least contact force with an elastic stem and surge"
+            ): self.elastic_force_min,
+            Column("surge_force", "N", "Greatest change of the spring force by surge"): (
+                self.surge_force
+            ),
+            Column("torque_min", "N m", "Least cam torque over the turn"): self.torque_min,
+            Column("torque_max", "N m", "Greatest cam torque over the turn"): self.torque_max,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class SpringSweep:
+    """Least and greatest force (2, m), N, at moving and fixed end of a spring over the speed.
+
+    crank_speed (m,), rad/s.
+    """
+
+    crank_speed: Array
+    least: Array
+    greatest: Array
+
+    def __post_init__(self) -> None:
+        freeze(self, crank_speed=self.crank_speed, least=self.least, greatest=self.greatest)
+
+
+def highest_speed(machines: Sequence[Machine]) -> float:
+    """Highest crank speed of the sweep, rad/s: over-speed, at least the fastest load case."""
+    fastest = max(machine.crank_speed for machine in machines)
+    return max(machines[0].limits[OVERSPEED] or fastest, fastest)
+
+
+def speed_sweep(
+    machine: Machine, contour: Contour, rubbing: Rubbing, speeds: Sequence[float]
+) -> SpeedSweep:
+    """Extremes over the turn from standstill to the greatest of some speeds.
+
+    Parameters
+    ----------
+    rubbing : Rubbing    of the guides, from a solved load case
+    speeds : of float    crank speeds that the sweep contains, rad/s
+    """
+    follower = _Follower.of(machine, contour.pitch, rubbing)
+    ratio = machine.gear_ratio
+    grid = follower.resonant.grid(machine, np.asarray(speeds) / ratio)
+    swept = follower.extremes(grid)
+    worst = {
+        int(np.argmin(swept["contact_force_min"])),
+        int(np.argmin(swept["elastic_force_min"])),
+        int(np.argmax(swept["surge_force"])),
+    }
+    finer = _between(grid, worst)
+    more = follower.extremes(finer)
+    both = np.concatenate([grid, finer])
+    order = np.argsort(both)
+    return SpeedSweep(
+        preload=machine.spring.preload,
+        crank_speed=ratio * both[order],
+        **{name: np.concatenate([swept[name], more[name]])[order] for name in swept},
+    )
+
+
+def spring_sweep(
+    machine: Machine, design: HelicalSpring, pitch: FollowerPath, speeds: Sequence[float]
+) -> SpringSweep:
+    """Forces at both ends of the spring from standstill to the greatest of some speeds.
+
+    Parameters
+    ----------
+    machine : Machine    with the rate and the preload of the spring at its tolerances
+    speeds : of float    crank speeds that the sweep contains, rad/s
+    """
+    resonant = _Resonant.of(machine.spring, design, pitch)
+    grid = resonant.grid(machine, np.asarray(speeds) / machine.gear_ratio)
+    least, greatest = resonant.end_forces(grid)
+    finer = _between(grid, {int(np.argmax(np.max(greatest - least, axis=0)))})
+    more = resonant.end_forces(finer)
+    return SpringSweep(
+        machine.gear_ratio * np.concatenate([grid, finer]),
+        np.concatenate([least, more[0]], axis=1),
+        np.concatenate([greatest, more[1]], axis=1),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Resonant:
+    """Harmonics of the lift, m, and the spring that they drive; None: without mass."""
+
+    lift: Array
+    spectrum: NDArray[np.complex128]
+    spring: Spring
+    design: HelicalSpring | None
+
+    @classmethod
+    def of(cls, spring: Spring, design: HelicalSpring | None, pitch: FollowerPath) -> _Resonant:
+        lift = pitch.lift(uniform_turn(ANGLES))
+        return cls(lift, np.fft.rfft(lift), spring, design)
+
+    @property
+    def order(self) -> Array:
+        return np.arange(self.spectrum.size, dtype=float)
+
+    @property
+    def amplitude(self) -> Array:
+        """Amplitudes of the harmonics, m, from the first."""
+        return 2.0 / ANGLES * np.abs(self.spectrum[1:])
+
+    @property
+    def first(self) -> float:
+        """First natural frequency of the spring, rad/s."""
+        if self.design is None:
+            return np.inf
+        return 2.0 * np.pi * natural_frequency(self.spring.rate, self.design.active_mass)
+
+    def stiffness(self, cam_speed: Array) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Dynamic stiffness less the rate (m, harmonics) at moving and fixed end, N/m."""
+        drive = cam_speed[:, None] * self.order
+        if self.design is None:
+            zero = np.zeros(drive.shape, dtype=complex)
+            return zero, zero
+        frequency = self.first / (2.0 * np.pi)
+        return dynamic_stiffness(drive, self.spring.rate, frequency, self.design.damping_ratio)
+
+    def back(self, spectrum: NDArray[np.complex128]) -> Array:
+        return np.fft.irfft(spectrum, ANGLES)
+
+    def end_forces(self, cam_speed: Array) -> tuple[Array, Array]:
+        """Least and greatest force (2, m) over the turn at moving and fixed end, N."""
+        static = self.spring.force(self.lift)
+        ends = [static + self.back(each * self.spectrum) for each in self.stiffness(cam_speed)]
+        least, greatest = (
+            np.stack([extreme(end, axis=1) for end in ends]) for extreme in (np.min, np.max)
+        )
+        return least, greatest
+
+    def grid(self, machine: Machine, known: Array) -> Array:
+        """Cam speeds (m,), rad/s: equally spaced, the known ones, and about every resonance."""
+        top = float(known.max())
+        speeds = [np.linspace(0.0, top, UNIFORM), known]
+        enough = SIGNIFICANT * self.spring.preload
+        order = self.order[1:]
+        if self.design is not None:
+            damping = self.design.damping_ratio
+            strong = order[self.spring.rate * self.amplitude / damping >= enough]
+            modes = np.arange(1.0, top * max(strong, default=0.0) / self.first + 1.0)
+            met = (modes * self.first / strong[:, None]).ravel()
+            speeds.append(_about(met[met <= top], damping))
+        total = machine.axial_stiffness + self.spring.rate
+        damping = max(machine.damping_ratio, 1e-3)
+        strong = order[total * self.amplitude / (2.0 * damping) >= enough]
+        met = np.sqrt(total / machine.mass) / strong
+        speeds.append(_about(met[met <= top], damping))
+        return np.unique(np.clip(np.concatenate(speeds), 0.0, top))
+
+
+@dataclass(frozen=True, eq=False)
+class _Follower:
+    """Follower on its cam: forces (n,) that depend on the speed by powers alone.
+
+    inertia, viscous: per square and per first power of the cam speed; gain: normal force over
+    axial force without friction; arm: cam torque over that force, m.
+    """
+
+    machine: Machine
+    resonant: _Resonant
+    theta: Array
+    spring: Array
+    inertia: Array
+    viscous: Array
+    gain: Array
+    arm: Array
+
+    @classmethod
+    def of(cls, machine: Machine, pitch: FollowerPath, rubbing: Rubbing) -> _Follower:
+        theta = uniform_turn(ANGLES)
+        system = replace(machine.system, rubbing=rubbing)
+        loads = follower_loads(pitch, system, 1.0, theta)
+        share = share_left(loads.lift_slope, loads.jam_index)
+        sliding = system.face_friction * pitch.height(theta)
+        return cls(
+            machine=machine,
+            resonant=_Resonant.of(machine.spring, machine.spring.design, pitch),
+            theta=theta,
+            spring=loads.spring_force,
+            inertia=loads.inertia_force,
+            viscous=loads.viscous_force,
+            gain=1.0 / (share * np.cos(loads.pressure_angle)),
+            arm=(loads.lift_slope + sliding) / share,
+        )
+
+    def extremes(self, cam_speed: Array) -> dict[str, Array]:
+        """Arrays (m,) of `SpeedSweep` by name at cam speeds (m,), rad/s."""
+        moving, _ = self.resonant.stiffness(cam_speed)
+        surge = self.resonant.back(moving * self.resonant.spectrum)
+        speed = cam_speed[:, None]
+        push = self.spring + speed**2 * self.inertia + speed * self.viscous + surge
+        normal = push * self.gain
+        torque = np.maximum(push, 0.0) * self.arm
+        elastic = self._elastic(speed, moving)
+        lowest, soft = np.argmin(normal, axis=1), np.argmin(elastic, axis=1)
+        return {
+            "contact_force_min": normal.min(axis=1),
+            "contact_force_max": np.maximum(normal.max(axis=1), 0.0),
+            "contact_angle": self.theta[lowest],
+            "contact_error": _sampling_error(normal, lowest),
+            "elastic_force_min": elastic.min(axis=1),
+            "elastic_angle": self.theta[soft],
+            "elastic_error": _sampling_error(elastic, soft),
+            "surge_force": np.abs(surge).max(axis=1),
+            "torque_min": torque.min(axis=1),
+            "torque_max": torque.max(axis=1),
+        }
+
+    def _elastic(self, speed: Array, moving: NDArray[np.complex128]) -> Array:
+        """Axial contact force (m, n) of the mass on its stem, N; the spring with its surge."""
+        machine, spectrum = self.machine, self.resonant.spectrum
+        stem, mass, rate = machine.axial_stiffness, machine.mass, machine.spring.rate
+        damping = 2.0 * machine.damping_ratio * np.sqrt(mass * (stem + rate))
+        w = speed * self.resonant.order
+        behind = rate + moving - mass * w**2
+        joint = stem + 1.0j * damping * w
+        drive = behind * spectrum
+        drive[:, 0] += ANGLES * machine.spring.preload
+        return self.resonant.back(joint * drive / (joint + behind))
+
+
+def _about(speeds: Array, damping: float) -> Array:
+    """Speeds about the resonances, none closer to another than a fifth of the width."""
+    every = np.sort((speeds[:, None] * (1.0 + damping * _ABOUT)).ravel())
+    _, kept = np.unique(np.round(np.log(every) / (0.2 * damping)), return_index=True)
+    return every[kept]
+
+
+def _between(grid: Array, worst: set[int]) -> Array:
+    """Speeds between the neighbours of the worst ones."""
+    last = grid.size - 1
+    finer = [
+        np.linspace(grid[max(k - 1, 0)], grid[min(k + 1, last)], _REFINED + 2)[1:-1] for k in worst
+    ]
+    return np.setdiff1d(np.concatenate(finer), grid)
+
+
+def _sampling_error(values: Array, at: NDArray[np.intp]) -> Array:
+    """Vertex of the parabola through three samples less the middle one (m,), magnitude."""
+    row, count = np.arange(at.size), values.shape[1]
+    before, here, after = (values[row, (at + step) % count] for step in (-1, 0, 1))
+    bend = before - 2.0 * here + after
+    return np.divide((after - before) ** 2, 8.0 * bend, out=np.zeros_like(bend), where=bend > 0.0)
+
+
+def _arrays(kind: type[SpeedSweep]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(kind) if field.name != "preload")
