@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
@@ -33,19 +34,26 @@ _NO_SLIP = 1e6  # friction coefficient of rolling without slip
 class Roller(Part):
     """Roller of the follower.
 
-    hub_radius: of its pin or inner ring; friction: coefficient of sliding on the cam; roughness:
-    rms.
+    hub_radius: of its pin or inner ring; crown_radius: of the surface in the axial direction;
+    axial_offset: of the middle of its width from that of the cam; friction: coefficient of sliding
+    on the cam; roughness: rms.
     """
 
     table: ClassVar[str] = "roller"
     word: ClassVar[str] = "roller"
+    slides: ClassVar[bool] = False
+    defaults: ClassVar[Mapping[str, str]] = {
+        "crown_radius": "straight: the ends are derated by a flat factor, limits.edge_factor",
+        "inertia": "that of a solid ring of the material, an upper bound",
+    }
 
     radius: Length
     width: Length
     chamfer: Annotated[float, In("mm", at_least=0, at_most=1000)] = 0.0
     hub_radius: Length
     inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
-    crowned: bool = False
+    crown_radius: Length | None = None
+    axial_offset: Annotated[float, In("mm", at_least=0, at_most=1000)] | None = None
     friction: Annotated[float, In(above=0, below=2)] | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     material: Material

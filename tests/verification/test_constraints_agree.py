@@ -15,7 +15,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.cam_shape import concave_radius
-from camwright.pipeline.checks.contact_strength import life_turns, pressure_allowables
+from camwright.pipeline.checks.contact_strength import load_cycles, pressure_allowables
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solution
@@ -39,6 +39,7 @@ LOAD = ("contact_force_margin", "contact_at_overspeed", "jump", "jump_speed", "j
         "jam_index_friction_max", "roller_static", "roller_radial", "roller_pin", "roller_life",
         "roller_speed", "guide_pressure_A", "guide_pressure_B", "guide_pv_A",
         "guide_pv_B")  # fmt: skip
+UNDER_TRACTION = ("shakedown_traction", "edge_shakedown")
 
 
 @pytest.fixture(scope="module")
@@ -180,9 +181,9 @@ def test_pressure_limit_is_that_of_each_check(case, judged):
     solved, checks, problem = judged
     contour, theta = solved.contour, uniform_turn(POSITIONS)
     top = contour.pitch.lift.highest.value
-    limits = pressure_allowables(solved.machine, life_turns(solved.machines))
+    limits = pressure_allowables(solved.machine, load_cycles(solved.machines, contour))
     assert set(limits) == {
-        "contact_pressure", "shakedown", "edge_pressure", "shakedown_traction",
+        "contact_pressure", "shakedown", "edge_pressure", "shakedown_traction", "edge_shakedown",
         "contact_pressure_at_life",
     }  # fmt: skip
     assert ratings_of(case).pressure == min(limits.values())
@@ -196,7 +197,11 @@ def test_pressure_limit_is_that_of_each_check(case, judged):
             )["contact_pressure"]
             # r kappa + N/F = r kappa + (1 - r kappa) (p0/p)^2
             most = max(most, float(np.max((use - bend) / (1 - bend))))
-        assert np.sqrt(most) == pytest.approx(checks[name].utilisation, rel=1e-9), name
+        if name in UNDER_TRACTION:
+            # The synthesis assumes full sliding, the greatest traction of a roller.
+            assert checks[name].utilisation < np.sqrt(most), name
+        else:
+            assert np.sqrt(most) == pytest.approx(checks[name].utilisation, rel=1e-9), name
 
 
 def test_no_constraint_goes_without_its_check(case, judged):
