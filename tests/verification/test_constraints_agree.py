@@ -15,7 +15,11 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.cam_shape import concave_radius
-from camwright.pipeline.checks.contact_strength import load_cycles, pressure_allowables
+from camwright.pipeline.checks.contact_strength import (
+    contact_pressure,
+    load_cycles,
+    pressure_allowables,
+)
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solution
@@ -51,12 +55,16 @@ def case():
         "tool_radius": 0.04, "cam_radius": 0.1, "curvature_rate": 300.0, "target_life": 3.6e6,
         "overspeed": 420.0,
     }  # fmt: skip
-    steel = replace(cam.material, endurance_slope=14.15, endurance_intercept=66.22)
+    line = {"endurance_slope": 14.15, "endurance_intercept": 66.22}
+    steel = replace(cam.material, **line)
     parts = {
         "limits": signed.limits.model_copy(update=limits),
         "cam": replace(cam, material=steel),
         "roller_given": replace(
-            roller, friction=0.1, bearing=replace(roller.bearing, radial_limit=4000.0)
+            roller,
+            material=replace(roller.material, **line),
+            friction=0.1,
+            bearing=replace(roller.bearing, radial_limit=4000.0),
         ),
         "guides": replace(
             guides, a=replace(guides.a, friction_max=0.12), b=replace(guides.b, friction_max=0.1)
@@ -202,6 +210,30 @@ def test_pressure_limit_is_that_of_each_check(case, judged):
             assert checks[name].utilisation < np.sqrt(most), name
         else:
             assert np.sqrt(most) == pytest.approx(checks[name].utilisation, rel=1e-9), name
+
+
+def test_pressure_of_a_crowned_roller_is_that_of_its_check(case, judged):
+    """At the pressure of the check the constraint is reached, by the ellipse and not the line."""
+    solved, _, problem = judged
+    roller = replace(case.roller, crown_radius=0.1)
+    crowned = case.model_copy(update={"roller_given": roller})
+    states = {machine.load_case: machine for machine in machines(crowned)}
+    cycles = tuple(
+        replace(each, turn=replace(each.turn, machine=states[each.load_case]))
+        for each in solved.cycles
+    )
+    contour, theta = solved.contour, uniform_turn(POSITIONS)
+    most = contact_pressure(replace(solved, case=crowned, cycles=cycles)).demand
+    assert most > 1.1 * contact_pressure(solved).demand
+    ratings = replace(ratings_of(crowned), pressure=most)
+    uses = [
+        load_utilisations(
+            jet(contour, theta), contour.pitch.lift.highest.value, variables_of(case), ratings,
+            corrected(scenario, cycle),
+        )["contact_pressure"]
+        for cycle, scenario in zip(solved.cycles, problem.scenarios, strict=True)
+    ]  # fmt: skip
+    assert np.max(uses) == pytest.approx(1.0, rel=1e-5)
 
 
 def test_no_constraint_goes_without_its_check(case, judged):
