@@ -59,5 +59,5 @@ def full_case() -> Case:
     for section, values in OPTIONS.items():
         tables[section] = tables.get(section, {}) | values
     for card in tables["materials"].values():
-        card.setdefault("hardness", 600)
+        card.setdefault("hardness_vickers", 600)
     return case_of(tables)

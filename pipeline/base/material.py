@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -37,13 +37,29 @@ class StrengthAt(Part):
     yield_strength: Pressure
 
 
+class Endurance(NamedTuple):
+    """Endurance of a surface: contact pressure, Pa, and its line over the load cycles.
+
+    slope and intercept: A and B of log10 K = (B - log10 n)/A, K in psi; None: not known.
+    """
+
+    motion: str
+    pressure: float | None
+    slope: float | None
+    intercept: float | None
+
+
 @dataclass(frozen=True, kw_only=True)
 class Material(Part):
     """Material card: elastic constants, strengths and their source.
 
-    swelling is the relative growth of a length from dry to fully moist, hardness Brinell or
-    Vickers, name that of the card in the case. strength_at are yield strengths by temperature, in
-    ascending order; the strength is linear between them and from that at 20 degC.
+    swelling is the relative growth of a length from dry to fully moist, name that of the card in
+    the case. strength_at are yield strengths by temperature, in ascending order; the strength is
+    linear between them and from that at 20 degC. endurance_ holds for rolling,
+    sliding_endurance_ for rolling with 9 % sliding, both pressures for endurance_cycles load
+    cycles. The scales of hardness are not converted into one another: a card of both has the second
+    from a table such as ISO 18265. core_fatigue_torsion is the fully reversed fatigue limit below a
+    hardened case, fatigue_torsion that of the surface.
 
     Raises
     ------
@@ -62,16 +78,22 @@ class Material(Part):
     nu: Annotated[float, In(at_least=0, below=0.5)]
     yield_strength: Pressure
     tensile_strength: Pressure | None = None
-    hardness: Annotated[float, In(above=0, at_most=10_000)] | None = None
+    hardness_brinell: Annotated[float, In(above=0, at_most=650)] | None = None
+    hardness_vickers: Annotated[float, In(above=0, at_most=10_000)] | None = None
     endurance_pressure: Pressure | None = None
     endurance_slope: Annotated[float, In(above=0, at_most=100)] | None = None
     endurance_intercept: Annotated[float, In(above=0, at_most=1000)] | None = None
+    sliding_endurance_pressure: Pressure | None = None
+    sliding_endurance_slope: Annotated[float, In(above=0, at_most=100)] | None = None
+    sliding_endurance_intercept: Annotated[float, In(above=0, at_most=1000)] | None = None
+    endurance_cycles: Annotated[float, In(at_least=1, at_most=1e15)] = 1e8
     conductivity: Annotated[float, In("W/m/K", above=0, at_most=1e4)] | None = None
     temperature_limit: Temperature | None = None
     fatigue_torsion: Pressure | None = None
     fatigue_bending: Pressure | None = None
     case_depth: Length | None = None
     core_yield_strength: Pressure | None = None
+    core_fatigue_torsion: Pressure | None = None
     expansion: Annotated[float, In("1/K", at_least=0, at_most=1e-2)] | None = None
     swelling: Annotated[float, In(at_least=0, below=1)] | None = None
     strength_at: tuple[StrengthAt, ...] = ()
@@ -108,3 +130,25 @@ class Material(Part):
         at = [ROOM, *(each.temperature for each in self.strength_at)]
         strengths = [self.yield_strength, *(each.yield_strength for each in self.strength_at)]
         return float(np.interp(temperature, at, strengths, right=np.nan))
+
+    @property
+    def surface_hardened(self) -> bool:
+        """Whether a hardened case lies on a softer core."""
+        by_treatment = self.treatment in ("case_hardened", "induction_hardened")
+        return by_treatment or self.case_depth is not None
+
+    def endurance(self, *, sliding: bool) -> Endurance:
+        """Endurance of the surface in rolling, or in rolling with sliding.
+
+        A card without endurance in rolling has that in rolling with sliding, which is lower.
+        """
+        if sliding or self.endurance_pressure is None:
+            return Endurance(
+                "rolling with sliding",
+                self.sliding_endurance_pressure,
+                self.sliding_endurance_slope,
+                self.sliding_endurance_intercept,
+            )
+        return Endurance(
+            "rolling", self.endurance_pressure, self.endurance_slope, self.endurance_intercept
+        )

@@ -125,7 +125,7 @@ def _check_film(case: Case) -> None:
     needed = {
         "cam.roughness": case.cam.roughness,
         f"{case.facing.table}.roughness": case.facing.roughness,
-        **{f"materials.{card.name}.hardness": card.hardness for card in cards},
+        **{f"materials.{card.name}.hardness_vickers": card.hardness_vickers for card in cards},
     }
     for field, value in needed.items():
         if value is None:

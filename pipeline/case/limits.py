@@ -122,7 +122,7 @@ MINIMUM_WALL = Limit(  # outer over inner radius of the ring about the bore
 )  # fmt: skip
 CONTACT_SAFETY = Limit(
     "contact_safety", "safety of the contact pressure", _SAFETY, 1.0,
-    "surface endurance of the softer body",
+    "surface endurance of cam and follower",
 )  # fmt: skip
 YIELD_SAFETY = Limit(
     "yield_safety", "safety against first yield", _SAFETY, 1.0,

@@ -164,9 +164,9 @@ class Machine:
         return self.cam.prime_radius - (self.follower.contact_radius or 0.0)
 
     @property
-    def softer(self) -> Material:
-        """Material of cam or follower, that with the lower yield strength."""
-        return min(self.cam.material, self.follower.material, key=lambda card: card.yield_strength)
+    def bodies(self) -> dict[str, Material]:
+        """Materials of the two bodies in contact: the cam, and the roller or face."""
+        return {"cam": self.cam.material, self.follower.word: self.follower.material}
 
     @property
     def compliances(self) -> dict[str, float]:

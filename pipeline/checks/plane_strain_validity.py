@@ -6,9 +6,9 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import BORE_SAFETY
+from camwright.pipeline.case.limits import BORE_SAFETY, EDGE_FACTOR
 from camwright.pipeline.checks.check import Demand, check
-from camwright.pipeline.checks.contact_strength import applied_edge_factor
+from camwright.pipeline.checks.contact_strength import truncated
 from camwright.pipeline.checks.extremes import greatest, least
 from camwright.pipeline.contact.bore_stress import BoreStress
 from camwright.pipeline.contact.tiers import Tier
@@ -26,15 +26,21 @@ SUBSURFACE = 0.3  # half-widths: a shallower maximum is a singularity or an elem
     unit="-",
     sense="at_least",
     source="factor 1.3 to 2, or crown the roller, shop practice: verify",
-    method="factor of edge_pressure on the plane-strain solution; 1 for crowned ends",
+    method="factor of edge_pressure on the plane-strain solution; 1 for a crown whose ellipse lies"
+    " within the width",
     evidence=True,
     tier=Tier.FINITE_ELEMENTS,
+    formula="limits.edge_factor >= 1.3 for straight ends; 1 for a crowned roller whose contact ends"
+    " within its width",
+    reason="decides: the plane solution has no ends, and a smaller factor would hide them",
 )
 def edge_factor(solution: Solution) -> Demand:
     """Factor on the plane-strain pressure for the ends of the contact."""
-    allowed = 1.0 if solution.machine.follower.crowned else LEAST_EDGE_FACTOR
+    machine = solution.machine
+    ends = machine.follower.crown_radius is None or truncated(solution)
+    factor = machine.limits[EDGE_FACTOR] if ends else 1.0
     note = "plane strain includes neither the ends of the contact nor a tilt of the axes"
-    return Demand(applied_edge_factor(solution.machine), allowed, note=note)
+    return Demand(factor, LEAST_EDGE_FACTOR if ends else 1.0, note=note)
 
 
 @check(

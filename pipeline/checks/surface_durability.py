@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from math import inf
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.material import Material
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
     CASE_DEPTH_RATIO,
     CASE_SAFETY,
@@ -16,32 +18,58 @@ from camwright.pipeline.case.limits import (
     FILM_RATIO,
     TRACTION_SHARE,
 )
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Demand, check
-from camwright.pipeline.checks.contact_strength import peak_pressure
+from camwright.pipeline.checks.contact_strength import endurance_of, peak_pressure
 from camwright.pipeline.checks.extremes import greatest, least, worst_case
 from camwright.pipeline.contact.rolling_envelope import Envelope
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 
 CASE_CARBURISED = 1500e6  # Pa, quality MQ
+BUCKINGHAM_MAX = 400.0  # HB
+THROUGH_HARDENED_MAX = 390.0  # HV
+RULE_RATIO = 1.5
+
+
+@check(
+    id="traction_demand",
+    title="Traction coefficient vs. friction coefficient",
+    source="rolling without slip, Rothbart, Cam Design Handbook (2004), eq. 10.7: verify",
+    method="(roller inertia + bearing drag) over roller radius and normal force",
+    lift_can_help=True,
+    needs="roller",
+    formula="T/N <= mu; T: tangential force of rolling without slip, from the inertia of the roller"
+    " and the drag of its bearing, N: normal force, mu: roller.friction",
+    reason="decides: a roller that slips wears the track, and its endurance is that of sliding",
+)
+def traction_demand(solution: Solution) -> Demand:
+    """Maximum tangential over normal force of rolling without slip."""
+    return _traction_demand(solution, 1.0)
 
 
 @check(
     TRACTION_SHARE,
-    id="traction_demand",
-    title="Traction coefficient vs. friction limit",
+    id="traction_reserve",
+    title="Traction coefficient vs. share of the friction coefficient",
     method="(roller inertia + bearing drag) over roller radius and normal force",
     must_have=False,
     lift_can_help=True,
     needs="roller",
+    formula="T/N <= c mu; c: limits.traction_share, others as of traction_demand",
+    reason="advisory: a reserve against a friction coefficient lower than stated; grip itself is"
+    " traction_demand",
 )
-def traction_demand(solution: Solution) -> Demand:
-    """Maximum tangential over normal force of rolling without slip."""
-    machine = solution.machine
-    worst, friction = greatest(solution.cycles, _traction), machine.follower.friction
+def traction_reserve(solution: Solution) -> Demand:
+    """Maximum tangential over normal force of rolling, against a share of friction."""
+    return _traction_demand(solution, solution.machine.limits[TRACTION_SHARE])
+
+
+def _traction_demand(solution: Solution, share: float) -> Demand:
+    worst, friction = greatest(solution.cycles, _traction), solution.machine.follower.friction
     return Demand(
         worst.value,
-        None if friction is None else machine.limits[TRACTION_SHARE] * friction,
+        None if friction is None else share * friction,
         worst,
         note="" if friction is not None else "no friction of the roller on the cam is given",
     )
@@ -50,14 +78,20 @@ def traction_demand(solution: Solution) -> Demand:
 @check(
     FILM_RATIO,
     title="Minimum film thickness ratio (lambda)",
-    method="least film of Dowson and Higginson (1966) where loaded, over the rms roughness",
+    method="least film of Dowson and Higginson (1966) where loaded and running, over the rms"
+    " roughness",
     must_have=False,
+    formula="lambda = h_min / sqrt(Rq1^2 + Rq2^2) >= limits.film_ratio; h_min: film of smooth"
+    " surfaces in line contact, Rq: rms roughness of cam and follower",
+    reason="advisory: the endurance rows hold for lubricated cams in mixed lubrication too, and at"
+    " reversals of the motion no film of steady rolling exists",
 )
 def film_ratio(solution: Solution) -> Demand:
-    """Minimum film thickness over roughness."""
+    """Minimum film thickness over roughness; at standstill there is none to judge."""
     machine = solution.machine
     oil, kind = machine.lubricant, machine.follower
-    worst, missing = least(solution.cycles, _lambda), []
+    running = [cycle for cycle in solution.cycles if cycle.machine.speed > 0]
+    worst, missing = least(running or solution.cycles, _lambda), []
     if oil is None:
         missing.append("no lubricant")
     if machine.cam.roughness is None:
@@ -98,6 +132,10 @@ def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) ->
     must_have=False,
     lift_can_help=True,
     error="contact",
+    formula="sqrt(J2a) + a_C max(sigma_h, 0) <= t / S; a_C = 3 t/f - sqrt(3); t, f: fully reversed"
+    " fatigue limits of the cam in torsion and bending, S: limits.fatigue_safety",
+    reason="advisory: the endurance pressure is measured, this criterion is transferred from"
+    " torsion and bending",
 )
 def surface_fatigue(solution: Solution) -> Demand:
     """Maximum Crossland stress of a passage of the contact, Pa."""
@@ -110,10 +148,14 @@ def surface_fatigue(solution: Solution) -> Demand:
     title="Subsurface fatigue, Dang Van criterion",
     unit="MPa",
     method="Dang Van (1993): shear amplitude plus weighted hydrostatic stress, no credit for"
-    " compression (Desimone 2006), the load travelling along the contour",
+    " compression (Desimone 2006, recalled: verify), the load travelling along the contour",
     must_have=False,
     lift_can_help=True,
     error="contact",
+    formula="tau_a + a_DV max(sigma_h, 0) <= t / S; a_DV = 3 (t/f - 1/2); t, f, S as of"
+    " surface_fatigue",
+    reason="advisory: without credit for compression the criterion is on the safe side, but the"
+    " published form of the cap is recalled, not read",
 )
 def dang_van(solution: Solution) -> Demand:
     """Maximum Dang Van stress of a passage of the contact, Pa."""
@@ -125,105 +167,266 @@ def dang_van(solution: Solution) -> Demand:
     id="hardened_case",
     title="Subsurface stress vs. strength of case and core",
     method="greatest von Mises stress over the yield strength at its depth, which falls linearly"
-    " from surface to core over the case depth",
-    must_have=False,
+    " from surface to core over the case depth; the worse of cam and follower, where hardened",
     lift_can_help=True,
     error="contact",
+    formula="max sigma_v(z)/Y(z) <= 1 / S; Y(z): yield strength, linear from surface to core over"
+    " the case depth, S: limits.case_safety",
+    reason="decides for a hardened surface: a core that yields lets the case break in",
 )
-def hardened_case(solution: Solution) -> Demand:
-    """Maximum von Mises stress over the yield strength at its depth."""
-    card = solution.machine.cam.material
-    known = card.case_depth is not None and card.core_yield_strength is not None
-    worst = worst_case(
-        solution.cycles, lambda cycle: _use_of_strength(cycle.rolling.envelope, card)
+def hardened_case(solution: Solution) -> Demand | None:
+    """Maximum von Mises stress over the yield strength at its depth; None if not hardened."""
+
+    def use(swept: Envelope, card: Material) -> float:
+        return _use_of_strength(
+            swept.von_mises, swept.depth, card.case_depth,
+            (card.yield_strength, card.core_yield_strength),
+        )  # fmt: skip
+
+    allowed = 1.0 / solution.machine.limits[CASE_SAFETY]
+    return _hardened_demand(solution, use, allowed, "case depth or no core yield strength")
+
+
+@check(
+    FATIGUE_SAFETY,
+    id="case_shear",
+    title="Subsurface shear amplitude vs. shear fatigue strength of case and core",
+    unit="-",
+    method="greatest amplitude of the shear stress along the surface over the fatigue limit in"
+    " torsion at its depth, which falls linearly from surface to core over the case depth; the"
+    " worse of cam and follower, where hardened",
+    lift_can_help=True,
+    error="contact",
+    formula="max (range of tau_xz(z) / 2)/t(z) <= 1 / S; t(z): fully reversed fatigue limit in"
+    " torsion, linear from fatigue_torsion to core_fatigue_torsion over the case depth, S:"
+    " limits.fatigue_safety",
+    reason="decides for a hardened surface: cracks start below the case, where the strength has"
+    " fallen and the shear has not",
+)
+def case_shear(solution: Solution) -> Demand | None:
+    """Maximum shear amplitude over the fatigue limit at its depth; None if not hardened."""
+
+    def use(swept: Envelope, card: Material) -> float:
+        return _use_of_strength(
+            0.5 * swept.shear_range, swept.depth, card.case_depth,
+            (card.fatigue_torsion, card.core_fatigue_torsion),
+        )  # fmt: skip
+
+    allowed = 1.0 / solution.machine.limits[FATIGUE_SAFETY]
+    return _hardened_demand(
+        solution, use, allowed, "case depth or no fatigue limit in torsion of case and core"
     )
+
+
+def hardened_bodies(solution: Solution) -> dict[str, Material]:
+    """Materials of cam and follower with a hardened case, by body."""
+    bodies = solution.machine.bodies
+    return {body: card for body, card in bodies.items() if card.surface_hardened}
+
+
+def _hardened_demand(
+    solution: Solution, use: Callable[[Envelope, Material], float], allowed: float, datum: str
+) -> Demand | None:
+    """Greatest use of the strength by depth over the hardened bodies.
+
+    Every point of the follower meets the greatest stress of the turn: the maximum over the contour
+    is that of both bodies.
+    """
+    bodies = hardened_bodies(solution)
+    if not bodies:
+        return None
+
+    def of_turn(card: Material) -> Callable[[Cycle], float]:
+        return lambda cycle: use(cycle.rolling.envelope, card)
+
+    worst = {body: worst_case(solution.cycles, of_turn(card)) for body, card in bodies.items()}
+    lacking = [body for body, card in bodies.items() if math.isnan(_probe(use, card))]
+    known = [body for body in bodies if body not in lacking]
+    governing = max(known or bodies, key=lambda body: _rank(worst[body].value))
+    extreme = worst[governing]
+    missing = bool(lacking) and not extreme.value > allowed
+    notes = [f"the {body}, {bodies[body].name}, has no {datum}" for body in lacking]
     return Demand(
-        worst.value if known else None,
-        1.0 / solution.machine.limits[CASE_SAFETY],
-        worst,
-        note="" if known else f"the card of {card.name} gives no case depth or no core",
-        figures=(f"{card.name}: {card.source}",),
+        None if missing else extreme.value,
+        allowed,
+        extreme,
+        note="; ".join(notes),
+        figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
     )
+
+
+def _probe(use: Callable[[Envelope, Material], float], card: Material) -> float:
+    """Use of the strength in an envelope without stress: NaN where the card lacks data."""
+    one = np.zeros((1, 1))
+    return use(Envelope(one[0], one[0], one, one, one, one), card)
+
+
+def _rank(value: float) -> float:
+    return inf if math.isnan(value) else value
 
 
 @check(
     CASE_DEPTH_RATIO,
     id="case_depth",
     title="Effective case depth / depth of maximum shear stress",
-    method="effective case depth of the material over the greatest depth of tau_max over the turn",
-    must_have=False,
+    method="effective case depth of the material over the greatest depth of tau_max over the turn;"
+    " least of cam and follower, where hardened",
     lift_can_help=True,
+    formula="d / z >= limits.case_depth_ratio; d: case_depth, z: greatest depth of the maximum"
+    " shear stress over all load cases",
+    reason="decides for a hardened surface: the maximum shear stress must lie within the case",
 )
-def case_depth(solution: Solution) -> Demand:
-    """Effective case depth over the greatest depth of maximum shear stress."""
-    card = solution.machine.cam.material
-    depth, worst = card.case_depth, greatest(solution.cycles, lambda c: c.contact.tau_depth)
+def case_depth(solution: Solution) -> Demand | None:
+    """Effective case depth over the greatest depth of maximum shear; None if not hardened."""
+    bodies = hardened_bodies(solution)
+    if not bodies:
+        return None
+    worst = greatest(solution.cycles, lambda cycle: cycle.surface.tau_depth)
     loaded = worst.value > 0 or np.isnan(worst.value)
+    limit = solution.machine.limits[CASE_DEPTH_RATIO]
+    depths = [card.case_depth for card in bodies.values() if card.case_depth is not None]
+    ratio = min(depths) / worst.value if depths and loaded else None
+    lacking = [body for body, card in bodies.items() if card.case_depth is None]
+    missing = bool(lacking) and not (ratio is not None and ratio < limit)
     return Demand(
-        float(depth / worst.value) if depth is not None and loaded else None,
-        solution.machine.limits[CASE_DEPTH_RATIO],
+        None if missing else ratio,
+        limit,
         worst,
-        note="" if depth is not None else f"the card of {card.name} gives no case depth",
-        figures=(card.source,),
+        note="; ".join(f"the {body}, {bodies[body].name}, has no case depth" for body in lacking),
+        figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
     )
 
 
 @check(
     title="Peak contact pressure vs. Buckingham estimate",
     unit="MPa",
-    source="2.76 HB - 70 MPa at 1e8 cycles, Buckingham, Shigley ch. 6: verify",
-    method="greatest contact pressure over the turn; an estimate for steel without a hardened case",
+    source="2.76 HB - 70 MPa at 1e8 cycles up to 400 HB, Buckingham, Shigley ch. 6: verify",
+    method="greatest contact pressure over the turn; an estimate for steel without a hardened case;"
+    " least of the bodies of a stated Brinell hardness up to 400",
     must_have=False,
     lift_can_help=True,
     error="contact",
+    formula="p0 <= 2.76 HB - 70 MPa; HB: hardness_brinell, at most 400",
+    reason="advisory: an estimate from the hardness alone; contact_pressure has the endurance of"
+    " the card",
 )
 def pressure_by_hardness(solution: Solution) -> Demand | None:
-    """Maximum contact pressure, Pa, against the Buckingham estimate; None if surface-hardened."""
-    card = solution.machine.cam.material
-    if card.case_depth is not None or card.treatment not in (None, "through_hardened"):
+    """Maximum contact pressure, Pa, against the Buckingham estimate of the softer bodies.
+
+    None if the cam is surface-hardened and the follower has no hardness within the estimate.
+    """
+    bodies = solution.machine.bodies
+    soft = {body: card for body, card in bodies.items() if not card.surface_hardened}
+    if "cam" not in soft and not any(map(buckingham, soft.values())):
         return None
-    worst = peak_pressure(solution)
-    allowed = None if card.hardness is None else buckingham(card.hardness)
-    return Demand(
-        worst.value,
-        allowed,
-        worst,
-        note="" if allowed is not None else f"the card of {card.name} gives no hardness",
-        figures=(card.source,),
-    )
+
+    def reason(card: Material) -> str:
+        if card.hardness_brinell is None:
+            return "has no Brinell hardness"
+        return f"has {card.hardness_brinell:g} HB, above the {BUCKINGHAM_MAX:g} HB of the estimate"
+
+    return _estimate(solution, soft, buckingham, reason)
 
 
 @check(
     title="Peak contact pressure vs. gear flank allowable",
     unit="MPa",
     source="ISO 6336-5, quality MQ, recalled: verify",
-    method="greatest contact pressure over the turn; for comparison only",
+    method="greatest contact pressure over the turn; for comparison only; least of the bodies of a"
+    " stated treatment and Vickers hardness",
     must_have=False,
     lift_can_help=True,
     error="contact",
+    formula="p0 <= sigma_Hlim; carburised 1500 MPa, induction hardened 0.541 HV + 882 MPa,"
+    " through-hardened 1.313 HV + 373 MPa; HV: hardness_vickers",
+    reason="advisory: allowable stress of gear flanks, for comparison",
 )
 def pressure_by_gear_limits(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the allowable stress of gear flanks."""
-    worst, card = peak_pressure(solution), solution.machine.cam.material
-    allowed = gear_limit(card)
+
+    def reason(card: Material) -> str:
+        if card.treatment is None:
+            return "has no treatment"
+        return "has no Vickers hardness within the range of its line"
+
+    return _estimate(solution, solution.machine.bodies, gear_limit, reason)
+
+
+def _estimate(
+    solution: Solution,
+    bodies: Mapping[str, Material],
+    rule: Callable[[Material], float | None],
+    reason: Callable[[Material], str],
+) -> Demand:
+    """Contact pressure against the least estimate of the bodies that have one."""
+    worst = peak_pressure(solution)
+    limits = {body: rule(card) for body, card in bodies.items()}
+    known = {body: value for body, value in limits.items() if value is not None}
+    notes = [
+        f"the {body}, {card.name}, {reason(card)}"
+        for body, card in bodies.items()
+        if body not in known
+    ]
     return Demand(
         worst.value,
-        allowed,
+        min(known.values()) if known else None,
         worst,
-        note=""
-        if allowed is not None
-        else f"the card of {card.name} gives no treatment or no hardness",
-        figures=(card.source,),
+        note="; ".join(notes),
+        figures=tuple(f"{bodies[body].name}: {bodies[body].source}" for body in known),
     )
 
 
-def buckingham(hardness: float) -> float:
+@check(
+    title="Greatest ratio of two endurance rules for one material",
+    unit="-",
+    source="two rules for one material that differ by 1.5 or more need a reason",
+    method="endurance pressure of the card, Buckingham estimate and gear flank allowable, of cam"
+    " and follower",
+    must_have=False,
+    moved_by_tolerance=False,
+    formula="max p_i / min p_i <= 1.5; p_i: endurance pressure of the card in this contact, 2.76 HB"
+    " - 70 MPa, ISO 6336-5, where they apply",
+    reason="advisory: rules for different tests may differ; a greater ratio shows that one of them"
+    " does not hold for this card",
+)
+def endurance_rules(solution: Solution) -> Demand:
+    """Greatest ratio of the endurance rules for the material of cam or follower."""
+    machine = solution.machine
+    spread, notes = None, []
+    for body, card in machine.bodies.items():
+        rules = _rules(machine, card)
+        if len(rules) < 2:
+            notes.append(f"the {body}, {card.name}, has fewer than two rules")
+            continue
+        ratio = max(rules.values()) / min(rules.values())
+        spread = ratio if spread is None else max(spread, ratio)
+        words = ", ".join(f"{name} {shown(value, 'MPa')}" for name, value in rules.items())
+        notes.append(f"{body}, {card.name}: {words}")
+    return Demand(spread, RULE_RATIO, note="; ".join(notes))
+
+
+def _rules(machine: Machine, card: Material) -> dict[str, float]:
+    row = endurance_of(machine, card)
+    rules = {
+        row.motion: row.pressure,
+        "Buckingham": None if card.surface_hardened else buckingham(card),
+        "ISO 6336-5": gear_limit(card),
+    }
+    return {name: value for name, value in rules.items() if value}
+
+
+def buckingham(card: Material) -> float | None:
     """Allowable contact pressure of steel at 1e8 load cycles, from the Brinell hardness, Pa.
+
+    None without one and above 400 HB, where the estimate does not hold.
 
     References
     ----------
     Shigley's Mechanical Engineering Design, ch. 6, after Buckingham: 2.76 HB - 70 MPa.
     """
+    hardness = card.hardness_brinell
+    if hardness is None or hardness > BUCKINGHAM_MAX:
+        return None
     return max(2.76e6 * hardness - 70e6, 0.0)
 
 
@@ -233,15 +436,18 @@ def gear_limit(card: Material) -> float | None:
     References
     ----------
     ISO 6336-5, MQ, recalled (verify): carburised 1500 MPa; induction 0.541 HV + 882 MPa;
-    through-hardened alloy steel 1.313 HV + 373 MPa.
+    through-hardened alloy steel 1.313 HV + 373 MPa, up to 390 HV.
     """
     if card.treatment == "case_hardened":
         return CASE_CARBURISED
-    lines = {"induction_hardened": (0.541e6, 882e6), "through_hardened": (1.313e6, 373e6)}
-    if card.treatment is None or card.hardness is None:
+    lines = {
+        "induction_hardened": (0.541e6, 882e6, inf),
+        "through_hardened": (1.313e6, 373e6, THROUGH_HARDENED_MAX),
+    }
+    if card.treatment is None or card.hardness_vickers is None:
         return None
-    slope, start = lines[card.treatment]
-    return slope * card.hardness + start
+    slope, start, most = lines[card.treatment]
+    return slope * card.hardness_vickers + start if card.hardness_vickers <= most else None
 
 
 def _traction(cycle: Cycle) -> Array:
@@ -265,10 +471,12 @@ def _greatest_of(field: Array | None) -> float:
     return np.nan if field is None else float(field.max())
 
 
-def _use_of_strength(swept: Envelope, card: Material) -> float:
-    depth, core = card.case_depth, card.core_yield_strength
-    if depth is None or core is None:
+def _use_of_strength(
+    stress: Array, depth: Array, case: float | None, strengths: tuple[float | None, float | None]
+) -> float:
+    """Greatest stress over the strength at its depth; NaN without case depth or a strength."""
+    surface, core = strengths
+    if case is None or surface is None or core is None:
         return np.nan
-    inward = np.clip(swept.depth / depth, 0.0, 1.0)
-    strength = card.yield_strength + (core - card.yield_strength) * inward
-    return float((swept.von_mises / strength).max())
+    inward = np.clip(depth / case, 0.0, 1.0)
+    return float((stress / (surface + (core - surface) * inward)).max())

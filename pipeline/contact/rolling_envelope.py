@@ -114,7 +114,7 @@ def rolling_pass(poisson: float, friction: float = 0.0) -> RollingPass:
     hydrostatic = (xx + yy + zz) / 3
     # Deviator coordinates with root J2 as the distance from the origin.
     path = np.stack([(xx - zz) / 2, xz, np.sqrt(0.75) * (yy - hydrostatic)])
-    centre, radius = _smallest_sphere(path)
+    centre, radius = smallest_sphere(path)
     a, b, c = path - centre[:, :, None]
     in_plane, out = np.hypot(a, b), c / np.sqrt(0.75)
     high = np.maximum(in_plane - out / 2, out)
@@ -132,7 +132,7 @@ def rolling_pass(poisson: float, friction: float = 0.0) -> RollingPass:
     )
 
 
-def _smallest_sphere(path: Array) -> tuple[Array, Array]:
+def smallest_sphere(path: Array) -> tuple[Array, Array]:
     """Centre (3, k) and radius (k,) of the smallest sphere around k paths (3, k, q).
 
     Steps of decreasing length towards the farthest point; after n steps the radius is within 1/n of

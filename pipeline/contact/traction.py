@@ -124,6 +124,7 @@ class RollingContact:
 def rolling_contact(
     normal_force: ArrayLike,
     spin: ArrayLike,
+    spin_acceleration: ArrayLike,
     rolling_speed: ArrayLike,
     half_width: ArrayLike,
     relative_radius: ArrayLike,
@@ -142,6 +143,7 @@ def rolling_contact(
     ----------
     normal_force : array (n,)      N, at positions equally spaced in time
     spin : array (n,)              rad/s of rolling without slip
+    spin_acceleration : array (n,)   its derivative, rad/s2
     rolling_speed : array (n,)     surface speed through the contact, m/s
     half_width, relative_radius : array (n,)   m
     drag : Drag
@@ -168,9 +170,12 @@ def rolling_contact(
     speed = np.abs(finite("rolling_speed", rolling_speed))
     step = period / force.size
     resisting = drag.bearing_torque(force)
-    demand, tangential, turning = _steps(rolling, limit, resisting, drag.inertia, radius, step)
+    inertia_torque = drag.inertia * finite("spin_acceleration", spin_acceleration)
+    demand = (inertia_torque + np.sign(rolling) * resisting) / radius
+    tangential, turning = _steps(rolling, limit, resisting, drag.inertia, radius, step)
     slip = radius * (rolling - turning)
     sliding = np.abs(slip) > _SETTLED * radius * np.abs(rolling).max(initial=1e-300)
+    tangential = np.where(sliding | (np.abs(demand) > limit), tangential, demand)
     share = np.divide(np.abs(tangential), limit, out=np.zeros_like(limit), where=limit > 0)
     creep = creepage(np.clip(share, 0, 1), drag.friction, half_width, relative_radius)
     gross = np.divide(np.abs(slip), speed, out=np.zeros_like(slip), where=speed > 0)
@@ -189,12 +194,10 @@ def rolling_contact(
 
 def _steps(
     rolling: Array, limit: Array, resisting: Array, inertia: float, radius: float, step: float
-) -> tuple[Array, Array, Array]:
-    """Demand and force (n,) N and spin (n,) rad/s of the periodic turn."""
+) -> tuple[Array, Array]:
+    """Force (n,) N and spin (n,) rad/s of the periodic turn."""
     count = rolling.size
-    change = rolling - np.roll(rolling, 1)
     sense = np.sign(rolling)
-    demand = (inertia * change / step + sense * resisting) / radius
     tangential, turning = np.zeros(count), np.array(rolling)
     omega = float(rolling[-1])
     scale = max(float(np.abs(rolling).max()), 1e-300)
@@ -214,7 +217,7 @@ def _steps(
             turning[k] = omega
         if abs(omega - start) <= _SETTLED * scale:
             break
-    return demand, tangential, turning
+    return tangential, turning
 
 
 def _braked(omega: float, loss: float) -> float:

@@ -13,6 +13,7 @@ from camwright.pipeline.base.tables import CAM_ANGLE, CRANK_ANGLE, LOAD_CASE, Ce
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
+from camwright.pipeline.contact.elliptic_contact import CrownedContact, crowned_contact
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.part_loads import PartLoads, part_loads
@@ -83,11 +84,29 @@ class Cycle:
         return self.turn.machine.cam_speed
 
     @cached_property
+    def crown(self) -> CrownedContact | None:
+        """Contact of a crowned follower, by the closed form of the ellipse; None if it is straight.
+
+        The plane contact is that of the same forces without the crown.
+        """
+        radius = self.machine.follower.crown_radius
+        if radius is None or self.contact.tier is None:
+            return None
+        return crowned_contact(
+            self.contact, self.pair.width, radius, self.pair.contact_modulus, self.pair.cam.poisson
+        )
+
+    @property
+    def surface(self) -> ContactHistory:
+        """Contact with the crown of the follower; the plane contact for a straight one."""
+        return self.contact if self.crown is None else self.crown.history
+
+    @cached_property
     def rolling(self) -> RollingHistory:
         """Traction, creep, film, fatigue and bore stress; NaN if the contour is no body."""
         if self.contact.tier is None:
             return RollingHistory.unknown(self.theta.size)
-        return rolling_history(self.machine, self.pair, self.bodies, self.loads, self.contact)
+        return rolling_history(self.machine, self.pair, self.bodies, self.loads, self.surface)
 
     @cached_property
     def parts(self) -> PartLoads:

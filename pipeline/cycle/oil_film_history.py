@@ -19,7 +19,7 @@ from camwright.pipeline.contact.oil_film import (
     mixed_film,
 )
 
-BRINELL = 9.80665e6  # Pa; Vickers and Brinell numbers are alike below 450
+VICKERS = 9.80665e6  # Pa
 _UM = 1e6
 
 
@@ -107,12 +107,12 @@ def film_history(
     if oil.film == "smooth":
         return FilmHistory(thickness, ratio)
     mixed, refusal = mixed_film(
-        groups, float(np.hypot(cam, other)), BRINELL * _softer(machine), modulus
+        groups, float(np.hypot(cam, other)), VICKERS * _softer(machine), modulus
     )
     return FilmHistory(thickness, ratio, mixed, refusal)
 
 
 def _softer(machine: Machine) -> float:
-    """Brinell hardness of the softer surface; a mixed film requires both."""
-    cards = (machine.cam.material, machine.follower.material)
-    return min(card.hardness for card in cards if card.hardness is not None)
+    """Vickers hardness of the softer surface; a mixed film requires both."""
+    numbers = [card.hardness_vickers for card in machine.bodies.values()]
+    return min(number for number in numbers if number is not None)

@@ -30,7 +30,8 @@ class FlatFace(Part):
 
     table: ClassVar[str] = "follower.face"
     word: ClassVar[str] = "face"
-    crowned: ClassVar[bool] = False
+    slides: ClassVar[bool] = True
+    crown_radius: ClassVar[None] = None
 
     width: Length
     depth: Length

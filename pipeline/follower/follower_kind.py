@@ -38,7 +38,8 @@ class FollowerKind(Protocol):
 
     `word`: its name in files and texts; `table`: in the case file; `line_width`: maximum width of
     the line contact, m; `friction`: coefficient of sliding on the cam; `roughness`: rms, m;
-    `crowned`: whether its surface is crowned.
+    `slides`: whether its surface slides on the cam, not rolls; `crown_radius`: of its surface in
+    the axial direction, m, None for a straight one.
     """
 
     @property
@@ -54,7 +55,9 @@ class FollowerKind(Protocol):
     @property
     def roughness(self) -> float | None: ...
     @property
-    def crowned(self) -> bool: ...
+    def slides(self) -> bool: ...
+    @property
+    def crown_radius(self) -> float | None: ...
 
     @property
     def side_friction(self) -> float:

@@ -34,13 +34,16 @@ _NO_SLIP = 1e6  # friction coefficient of rolling without slip
 class Roller(Part):
     """Roller of the follower.
 
-    hub_radius: of its pin or inner ring; friction: coefficient of sliding on the cam; roughness:
-    rms; mass: with its bearing, without the pin.
+    hub_radius: of its pin or inner ring; crown_radius: of the surface in the axial direction;
+    axial_offset: of the middle of its width from that of the cam; friction: coefficient of sliding
+    on the cam; roughness: rms; mass: with its bearing, without the pin.
     """
 
     table: ClassVar[str] = "roller"
     word: ClassVar[str] = "roller"
+    slides: ClassVar[bool] = False
     defaults: ClassVar[Mapping[str, str]] = {
+        "crown_radius": "straight: the ends are derated by a flat factor, limits.edge_factor",
         "inertia": "that of a solid ring from hub to surface",
         "mass": "that of a solid ring from pin, or else hub, to surface",
     }
@@ -51,7 +54,8 @@ class Roller(Part):
     hub_radius: Length
     inertia: Annotated[float, In("kg mm^2", above=0, at_most=1e9)] | None = None
     mass: Mass | None = None
-    crowned: bool = False
+    crown_radius: Length | None = None
+    axial_offset: Annotated[float, In("mm", at_least=0, at_most=1000)] | None = None
     friction: Annotated[float, In(above=0, below=2)] | None = None
     roughness: Annotated[float, In("um", above=0, at_most=1000)] | None = None
     material: Material
@@ -171,6 +175,7 @@ class Roller(Part):
         return rolling_contact(
             force,
             motion.spin,
+            motion.spin_acceleration,
             motion.rolling_speed,
             contact.half_width,
             contact.relative_radius,

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 from scipy.optimize import brentq
 
 from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
     JUMP_SPEED,
+    PRESSURE_ANGLE,
     ROLLER_LIFE,
     ROLLER_LOAD_SHARE,
     ROLLER_STATIC_SAFETY,
@@ -18,7 +20,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks.cam_shape import least_concave_radius
-from camwright.pipeline.checks.contact_strength import life_turns, pressure_allowables
+from camwright.pipeline.checks.contact_strength import LoadCycles, life_turns, pressure_allowables
 from camwright.pipeline.checks.guide_strength import pv_limit
 from camwright.pipeline.checks.part_strength import (
     allowed_pin_stress,
@@ -50,7 +52,7 @@ def ratings_of(case: Case) -> Ratings:
     cubed = None
     if bearing.C is not None and life is not None:
         cubed = bearing.C**3 * MILLION_TURNS / life
-    pressure, pressure_by = _least(pressure_allowables(machine, life_turns(states)))
+    pressure, pressure_by = _least(pressure_allowables(machine, greatest_cycles(case)))
     normal_force, normal_force_by = _least(force_limits(case))
     by_rating = normal_force_by == "roller_static"
     # Without a stated over-speed the contact is kept at the fastest load case.
@@ -65,6 +67,7 @@ def ratings_of(case: Case) -> Ratings:
         pressure_by=pressure_by,
         contact_width=machine.contact_width,
         contact_modulus=machine.contact_modulus,
+        crown_radius=roller.crown_radius,
         overspeed=over,
         jump_speed=limits[JUMP_SPEED] * over,
         normal_force=normal_force,
@@ -77,6 +80,20 @@ def ratings_of(case: Case) -> Ratings:
         guide_pv=(pv_limit(guides.a), pv_limit(guides.b)),
         guide_area=(guides.a.projected_area, guides.b.projected_area),
     )
+
+
+def greatest_cycles(case: Case) -> LoadCycles:
+    """Upper bound of the load cycles in the target life, for any lift within the limits.
+
+    The roller centre moves by at most the greatest pitch radius over the cosine of the greatest
+    pressure angle per cam angle.
+    """
+    turns, smoothing = life_turns(machines(case)), case.smoothing
+    travel = _least(travel_limits(case))[0]
+    prime = max(case.cam.prime_radius, *(smoothing.prime_radius_range or ()), 0.0)
+    radius = prime + (prime if travel is None else travel)
+    path = radius / np.cos(case.limits[PRESSURE_ANGLE])
+    return LoadCycles(turns, turns * max(path / case.roller.radius - 1.0, 1.0))
 
 
 def travel_limits(case: Case) -> dict[str, float]:

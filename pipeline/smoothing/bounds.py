@@ -17,6 +17,7 @@ _PRESSURES = {
     "contact_pressure_at_life": "contact pressure at the target life",
     "shakedown": "shakedown pressure",
     "shakedown_traction": "shakedown pressure with sliding",
+    "edge_shakedown": "edge pressure at shakedown with sliding",
 }
 _FORCES = {
     "roller_static": "static load rating of the roller",

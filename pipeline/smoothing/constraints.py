@@ -13,10 +13,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from math import inf
 from typing import Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import curvature_slope, magnitude, speed_and_curvature
@@ -34,6 +36,7 @@ from camwright.pipeline.case.limits import (
     OpenLimit,
 )
 from camwright.pipeline.checks import demands
+from camwright.pipeline.contact.elliptic_contact import pressure_cubed_per_force
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.follower_forces import levers
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, rolling_share, wear
@@ -41,6 +44,8 @@ from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scen
 
 FACTOR_MAX = 4.0
 """Maximum factor of a relaxation."""
+_LEAST_FORCE = 1.0  # N, below which a crowned contact is far from any limit
+_CURVATURES, _CURVATURE_STEPS = (1.0, 1e6), 1500  # 1/m
 
 
 class Jet(NamedTuple):
@@ -285,13 +290,37 @@ def _cam_radius(cam: Shape, limit: float) -> Array:
 def _contact_pressure(at: Loads, limit: float) -> Array:
     """r kappa + N / F_lim <= 1, equivalent to p0 <= limit.
 
-    The pressure of a line contact and the undercut depend on the same factor 1 - r kappa.
+    The pressure of a line contact and the undercut depend on the same factor 1 - r kappa. That of
+    a crowned roller, the greater of line and ellipse, reaches the limit at a relative curvature c:
+    r kappa + 1/(r c) <= 1.
     """
     ratings = at.ratings
     line_load = at.force.normal / ratings.contact_width
     flat = peak_pressure_square(line_load, 1.0 / ratings.roller_radius, ratings.contact_modulus)
     share: Array = at.scenario.correction.contact**2 * flat / limit**2
+    if ratings.crown_radius is not None:
+        force = np.where(np.real(at.force.normal) > _LEAST_FORCE, at.force.normal, _LEAST_FORCE)
+        relief = 3.0 * np.log(limit / at.scenario.correction.contact) - np.log(force)
+        ellipse = np.exp(-_limit_curvature(relief, ratings)) / ratings.roller_radius
+        share = np.where(np.real(ellipse) > np.real(share), ellipse, share)
     return ratings.roller_radius * at.path.curvature + share
+
+
+def _limit_curvature(relief: Array, ratings: Ratings) -> Array:
+    """ln of the relative curvature, 1/m, at ln(p0^3/N) of an elliptic contact, complex (n,)."""
+    table = _curvature_table(ratings.crown_radius or inf, ratings.contact_modulus)
+    real, step = np.real(relief), np.imag(relief)
+    value: Array = table(real)
+    return value + 1j * step * table(real, 1) if np.iscomplexobj(relief) else value
+
+
+@lru_cache(maxsize=8)
+def _curvature_table(crown_radius: float, modulus: float) -> PchipInterpolator:
+    """ln(1/R) by ln(p0^3/N) of an elliptic contact, both rising."""
+    curvature = np.geomspace(*_CURVATURES, _CURVATURE_STEPS)
+    steepness = np.log(pressure_cubed_per_force(curvature, crown_radius, modulus))
+    rising = np.diff(steepness, prepend=-inf) > 0
+    return PchipInterpolator(steepness[rising], np.log(curvature[rising]), extrapolate=True)
 
 
 def _inertia(at: Loads, cam_speed: float) -> Array:

@@ -37,6 +37,7 @@ class Ratings:
                                check it comes from
     contact_width : float      m
     contact_modulus : float    E*, Pa
+    crown_radius : float       of the roller, m; None: straight
     overspeed : float          cam speed at which the contact force margin is kept, rad/s
     jump_speed : float         cam speed below which the follower does not jump, rad/s
     normal_force : float       least of the limits on the normal force, N; normal_force_by is the
@@ -56,6 +57,7 @@ class Ratings:
     pressure_by: str = "contact_pressure"
     contact_width: float = 1.0
     contact_modulus: float = 1.0
+    crown_radius: float | None = None
     overspeed: float | None = None
     jump_speed: float | None = None
     normal_force: float | None = None

@@ -256,6 +256,7 @@ def _rolling(base: Cycle) -> RollingHistory:
     rolling = put(
         base.rolling,
         traction_demand=0.02 + 0.01 * WAVE,
+        von_mises=420e6 + 100e6 * WAVE,
         sliding=sliding and replace(sliding, pv=100e6 + 50e6 * WAVE),
     )
     return replace(

@@ -27,6 +27,7 @@ from trial_variants import (
     with_rolling,
     with_speed,
     with_temperature,
+    without_endurance,
 )
 
 # function
@@ -172,7 +173,7 @@ by_limit(
 tried(
     "contact_pressure",
     limited("contact_pressure", lambda p: with_material("steel", endurance_pressure=p)),
-    lambda: with_material("steel", endurance_pressure=None),
+    lambda: without_endurance("steel"),
     lambda: with_contact(p0=NAN),
     900.0,
     "800 + 100 sin",
@@ -180,10 +181,10 @@ tried(
 tried(
     "first_yield",
     limited("first_yield", lambda p: with_material("steel", yield_strength=p)),
-    None,
-    lambda: with_contact(von_mises=NAN),
-    500.0,
-    "400 + 100 sin",
+    lambda: with_rolling(von_mises=None),
+    lambda: with_rolling(von_mises=NAN),
+    520.0,
+    "420 + 100 sin",
 )
 tried(
     "shakedown",
@@ -293,8 +294,16 @@ tried(
     "a count has no NaN",
 )
 # rolling, surface
-by_limit(
+tried(
     "traction_demand",
+    limited("traction_demand", lambda mu: with_part("roller", friction=mu)),
+    lambda: with_part("roller", friction=None),
+    lambda: with_rolling(traction_demand=None),
+    0.03,
+    "0.02 + 0.01 sin",
+)
+by_limit(
+    "traction_reserve",
     "traction_share",
     lambda: with_rolling(traction_demand=None),
     0.03,
@@ -330,6 +339,14 @@ tried(
     0.8,
     "400 MPa half way down from 600 to 400",
 )
+tried(
+    "case_shear",
+    limited("case_shear", lambda u: with_limits(fatigue_safety=1.0 / u)),
+    lambda: with_material("steel", core_fatigue_torsion=None),
+    lambda: with_map(shear_range=np.full((1, 2), np.nan)),
+    100.0 / 275.0,
+    "half of 200 MPa half way down from 300 to 250",
+)
 by_limit(
     "case_depth",
     "case_depth_ratio",
@@ -340,8 +357,10 @@ by_limit(
 )
 tried(
     "pressure_by_hardness",
-    limited("pressure_by_hardness", lambda p: soft(hardness=(1e-6 * p + 70.0) / 2.76), soft),
-    lambda: soft(hardness=None),
+    limited(
+        "pressure_by_hardness", lambda p: soft(hardness_brinell=(1e-6 * p + 70.0) / 2.76), soft
+    ),
+    lambda: soft(hardness_brinell=None),
     lambda: made.changed_solution(soft(), cycles=with_contact(p0=NAN).cycles),
     900.0,
     "2.76 HB - 70 MPa, Shigley ch. 6: 344 MPa at 150 HB",
@@ -349,10 +368,29 @@ tried(
 )
 tried(
     "pressure_by_gear_limits",
-    limited("pressure_by_gear_limits", lambda p: soft(hardness=(1e-6 * p - 373.0) / 1.313), soft),
+    limited(
+        "pressure_by_gear_limits",
+        lambda p: soft(treatment="induction_hardened", hardness_vickers=(1e-6 * p - 882.0) / 0.541),
+    ),
     lambda: soft(treatment=None),
     lambda: with_contact(p0=NAN),
     900.0,
-    "1.313 HV + 373 MPa, ISO 6336-5",
-    base=soft,
+    "0.541 HV + 882 MPa, ISO 6336-5",
+)
+tried(
+    "endurance_rules",
+    lambda share: with_material("steel", endurance_pressure=1e9 / share),
+    lambda: soft(treatment=None, hardness_brinell=None),
+    None,
+    1.25,
+    "1500 MPa of a carburised flank over 1200 MPa of the card",
+)
+tried(
+    "roller_overlap",
+    lambda share: with_part("roller", width=8e-3, axial_offset=1e-3 * share),
+    lambda: with_part("roller", axial_offset=None),
+    None,
+    0.5,
+    "half of 10 - 8 mm bears an offset of 1 mm",
+    base=lambda: with_part("roller", width=8e-3, axial_offset=0.5e-3),
 )

@@ -12,7 +12,6 @@ from trial_variants import (
     unknown,
     with_benchmark,
     with_bore,
-    with_case,
     with_certificate,
     with_contact,
     with_design,
@@ -240,15 +239,11 @@ for _part in ("nafems", "hertz"):
 # what a plane model cannot see
 tried(
     "edge_factor",
-    lambda share: with_case(
-        limits=made.changed(made.case().limits, edge_factor=1.3 / share),
-        roller=made.changed(made.case().roller, crowned=False),
-    ),
+    lambda share: made.solution(case=made.limits(edge_factor=1.3 / share)),
     None,
     None,
     1.3,
     "the least in use, for a roller without a crown",
-    base=lambda: with_part("roller", crowned=False),
 )
 tried(
     "held_distance",

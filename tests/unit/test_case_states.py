@@ -76,7 +76,7 @@ def test_the_machine_of_a_case_by_hand():
     assert found.base_radius == pytest.approx(0.050 - 0.008)
     compliance = (1 - cam.nu**2) / cam.E + (1 - roller.nu**2) / roller.E
     assert found.contact_modulus == pytest.approx(1 / compliance, rel=1e-12)
-    assert found.softer is cam  # S355 under bearing steel
+    assert found.bodies == {"cam": cam, "roller": roller}
     stem, follower = found.stem, case.follower
     assert (stem.diameter, stem.elastic_modulus) == (0.010, follower.stem_material.E)
     reach = follower.overhang_at_max_lift + case.guides.spacing
@@ -181,8 +181,8 @@ def test_checks_from_rest_to_overspeed_name_what_governs_and_pass_on_no_missing_
     text = text.replace("[roller]\n", f"[roller]\nfriction = 0.1\n{rough}")
     oiled = parse_case(text).with_positions(72)
     found = {check.id: check for check in preview_case(oiled).checks}
-    assert (found["film_ratio"].load_case, found["film_ratio"].status) == ("start", "fail")
-    assert 0.0 < found["film_ratio"].demand < 1e-2
+    assert found["film_ratio"].load_case == "idle"
+    assert found["film_ratio"].demand > 1e-2
     for name in ("contact_pressure", "roller_static", "guide_pv_A", "jump", "roller_speed"):
         assert found[name].load_case == "overspeed", name
     assert found["torque_reduction"].load_case == "idle"

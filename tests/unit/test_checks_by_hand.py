@@ -65,20 +65,25 @@ def test_target_life_sets_the_cycles():
 
 
 def test_edges_raise_the_pressure_of_a_roller_without_a_crown():
-    plain = with_part("roller", crowned=False)
-    assert contact_strength.edge_pressure(made.solution()).demand == pytest.approx(900e6)
-    assert contact_strength.edge_pressure(plain).demand == pytest.approx(1.3 * 900e6)
+    check = contact_strength.edge_pressure(made.solution())
+    assert check.demand == pytest.approx(1.3 * 900e6)
+    assert "a flat derating: the ends are not solved" in check.method
 
 
-def test_a_crowned_roller_needs_no_edge_factor():
-    check = edge_factor(with_limits(edge_factor=1.2))
+def test_a_crown_within_the_width_needs_no_edge_factor():
+    roller = made.changed(made.case().roller, crown_radius=0.05)
+    check = edge_factor(
+        with_case(roller=roller, limits=made.changed(made.case().limits, edge_factor=1.2))
+    )
     assert (check.demand, check.limit, check.status) == (1.0, 1.0, "pass")
+    flatter = edge_factor(with_part("roller", crown_radius=10.0))  # longer than 10 mm
+    assert (flatter.demand, flatter.limit) == (1.3, 1.3)
 
 
 def test_shakedown_factor_is_johnsons():
-    """4 without friction (orthogonal shear p0/4); 1/mu where the surface decides."""
+    """4 without friction (orthogonal shear p0/4); towards 1/mu where the surface decides."""
     assert shakedown_factor(0.0) == pytest.approx(4.0, rel=1e-4)
-    assert shakedown_factor(0.5) == pytest.approx(2.0, rel=1e-3)
+    assert 1.88 < shakedown_factor(0.5) < 2.0  # von Mises at the surface
     assert 2.5 < shakedown_factor(0.3) < shakedown_factor(0.1) < 4.0
 
 

@@ -71,7 +71,7 @@ def poisoned(part: str, field: str) -> Solution:
         ("shakedown", "contact", "p0"),
         ("shakedown_traction", "contact", "p0"),
         ("hertz_difference", "contact", "p0"),
-        ("first_yield", "contact", "von_mises"),
+        ("first_yield", "rolling", "von_mises"),
         ("contact_equilibrium", "contact", "residual_equilibrium"),
         ("contact_complementarity", "contact", "residual_complementarity"),
         ("guide_pressure_A", "guides", "line_pressure_a"),

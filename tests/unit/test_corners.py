@@ -159,7 +159,7 @@ def test_every_demand_that_a_tolerance_moves_has_a_corner(demands):
     }
     assert {
         *("guide_edge_pressure_A", "guide_pressure_B", "guide_pv_A", "contact_at_overspeed"),
-        *("first_yield", "contact_force_margin", "edge_pressure", "elastic_contact", "jam_index"),
+        *("shakedown", "contact_force_margin", "edge_pressure", "elastic_contact", "jam_index"),
         *("jump", "jump_speed", "traction_demand", "roller_life", "roller_radial", "roller_static"),
     } <= moved
     # The shape of the cam moves only with the line profile.

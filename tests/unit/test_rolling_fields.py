@@ -53,7 +53,7 @@ def test_bad_values_are_named(old, new, field):
 
 
 def mixed():
-    text = with_fields().replace("density = ", "hardness = 600\ndensity = ")
+    text = with_fields().replace("density = ", "hardness_vickers = 600\ndensity = ")
     return text + 'film = "mixed"\n'
 
 
@@ -69,7 +69,7 @@ def test_the_mixed_film_is_asked_for_in_the_case():
         ('"mixed"', '"thick"', "lubricant.film"),
         ('roughness = "0.8 um"', "", "cam.roughness"),
         ('roughness = "100 nm"', "", "roller.roughness"),
-        ("hardness = 600\n", "", "materials"),
+        ("hardness_vickers = 600\n", "", "materials"),
     ],
 )
 def test_the_mixed_film_needs_roughness_and_hardness(old, new, field):

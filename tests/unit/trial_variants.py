@@ -42,6 +42,11 @@ def with_material(name: str, **values: Any) -> Solution:
     return made.solution(case=made.with_card(made.case(), card))
 
 
+def without_endurance(name: str) -> Solution:
+    """The solution with a material whose card has no endurance pressure."""
+    return with_material(name, endurance_pressure=None, sliding_endurance_pressure=None)
+
+
 def with_speed(speed: float) -> Solution:
     """The solution at another speed of the crank, rad/s; its figures stay as they are."""
     return with_case(load_cases=(made.load_case("idle", speed=speed),))
