@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, overload
 
 from pydantic import Field, create_model, field_validator
 
+from camwright.geometry.lift import CLOSURE_LIMIT
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.section import Section, Text, refusal, suggestion
 
@@ -88,9 +89,9 @@ def utilisation_slope(limit: AnyLimit, value: float) -> float:
     return sign * {"whole": 1.0 / value, "square": 2.0 / value, "unit": 1.0}[limit.slope]
 
 
-CLOSURE = Limit(
-    "closure", "lift closure", In("mm", above=0, at_most=1), 1e-9,
-    "fundamental law of cam design, Norton (2009) ch. 2",
+CLOSURE = Limit(  # as the reader of tables: the last digit of a table in mm with three decimals
+    "closure", "lift closure", In("mm", above=0, at_most=1), CLOSURE_LIMIT,
+    "1 um, the resolution of a lift table; fundamental law of cam design, Norton (2009) ch. 2",
 )  # fmt: skip
 PRESSURE_ANGLE = Limit(
     "pressure_angle", "pressure angle", In("deg", above=0, below=90), radians(30.0),
@@ -255,9 +256,9 @@ VISCOSITY_RATIO = Limit(
 WEAR_DEPTH = Limit(
     "wear_depth", "wear depth", _LENGTH, 5e-5, "0.05 mm, shop practice: verify; Archard (1953)",
 )  # fmt: skip
-ACCELERATION_STEP = Limit(  # of the swing: a jump spreads over a few samples, a smooth law does not
+ACCELERATION_STEP = Limit(  # of the range: less is not told from the rounding of a table to 1 um
     "acceleration_step", "acceleration step", _SHARE, 0.2,
-    "finite jerk, fundamental law of cam design, Norton (2009) ch. 2",
+    "finite jerk, fundamental law of cam design, Norton (2009) ch. 2; resolution of a table",
 )  # fmt: skip
 GUIDE_LENGTH = Limit(
     "guide_length", "guided length over overhang", _SAFETY, 2.0,

@@ -53,24 +53,34 @@ def closure(solution: Solution) -> Demand:
 @check(
     ACCELERATION_STEP,
     title="Maximum acceleration step / acceleration range",
-    method="greatest difference of s'' between neighbouring samples over the range of s'';"
-    " independent of the spacing at a discontinuity",
+    method="greatest discontinuity of s'' by one-sided fits to the values of the lift, over the"
+    " range of s''",
     lift_can_help=True,
     forecast=True,
     moved_by_tolerance=False,
+    formula="|s''(theta+) - s''(theta-)| / (max s'' - min s'') <= c; s'': second derivative of the"
+    " lift by the cam angle on either side of theta, c: limits.acceleration_step",
+    reason="A jump of the acceleration is a jump of the contact force and excites the follower at"
+    " every frequency.",
 )
 def acceleration_step(solution: Solution) -> Demand:
-    """Greatest step of the acceleration between samples over its range."""
+    """Greatest discontinuity of the acceleration over its range."""
     lift = solution.contour.pitch.lift
-    bend = np.asarray(lift(lift.theta, 2), dtype=float)
-    steps = np.abs(np.diff(bend, append=bend[:1]))
-    worst, swing = int(np.argmax(steps)), float(np.ptp(bend))
+    jump = lift.acceleration_jump
+    note = (
+        ""
+        if jump.resolved
+        else (
+            "the table is too coarse or too rough: no polynomial with one kink or jump passes through"
+            " ten neighbouring values"
+        )
+    )
     return Demand(
         # round-off of a cam at rest is no step
-        0.0 if swing <= AT_REST * lift.highest.value else float(steps[worst] / swing),
+        0.0 if jump.span <= AT_REST * lift.highest.value else jump.size / jump.span,
         solution.machine.limits[ACCELERATION_STEP],
-        _place(float(lift.theta[worst])),
-        note=f"{len(lift.theta)} samples",
+        _place(jump.theta),
+        note=note,
     )
 
 

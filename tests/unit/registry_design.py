@@ -7,6 +7,7 @@ from check_tools import by_limit, counted, limit_of, limited, tried, unlimited
 from trial_variants import (
     NAN,
     NO_ROLLING,
+    coasting,
     hollow,
     lossy,
     open_ended,
@@ -73,8 +74,9 @@ by_limit(
     "acceleration_step",
     "acceleration_step",
     unknown,
-    float(np.max(np.abs(np.diff(np.cos(made.THETA))))) / 2.0,
-    "a cosine's greatest step at 5 deg over its swing",
+    0.5,
+    "from rest to s'' = a and back to -a: a step of a over a range of 2 a",
+    base=coasting,
 )
 by_limit(
     "pressure_angle",

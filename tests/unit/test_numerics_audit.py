@@ -8,6 +8,16 @@ import pytest
 from made_check import made_check
 from trial_variants import with_certificate
 
+from camwright.geometry.acceleration_jump import acceleration_jump
+from camwright.geometry.contour import RollerContour
+from camwright.geometry.errors import InputError
+from camwright.geometry.lift import Lift
+from camwright.geometry.motion_laws import Motion, Segment
+from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.case import case_file
+from camwright.pipeline.case.machine import machines
+from camwright.pipeline.case.template import template
+from camwright.pipeline.checks.cam_shape import acceleration_step, closure
 from camwright.pipeline.checks.error_bars import with_error_bars
 from camwright.pipeline.contact.elasticity.mesh_convergence import converged
 
@@ -68,3 +78,119 @@ def test_each_error_bar_has_the_index_of_its_own_quantity():
         one = replace(one, declaration=replace(one.declaration, error="contact"))
         (barred,) = with_error_bars(solution, [one])
         assert barred.error == pytest.approx(share, rel=1e-6), name
+
+
+# --- steps of the acceleration ---------------------------------------------------------------
+
+
+def law(name: str, rise: float, step: float, shift: float = 0.0) -> np.ndarray:
+    """Rise of 10 mm over an angle, dwell of 40 deg, return, dwell; values every `step`, deg."""
+    angle, dwell = np.radians(rise), np.radians(40.0)
+    rest = 2.0 * np.pi - 2.0 * angle - dwell
+    parts = ((name, angle, 0.01), ("dwell", dwell, 0.0), (name, angle, -0.01), ("dwell", rest, 0.0))
+    theta = np.radians(np.arange(0.0, 360.0, step) + shift * step)
+    return Motion(tuple(Segment(*part) for part in parts))(theta)
+
+
+def share(values: np.ndarray) -> float:
+    jump = acceleration_jump(values)
+    return jump.size / jump.span
+
+
+@pytest.mark.parametrize("step", [1.0, 2.0, 5.0])
+@pytest.mark.parametrize("shift", [0.0, 0.3])
+def test_smooth_laws_have_no_step(step, shift):
+    """The dwell ends of all but 4567 have a kink of s'', which is no step."""
+    for name in ("polynomial_345", "polynomial_4567", "cycloidal", "modified_sine"):
+        for rise in (60.0, 90.0, 140.0):
+            assert share(law(name, rise, step, shift)) < 0.02, (name, rise)
+
+
+@pytest.mark.parametrize("step", [1.0, 2.0, 5.0])
+@pytest.mark.parametrize("shift", [0.0, 0.3])
+def test_steps_of_the_laws_are_measured(step, shift):
+    """Harmonic: from rest to half of the range; parabolic: from one end of the range to the other.
+
+    The range of the values is that of means over two steps, 8 % short of a sine's in 60 deg.
+    """
+    for rise in (60.0, 90.0, 140.0):
+        assert share(law("harmonic", rise, step, shift)) == pytest.approx(0.5, rel=0.2)
+        assert share(law("parabolic", rise, step, shift)) == pytest.approx(1.0, rel=0.02)
+
+
+@pytest.mark.parametrize("step", [0.5, 1.0, 2.0])
+def test_values_rounded_to_a_micrometre_are_judged_by_their_law(step):
+    for name, low, high in (
+        ("polynomial_345", 0.0, 0.19), ("cycloidal", 0.0, 0.19), ("modified_sine", 0.0, 0.19),
+        ("harmonic", 0.45, 0.6), ("parabolic", 0.85, 1.1),
+    ):  # fmt: skip
+        for rise in (60.0, 90.0, 140.0):
+            values = np.round(law(name, rise, step), 6)
+            assert low <= share(values) <= high, (name, rise)
+
+
+@pytest.mark.parametrize("count", [72, 180, 360, 720])
+def test_a_step_of_31_per_cent_fails(count):
+    """A sine over the turn with a jump of 0.31 of its range at 100 deg, made up for at 260 deg."""
+    theta = np.arange(count) * 2.0 * np.pi / count
+    beyond = np.clip(theta - np.radians(100.0), 0.0, np.radians(160.0))
+    after = np.maximum(theta - np.radians(260.0), 0.0)
+    step = 0.31 * 0.01
+    square = 0.5 * step * (beyond**2 + 2.0 * np.radians(160.0) * after)
+    values = 0.005 * (1.0 - np.cos(theta)) + square
+    # the whole turn closes by a parabola, whose second derivative is constant
+    slope, rise = step * np.radians(160.0), square[-1] + step * np.radians(160.0) * theta[1]
+    values = values - 0.5 * slope / (2.0 * np.pi) * theta**2
+    values = values - (rise - 0.5 * slope * 2.0 * np.pi) / (2.0 * np.pi) * theta
+    contour = RollerContour(PitchCurve(Lift(theta, values - values.min()), 0.05), 0.008)
+    check = acceleration_step(made.solution(contour=contour))
+    second = -0.005 * np.cos(np.linspace(0.0, 2.0 * np.pi, 7201)) * -1.0
+    angle = np.degrees(np.linspace(0.0, 2.0 * np.pi, 7201))
+    second = second + np.where((angle > 100.0) & (angle < 260.0), step, 0.0)
+    assert check.demand == pytest.approx(step / np.ptp(second), rel=0.03)
+    assert check.status == "fail"
+    assert np.degrees(check.cam_angle) == pytest.approx(100.0, abs=6.0) or np.degrees(
+        check.cam_angle
+    ) == pytest.approx(260.0, abs=6.0)
+
+
+def test_a_smooth_table_at_5_deg_passes():
+    values = law("polynomial_345", 90.0, 5.0)
+    contour = RollerContour(
+        PitchCurve(Lift(np.radians(np.arange(0, 360, 5.0)), values), 0.05), 8e-3
+    )
+    assert acceleration_step(made.solution(contour=contour)).status == "pass"
+
+
+def test_a_table_at_unequal_angles_is_judged_at_its_own_spacing():
+    """The spline through a parabolic table at 4 and 6 deg in turn is smooth at 0.5 deg."""
+    theta = np.radians(np.cumsum(np.tile([4.0, 6.0], 36)) - 4.0)
+    motion = Motion(
+        (Segment("parabolic", np.pi, 0.01), Segment("parabolic", np.pi, -0.01)),
+    )
+    lift = Lift.from_samples(theta, motion(theta))
+    assert lift.acceleration_jump.size / lift.acceleration_jump.span > 0.8
+
+
+def test_a_table_that_resolves_no_law_does_not_pass():
+    """Six values a rise: the parabolic law has a jump every three of them."""
+    jump = acceleration_jump(law("parabolic", 30.0, 5.0))
+    assert not jump.resolved
+    assert jump.size > 0.5 * jump.span
+
+
+def test_the_closure_limit_is_that_of_the_reader_of_tables():
+    """Half a micrometre is the rounding of a table in mm with three decimals."""
+    theta = np.linspace(0.0, 2.0 * np.pi, 73)
+    values = 0.005 * (1.0 - np.cos(theta))
+    for open_by, status in ((0.99e-6, "pass"), (1.01e-6, None)):
+        ends = values + open_by * (theta == theta[-1])
+        if status is None:
+            with pytest.raises(InputError, match="closure"):
+                Lift.from_samples(theta, ends)
+            continue
+        lift = Lift.from_samples(theta, ends)
+        contour = RollerContour(PitchCurve(lift, 0.05), 8e-3)
+        plain = case_file.parse_case(template("minimal"))
+        solution = replace(made.solution(contour=contour), case=plain, machines=machines(plain))
+        assert closure(solution).status == status

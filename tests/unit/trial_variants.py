@@ -167,6 +167,17 @@ def open_ended() -> Solution:
     return made.solution(contour=replace(shape, pitch=replace(shape.pitch, lift=lift)))
 
 
+def coasting() -> Solution:
+    """The solution on a lift of three accelerations, a, 0 and -a, and their reverse."""
+    turn = made.THETA / (2.0 * np.pi)
+    rise = 2.0 * np.minimum(turn, 1.0 - turn)  # a quarter, a half and a quarter
+    beside = np.minimum(rise, 1.0 - rise)
+    low = np.where(beside < 0.25, 8.0 * beside**2 / 3.0, (4.0 * beside - 0.5) / 3.0)
+    values = made.STROKE * np.where(rise < 0.5, low, 1.0 - low)
+    path = PitchCurve(Lift(made.THETA, values), made.BASE)
+    return made.solution(contour=RollerContour(path, made.ROLLER))
+
+
 @dataclass(frozen=True, eq=False)
 class SearchedContour(RollerContour):
     """A contour whose search for a second contact has a made-up result."""
