@@ -67,20 +67,13 @@ def acceleration_step(solution: Solution) -> Demand:
     """Greatest discontinuity of the acceleration over its range."""
     lift = solution.contour.pitch.lift
     jump = lift.acceleration_jump
-    note = (
-        ""
-        if jump.resolved
-        else (
-            "the table is too coarse or too rough: no polynomial with one kink or jump passes through"
-            " ten neighbouring values"
-        )
-    )
+    coarse = "the table is too coarse or too rough to tell a step from a bend of the acceleration"
     return Demand(
         # round-off of a cam at rest is no step
         0.0 if jump.span <= AT_REST * lift.highest.value else jump.size / jump.span,
         solution.machine.limits[ACCELERATION_STEP],
         _place(jump.theta),
-        note=note,
+        note="" if jump.resolved else coarse,
     )
 
 

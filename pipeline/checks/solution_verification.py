@@ -142,8 +142,8 @@ def certificate_spread(solution: Solution) -> Demand:
     id="certificate_gci",
     title="Greatest grid convergence index of the certificate",
     unit="%",
-    method="greatest of p0, half-width, von Mises and maximum shear stress on three meshes, observed"
-    " order; safety factor 1.25, at an order below 1 factor 3",
+    method="greatest of p0, half-width, von Mises and maximum shear stress on three meshes,"
+    " observed order; safety factor 1.25, at an order below 1 factor 3",
     evidence=True,
     tier=Tier.FINITE_ELEMENTS,
 )

@@ -28,6 +28,10 @@ DENSE = np.linspace(0.0, np.pi, 20001)
 RADIUS = made.BASE + 0.5 * made.STROKE * (1.0 - np.cos(DENSE))
 SLOPE, CURVE = 0.5 * made.STROKE * np.sin(DENSE), 0.5 * made.STROKE * np.cos(DENSE)
 PITCH_RADIUS = (RADIUS**2 + SLOPE**2) ** 1.5 / (RADIUS**2 + 2.0 * SLOPE**2 - RADIUS * CURVE)
+SLOPE_HERE = 0.5 * made.STROKE * np.sin(made.THETA)
+DRIVE = (SPRING + INERTIA) * SLOPE_HERE + 20.0 * np.abs(SLOPE_HERE)
+FRICTION_SHARE = 2.0 * float(np.sum(DRIVE) / np.sum(np.abs(DRIVE)))
+"""Friction work over half of the energy that goes in and out of the cam."""
 TORQUE = np.abs(made.cycle().loads.cam_torque)
 
 

@@ -7,10 +7,12 @@ from check_tools import by_limit, counted, limit_of, limited, tried, unlimited
 from trial_variants import (
     NAN,
     NO_ROLLING,
+    TWO_ENDS,
     coasting,
     hollow,
     lossy,
     open_ended,
+    pressed,
     soft,
     unknown,
     with_bearing,
@@ -46,13 +48,18 @@ by_limit(
     "std 2 to 1 rad/s",
     missing=unlimited("speed_reduction"),
 )
-by_limit(
-    "energy_closure",
-    "energy_closure",
-    unknown,
-    0.0,
-    "E(2 pi) = E(0)",
-)
+for _name, _value, _how in (
+    ("contact_torque", 1e-5, "pressures a hundred-thousandth too great"),
+    ("contact_work", 1e-5 * by_hand.FRICTION_SHARE, "of the friction work alone"),
+):
+    by_limit(
+        _name,
+        "contact_torque",
+        lambda: with_contact(pressure=np.full((made.POSITIONS, 2), np.nan), pressure_xi=TWO_ENDS),
+        _value,
+        _how,
+        base=pressed,
+    )
 by_limit(
     "friction_balance",
     "friction_balance",

@@ -1,6 +1,8 @@
 """Audit of the numerical checks: each demand by a second formulation, each known defect."""
 
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 
 import made_trial as made
 import numpy as np
@@ -15,11 +17,19 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case import case_file
+from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.template import template
 from camwright.pipeline.checks.cam_shape import acceleration_step, closure
 from camwright.pipeline.checks.error_bars import with_error_bars
+from camwright.pipeline.checks.torque_balance import (
+    contact_torque,
+    contact_work,
+    pressure_torque,
+)
 from camwright.pipeline.contact.elasticity.mesh_convergence import converged
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import solution as solve
 
 # --- grid convergence index ------------------------------------------------------------------
 
@@ -194,3 +204,70 @@ def test_the_closure_limit_is_that_of_the_reader_of_tables():
         plain = case_file.parse_case(template("minimal"))
         solution = replace(made.solution(contour=contour), case=plain, machines=machines(plain))
         assert closure(solution).status == status
+
+
+# --- cam torque from the contact pressures ---------------------------------------------------
+
+
+@cache
+def solved():
+    """The case of every part by finite elements at 24 angles."""
+    text = (Path(__file__).parents[1] / "data" / "every_part.toml").read_text()
+    case = case_file.parse_case(text)
+    return solve(
+        case, case.contour(given_lift(case)), Tier.FINITE_ELEMENTS, positions=24, torques={}
+    )
+
+
+def with_solved_contact(**values):
+    plain = solved()
+    cycle = plain.cycles[0]
+    contact = replace(cycle.contact, **values)
+    return replace(plain, cycles=(replace(cycle, contact=contact), *plain.cycles[1:]))
+
+
+def test_the_torque_of_the_pressures_by_summing_r_x_f():
+    """On the polygon of 1.4 million chords: each strip of pressure times its moment arm."""
+    cycle = solved().cycles[0]
+    contact, contour, lift = cycle.contact, cycle.contour, cycle.contour.pitch.lift
+    summed = []
+    for k, theta in enumerate(cycle.theta):
+        fine = theta + np.linspace(-2e-5, 2e-5, 5)
+        points = contour.points(fine)
+        normal = np.array([points[1, 4] - points[1, 0], points[0, 0] - points[0, 4]])
+        normal /= np.hypot(*normal)
+        along = np.array([-normal[1], normal[0]])
+        xi = np.linspace(contact.pressure_xi[k, 0], contact.pressure_xi[k, -1], 4001)
+        pressure = np.interp(xi, contact.pressure_xi[k], contact.pressure[k])
+        place = points[:, 2, None] - along[:, None] * xi
+        force = -normal[:, None] * pressure * cycle.pair.width
+        moment = place[0] * force[1] - place[1] * force[0]
+        summed.append(np.trapezoid(moment, xi))
+    np.testing.assert_allclose(pressure_torque(cycle), summed, atol=1e-6 * np.max(np.abs(summed)))
+    slope = lift(cycle.theta, 1)
+    by_forces = cycle.loads.axial_force * slope
+    np.testing.assert_allclose(summed, by_forces, atol=1e-6 * np.max(np.abs(by_forces)))
+    assert contact_torque(solved()).status == "pass"
+    assert contact_work(solved()).status == "pass"
+
+
+def test_wrong_pressures_fail_the_torque_balance():
+    """One per thousand of the force at every angle, a tenth of it at one, a shifted patch."""
+    contact = solved().cycles[0].contact
+    once = contact.pressure.copy()
+    once[5] *= 1.1
+    assert contact_torque(with_solved_contact(pressure=1.001 * contact.pressure)).status == "fail"
+    assert contact_torque(with_solved_contact(pressure=once)).status == "fail"
+    shifted = contact.pressure_xi + 0.5 * contact.half_width[:, None]
+    assert contact_torque(with_solved_contact(pressure_xi=shifted)).status == "fail"
+    assert contact_work(with_solved_contact(pressure=once)).status == "fail"
+
+
+def test_a_contour_other_than_that_of_the_loads_fails_the_torque_balance():
+    """The same pressures on a cam turned by 0.1 deg, or of 1 % more lift."""
+    plain = solved()
+    lift = plain.contour.pitch.lift
+    for values in (lift(lift.theta + np.radians(0.1)), 1.01 * lift.values):
+        path = replace(plain.contour.pitch, lift=Lift(lift.theta, values))
+        other = replace(plain.cycles[0], contour=replace(plain.contour, pitch=path))
+        assert contact_torque(replace(plain, cycles=(other,))).status == "fail"

@@ -20,6 +20,7 @@ from camwright.pipeline.follower.camshaft_loads import Reversal
 from camwright.pipeline.follower.guide_friction import GuideHeat
 
 NAN = np.full(made.POSITIONS, np.nan)
+TWO_ENDS = np.tile([-1e-4, 1e-4], (made.POSITIONS, 1))
 NO_ROLLING = RollingHistory.unknown(made.POSITIONS)
 
 
@@ -165,6 +166,11 @@ def open_ended() -> Solution:
     shape = made.contour()
     lift = replace(shape.pitch.lift, closure=5e-10)
     return made.solution(contour=replace(shape, pitch=replace(shape.pitch, lift=lift)))
+
+
+def pressed() -> Solution:
+    """The solution with contact pressures a hundred-thousandth too great."""
+    return with_contact(pressure=1.00001 * made.cycle().contact.pressure)
 
 
 def coasting() -> Solution:
