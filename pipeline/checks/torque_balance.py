@@ -139,7 +139,7 @@ def contact_work(solution: Solution) -> Demand:
         exchanged = exchanged or FULL_TURN * _force_moment(cycle)
         return _relative(_friction_loss(cycle, pressure_torque(cycle)) - _heat(cycle), exchanged)
 
-    worst = worst_case(solution.cycles, share)
+    worst = worst_case(solution.cycles, share, integral=False)
     return Demand(worst.value, solution.machine.limits[CONTACT_TORQUE], worst)
 
 
@@ -182,7 +182,7 @@ def _integral(values: Array, at: Array) -> Array:
 )
 def friction_balance(solution: Solution) -> Demand:
     """Difference of friction work from heat of guides and face, relative."""
-    worst = worst_case(solution.cycles, _heat_mismatch)
+    worst = worst_case(solution.cycles, _heat_mismatch, integral=False)
     allowed = solution.machine.limits[FRICTION_BALANCE]
     return Demand(worst.value, allowed, worst, note="; ".join(map(_loss, solution.cycles)))
 

@@ -124,6 +124,7 @@ class RollingContact:
 def rolling_contact(
     normal_force: ArrayLike,
     spin: ArrayLike,
+    spin_acceleration: ArrayLike,
     rolling_speed: ArrayLike,
     half_width: ArrayLike,
     relative_radius: ArrayLike,
@@ -134,14 +135,16 @@ def rolling_contact(
 ) -> RollingContact:
     """Periodic rolling, creep and skidding of the roller over one turn.
 
-    Where the demand exceeds friction times normal force the contact slips under that force until
-    the roller has regained the rolling speed. One implicit step per position (Moreau): the impulse
-    that restores rolling, limited by friction.
+    The demand is that of the spin acceleration at each position. Where it exceeds friction times
+    normal force the contact slips under that force until the roller has regained the rolling
+    speed, by one implicit step per position (Moreau): the impulse that restores rolling, limited by
+    friction.
 
     Parameters
     ----------
     normal_force : array (n,)      N, at positions equally spaced in time
     spin : array (n,)              rad/s of rolling without slip
+    spin_acceleration : array (n,)  rad/s2 of it
     rolling_speed : array (n,)     surface speed through the contact, m/s
     half_width, relative_radius : array (n,)   m
     drag : Drag
@@ -165,10 +168,12 @@ def rolling_contact(
     positive("period", period, "s")
     force = np.maximum(finite("normal_force", normal_force), 0.0)
     rolling, limit = finite("spin", spin), drag.friction * force
+    rate = finite("spin_acceleration", spin_acceleration)
     speed = np.abs(finite("rolling_speed", rolling_speed))
     step = period / force.size
     resisting = drag.bearing_torque(force)
-    demand, tangential, turning = _steps(rolling, limit, resisting, drag.inertia, radius, step)
+    demand = (drag.inertia * rate + np.sign(rolling) * resisting) / radius
+    tangential, turning = _steps(rolling, demand, limit, resisting, drag.inertia, radius, step)
     slip = radius * (rolling - turning)
     sliding = np.abs(slip) > _SETTLED * radius * np.abs(rolling).max(initial=1e-300)
     share = np.divide(np.abs(tangential), limit, out=np.zeros_like(limit), where=limit > 0)
@@ -188,13 +193,17 @@ def rolling_contact(
 
 
 def _steps(
-    rolling: Array, limit: Array, resisting: Array, inertia: float, radius: float, step: float
-) -> tuple[Array, Array, Array]:
-    """Demand and force (n,) N and spin (n,) rad/s of the periodic turn."""
+    rolling: Array,
+    demand: Array,
+    limit: Array,
+    resisting: Array,
+    inertia: float,
+    radius: float,
+    step: float,
+) -> tuple[Array, Array]:
+    """Tangential force (n,) N and spin (n,) rad/s of the periodic turn."""
     count = rolling.size
-    change = rolling - np.roll(rolling, 1)
     sense = np.sign(rolling)
-    demand = (inertia * change / step + sense * resisting) / radius
     tangential, turning = np.zeros(count), np.array(rolling)
     omega = float(rolling[-1])
     scale = max(float(np.abs(rolling).max()), 1e-300)
@@ -202,7 +211,10 @@ def _steps(
         start = omega
         for k in range(count):
             target, drag = float(rolling[k]), float(resisting[k])
-            needed = (inertia * (target - omega) / step + float(sense[k]) * drag) / radius
+            if omega == float(rolling[k - 1]):
+                needed = float(demand[k])
+            else:
+                needed = (inertia * (target - omega) / step + float(sense[k]) * drag) / radius
             tangential[k] = np.clip(needed, -limit[k], limit[k])
             if abs(needed) <= limit[k]:
                 omega = target
@@ -214,7 +226,7 @@ def _steps(
             turning[k] = omega
         if abs(omega - start) <= _SETTLED * scale:
             break
-    return demand, tangential, turning
+    return tangential, turning
 
 
 def _braked(omega: float, loss: float) -> float:

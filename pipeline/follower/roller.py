@@ -155,6 +155,7 @@ class Roller(Part):
         return rolling_contact(
             force,
             motion.spin,
+            motion.spin_acceleration,
             motion.rolling_speed,
             contact.half_width,
             contact.relative_radius,

@@ -20,8 +20,11 @@ from camwright.pipeline.case import case_file
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.template import template
+from camwright.pipeline.checks import torque_balance
 from camwright.pipeline.checks.cam_shape import acceleration_step, closure
 from camwright.pipeline.checks.error_bars import with_error_bars
+from camwright.pipeline.checks.extremes import worst_case
+from camwright.pipeline.checks.roller_bearing import roller_life
 from camwright.pipeline.checks.torque_balance import (
     contact_torque,
     contact_work,
@@ -271,3 +274,80 @@ def test_a_contour_other_than_that_of_the_loads_fails_the_torque_balance():
         path = replace(plain.contour.pitch, lift=Lift(lift.theta, values))
         other = replace(plain.cycles[0], contour=replace(plain.contour, pitch=path))
         assert contact_torque(replace(plain, cycles=(other,))).status == "fail"
+
+
+# --- error of integrals and of derivatives ---------------------------------------------------
+
+
+@cache
+def previewed(positions: int):
+    text = (Path(__file__).parents[1] / "data" / "every_part.toml").read_text()
+    case = case_file.parse_case(text)
+    contour = case.contour(given_lift(case))
+    return solve(case, contour, Tier.PREVIEW, positions=positions, torques={})
+
+
+@pytest.mark.parametrize("positions", [36, 72, 360])
+def test_the_traction_demand_is_that_of_the_roller_s_own_acceleration(positions):
+    """J dw/dt over r N, the rate of the speed of 4096 angles by its Fourier series."""
+    cycle = previewed(positions).cycles[0]
+    path, speed, roller = cycle.contour.pitch, cycle.cam_speed, cycle.machine.roller
+    dense = np.arange(4096) * 2.0 * np.pi / 4096
+    x, y = path.points(dense)
+    order = np.fft.rfftfreq(4096, 1.0 / 4096)
+    rate_x, rate_y = (np.fft.irfft(1j * order * np.fft.rfft(part), 4096) for part in (x, y))
+    spin = speed * (np.hypot(rate_x, rate_y) / roller.radius - 1.0)
+    spin_rate = speed * np.fft.irfft(1j * order * np.fft.rfft(spin), 4096)
+    there = np.interp(cycle.theta, dense, spin_rate)
+    inertia = 0.5 * np.pi * 7850.0 * roller.width * (roller.radius**4 - roller.hub_radius**4)
+    drag = roller.bearing.drag_torque or 0.0
+    drag = drag + (roller.bearing.friction or 0.0) * roller.hub_radius * cycle.loads.normal_force
+    wanted = np.abs(inertia * there + drag) / (roller.radius * cycle.loads.normal_force)
+    found = cycle.rolling.traction_demand
+    np.testing.assert_allclose(found, wanted, atol=2e-4 * wanted.max())
+
+
+KNOWN = {
+    # mean over the turn and its exact value
+    "|sin|": (lambda t: np.abs(np.sin(t + 0.3)), 2.0 / np.pi),
+    "a tent": (lambda t: np.abs(np.mod(t + 0.4, 2.0 * np.pi) - np.pi), 0.5 * np.pi),
+    "half a sine": (lambda t: np.maximum(np.sin(t - 0.7), 0.0), 1.0 / np.pi),
+    "half a sine squared": (lambda t: np.maximum(np.sin(t - 0.7), 0.0) ** 2, 0.25),
+    "a cubed cosine on a mean": (lambda t: (2.0 + np.cos(t)) ** 3, 11.0),
+    "a narrow peak": (lambda t: np.exp(6.0 * (np.cos(t) - 1.0)), float(np.exp(-6.0) * np.i0(6.0))),
+}
+
+
+@pytest.mark.parametrize("positions", [36, 48, 90])
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_bar_of_an_integral_covers_its_error(name, positions):
+    function, exact = KNOWN[name]
+    cycles = previewed(positions).cycles
+    mean = worst_case(cycles, lambda cycle: float(np.mean(function(cycle.theta))))
+    assert abs(mean.value - exact) <= mean.error_share * abs(mean.value) + 1e-12
+    assert mean.error_share < 0.1
+
+
+def test_the_bar_of_a_bearing_life_covers_its_error():
+    """Of 36 positions against 1440; the error of the finer is a thousandth of that."""
+    coarse, fine = roller_life(previewed(36)), roller_life(previewed(1440))
+    assert abs(coarse.demand / fine.demand - 1.0) <= (coarse.error_share or 0.0) + 1e-9
+    assert (coarse.error_share or 0.0) > (fine.error_share or 0.0)
+
+
+def test_a_residual_has_no_error_of_an_integral():
+    assert not torque_balance.friction_balance(previewed(72)).error_share
+
+
+@pytest.mark.parametrize("step", [2, 3])
+def test_every_few_positions_of_every_result(step):
+    """Arrays of the turn are thinned, those of machine and contour are not."""
+    cycle = solved().cycles[0]
+    half = cycle.thinned[step]
+    assert half.theta.tolist() == cycle.theta[::step].tolist()
+    assert half.contour is cycle.contour
+    assert half.machine is cycle.machine
+    assert half.contact.pressure.tolist() == cycle.contact.pressure[::step].tolist()
+    assert half.loads.cam_torque.tolist() == cycle.loads.cam_torque[::step].tolist()
+    assert half.parts.heat_a.power.tolist() == cycle.parts.heat_a.power[::step].tolist()
+    assert half.rolling.bore.von_mises.tolist() == cycle.rolling.bore.von_mises[::step].tolist()

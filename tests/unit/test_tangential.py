@@ -15,7 +15,7 @@ R, A, RHO = 0.008, 1e-4, 0.0065
 def turn(drag, force=100.0, spin=500.0, speed=4.0):
     ones = np.ones(COUNT)
     return rolling_contact(
-        force * ones, spin * ones, speed * ones, A * ones, RHO * ones,
+        force * ones, spin * ones, 0.0 * ones, speed * ones, A * ones, RHO * ones,
         drag=drag, radius=R, period=PERIOD,
     )  # fmt: skip
 
@@ -76,7 +76,7 @@ def test_a_roller_that_left_the_cam_slows_down_and_catches_up():
     inertia, torque = 1e-6, 0.01
     ones = np.ones(COUNT)
     found = rolling_contact(
-        force, 500 * ones, 4 * ones, A * ones, RHO * ones,
+        force, 500 * ones, 0 * ones, 4 * ones, A * ones, RHO * ones,
         drag=Drag(inertia, 0.1, torque), radius=R, period=PERIOD,
     )  # fmt: skip
     open_time = PERIOD / 8
@@ -94,14 +94,14 @@ def test_a_roller_that_left_the_cam_slows_down_and_catches_up():
 
 def test_inertia_alone_asks_for_its_share():
     theta = np.arange(COUNT) * 2 * np.pi / COUNT
-    spin = 500 + 50 * np.sin(theta)
+    spin, rate = 500 + 50 * np.sin(theta), 50 * np.cos(theta) * 2 * np.pi / PERIOD
     ones = np.ones(COUNT)
     found = rolling_contact(
-        100 * ones, spin, 4 * ones, A * ones, RHO * ones,
+        100 * ones, spin, rate, 4 * ones, A * ones, RHO * ones,
         drag=Drag(2e-6, 0.1), radius=R, period=PERIOD,
     )  # fmt: skip
     exact = 2e-6 * 50 * 2 * np.pi / PERIOD / R
-    assert np.abs(found.demand).max() == pytest.approx(exact, rel=1e-3)
+    assert np.abs(found.demand).max() == pytest.approx(exact, rel=1e-9)
     assert found.demand == pytest.approx(found.force, abs=1e-12)
 
 

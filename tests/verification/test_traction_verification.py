@@ -138,7 +138,7 @@ def test_eccentric_cam_that_cannot_roll():
     torque = 0.026 * float(spin[0])
     force, ones = np.full(count, 93.0), np.ones(count)
     found = tangential.rolling_contact(
-        force, spin, spin * radius, 1e-5 * ones, 0.012 * ones,
+        force, spin, 0.0 * spin, spin * radius, 1e-5 * ones, 0.012 * ones,
         drag=tangential.Drag(2.75e-4, friction, torque), radius=radius, period=2 * np.pi / speed,
     )  # fmt: skip
     assert torque == pytest.approx(3.46, rel=0.01)
