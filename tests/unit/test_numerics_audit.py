@@ -24,7 +24,9 @@ from camwright.pipeline.checks import torque_balance
 from camwright.pipeline.checks.cam_shape import acceleration_step, closure
 from camwright.pipeline.checks.error_bars import with_error_bars
 from camwright.pipeline.checks.extremes import worst_case
+from camwright.pipeline.checks.plane_strain_validity import held_distance
 from camwright.pipeline.checks.roller_bearing import roller_life
+from camwright.pipeline.checks.solution_verification import mesh_edges
 from camwright.pipeline.checks.torque_balance import (
     contact_torque,
     contact_work,
@@ -351,3 +353,38 @@ def test_every_few_positions_of_every_result(step):
     assert half.loads.cam_torque.tolist() == cycle.loads.cam_torque[::step].tolist()
     assert half.parts.heat_a.power.tolist() == cycle.parts.heat_a.power[::step].tolist()
     assert half.rolling.bore.von_mises.tolist() == cycle.rolling.bore.von_mises[::step].tolist()
+
+
+# --- mesh and model --------------------------------------------------------------------------
+
+
+def test_the_distance_to_holds_is_that_of_the_nodes_that_are_held_or_supported():
+    """From the contact to the nearest node of the ring's bore and of the cam's, in the meshes."""
+    plain = solved()
+    bodies, contour = plain.cycles[0].bodies, plain.contour
+    ring = bodies.follower.body.mesh
+    top = np.array([[0.0], [plain.machine.roller.radius]])
+    nearest = np.hypot(*(ring.points[:, ring.boundary_nodes("hub")] - top)).min()
+    cam = bodies.cam.body.mesh
+    nodes = [cam.points[:, cam.boundary_nodes(name)] for name in ("bore", "keyway")]
+    held = max(float(np.hypot(*each).max()) for each in nodes)
+    wall = np.hypot(*contour.polygon(3600)).min() - held
+    half_width = max(float(c.contact.half_width.max()) for c in plain.cycles)
+    demand = held_distance(plain).demand
+    # the nearest node lies beside the contact by up to an element
+    assert demand == pytest.approx(min(nearest, wall) / half_width, rel=5e-3)
+    assert demand < 0.5 * (8e-3 - 4e-3) / half_width
+
+
+def test_the_node_spacings_of_the_contact_are_those_of_the_mesh():
+    """Nodes of the contour within a half-width of the contact, middle nodes included."""
+    mesh, contour = solved().mesh, solved().contour
+    contact = contour.points(mesh.theta)
+    apart = np.hypot(*(mesh.cam.points - contact[:, None]))
+    surface = np.isin(np.arange(apart.size), mesh.cam.boundary_nodes("contour"))
+    near = np.sort(((mesh.cam.points - contact[:, None]) * contour.tangent(mesh.theta)[:, None])
+                   .sum(axis=0)[surface & (apart <= mesh.half_width)])  # fmt: skip
+    check = mesh_edges(solved())
+    assert check.demand == pytest.approx(mesh.half_width / np.diff(near).max(), rel=0.03)
+    assert check.status == "pass"
+    assert check.limit == 10.0
