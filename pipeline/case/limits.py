@@ -114,7 +114,8 @@ TOOL_RADIUS = OpenLimit(
     "concave radius at least 1.1 tool radii, Rothbart (2004) ch. 6", "at_least",
 )  # fmt: skip
 CURVATURE_RATE = OpenLimit(
-    "curvature_rate", "rate of change of curvature", In("1/m/rad", above=0, at_most=1e9),
+    "curvature_rate", "rate of change of curvature along the contour",
+    In("1/mm^2", above=0, at_most=1e9),
     "limit of the case, for grinding and wear",
 )  # fmt: skip
 MINIMUM_WALL = Limit(  # outer over inner radius of the ring about the bore

@@ -189,19 +189,26 @@ def least_concave_radius(case: Case) -> float | None:
 
 @check(
     CURVATURE_RATE,
-    title="Maximum rate of change of contour curvature",
-    method="greatest change of curvature per radian of cam angle, refined between samples",
+    title="Maximum change of contour curvature per length",
+    method="greatest |d kappa/ds| along the contour, refined between samples",
     lift_can_help=True,
     forecast=True,
+    formula="max |d kappa/ds| <= c; kappa: curvature of the contour, s: length along it, c:"
+    " limits.curvature_rate",
+    reason="Decides where the case sets the limit: its value depends on the grinding machine.",
 )
-def curvature_rate(solution: Solution) -> Demand | None:
-    """Greatest change of the contour's curvature, 1/(m rad); None without a bound."""
+def curvature_rate(solution: Solution) -> Demand:
+    """Greatest change of the contour's curvature per length, 1/m^2."""
     allowed, contour = solution.machine.limits[CURVATURE_RATE], solution.contour
-    if allowed is None:
-        return None
     count = contour.pitch.lift.search_count
-    worst = greatest_of(lambda theta: np.abs(contour.curvature_slope(theta)), count)
-    return Demand(float(worst.value), allowed, _at(worst))
+    worst = greatest_of(lambda theta: np.abs(contour.curvature_rate(theta)), count)
+    return Demand(
+        float(worst.value),
+        allowed,
+        _at(worst),
+        note="" if allowed is not None else "no change of the curvature is limited",
+        must_have=allowed is not None,
+    )
 
 
 @check(

@@ -62,6 +62,16 @@ def mean_life() -> float:
     return 1e6 * (1140.0 / load) ** 3 / (spin.mean() / (2.0 * np.pi)) / 3600.0
 
 
+def curvature_rate() -> float:
+    """Greatest change of the curvature of the contour per length, 1/m2, from points alone."""
+    x, y = made.contour().polygon(1440)
+    chord = np.hypot(np.roll(x, -1) - x, np.roll(y, -1) - y)
+    angle = np.unwrap(np.arctan2(np.roll(y, -1) - y, np.roll(x, -1) - x))
+    turning = np.mod(np.roll(angle, -1) - angle + np.pi, 2.0 * np.pi) - np.pi
+    bend = turning / (0.5 * (chord + np.roll(chord, -1)))
+    return float(np.max(np.abs(np.roll(bend, -1) - bend) / np.roll(chord, -1)))
+
+
 def thrown() -> np.ndarray:
     """m e w^2 of a polygon of the contour less the keyway in strips, turning with the shaft."""
     x, y = made.contour().polygon(7200)
