@@ -134,6 +134,10 @@ class Contour(ABC):
     def curvature_slope(self, theta: ArrayLike) -> Array:
         """Derivative of the curvature by the cam angle, 1/(m rad)."""
 
+    def curvature_rate(self, theta: ArrayLike) -> Array:
+        """Derivative of the curvature by the length of the contour, 1/m^2; infinite at a cusp."""
+        return self.curvature_slope(theta) * reciprocal(self.speed(theta))
+
     @abstractmethod
     def radius_of_curvature(self, theta: ArrayLike) -> Array:
         """Signed radius of curvature, m, positive where convex."""

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from camwright.geometry.acceleration_jump import Jump, acceleration_jump
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze, readonly, uniform_turn
 from camwright.geometry.errors import InputError
 from camwright.geometry.extrema import Extremum, greatest, least
@@ -26,7 +27,7 @@ NEGATIVE_TOLERANCE = 1e-6
 """m: maximum undershoot of a spline below a dwell at zero, less than any grinding accuracy."""
 
 CLOSURE_LIMIT = 1e-6
-"""m: maximum difference between the ends of a closed table."""
+"""m: maximum difference between the ends of a closed table, its last digit."""
 
 GAP_MAX = np.radians(30.0)
 
@@ -44,6 +45,8 @@ class Lift:
     theta : array (n,)     cam angle, rad, equally spaced over [0, 2 pi), n >= 12
     values : array (n,)    s, m, >= 0
     closure : float        |s(2 pi) - s(0)| of the source of the lift, m
+    spacing : float        greatest step of the table behind the values, rad; 0: the values are
+                           its own
 
     Raises
     ------
@@ -54,6 +57,7 @@ class Lift:
     theta: Array
     values: Array
     closure: float = 0.0
+    spacing: float = 0.0
 
     def __post_init__(self) -> None:
         theta, values = finite("lift.theta", self.theta), finite("lift.values", self.values)
@@ -101,7 +105,7 @@ class Lift:
             return cls(even, value, closure)
         table = interpolant(np.append(angle, angle[0] + FULL_TURN), value)
         even = uniform_turn(max(_RESAMPLED, 4 * len(angle)))
-        return cls(even, table(even), closure)
+        return cls(even, table(even), closure, float(gaps.max()))
 
     @cached_property
     def spline(self) -> PeriodicPolynomial:
@@ -145,6 +149,12 @@ class Lift:
     def search_count(self) -> int:
         """Equal angles per turn that bracket every extreme of a function of this lift."""
         return _SEARCH * len(self.theta)
+
+    @cached_property
+    def acceleration_jump(self) -> Jump:
+        """Greatest discontinuity of s'' of the law behind the values."""
+        thinned = self.spacing and max(LEAST_SAMPLES, int(FULL_TURN / self.spacing))
+        return acceleration_jump(self(uniform_turn(thinned or len(self.theta))))
 
     @cached_property
     def lowest(self) -> Extremum:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, overload
 
 from pydantic import Field, create_model, field_validator
 
+from camwright.geometry.lift import CLOSURE_LIMIT
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.section import Section, Text, refusal, suggestion
 
@@ -88,9 +89,9 @@ def utilisation_slope(limit: AnyLimit, value: float) -> float:
     return sign * {"whole": 1.0 / value, "square": 2.0 / value, "unit": 1.0}[limit.slope]
 
 
-CLOSURE = Limit(
-    "closure", "lift closure", In("mm", above=0, at_most=1), 1e-9,
-    "fundamental law of cam design, Norton (2009) ch. 2",
+CLOSURE = Limit(  # as the reader of tables: the last digit of a table in mm with three decimals
+    "closure", "lift closure", In("mm", above=0, at_most=1), CLOSURE_LIMIT,
+    "1 um, the resolution of a lift table; fundamental law of cam design, Norton (2009) ch. 2",
 )  # fmt: skip
 PRESSURE_ANGLE = Limit(
     "pressure_angle", "pressure angle", In("deg", above=0, below=90), radians(30.0),
@@ -113,7 +114,8 @@ TOOL_RADIUS = OpenLimit(
     "concave radius at least 1.1 tool radii, Rothbart (2004) ch. 6", "at_least",
 )  # fmt: skip
 CURVATURE_RATE = OpenLimit(
-    "curvature_rate", "rate of change of curvature", In("1/m/rad", above=0, at_most=1e9),
+    "curvature_rate", "rate of change of curvature along the contour",
+    In("1/mm^2", above=0, at_most=1e9),
     "limit of the case, for grinding and wear",
 )  # fmt: skip
 MINIMUM_WALL = Limit(  # outer over inner radius of the ring about the bore
@@ -301,9 +303,9 @@ VISCOSITY_RATIO = Limit(
 WEAR_DEPTH = Limit(
     "wear_depth", "wear depth", _LENGTH, 5e-5, "0.05 mm, shop practice: verify; Archard (1953)",
 )  # fmt: skip
-ACCELERATION_STEP = Limit(  # of the swing: a jump spreads over a few samples, a smooth law does not
+ACCELERATION_STEP = Limit(  # of the range: less is not told from the rounding of a table to 1 um
     "acceleration_step", "acceleration step", _SHARE, 0.2,
-    "finite jerk, fundamental law of cam design, Norton (2009) ch. 2",
+    "finite jerk, fundamental law of cam design, Norton (2009) ch. 2; resolution of a table",
 )  # fmt: skip
 GUIDE_LENGTH = Limit(
     "guide_length", "guided length over overhang", _SAFETY, 2.0,
@@ -317,8 +319,9 @@ SPEED_REDUCTION = OpenLimit(
     "speed_reduction", "speed ripple reduction", _INNER_SHARE,
     "requirement of the case", "at_least",
 )  # fmt: skip
-ENERGY_CLOSURE = Limit(
-    "energy_closure", "energy balance", _RESIDUAL, 1e-9, "conservation of energy over one turn",
+CONTACT_TORQUE = Limit(
+    "contact_torque", "cam torque from contact pressures", In(above=0, at_most=0.01), 1e-4,
+    "sum of moments, at most 1 % from contact pressures, ASME V&V 10-2019; flat patch: 1e-4",
 )  # fmt: skip
 FRICTION_BALANCE = Limit(
     "friction_balance", "friction balance", _RESIDUAL, 1e-6, "conservation of energy over one turn",

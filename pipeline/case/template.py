@@ -167,7 +167,7 @@ spacing = "5 deg"                    # crank angle: 12 points make a window of 6
 [limits]
 pressure_angle = "30 deg"
 torque_reduction = 0.4               # minimum reduction of the torque ripple
-# curvature_rate = "500 1/m/rad"     # maximum rate of change of the contour curvature
+# curvature_rate = "0.01 1/mm^2"     # maximum change of the contour curvature per length
 # tool_radius = "10 mm"              # concave radii at least a tenth above it
 
 [limits.sources]

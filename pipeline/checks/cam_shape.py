@@ -53,24 +53,27 @@ def closure(solution: Solution) -> Demand:
 @check(
     ACCELERATION_STEP,
     title="Maximum acceleration step / acceleration range",
-    method="greatest difference of s'' between neighbouring samples over the range of s'';"
-    " independent of the spacing at a discontinuity",
+    method="greatest discontinuity of s'' by one-sided fits to the values of the lift, over the"
+    " range of s''",
     lift_can_help=True,
     forecast=True,
     moved_by_tolerance=False,
+    formula="|s''(theta+) - s''(theta-)| / (max s'' - min s'') <= c; s'': second derivative of the"
+    " lift by the cam angle on either side of theta, c: limits.acceleration_step",
+    reason="A jump of the acceleration is a jump of the contact force and excites the follower at"
+    " every frequency.",
 )
 def acceleration_step(solution: Solution) -> Demand:
-    """Greatest step of the acceleration between samples over its range."""
+    """Greatest discontinuity of the acceleration over its range."""
     lift = solution.contour.pitch.lift
-    bend = np.asarray(lift(lift.theta, 2), dtype=float)
-    steps = np.abs(np.diff(bend, append=bend[:1]))
-    worst, swing = int(np.argmax(steps)), float(np.ptp(bend))
+    jump = lift.acceleration_jump
+    coarse = "the table is too coarse or too rough to tell a step from a bend of the acceleration"
     return Demand(
         # round-off of a cam at rest is no step
-        0.0 if swing <= AT_REST * lift.highest.value else float(steps[worst] / swing),
+        0.0 if jump.span <= AT_REST * lift.highest.value else jump.size / jump.span,
         solution.machine.limits[ACCELERATION_STEP],
-        _place(float(lift.theta[worst])),
-        note=f"{len(lift.theta)} samples",
+        _place(jump.theta),
+        note="" if jump.resolved else coarse,
     )
 
 
@@ -186,19 +189,26 @@ def least_concave_radius(case: Case) -> float | None:
 
 @check(
     CURVATURE_RATE,
-    title="Maximum rate of change of contour curvature",
-    method="greatest change of curvature per radian of cam angle, refined between samples",
+    title="Maximum change of contour curvature per length",
+    method="greatest |d kappa/ds| along the contour, refined between samples",
     lift_can_help=True,
     forecast=True,
+    formula="max |d kappa/ds| <= c; kappa: curvature of the contour, s: length along it, c:"
+    " limits.curvature_rate",
+    reason="Decides where the case sets the limit: its value depends on the grinding machine.",
 )
-def curvature_rate(solution: Solution) -> Demand | None:
-    """Greatest change of the contour's curvature, 1/(m rad); None without a bound."""
+def curvature_rate(solution: Solution) -> Demand:
+    """Greatest change of the contour's curvature per length, 1/m^2."""
     allowed, contour = solution.machine.limits[CURVATURE_RATE], solution.contour
-    if allowed is None:
-        return None
     count = contour.pitch.lift.search_count
-    worst = greatest_of(lambda theta: np.abs(contour.curvature_slope(theta)), count)
-    return Demand(float(worst.value), allowed, _at(worst))
+    worst = greatest_of(lambda theta: np.abs(contour.curvature_rate(theta)), count)
+    return Demand(
+        float(worst.value),
+        allowed,
+        _at(worst),
+        note="" if allowed is not None else "no change of the curvature is limited",
+        must_have=allowed is not None,
+    )
 
 
 @check(

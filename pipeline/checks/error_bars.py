@@ -11,31 +11,61 @@ from camwright.pipeline.checks.check import ROUNDING, Check
 from camwright.pipeline.cycle.solution import Solution
 
 GUIDE_ERROR = "mesh_reaction"
+FIGURES = {
+    **dict.fromkeys(
+        (
+            "contact_pressure",
+            "contact_pressure_at_life",
+            "edge_pressure",
+            "shakedown",
+            "shakedown_traction",
+            "pressure_by_hardness",
+            "pressure_by_gear_limits",
+        ),
+        "p0",
+    ),
+    **dict.fromkeys(("first_yield", "hardened_case"), "von_mises"),
+    **dict.fromkeys(("held_distance",), "half_width"),
+}
+"""Certified quantity of a demand by check; a demand on several has the greatest error of all."""
 
 
 def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check, ...]:
     """The checks with the relative errors of their demands.
 
     A demand on a guide has the discretisation uncertainty of the guide reaction. One on the
-    contact has the greatest sum of difference and grid convergence index of the certificate, and
-    the sampling error; without a certificate its error is not known.
+    contact has the greatest sum of difference and grid convergence index of its certified
+    quantity, and the sampling error; without a certificate its error is not known.
     """
     checks = tuple(checks)
-    contact = contact_error(solution)
     beam = [each.demand for each in checks if each.id == GUIDE_ERROR]
     guides = None if beam in ([], [None]) else float(beam[0] or 0.0)
-    return tuple(replace(each, error_share=_share(each, contact, guides)) for each in checks)
+
+    def share(one: Check) -> float | None:
+        return _share(one, contact_error(solution, FIGURES.get(one.id)), guides)
+
+    return tuple(replace(each, error_share=share(each)) for each in checks)
 
 
-def contact_error(solution: Solution) -> float | None:
+def contact_error(solution: Solution, figure: str | None = None) -> float | None:
     """Greatest difference between cycle and certificate plus its uncertainty, relative.
 
-    None without a certificate, NaN where a certified value is not known.
+    Of one certified quantity, or of all. None without a certificate, NaN where a certified value
+    is not known.
     """
     points = solution.certificate
     if not points:
         return None
-    return float(np.max([p.spread + p.gci for p in points]))
+    return float(
+        np.max(
+            [
+                point.difference(name) + convergence.gci
+                for point in points
+                for name, (convergence, _) in point.figures.items()
+                if figure in (None, name)
+            ]
+        )
+    )
 
 
 def _share(one: Check, contact: float | None, guides: float | None) -> float | None:

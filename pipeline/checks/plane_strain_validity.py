@@ -48,9 +48,11 @@ def edge_factor(solution: Solution) -> Demand:
     unit="-",
     sense="at_least",
     source="Saint-Venant: the stress at a fixed boundary is that of the model, not of the part",
-    method="least wall to bore, keyway or hub over the greatest half-width",
+    method="least wall of the cam to bore or keyway, and thickness of the outer ring or of the"
+    " roller to its hub, over the greatest half-width",
     evidence=True,
     tier=Tier.FINITE_ELEMENTS,
+    error="contact",
 )
 def held_distance(solution: Solution) -> Demand:
     """Minimum distance of the contact from a fixed boundary, in half-widths."""

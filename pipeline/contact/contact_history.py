@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -111,18 +112,26 @@ class CertificatePoint:
     residual_complementarity: float
 
     @property
+    def figures(self) -> Mapping[str, tuple[Convergence, float]]:
+        """Each certified quantity by its name: convergence over the meshes, value of the cycle."""
+        return {
+            "p0": (self.p0, self.p0_cycle),
+            "half_width": (self.half_width, self.half_width_cycle),
+            "tau_max": (self.tau_max, self.tau_max_cycle),
+            "von_mises": (self.von_mises, self.von_mises_cycle),
+        }
+
+    @property
     def spread(self) -> float:
         """Largest relative difference of cycle and certificate in any figure; NaN if one is."""
-        pairs = (
-            (self.p0, self.p0_cycle),
-            (self.half_width, self.half_width_cycle),
-            (self.tau_max, self.tau_max_cycle),
-            (self.von_mises, self.von_mises_cycle),
-        )
-        return float(np.max([abs(value / one.extrapolated - 1) for one, value in pairs]))
+        return float(np.max([self.difference(name) for name in self.figures]))
+
+    def difference(self, name: str) -> float:
+        """Relative difference of cycle and certificate in one figure."""
+        one, value = self.figures[name]
+        return abs(value / one.extrapolated - 1)
 
     @property
     def gci(self) -> float:
         """Largest grid convergence index of the figures, relative; NaN if one is."""
-        figures = (self.p0, self.half_width, self.tau_max, self.von_mises)
-        return float(np.max([figure.gci for figure in figures]))
+        return float(np.max([figure.gci for figure, _ in self.figures.values()]))

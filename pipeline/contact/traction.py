@@ -135,15 +135,16 @@ def rolling_contact(
 ) -> RollingContact:
     """Periodic rolling, creep and skidding of the roller over one turn.
 
-    Where the demand exceeds friction times normal force the contact slips under that force until
-    the roller has regained the rolling speed. One implicit step per position (Moreau): the impulse
-    that restores rolling, limited by friction.
+    The demand is that of the spin acceleration at each position. Where it exceeds friction times
+    normal force the contact slips under that force until the roller has regained the rolling
+    speed, by one implicit step per position (Moreau): the impulse that restores rolling, limited by
+    friction.
 
     Parameters
     ----------
     normal_force : array (n,)      N, at positions equally spaced in time
     spin : array (n,)              rad/s of rolling without slip
-    spin_acceleration : array (n,)   its derivative, rad/s2
+    spin_acceleration : array (n,)  rad/s2 of it
     rolling_speed : array (n,)     surface speed through the contact, m/s
     half_width, relative_radius : array (n,)   m
     drag : Drag
@@ -167,15 +168,14 @@ def rolling_contact(
     positive("period", period, "s")
     force = np.maximum(finite("normal_force", normal_force), 0.0)
     rolling, limit = finite("spin", spin), drag.friction * force
+    rate = finite("spin_acceleration", spin_acceleration)
     speed = np.abs(finite("rolling_speed", rolling_speed))
     step = period / force.size
     resisting = drag.bearing_torque(force)
-    inertia_torque = drag.inertia * finite("spin_acceleration", spin_acceleration)
-    demand = (inertia_torque + np.sign(rolling) * resisting) / radius
-    tangential, turning = _steps(rolling, limit, resisting, drag.inertia, radius, step)
+    demand = (drag.inertia * rate + np.sign(rolling) * resisting) / radius
+    tangential, turning = _steps(rolling, demand, limit, resisting, drag.inertia, radius, step)
     slip = radius * (rolling - turning)
     sliding = np.abs(slip) > _SETTLED * radius * np.abs(rolling).max(initial=1e-300)
-    tangential = np.where(sliding | (np.abs(demand) > limit), tangential, demand)
     share = np.divide(np.abs(tangential), limit, out=np.zeros_like(limit), where=limit > 0)
     creep = creepage(np.clip(share, 0, 1), drag.friction, half_width, relative_radius)
     gross = np.divide(np.abs(slip), speed, out=np.zeros_like(slip), where=speed > 0)
@@ -193,9 +193,15 @@ def rolling_contact(
 
 
 def _steps(
-    rolling: Array, limit: Array, resisting: Array, inertia: float, radius: float, step: float
+    rolling: Array,
+    demand: Array,
+    limit: Array,
+    resisting: Array,
+    inertia: float,
+    radius: float,
+    step: float,
 ) -> tuple[Array, Array]:
-    """Force (n,) N and spin (n,) rad/s of the periodic turn."""
+    """Tangential force (n,) N and spin (n,) rad/s of the periodic turn."""
     count = rolling.size
     sense = np.sign(rolling)
     tangential, turning = np.zeros(count), np.array(rolling)
@@ -205,7 +211,10 @@ def _steps(
         start = omega
         for k in range(count):
             target, drag = float(rolling[k]), float(resisting[k])
-            needed = (inertia * (target - omega) / step + float(sense[k]) * drag) / radius
+            if omega == float(rolling[k - 1]):
+                needed = float(demand[k])
+            else:
+                needed = (inertia * (target - omega) / step + float(sense[k]) * drag) / radius
             tangential[k] = np.clip(needed, -limit[k], limit[k])
             if abs(needed) <= limit[k]:
                 omega = target

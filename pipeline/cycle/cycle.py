@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
+from typing import TypeVar
 
 import numpy as np
 
@@ -117,6 +120,21 @@ class Cycle:
         flights = self.contact.tier is not Tier.PREVIEW
         return part_loads(self.turn, self.contour, self.pair.width, flights=flights)
 
+    @cached_property
+    def thinned(self) -> Mapping[int, Cycle]:
+        """The cycle at every second and every third position, for the error of an integral.
+
+        By the step; every second where neither divides the number of positions: one step of the
+        turn is then a short one, which makes the error seem greater.
+        """
+        steps = [step for step in (2, 3) if self.theta.size % step == 0] or [2]
+        return MappingProxyType({step: self._at_every(step) for step in steps})
+
+    def _at_every(self, step: int) -> Cycle:
+        count = self.theta.size
+        turn, contact = _at_every(self.turn, count, step), _at_every(self.contact, count, step)
+        return _ThinnedCycle(turn, self.contour, self.pair, self.bodies, contact, self, step)
+
     def columns(self) -> dict[Column, Cells]:
         """Columns of ``5_cycle.csv``; the contact of a contour that encloses no body is unknown."""
 
@@ -226,3 +244,37 @@ class Cycle:
         if contact.tier is not None:
             columns |= self.rolling.columns()
         return columns | self.parts.columns()
+
+
+@dataclass(frozen=True, eq=False)
+class _ThinnedCycle(Cycle):
+    """A cycle at every few positions of `whole`, with its rolling and part loads."""
+
+    whole: Cycle
+    step: int
+
+    @cached_property
+    def rolling(self) -> RollingHistory:
+        return _at_every(self.whole.rolling, self.whole.theta.size, self.step)
+
+    @cached_property
+    def parts(self) -> PartLoads:
+        return _at_every(self.whole.parts, self.whole.theta.size, self.step)
+
+
+Result = TypeVar("Result")
+
+
+def _at_every(result: Result, count: int, step: int) -> Result:
+    """A result with every few entries of its arrays (count, ...), those of its parts included."""
+    if isinstance(result, Machine) or not is_dataclass(result) or isinstance(result, type):
+        return result
+    changed: dict[str, object] = {}
+    for field in fields(result):
+        value: object = getattr(result, field.name)
+        if isinstance(value, np.ndarray):
+            if value.shape[:1] == (count,):
+                changed[field.name] = value[::step]
+        elif (part := _at_every(value, count, step)) is not value:
+            changed[field.name] = part
+    return replace(result, **changed) if changed else result

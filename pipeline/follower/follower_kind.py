@@ -76,7 +76,7 @@ class FollowerKind(Protocol):
 
     @property
     def held_depth(self) -> float | None:
-        """Distance of contact surface and held surface, m; None for a flat face."""
+        """Distance of contact surface and held or supported surface, m; None for a flat face."""
         ...
 
     @property

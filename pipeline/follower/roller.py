@@ -85,7 +85,10 @@ class Roller(Part):
 
     @property
     def held_depth(self) -> float:
-        """Distance of surface and hub, m."""
+        """Thickness of the outer ring on its balls, or of the roller solid on its hub, m."""
+        ring = self.bearing.ring
+        if ring is not None and not self.solid_reason:
+            return ring.thickness
         return self.radius - self.hub_radius
 
     @property

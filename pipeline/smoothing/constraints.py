@@ -278,7 +278,8 @@ def _concave_radius(cam: Shape, hollow: float) -> Array | None:
 def _curvature_rate(cam: Shape, limit: float) -> Array:
     jet, path = cam.jet, cam.path
     change = curvature_slope(path.along, path.across, jet.slope, jet.bend, jet.jerk)
-    return magnitude(change / (1.0 - cam.bend) ** 2) / limit
+    # the contour is shorter than the pitch curve by the undercut factor, its curvature greater
+    return magnitude(change / ((1.0 - cam.bend) ** 3 * path.speed)) / limit
 
 
 def _cam_radius(cam: Shape, limit: float) -> Array:

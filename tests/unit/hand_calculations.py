@@ -36,6 +36,10 @@ DENSE = np.linspace(0.0, np.pi, 20001)
 RADIUS = made.BASE + 0.5 * made.STROKE * (1.0 - np.cos(DENSE))
 SLOPE, CURVE = 0.5 * made.STROKE * np.sin(DENSE), 0.5 * made.STROKE * np.cos(DENSE)
 PITCH_RADIUS = (RADIUS**2 + SLOPE**2) ** 1.5 / (RADIUS**2 + 2.0 * SLOPE**2 - RADIUS * CURVE)
+SLOPE_HERE = 0.5 * made.STROKE * np.sin(made.THETA)
+DRIVE = (SPRING + INERTIA) * SLOPE_HERE + 20.0 * np.abs(SLOPE_HERE)
+FRICTION_SHARE = 2.0 * float(np.sum(DRIVE) / np.sum(np.abs(DRIVE)))
+"""Friction work over half of the energy that goes in and out of the cam."""
 TORQUE = np.abs(made.cycle().loads.cam_torque)
 
 
@@ -98,6 +102,16 @@ def mean_life() -> float:
     assert bend.min() > 0.0
     load = np.cbrt(np.sum(force**3 * spin) / np.sum(spin))
     return 1e6 * (1140.0 / load) ** 3 / (spin.mean() / (2.0 * np.pi)) / 3600.0
+
+
+def curvature_rate() -> float:
+    """Greatest change of the curvature of the contour per length, 1/m2, from points alone."""
+    x, y = made.contour().polygon(1440)
+    chord = np.hypot(np.roll(x, -1) - x, np.roll(y, -1) - y)
+    angle = np.unwrap(np.arctan2(np.roll(y, -1) - y, np.roll(x, -1) - x))
+    turning = np.mod(np.roll(angle, -1) - angle + np.pi, 2.0 * np.pi) - np.pi
+    bend = turning / (0.5 * (chord + np.roll(chord, -1)))
+    return float(np.max(np.abs(np.roll(bend, -1) - bend) / np.roll(chord, -1)))
 
 
 def thrown() -> np.ndarray:

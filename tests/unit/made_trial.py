@@ -218,6 +218,7 @@ def cycle(
         "contact": replace(
             base.contact,
             tier=Tier.FINITE_ELEMENTS,
+            pressure=_pressure(base, driven + 2.0 * rub * np.abs(slope)),
             p0=(800e6 + 100e6 * WAVE) * scale,
             p0_hertz=(800e6 + 100e6 * WAVE) * scale / 1.01,
             von_mises=(400e6 + 100e6 * WAVE) * scale,
@@ -249,6 +250,15 @@ def cycle(
 def _even(force: np.ndarray, knots: np.ndarray) -> np.ndarray:
     """Line load (knots, n) of a force spread evenly over the length of a guide."""
     return np.tile(force / np.ptp(knots), (knots.size, 1))
+
+
+def _pressure(base: Cycle, torque: np.ndarray) -> np.ndarray:
+    """Pressures of the cycle's own shape whose moment about the cam axis is a torque, N m."""
+    shape, xi = base.contact.pressure, base.contact.pressure_xi
+    force = base.pair.width * np.trapezoid(shape, xi, axis=1)
+    arm = base.loads.lift_slope * np.cos(base.loads.pressure_angle)
+    wanted = np.divide(torque, arm, out=force.copy(), where=np.abs(arm) > 1e-9)
+    return shape * (wanted / np.where(force == 0.0, 1.0, force))[:, None]
 
 
 def _rolling(base: Cycle) -> RollingHistory:

@@ -3,13 +3,16 @@
 import hand_calculations as by_hand
 import made_trial as made
 import numpy as np
-from check_tools import by_limit, counted, limit_of, limited, tried, unlimited
+from check_tools import by_limit, counted, limited, tried, unlimited
 from trial_variants import (
     NAN,
     NO_ROLLING,
+    TWO_ENDS,
+    coasting,
     hollow,
     lossy,
     open_ended,
+    pressed,
     soft,
     unknown,
     with_bearing,
@@ -46,13 +49,18 @@ by_limit(
     "std 2 to 1 rad/s",
     missing=unlimited("speed_reduction"),
 )
-by_limit(
-    "energy_closure",
-    "energy_closure",
-    unknown,
-    0.0,
-    "E(2 pi) = E(0)",
-)
+for _name, _value, _how in (
+    ("contact_torque", 1e-5, "pressures a hundred-thousandth too great"),
+    ("contact_work", 1e-5 * by_hand.FRICTION_SHARE, "of the friction work alone"),
+):
+    by_limit(
+        _name,
+        "contact_torque",
+        lambda: with_contact(pressure=np.full((made.POSITIONS, 2), np.nan), pressure_xi=TWO_ENDS),
+        _value,
+        _how,
+        base=pressed,
+    )
 by_limit(
     "friction_balance",
     "friction_balance",
@@ -74,8 +82,9 @@ by_limit(
     "acceleration_step",
     "acceleration_step",
     unknown,
-    float(np.max(np.abs(np.diff(np.cos(made.THETA))))) / 2.0,
-    "a cosine's greatest step at 5 deg over its swing",
+    0.5,
+    "from rest to s'' = a and back to -a: a step of a over a range of 2 a",
+    base=coasting,
 )
 by_limit(
     "pressure_angle",
@@ -124,13 +133,13 @@ by_limit(
     base=hollow,
     missing=lambda: made.changed_solution(hollow(), case=made.limits(tool_radius=None)),
 )
-tried(
+by_limit(
     "curvature_rate",
-    limited("curvature_rate", limit_of("curvature_rate")),
-    None,  # without a bound in the case there is no check
+    "curvature_rate",
     unknown,
-    0.3804935696445838,
-    "held against differences in test_contour",
+    1e-6 * by_hand.curvature_rate(),
+    "differences of the turning of a polygon of the contour",
+    missing=unlimited("curvature_rate"),
 )
 by_limit(
     "minimum_wall",

@@ -205,7 +205,7 @@ by_limit(
 for _name, _part, _value, _si in (
     ("mesh_angle", "min_angle_deg", 28.0, np.radians(1.0)),
     ("mesh_jacobian", "min_scaled_jacobian", 0.5, 1.0),
-    ("mesh_edges", "edges_across_half_width", 10.0, 1.0),
+    ("mesh_edges", "edges_across_half_width", 20.0, 2.0),
 ):
     tried(
         _name,
@@ -247,11 +247,13 @@ tried(
 )
 tried(
     "held_distance",
-    loaded("held_distance", lambda n: with_contact(half_width=np.full(made.POSITIONS, 4e-3 / n))),
+    loaded(
+        "held_distance", lambda n: with_contact(half_width=np.full(made.POSITIONS, 1.36e-3 / n))
+    ),
     lambda: with_contact(half_width=np.zeros(made.POSITIONS)),
     lambda: with_contact(half_width=NAN),
-    40.0,
-    "8 - 4 mm of roller over 0.1 mm",
+    13.6,
+    "1.36 mm of outer ring over 0.1 mm",
 )
 tried(
     "subsurface_depth",

@@ -29,7 +29,7 @@ MUST_HAVE = {
     # shape, space and function
     *("closure", "acceleration_step", "pressure_angle", "curvature_ratio", "undercut"),
     *("self_intersection", "second_contact", "concave_radius", "minimum_wall", "spring_travel"),
-    *("guide_gap", "cam_radius", "torque_reduction", "energy_closure"),
+    *("guide_gap", "cam_radius", "torque_reduction", "contact_torque"),
     # forces and contact
     *("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed", "friction_balance"),
     *("jam_index", "jam_index_friction_max", "contact_pressure", "contact_pressure_at_life"),

@@ -20,6 +20,7 @@ from camwright.pipeline.follower.camshaft_loads import Reversal
 from camwright.pipeline.follower.guide_friction import GuideHeat
 
 NAN = np.full(made.POSITIONS, np.nan)
+TWO_ENDS = np.tile([-1e-4, 1e-4], (made.POSITIONS, 1))
 NO_ROLLING = RollingHistory.unknown(made.POSITIONS)
 
 
@@ -185,6 +186,22 @@ def open_ended() -> Solution:
     shape = made.contour()
     lift = replace(shape.pitch.lift, closure=5e-10)
     return made.solution(contour=replace(shape, pitch=replace(shape.pitch, lift=lift)))
+
+
+def pressed() -> Solution:
+    """The solution with contact pressures a hundred-thousandth too great."""
+    return with_contact(pressure=1.00001 * made.cycle().contact.pressure)
+
+
+def coasting() -> Solution:
+    """The solution on a lift of three accelerations, a, 0 and -a, and their reverse."""
+    turn = made.THETA / (2.0 * np.pi)
+    rise = 2.0 * np.minimum(turn, 1.0 - turn)  # a quarter, a half and a quarter
+    beside = np.minimum(rise, 1.0 - rise)
+    low = np.where(beside < 0.25, 8.0 * beside**2 / 3.0, (4.0 * beside - 0.5) / 3.0)
+    values = made.STROKE * np.where(rise < 0.5, low, 1.0 - low)
+    path = PitchCurve(Lift(made.THETA, values), made.BASE)
+    return made.solution(contour=RollerContour(path, made.ROLLER))
 
 
 @dataclass(frozen=True, eq=False)

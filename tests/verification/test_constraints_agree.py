@@ -57,7 +57,7 @@ def case():
     signed = read_case(CASES / "gx120-signed.toml")
     cam, roller, guides = signed.cam, signed.roller, signed.guides
     limits = {
-        "tool_radius": 0.04, "cam_radius": 0.1, "curvature_rate": 300.0, "target_life": 3.6e6,
+        "tool_radius": 0.04, "cam_radius": 0.1, "curvature_rate": 9e3, "target_life": 3.6e6,
         "overspeed": 420.0,
     }  # fmt: skip
     line = {"endurance_slope": 14.15, "endurance_intercept": 66.22}
@@ -269,7 +269,7 @@ RANGES = {
 }  # fmt: skip
 EVERY = rated(
     roller_radius=0.008, offset=0.003, travel=0.045, pressure_angle=np.pi / 6, jam_index=0.5,
-    curvature_ratio=1.5, undercut_factor=0.3, hollow_radius=0.03, curvature_rate=300.0,
+    curvature_ratio=1.5, undercut_factor=0.3, hollow_radius=0.03, curvature_rate=9e3,
     cam_radius=0.08, pressure=1e9, contact_width=0.01, contact_modulus=1.2e11,
     contact_force_margin=0.2, overspeed=200.0, jump=1.0, jump_speed=250.0, normal_force=900.0,
     life_force_cubed=1e9, roller_spin=600.0, guide_pressure=(5e6, 5e6), guide_pv=(1e6, 1e6),

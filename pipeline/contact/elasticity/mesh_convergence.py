@@ -11,6 +11,9 @@ from camwright.geometry.errors import InputError
 
 # Relative differences below this are scatter of the mesh position, not convergence.
 _SCATTER = 2e-4
+_ORDER_TRUSTED = 1.0  # below it the meshes are not in the asymptotic range
+_ORDER_LEAST, _ORDER_MOST = 0.5, 3.0  # bounds of the order in the error bar
+_SAFETY, _SAFETY_COARSE = 1.25, 3.0  # in and outside the asymptotic range
 
 
 @dataclass(frozen=True)
@@ -30,8 +33,10 @@ class Convergence:
 def converged(values: Sequence[float], ratio: float) -> Convergence:
     """Richardson extrapolation of three values on meshes refined by a constant ratio.
 
-    Values that do not converge monotonically have no order; their error bar is their spread times
-    the safety factor of two meshes.
+    The error bar is 1.25 |f1 - f2|/(r^p - 1). An observed order p below 1 takes the safety factor 3
+    and counts as at least 0.5: it widens the bar. One above 3, the order of the stresses, counts as
+    3. Values that do not converge monotonically have no order; their error bar is 3 times their
+    spread, of monotone ones not less than that of the order 0.5.
 
     Raises
     ------
@@ -40,7 +45,8 @@ def converged(values: Sequence[float], ratio: float) -> Convergence:
 
     References
     ----------
-    Roache (1998); ASME V&V 20-2009, sec. 2-4.
+    Roache (1998); ASME V&V 20-2009, sec. 2-4; Eca and Hoekstra, J. Comput. Phys. 262 (2014) 104:
+    safety factor 3 and bounds of the order outside the asymptotic range: verify.
     """
     if len(values) != 3 or not np.isfinite(values).all():
         raise InputError("values", tuple(values), "three finite numbers")
@@ -50,12 +56,12 @@ def converged(values: Sequence[float], ratio: float) -> Convergence:
     scale = abs(fine) or 1.0
     first, second = middle - coarse, fine - middle
     spread = (max(values) - min(values)) / scale
+    figures = (coarse, middle, fine)
+    at_least = _SAFETY_COARSE * abs(second) / scale / (ratio**_ORDER_LEAST - 1.0)
     if first * second <= 0 or abs(second) >= abs(first) or spread < _SCATTER:
-        return Convergence((coarse, middle, fine), fine, None, 3.0 * spread)
+        bar = _SAFETY_COARSE * spread
+        return Convergence(figures, fine, None, max(bar, at_least) if first * second > 0 else bar)
     order = float(np.log(first / second) / np.log(ratio))
-    # An order above that of the stresses, or below one, would give too small an error bar.
-    trusted = min(max(order, 1.0), 3.0)
-    gain = ratio**trusted - 1
-    return Convergence(
-        (coarse, middle, fine), fine + second / gain, order, 1.25 * abs(second) / scale / gain
-    )
+    gain = ratio ** min(max(order, _ORDER_LEAST), _ORDER_MOST) - 1.0
+    safety = _SAFETY if order >= _ORDER_TRUSTED else _SAFETY_COARSE
+    return Convergence(figures, fine + second / gain, order, safety * abs(second) / scale / gain)
