@@ -16,7 +16,7 @@ In the order of the calculation:
 | `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
 | `spring_strength`       | strength, solid length, buckling, surge    | tau, Pa; f, Hz           |
 | `part_strength`         | pin, outer ring, bore, unbalance           | sigma, Pa; e w, m/s      |
-| `key_strength`          | key of the cam, slip of its seat           | p, tau, Pa               |
+| `key_strength`          | key of the cam, keyway root, slip of seat  | p, tau, Pa; safety, -    |
 | `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s; rad   |
 | `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |
 | `wear_and_grease`       | lubrication, expansion and wear            | kappa; m                 |

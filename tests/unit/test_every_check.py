@@ -39,7 +39,8 @@ MUST_HAVE = {
     *("guide_pressure_A", "guide_pressure_B", "guide_pv_A", "guide_pv_B"),
     *("spring_stress", "spring_fatigue", "spring_solid", "spring_buckling"),
     # camshaft
-    *("key_pressure", "key_pressure_shaft", "key_shear", "cam_slip", "bore_pressure"),
+    *("key_pressure", "key_pressure_shaft", "key_shear", "cam_slip"),
+    *("keyway_root", "bore_pressure"),
     *("shaft_fatigue", "shaft_yield", "shaft_deflection", "shaft_slope"),
     *("shaft_bearing_static", "shaft_bearing_life", "gear_bending", "pinion_bending"),
     *("gear_contact", "cam_unbalance"),

@@ -133,6 +133,7 @@ def test_every_part_described_is_evaluated(full):
         "guide_temperature_B",
         "bore_pressure",
         "key_pressure_shaft",
+        "keyway_root",
         "cam_slip",
         "roller_ring_fatigue",
     }
