@@ -229,6 +229,10 @@ KEY_REVERSAL = Limit(
     "half under alternating torque, textbooks of machine elements; DIN 6892 has a curve by the"
     " number of reversals: verify",
 )  # fmt: skip
+KEYWAY_SAFETY = Limit(
+    "keyway_safety", "fatigue safety of the keyway root in the cam", _SAFETY, 1.5,
+    "Goodman, Shigley sec. 6-12: verify", "at_least",
+)  # fmt: skip
 CAM_SLIP = Limit(
     "cam_slip", "slip torque of the cam seat over its torque", _SAFETY, 1.5,
     "1.5 against slip under alternating torque, DIN 7190: verify", "at_least",

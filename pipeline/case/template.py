@@ -63,6 +63,9 @@ material = "hardened_steel"
 # [cam.keyway]
 # width = "6 mm"
 # depth = "2.8 mm"
+# [cam.key]                          # height, shaft_depth and chamfer: DIN 6885 by the width
+# length = "14 mm"                   # of form A, its round ends included
+# material = "hardened_steel"
 # [cam.counter_hole]                 # hole that removes the unbalance
 # wall = "3 mm"
 
@@ -74,6 +77,9 @@ material = "hardened_steel"
 # diameter = "20 mm"
 # material = "hardened_steel"        # with fatigue_bending and tensile_strength
 # bearing_rating = "9.95 kN"
+# bearing_static_rating = "5.0 kN"
+# slip_torque = "0 N m"              # of a press or clamped seat of the cam; 0: sliding fit
+# rotor_mass = "1.2 kg"              # of cam, shaft and gear, for the unbalance
 
 [roller]
 radius = "16 mm"

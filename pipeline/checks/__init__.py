@@ -17,7 +17,7 @@ In the order of the calculation:
 | `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
 | `spring_strength`       | strength, solid length, buckling, surge    | tau, Pa; f, Hz           |
 | `part_strength`         | pin, fork, ring, mass, bore, balance       | sigma, Pa; kg; e w, m/s  |
-| `key_strength`          | key of the cam, slip of its seat           | p, tau, Pa               |
+| `key_strength`          | key of the cam, keyway root, slip of seat  | p, tau, Pa; safety, -    |
 | `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s; rad   |
 | `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |
 | `wear_and_grease`       | expansion and wear of the guides           | m                        |

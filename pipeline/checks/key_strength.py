@@ -1,4 +1,4 @@
-"""Checks of the key of the cam: pressure on hub and shaft, shear, slip of the seat."""
+"""Checks of the key of the cam: pressure on hub and shaft, shear, keyway root, slip of the seat."""
 
 from __future__ import annotations
 
@@ -8,13 +8,25 @@ import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.material import Material
-from camwright.pipeline.case.limits import CAM_SLIP, KEY_REVERSAL, KEY_SHARE
+from camwright.pipeline.base.units import shown
+from camwright.pipeline.case.limits import (
+    CAM_SLIP,
+    KEY_REVERSAL,
+    KEY_SHARE,
+    KEYWAY_SAFETY,
+    SHAFT_RELIABILITY,
+)
 from camwright.pipeline.checks.check import Demand, check
-from camwright.pipeline.checks.extremes import greatest
+from camwright.pipeline.checks.extremes import greatest, least
 from camwright.pipeline.contact.cam_body import Key
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import KeyStress, key_stress
+from camwright.pipeline.follower.shaft_strength import (
+    keyway_root_stress,
+    reliability_factor,
+    surface_factor,
+)
 
 METHOD = "DIN 6892 method C at the greatest cam torque, bearing length without round ends"
 LOOSE = "must-have: a key that yields under reversed torque works loose and the cam loses its phase"
@@ -22,6 +34,10 @@ ALLOWED = (
     "R_e: lower yield strength of the two parts, S: limits.key_share, f: limits.key_reversal where"
     " the torque reverses, else 1"
 )
+WALLS = 0.75, 4.0
+"""Least and greatest wall over the radius of the keyway floor for which the stress is known."""
+TINY = 1e-12
+"""Utilisation of an unloaded root: its safety is finite."""
 _DATA = {
     "length": "length of the key",
     "height": "height of the key",
@@ -114,6 +130,61 @@ def cam_slip(solution: Solution) -> Demand | None:
         worst,
         note=note,
     )
+
+
+@check(
+    KEYWAY_SAFETY,
+    id="keyway_root",
+    title="Fatigue safety factor of the keyway root in the cam",
+    method="elements of rings with DIN 6885-1 keyways: greatest principal stress at the fillet by"
+    " key pressure and contact force, pulsating from zero; Goodman line, machined surface",
+    lift_can_help=True,
+    part="key",
+    formula="1/(s/(2 S_e) + s/(2 R_m)) >= limits.keyway_safety; s = (0.70 p + 4.1 F_n/(b h))"
+    " (t2/r)^0.4555: greatest over the turn, p: key_pressure, F_n: normal force, b: cam width, h:"
+    " least wall beyond the keyway, from 0.75 and counted up to 4 times the radius of its floor,"
+    " t2, r: depth and root radius of the keyway, S_e = k_a k_e S_e':"
+    " endurance of the cam's material with factors of surface and limits.shaft_reliability",
+    reason="must-have: a crack from the root of the keyway splits the cam",
+)
+def keyway_root(solution: Solution) -> Demand:
+    """Fatigue safety factor of the keyway's root in the cam."""
+    machine = solution.machine
+    cam, limit, card = machine.cam, machine.limits[KEYWAY_SAFETY], machine.cam.material
+    keyway, key, flanks, radius = cam.keyway, cam.key, cam.key_flanks, cam.keyway_root_radius
+    endurance, tensile = card.fatigue_bending, card.tensile_strength
+    missing = [f"no {_DATA[name]} is given" for name, v in cam.key_data.items() if v is None]
+    missing += [] if radius is not None else ["no root radius of the keyway is given"]
+    if endurance is None or tensile is None:
+        missing += [f"the card of {card.name} gives no fatigue or tensile strength"]
+    if keyway is None or key is None or flanks is None or radius is None:
+        return Demand(None, limit, note="; ".join(missing))
+    if endurance is None or tensile is None:
+        return Demand(None, limit, note="; ".join(missing))
+    strength = surface_factor("machined", tensile) * endurance
+    strength *= reliability_factor(machine.limits[SHAFT_RELIABILITY])
+    wall = float(solution.contour.radius_min().value) - cam.held_radius
+    thin, thick = (share * cam.held_radius for share in WALLS)
+    if not wall >= thin:
+        note = f"wall of {shown(wall, 'mm')}, the stress is known from {shown(thin, 'mm')}"
+        return Demand(None, limit, note=note)
+
+    def safety(cycle: Cycle) -> Array:
+        loads = cycle.loads
+        if not np.isfinite([loads.cam_torque, loads.normal_force]).all():
+            return np.full(cycle.theta.size, np.nan)
+        torque = key.application_factor * loads.cam_torque
+        pressure = np.abs(key_stress(torque, 2.0 * cam.bore_radius, flanks).hub)
+        force = np.abs(loads.normal_force)
+        stress = keyway_root_stress(
+            pressure, force, cam.width, min(wall, thick), keyway.depth, radius
+        )
+        used = 0.5 * stress * (1.0 / strength + 1.0 / tensile)
+        return np.asarray(1.0 / np.maximum(used, TINY))
+
+    worst = least(solution.cycles, safety)
+    note = f"root radius {shown(radius, 'mm')}, wall {shown(wall, 'mm')}"
+    return Demand(worst.value, limit, worst, note=note, figures=(f"{card.name}: {card.source}",))
 
 
 def _judged(

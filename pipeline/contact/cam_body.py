@@ -12,14 +12,21 @@ from camwright.pipeline.base.quantities import Angle, In, Length, Part
 
 @dataclass(frozen=True, kw_only=True)
 class Keyway(Part):
-    """A keyway in the bore; angle of its centre line in the cam frame."""
+    """A keyway in the bore; angle of its centre line in the cam frame.
+
+    root_radius: fillet between side and floor, for the stress at the root.
+    """
 
     fillet: ClassVar[float] = 0.0  # its inner corners are meshed sharp
     table: ClassVar[str] = "cam.keyway"
+    defaults: ClassVar[Mapping[str, str]] = {
+        "root_radius": "least of DIN 6885-1, by a standard width of the keyway"
+    }
 
     width: Length
     depth: Length
     angle: Angle = 0.0
+    root_radius: Length | None = None
 
 
 class StandardKey(NamedTuple):
@@ -132,14 +139,25 @@ class CamBody(Part):
 
         None: not stated, and of no standard width.
         """
-        key, width = self.key or Key(), 0.0 if self.keyway is None else self.keyway.width
-        row = next((row for b, row in STANDARD_KEYS.items() if abs(b * _MM - width) < 1e-6), None)
+        key, row = self.key or Key(), self._standard_key
         return {
             "length": key.length,
             "height": key.height or (row and row.height),
             "shaft_depth": key.shaft_depth or (row and row.shaft_depth),
             "chamfer": key.chamfer or (row and row.chamfer),
         }
+
+    @property
+    def keyway_root_radius(self) -> float | None:
+        """Fillet radius at the root of the keyway, m; None without one or without a datum."""
+        row = self._standard_key
+        stated = None if self.keyway is None else self.keyway.root_radius
+        return stated or (row and row.fillet)
+
+    @property
+    def _standard_key(self) -> StandardKey | None:
+        width = 0.0 if self.keyway is None else self.keyway.width
+        return next((row for b, row in STANDARD_KEYS.items() if abs(b * _MM - width) < 1e-6), None)
 
     @property
     def key_flanks(self) -> KeyFlanks | None:

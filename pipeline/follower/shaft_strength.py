@@ -1,4 +1,4 @@
-"""Sections of the camshaft: moments, fatigue, yield, deflection; stresses of its gear teeth."""
+"""Sections of the camshaft: moments, fatigue, yield, deflection; keyway root and gear teeth."""
 
 from __future__ import annotations
 
@@ -252,6 +252,46 @@ def shaft_bending(
                 total[1] += under_couple(at) * moment
                 total[2] += under_other_couple(at) * moment
     return ShaftBending(*(total / stiffness))
+
+
+ROOT_OF_PUSH, ROOT_OF_CONTACT = 0.70, 4.1
+_CORNER = 0.4555  # 1 - lambda of a re-entrant right angle: stress at the root of a small fillet
+
+
+def keyway_root_stress(
+    key_pressure: ArrayLike,
+    normal_force: ArrayLike,
+    width: float,
+    wall: float,
+    keyway_depth: float,
+    root_radius: float,
+) -> Array:
+    """Greatest principal stress (...) at the root of a keyway in the hub, Pa, at most.
+
+    Both parts scale with (t2/r)^0.4555, as the stress of a sharp right-angled corner does. Their
+    factors are the greatest of plane-strain elements of rings with a keyway of DIN 6885-1, bores of
+    12 to 50 mm, outer radius 1.75 to 5 times that of the keyway floor, fillets of once and twice
+    the least: 0.49 to 0.70 under the pressure of the key, 2.4 to 4.1 under the contact force over
+    the wall, at its worst angle to the keyway.
+
+    Parameters
+    ----------
+    key_pressure, normal_force : array (...)   on the flank in the hub, Pa; of the contact, N; >= 0
+    width, wall : float                        of the cam; least between keyway and contour, m, > 0
+    keyway_depth, root_radius : float          t2 and r, m, > 0
+
+    References
+    ----------
+    Williams, J. Appl. Mech. 19 (1952): singularity of a corner; factors by `meshes` and skfem,
+    tests/verification/test_camshaft_audit.py.
+    """
+    for name, value in (("width", width), ("wall", wall), ("root_radius", root_radius)):
+        if not 0.0 < value < np.inf:
+            raise InputError(f"cam.keyway.{name}", value, "> 0 m")
+    spread = np.asarray(normal_force, dtype=float) / (width * wall)
+    push = ROOT_OF_PUSH * np.asarray(key_pressure, dtype=float)
+    stress = (push + ROOT_OF_CONTACT * spread) * (keyway_depth / root_radius) ** _CORNER
+    return np.asarray(stress)
 
 
 def tooth_root_stress(force: ArrayLike, width: float, module: float, teeth: int) -> Array:

@@ -175,6 +175,14 @@ for _name, _area, _strength, _how in (
         missing=lambda: with_key(length=None),
     )
 by_limit(
+    "keyway_root",
+    "keyway_safety",
+    lambda: with_loads(cam_torque=NAN),
+    by_hand.root_safety(),
+    "Goodman at the root, elements in test_camshaft_audit",
+    missing=lambda: with_material("steel", fatigue_bending=None),
+)
+by_limit(
     "cam_slip",
     "cam_slip",
     lambda: with_loads(cam_torque=NAN),

@@ -47,7 +47,8 @@ MUST_HAVE = {
     *("spring_coil_gap", "spring_solid_stress", "spring_relaxation", "spring_rate"),
     *("contact_over_speed", "elastic_contact"),
     # camshaft
-    *("key_pressure", "key_pressure_shaft", "key_shear", "cam_slip", "bore_pressure"),
+    *("key_pressure", "key_pressure_shaft", "key_shear", "cam_slip"),
+    *("keyway_root", "bore_pressure"),
     *("shaft_fatigue", "shaft_yield", "shaft_deflection", "shaft_slope"),
     *("shaft_bearing_static", "shaft_bearing_life", "gear_bending", "pinion_bending"),
     *("gear_contact", "cam_unbalance"),

@@ -133,7 +133,7 @@ def test_every_part_described_is_evaluated(full):
         "jam_index_friction_max",
         *("guide_temperature_A", "guide_expansion_A", "guide_wear_A"),
         *("guide_temperature_B", "guide_expansion_B", "guide_wear_B"),
-        *("bore_pressure", "key_pressure_shaft", "cam_slip"),
+        *("bore_pressure", "key_pressure_shaft", "keyway_root", "cam_slip"),
         "roller_ring_fatigue",
         "roller_pin_fatigue",
         "roller_pin_pressure",
