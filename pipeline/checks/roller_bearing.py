@@ -139,7 +139,8 @@ def roller_load_share(solution: Solution) -> Demand:
 @check(
     ROLLER_LIFE,
     title="L10 rating life of the roller bearing",
-    method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force",
+    method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force,"
+    " surge of the spring included",
     lift_can_help=True,
     forecast=True,
     needs="roller",
@@ -166,7 +167,7 @@ def roller_life(solution: Solution) -> Demand:
 
 def _life(cycle: Cycle, rating: float | None) -> float:
     """L10, s; NaN without a rating or a force."""
-    force = cycle.loads.normal_force
+    force = cycle.surged_force
     if rating is None or not _known(force):
         return np.nan
     return rating_life(force, spin(cycle), rating).seconds

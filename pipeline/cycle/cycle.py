@@ -19,7 +19,7 @@ from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elliptic_contact import CrownedContact, crowned_contact
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies
-from camwright.pipeline.cycle.part_loads import PartLoads, part_loads
+from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, spring_surge
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.follower_forces import Loads, share_left
@@ -74,7 +74,8 @@ class Cycle:
     @property
     def surged_force(self) -> Array:
         """Normal force with the surge of the spring, N, >= 0; without a spring design as solved."""
-        loads, surge = self.loads, self.parts.surge_force
+        loads = self.loads
+        surge = spring_surge(self.machine, loads.lift)
         if surge is None:
             return loads.normal_force
         share = share_left(loads.lift_slope, loads.jam_index)

@@ -176,15 +176,7 @@ def part_loads(
         shaft_bearing_1=None if shaft is None else shaft.load_1,
         shaft_bearing_2=None if shaft is None else shaft.load_2,
         spring_stress=None if spring is None else spring.stress(loads.spring_force),
-        surge_force=None
-        if spring is None
-        else surge_force(
-            loads.lift,
-            machine.cam_speed,
-            machine.spring.rate,
-            natural_frequency(machine.spring.rate, spring.active_mass),
-            spring.damping_ratio,
-        ),
+        surge_force=spring_surge(machine, loads.lift),
         pin_stress=None if pin is None else pin * loads.normal_force,
         roller_spin=None if motion is None else motion.spin,
         roller_spin_acceleration=None if motion is None else motion.spin_acceleration,
@@ -192,6 +184,18 @@ def part_loads(
         ring_mean=mean,
         ring_correction=correction,
     )
+
+
+def spring_surge(machine: Machine, lift: Array) -> Array | None:
+    """Force of the surge on the follower (n,), N, from the lift at equal angles of a turn, m.
+
+    None without a spring design.
+    """
+    rate, design = machine.spring.rate, machine.spring.design
+    if design is None:
+        return None
+    frequency = natural_frequency(rate, design.active_mass)
+    return surge_force(lift, machine.cam_speed, rate, frequency, design.damping_ratio)
 
 
 def guide_bodies(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:

@@ -364,7 +364,9 @@ def test_a_roller_under_a_cam_at_rest_outlives_every_life_that_a_case_may_requir
     """The cam creeps: as many turns at a speed of nearly zero. A case may require 1e6 hours."""
     running = roller_bearing.roller_life(made.solution())
     resting = roller_bearing.roller_life(with_speed(0.0))
-    assert resting.demand == pytest.approx(running.demand * 2.0 * made.CAM_SPEED / CREEP)
+    # at rest without the surge, which takes 0.1 % of the life
+    turns = 2.0 * made.CAM_SPEED / CREEP
+    assert resting.demand == pytest.approx(running.demand * turns, rel=2e-3)
     assert resting.as_record()["demand"] > 1e6
 
 

@@ -133,6 +133,14 @@ def worst_loads(case, judged, ratings):
     return worst
 
 
+def without_design(cycle):
+    """The cycle on a spring without mass."""
+    machine = cycle.machine
+    spring = replace(machine.spring, design=None)
+    turn = replace(cycle.turn, machine=replace(machine, spring=spring))
+    return replace(cycle, turn=turn)
+
+
 def strain(check, roller_radius):
     """What the constraint is at the demand and the limit of its check."""
     demand, limit, name = check.demand, check.limit, check.id
@@ -202,7 +210,13 @@ def test_load_limit_is_that_of_its_check(case, judged, name):
     ratings = replace(ratings, normal_force=forces.get(name, ratings.normal_force))
     worst = worst_loads(case, judged, ratings)
     own = "roller_static" if name in forces else name
-    assert worst[own] == pytest.approx(strain(judged[1][name], ratings.roller_radius), rel=1e-9)
+    check = judged[1][name]
+    if name == "roller_life":  # the synthesis knows no surge
+        massless = [without_design(cycle) for cycle in judged[0].cycles]
+        (check,) = checks_of(
+            replace(judged[0], cycles=tuple(massless)), [each for each in CHECKS if each.id == name]
+        )
+    assert worst[own] == pytest.approx(strain(check, ratings.roller_radius), rel=1e-9)
 
 
 def test_pressure_limit_is_that_of_each_check(case, judged):
