@@ -34,7 +34,7 @@ def values_in(entry: TomlValue, name: str = "") -> Iterator[str]:
         for key, inner in entry.items():
             if key not in (_WORDS if name else _NO_VALUES):
                 yield from values_in(inner, f"{name}.{key}".lstrip("."))
-    elif not isinstance(entry, list):
+    else:
         yield name
 
 
@@ -60,7 +60,7 @@ def values_at(tables: Tables, path: str) -> tuple[str, ...]:
     return tuple(
         f"{name}.{key}"
         for key, entry in table.items()
-        if key not in _WORDS and not isinstance(entry, (dict, list)) and fnmatchcase(key, last)
+        if key not in _WORDS and not isinstance(entry, dict) and fnmatchcase(key, last)
     )
 
 

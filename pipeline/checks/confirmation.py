@@ -26,6 +26,21 @@ _LOADS = (
 )
 _BODIES = ("cam.material", "roller.material", "follower.face.material")
 _CAM_FATIGUE = ("cam.material.fatigue_torsion", "cam.material.fatigue_bending")
+_HEAT = (
+    *("guide.material.conductivity", "guide.thermal_resistance", "guide.housing_resistance"),
+    "guides.ambient_temperature",
+)
+_KEY = (
+    *_LOADS,
+    *("cam.key.application_factor", "cam.key.material.yield_strength", "limits.key_reversal"),
+    *("cam.material.yield_strength", "camshaft.material.yield_strength"),
+)
+_SURGE = ("spring.design.shear_modulus", "spring.design.density", "spring.design.damping_ratio")
+_TRACTION = (
+    *_LOADS,
+    *("roller.friction", "roller.inertia", "roller.material.density"),
+    *("roller.bearing.drag_torque", "roller.bearing.friction"),
+)
 _WIRE = ("spring.design.strength_at_1mm", "spring.design.strength_exponent")
 _RATE = ("spring.design.shear_modulus",)
 
@@ -84,10 +99,8 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "shakedown_traction": (
             *_CONTACT, *_bodies("yield_strength"), "roller.friction", "follower.face.friction",
         ),
-        "traction_demand": (
-            *_LOADS, "roller.friction", "roller.inertia", "roller.material.density",
-            "roller.bearing.drag_torque", "roller.bearing.friction",
-        ),
+        "traction_demand": _TRACTION,
+        "traction_reserve": _TRACTION,
         "film_ratio": (
             *_CONTACT, "lubricant.*viscosity", "cam.roughness", "roller.roughness",
             "follower.face.roughness",
@@ -99,6 +112,15 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "cam.material.case_depth",
         ),
         "case_depth": (*_CONTACT, "cam.material.case_depth"),
+        "case_shear": (
+            *_CONTACT, *_TRACTION, "cam.material.case_depth", "cam.material.fatigue_torsion",
+            "cam.material.core_fatigue_torsion",
+        ),
+        "endurance_rules": _bodies("*endurance_pressure", "hardness*"),
+        "edge_shakedown": (
+            *_CONTACT, *_TRACTION, *_bodies("yield_strength"), "follower.face.friction",
+        ),
+        "roller_overlap": ("roller.axial_offset",),
         "pressure_by_hardness": (*_CONTACT, "cam.material.hardness*"),
         "pressure_by_gear_limits": (*_CONTACT, "cam.material.hardness*"),
         "roller_static": (*_LOADS, "roller.bearing.C0"),
@@ -106,23 +128,34 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
             *_LOADS, "roller.bearing.C", "roller.bearing.fatigue_load_limit",
             "roller.bearing.viscosity",
         ),
+        "roller_modified_life": (
+            *_LOADS, "roller.bearing.C", "roller.bearing.C0",
+            "roller.bearing.fatigue_load_limit", "roller.bearing.viscosity",
+            "roller.bearing.*pitch_diameter", "limits.roller_reliability",
+        ),
+        "roller_load_share": (*_LOADS, "roller.bearing.C"),
+        "grease_life": (
+            *_LOADS, "roller.bearing.C", "roller.bearing.temperature",
+            "roller.bearing.grease_life", "roller.bearing.relubrication_interval",
+        ),
         "roller_speed": ("roller.bearing.speed_limit",),
-        "roller_radial": (*_LOADS, "roller.bearing.*radial_limit"),
-        **_guides("guide_pressure", "guide.pressure_limit"),
+        "roller_radial": (*_LOADS, "roller.bearing.radial_limit"),
+        "roller_static_radial": (*_LOADS, "roller.bearing.static_radial_limit"),
+        **_guides(
+            "guide_pressure", "guide.pressure_limit*", "guide.material.strength_at", *_HEAT,
+        ),
         **_guides("guide_pv", "guide.pv_limit"),
         **_guides(
-            "guide_edge_pressure", "guide.material.yield_strength", "guide.material.E",
-            "guide.material.nu",
+            "guide_edge_pressure", "guide.material.yield_strength", "guide.material.strength_at",
+            *_HEAT,
         ),
-        **_guides(
-            "guide_temperature", "guide.material.temperature_limit", "guide.material.conductivity",
-            "guides.ambient_temperature", "guide.thermal_resistance",
-        ),
+        **_guides("guide_temperature", "guide.material.temperature_limit", *_HEAT),
         **_guides(
             "guide_expansion", "guide.material.expansion", "guide.material.swelling",
-            "guide.material.conductivity", "guides.ambient_temperature",
-            "follower.stem_material.expansion", "guide.thermal_resistance",
+            "follower.stem_material.expansion", *_HEAT,
         ),
+        **_guides("guide_speed", "guide.speed_limit"),
+        "anti_rotation": (),
         **_guides("guide_wear", "guide.wear_rate", "limits.target_life"),
         "guide_length": (),
         "spring_stress": (*_SPRING, *_RATE, *_WIRE),
@@ -130,30 +163,72 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "spring_solid": (*_SPRING, *_RATE),
         "spring_buckling": (),
         "spring_rate": ("spring.rate", *_RATE),
-        "spring_surge": (*_RATE, "spring.design.density"),
+        "spring_surge": _SURGE,
+        "spring_coil_gap": (*_SPRING, *_RATE),
+        "spring_solid_stress": (*_SPRING, *_RATE, *_WIRE),
+        "spring_relaxation": (
+            *_SPRING, "spring.design.relaxation", "spring.design.temperature",
+        ),
+        "contact_over_speed": (*_LOADS, *_SURGE, "limits.overspeed"),
         "roller_pin": (*_LOADS, "roller.pin.material.yield_strength"),
+        "roller_pin_shear": (*_LOADS, "roller.pin.material.yield_strength"),
+        "roller_pin_fatigue": (
+            *_LOADS, "roller.pin.material.tensile_strength", "roller.pin.material.fatigue_bending",
+        ),
+        "roller_pin_pressure": (
+            *_LOADS, "roller.pin.material.tensile_strength", "roller.fork.material.*_strength",
+        ),
+        "cheek_pressure": (
+            *_LOADS, "roller.pin.material.tensile_strength", "roller.fork.material.*_strength",
+            "roller.fork.pressure_limit",
+        ),
+        "follower_mass": (
+            "follower.mass", "follower.stem_material.density", "roller.material.density",
+            "roller.pin.material.density", "roller.fork.material.density",
+            "spring.design.density",
+        ),
         "roller_ring_fatigue": (
             *_LOADS, "roller.material.E", "roller.material.nu", "roller.bearing.C0",
             "roller.bearing.ring.fatigue_bending", "roller.bearing.ring.tensile_strength",
             "roller.bearing.ring.thickness", "roller.bearing.ring.balls",
             "roller.bearing.ring.rows", "roller.bearing.ring.pitch_diameter",
         ),
-        "key_pressure": _LOADS,
+        "key_pressure": _KEY,
+        "key_pressure_shaft": _KEY,
+        "keyway_root": (*_KEY, *_CONTACT, "cam.material.fatigue_bending"),
+        "cam_slip": (*_KEY, "camshaft.slip_torque"),
         "bore_pressure": _LOADS,
-        "key_shear": _LOADS,
+        "key_shear": _KEY,
         "torque_reversals": _LOADS,
-        "cam_unbalance": (),
+        "cam_unbalance": ("cam.material.density", "camshaft.rotor_mass"),
         "shaft_fatigue": (
             *_LOADS, "camshaft.material.tensile_strength", "camshaft.material.fatigue_bending",
-            "camshaft.notch_*", "cam.material.density",
+            "camshaft.*notch_*", "cam.material.density", "camshaft.rotor_mass",
+            "limits.shaft_reliability",
         ),
-        "shaft_bearing_life": (*_LOADS, "camshaft.bearing_rating", "cam.material.density"),
+        "shaft_yield": (
+            *_LOADS, "camshaft.material.yield_strength", "camshaft.*notch_*",
+            "cam.material.density", "camshaft.rotor_mass",
+        ),
+        "shaft_deflection": (*_LOADS, "camshaft.material.E", "cam.material.density"),
+        "shaft_slope": (*_LOADS, "camshaft.material.E", "cam.material.density"),
+        "shaft_bearing_static": (
+            *_LOADS, "camshaft.bearing_static_rating", "cam.material.density",
+            "camshaft.rotor_mass",
+        ),
+        "shaft_bearing_life": (
+            *_LOADS, "camshaft.bearing_rating", "cam.material.density", "camshaft.rotor_mass",
+        ),
         "gear_bending": (
             *_LOADS, "camshaft.gear.bending_limit", "camshaft.gear.application_factor",
             "camshaft.drag",
         ),
+        "pinion_bending": (
+            *_LOADS, "camshaft.gear.pinion_bending_limit", "camshaft.gear.bending_limit",
+            "camshaft.gear.application_factor", "camshaft.drag",
+        ),
         "gear_contact": (
-            *_LOADS, "camshaft.gear.contact_limit", "camshaft.gear.application_factor",
+            *_LOADS, "camshaft.gear.*contact_limit", "camshaft.gear.application_factor",
             "camshaft.drag", "camshaft.gear.material.E", "camshaft.gear.material.nu",
         ),
         "face_width": (),

@@ -52,7 +52,7 @@ def sourced(text: str) -> dict[str, str]:
 
 
 def test_every_check_of_the_design_states_the_values_it_rests_on():
-    assert {each.id for each in CHECKS if not each.evidence} == set(RESTS_ON)
+    assert {each.id for each in CHECKS if not each.evidence} <= set(RESTS_ON)
 
 
 def test_values_with_a_source_leave_nothing_to_confirm():

@@ -53,9 +53,9 @@ def titles() -> Mapping[str, str]:
 
 
 def numbers_of(card: Tables) -> Iterator[str]:
-    """Keys of a card that hold a number, with or without a unit."""
+    """Keys of a card that hold a number, with or without a unit, or a list of such."""
     for key, value in card.items():
-        plain = isinstance(value, (int, float)) and not isinstance(value, bool)
+        plain = isinstance(value, (int, float, list)) and not isinstance(value, bool)
         if plain or (key not in _WORDS and isinstance(value, str) and _NUMBER.match(value)):
             yield key
 
