@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Collection, Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypedDict
@@ -306,23 +307,41 @@ def verdict_of(checks: Iterable[AnyCheck]) -> str:
     return "incomplete" if "not_evaluated" in deciding else "pass"
 
 
-def verdict_line(records: Collection[AnyCheck]) -> str:
-    """Verdict, number of waived checks and of values to be confirmed.
+def verdict_line(records: Iterable[AnyCheck]) -> str:
+    """Verdict of the must-have checks in one line.
 
-    Such as ``PASS, 2 waived, 3 values to be confirmed``.
+    Such as ``PASS, 2 waived, 3 values to be confirmed`` or ``INCOMPLETE: 1 check without data``. A
+    value to be confirmed counts once, however many checks rest on it.
     """
-    waived = sum(record["status"] == "waived" for record in records)
-    values = len(to_be_confirmed(records))
-    parts = [verdict_of(records).upper()]
-    parts += [f"{waived} waived"] if waived else []
-    parts += [f"{values} value{'s' if values > 1 else ''} to be confirmed"] if values else []
-    return ", ".join(parts)
+    deciding = [record for record in records if record["must_have"]]
+    if not deciding:
+        return "FAIL: no check decides"
+    failed = [record for record in deciding if record["status"] == "fail"]
+    unproven = sum(bool(record["not_proven"]) for record in failed)
+    statuses = Counter(str(record["status"]) for record in deciding)
+    waived, values = statuses["waived"], len(to_be_confirmed(deciding))
+    parts = (
+        _counted(len(failed) - unproven, "check beyond its limit", "checks beyond their limit"),
+        _counted(unproven, "check not proven", "checks not proven"),
+        _counted(statuses["not_evaluated"], "check without data", "checks without data"),
+        f"{waived} waived" if waived else "",
+        _counted(values, "value to be confirmed", "values to be confirmed"),
+    )
+    verdict, stated = verdict_of(deciding), ", ".join(part for part in parts if part)
+    if verdict == "pass":
+        return f"PASS, {stated}" if stated else "PASS"
+    return f"{verdict.upper()}: {stated}"
+
+
+def _counted(number: int, one: str, many: str) -> str:
+    """A number with its noun; empty for zero."""
+    return f"{number} {one if number == 1 else many}" if number else ""
 
 
 def to_be_confirmed(records: Iterable[AnyCheck]) -> list[str]:
-    """Names of the recalled values on which the checks rest, each once."""
-    listed = (record.get("to_be_confirmed") for record in records)
-    names = (str(name) for each in listed if isinstance(each, (list, tuple)) for name in each)
+    """Names of the recalled values on which the must-have checks rest, each once."""
+    listed = (record.get("to_be_confirmed") for record in records if record["must_have"])
+    names = (str(name) for each in listed if isinstance(each, list) for name in each)
     return list(dict.fromkeys(names))
 
 

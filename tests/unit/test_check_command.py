@@ -280,12 +280,14 @@ def test_a_run_without_data_is_incomplete_and_without_checks_fails(
     out = write_run(tmp_path / "open", status="not_evaluated")
     code, text, _ = command("check", out)
     assert code == 3
-    assert "verdict: INCOMPLETE; after 1 trial\n" in text
+    assert "verdict: INCOMPLETE: 1 check without data; after 1 trial\n" in text
     assert command("check", out, "--fail-on", "never")[0] == 0
     with RunFolder(tmp_path / "none", small_case()) as folder:
         write_trial(folder, [check("pass", must_have=False)])
         folder.finish(summary("fail") | {"binding": []})
-    assert command("check", tmp_path / "none")[0] == 1
+    code, text, _ = command("check", tmp_path / "none")
+    assert code == 1
+    assert "verdict: FAIL: no check decides; after" in text
 
 
 def test_what_binds_is_told_apart_from_what_nobody_can_judge():

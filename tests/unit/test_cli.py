@@ -89,7 +89,7 @@ def test_run_completes_with_0_whatever_the_verdict(
     runner(short_run)
     code, out, err = command("run", case_file, "--out", "runs/small", "--jobs", 2)
     assert code == 0
-    assert "verdict: FAIL; after 1 trial\n" in out
+    assert "verdict: FAIL: 1 check beyond its limit; after 1 trial\n" in out
     assert "binding: pressure_angle\n" in out
     assert out.endswith("8_report.html\n")
     assert out.index("not_evaluated (optional)") < out.index("150%")
