@@ -28,12 +28,13 @@ Check = Record
 class Verdict:
     """Verdict of a run.
 
-    `outcome` is ``pass``, ``incomplete`` or ``fail``; `line` the verdict with the numbers of waived
-    checks and of values to be confirmed; `confirm` names these values. `sentence` counts the checks
-    by status, `governing` describes the required check of highest utilisation, `binding` are titles
-    of required checks that fail. `unproven`, `missing` and `waived` are lines on required checks
-    whose error bar lies across the limit, that lack data, and that are waived. `stopped` are the
-    clauses of the reason for which the trials ended, `scope` the parts not covered.
+    `outcome` is ``pass``, ``incomplete`` or ``fail``; `line` the verdict with its reasons, the
+    numbers of waived checks and of values to be confirmed; `confirm` names these values. `sentence`
+    counts the checks by status, `governing` describes the required check of highest utilisation,
+    `binding` are titles of required checks that fail. `unproven`, `missing` and `waived` are lines
+    on required checks whose error bar lies across the limit, that lack data, and that are waived.
+    `stopped` are the clauses of the reason for which the trials ended, `scope` the parts not
+    covered.
     """
 
     outcome: str
@@ -51,6 +52,11 @@ class Verdict:
     @property
     def word(self) -> str:
         return self.outcome.upper()
+
+    @property
+    def brief(self) -> str:
+        """The word; of a pass with what it rests on."""
+        return self.line if self.outcome == "pass" else self.word
 
     @property
     def lines(self) -> list[tuple[str, str]]:
@@ -101,7 +107,7 @@ def verdict(
     outcome = max(recorded, verdict_of(checks), key=VERDICTS.index)
     return Verdict(
         outcome=outcome,
-        line=verdict_line(checks).replace(verdict_of(checks).upper(), outcome.upper(), 1),
+        line=verdict_line(checks) if outcome == verdict_of(checks) else outcome.upper(),
         confirm=tuple(to_be_confirmed(checks)),
         scope=scope,
         sentence=_sentence(checks, required, missing),

@@ -205,7 +205,7 @@ def roller_modified_life(solution: Solution) -> Demand:
         share = bearing_life.contamination_factor(cleanliness, circle)
 
         def life(cycle: Cycle) -> float:
-            force, kappa = cycle.loads.normal_force, _viscosity_ratio(cycle, bearing)
+            force, kappa = cycle.surged_force, _viscosity_ratio(cycle, bearing)
             if np.isinf(kappa):
                 return np.inf
             if not _known(force) or not kappa >= bearing_life.LEAST_VISCOSITY_RATIO:

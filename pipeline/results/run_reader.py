@@ -308,30 +308,29 @@ def verdict_of(checks: Iterable[AnyCheck]) -> str:
 
 
 def verdict_line(records: Iterable[AnyCheck]) -> str:
-    """Verdict of the must-have checks in one line, such as ``PASS, 2 waived``.
+    """Verdict of the must-have checks in one line.
 
-    The values to be confirmed are counted once, however many checks rest on them.
+    Such as ``PASS, 2 waived, 3 values to be confirmed`` or ``INCOMPLETE: 1 check without data``. A
+    value to be confirmed counts once, however many checks rest on it.
     """
     deciding = [record for record in records if record["must_have"]]
-    counts = Counter(str(record["status"]) for record in deciding)
-    unproven = sum(record["status"] == "fail" and bool(record["not_proven"]) for record in deciding)
-    values = to_be_confirmed(deciding)
-    beyond, missing, excused = counts["fail"] - unproven, counts["not_evaluated"], counts["waived"]
-    reasons = [
-        _counted(beyond, "check beyond its limit", "checks beyond their limit"),
-        _counted(unproven, "check not proven", "checks not proven"),
-        _counted(missing, "check without data", "checks without data"),
-    ]
-    remarks = [
-        f"{excused} waived" if excused else "",
-        _counted(len(values), "value to be confirmed", "values to be confirmed"),
-    ]
     if not deciding:
         return "FAIL: no check decides"
-    stated = ", ".join(each for each in (*reasons, *remarks) if each)
-    if counts["fail"] or missing:
-        return f"{'FAIL' if counts['fail'] else 'INCOMPLETE'}: {stated}"
-    return f"PASS, {stated}" if stated else "PASS"
+    failed = [record for record in deciding if record["status"] == "fail"]
+    unproven = sum(bool(record["not_proven"]) for record in failed)
+    statuses = Counter(str(record["status"]) for record in deciding)
+    waived, values = statuses["waived"], len(to_be_confirmed(deciding))
+    parts = (
+        _counted(len(failed) - unproven, "check beyond its limit", "checks beyond their limit"),
+        _counted(unproven, "check not proven", "checks not proven"),
+        _counted(statuses["not_evaluated"], "check without data", "checks without data"),
+        f"{waived} waived" if waived else "",
+        _counted(values, "value to be confirmed", "values to be confirmed"),
+    )
+    verdict, stated = verdict_of(deciding), ", ".join(part for part in parts if part)
+    if verdict == "pass":
+        return f"PASS, {stated}" if stated else "PASS"
+    return f"{verdict.upper()}: {stated}"
 
 
 def _counted(number: int, one: str, many: str) -> str:
@@ -340,9 +339,9 @@ def _counted(number: int, one: str, many: str) -> str:
 
 
 def to_be_confirmed(records: Iterable[AnyCheck]) -> list[str]:
-    """Names of the recalled values on which the checks rest, each once."""
-    listed = (record.get("to_be_confirmed") for record in records)
-    names = (str(name) for each in listed if isinstance(each, (list, tuple)) for name in each)
+    """Names of the recalled values on which the must-have checks rest, each once."""
+    listed = (record.get("to_be_confirmed") for record in records if record["must_have"])
+    names = (str(name) for each in listed if isinstance(each, list) for name in each)
     return list(dict.fromkeys(names))
 
 

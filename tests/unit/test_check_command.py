@@ -286,7 +286,9 @@ def test_a_run_without_data_is_incomplete_and_without_checks_fails(
     with RunFolder(tmp_path / "none", small_case()) as folder:
         write_trial(folder, [check("pass", must_have=False)])
         folder.finish(summary("fail") | {"binding": []})
-    assert command("check", tmp_path / "none")[0] == 1
+    code, text, _ = command("check", tmp_path / "none")
+    assert code == 1
+    assert "verdict: FAIL: no check decides; after" in text
 
 
 def test_what_binds_is_told_apart_from_what_nobody_can_judge():

@@ -89,7 +89,7 @@ def test_run_completes_with_0_whatever_the_verdict(
     runner(short_run)
     code, out, err = command("run", case_file, "--out", "runs/small", "--jobs", 2)
     assert code == 0
-    assert "verdict: FAIL; after 1 trial\n" in out
+    assert "verdict: FAIL: 1 check beyond its limit; after 1 trial\n" in out
     assert "binding: pressure_angle\n" in out
     assert out.endswith("8_report.html\n")
     assert out.index("not_evaluated (optional)") < out.index("150%")
@@ -262,3 +262,27 @@ def test_version_answers_without_the_heavy_libraries() -> None:
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, env=os.environ
     )
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize(
+    ("open_checks", "code"), [([[], []], 0), ([["shaft"], []], 3), ([["shaft"], ["shaft"]], 3)]
+)
+def test_redesign_exits_by_its_points(
+    case_file: Path,
+    command: Command,
+    monkeypatch: pytest.MonkeyPatch,
+    open_checks: list[list[str]],
+    code: int,
+) -> None:
+    from camwright.pipeline.studies.redesign import redesign_study
+    from camwright.reports import redesign_page
+
+    points = [{"file": "point.toml", "verdict": "pass", "open": one} for one in open_checks]
+    document = {"points": points, "tried": [], "pruned": []}
+    monkeypatch.setattr(redesign_study, "redesign", lambda *_: document)
+    monkeypatch.setattr(redesign_page, "write", lambda *_: Path("page.html"))
+    found, out, _ = command("redesign", case_file)
+    assert found == code
+    assert ("missing data of these points: shaft" in out) == (code == 3)
+    document["points"] = []
+    assert command("redesign", case_file)[0] == 1

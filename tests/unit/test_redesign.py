@@ -22,8 +22,8 @@ from camwright.pipeline.case.limits import CAM_RADIUS
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.roller_alternatives import roller_problems
-from camwright.pipeline.studies.redesign import point_store
-from camwright.pipeline.studies.redesign.design_point import Rough
+from camwright.pipeline.studies.redesign import point_store, redesign_study
+from camwright.pipeline.studies.redesign.design_point import Point, Rough
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned
 from camwright.pipeline.studies.redesign.part_search import RUNG, RUNGS, branch
 from camwright.pipeline.studies.redesign.ripple_bounds import RippleBound, bearable_energy
@@ -288,3 +288,35 @@ def test_a_point_that_is_kept_is_not_solved_again(tmp_path):
     assert other.path.is_file()
     task.path.write_text('{"feasib')  # torn
     assert point_store.solved(task)["feasible"] is False
+
+
+def test_a_point_that_passes_keeps_one_without_data_off_the_front():
+    def point(name, failing=(), lacking=(), feasible=True, size=50.0):
+        record = {"feasible": feasible, "failing": list(failing), "open": list(lacking)}
+        state = "fail" if failing or not feasible else "incomplete" if lacking else "pass"
+        figures = {"verdict": state, "cam_radius_mm": size, "ripple_left_Nm": 1.0}
+        return Choice(name, "s", "b"), record | figures | {"ripple_before_Nm": 6.0}
+
+    passes, lacks = point("passes"), point("lacks", lacking=["guide_pv_A"], size=40.0)
+    fails = point("fails", failing=["jump"], lacking=["film"], size=30.0)
+    refused = (Choice("none", "s", "b"), {"feasible": False, "why": "undercut"})
+    kept, others = redesign_study._split([lacks, passes, fails, refused], "size")
+    assert kept == [passes]
+    assert [redesign_study._why(record, "pass") for _, record in others] == [
+        "lacks data for guide_pv_A", "fails jump", "undercut",
+    ]  # fmt: skip
+    kept, _ = redesign_study._split([lacks, fails, refused], "size")
+    assert kept == [lacks]
+    assert redesign_study._split([fails, refused], "size")[0] == []
+
+
+def test_the_verdict_of_a_point_is_that_of_its_checks():
+    figures = dict.fromkeys(
+        ("ripple_before", "ripple_left", "cam_radius", "mass", "prime_radius", "preload",
+         "spring_rate", "lift_max", "pressure_angle_max", "normal_force_max", "p0_max"), 1.0
+    )  # fmt: skip
+    good = Point(feasible=True, failing=(), open=(), binding=(), **figures)
+    assert good.verdict == good.as_record()["verdict"] == "pass"
+    assert replace(good, open=("film",)).verdict == "incomplete"
+    assert replace(good, open=("film",), failing=("jump",)).verdict == "fail"
+    assert replace(good, feasible=False).verdict == "fail"

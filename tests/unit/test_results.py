@@ -169,6 +169,24 @@ def test_verdict_comes_from_the_checks(tmp_path: Path, status: str, verdict: str
     run_reader.verify_run(run.path)
 
 
+def test_the_line_of_the_verdict_counts_its_reasons() -> None:
+    line = run_reader.verdict_line
+    good = check(to_be_confirmed=["a", "b"])
+    waived = check("waived", id="w", to_be_confirmed=["b", "c"])
+    assert line([check()]) == "PASS"
+    assert line([good, waived, waived]) == "PASS, 2 waived, 3 values to be confirmed"
+    optional = check("fail", must_have=False, to_be_confirmed=["d"])
+    missing = check("not_evaluated", id="m")
+    assert line([missing, optional]) == "INCOMPLETE: 1 check without data"
+    beyond, unproven = check("fail"), check("fail", not_proven=True)
+    assert line([missing, beyond, beyond, unproven, waived]) == (
+        "FAIL: 2 checks beyond their limit, 1 check not proven, 1 check without data, 1 waived,"
+        " 2 values to be confirmed"
+    )
+    assert line([optional]) == line([]) == "FAIL: no check decides"
+    assert run_reader.to_be_confirmed([good, waived, optional]) == ["a", "b", "c"]
+
+
 def test_an_optional_check_does_not_fail_the_verdict(tmp_path: Path) -> None:
     with RunFolder(tmp_path / "run", small_case()) as folder:
         write_trial(folder, [check(), check("not_evaluated", id="film", must_have=False)])

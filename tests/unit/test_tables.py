@@ -117,7 +117,10 @@ def test_the_page_lists_what_is_missing_not_proven_waived_and_to_be_confirmed():
         check("e", to_be_confirmed=["pa66 swelling"]),
     ]
     said = verdict("fail", checks, ("b", "c"), "", "Not covered by this sign-off: key: none")
-    assert said.line == "FAIL, 1 waived, 2 values to be confirmed"
+    assert said.line == (
+        "FAIL: 1 check not proven, 1 check without data, 1 waived, 2 values to be confirmed"
+    )
+    assert said.brief == "FAIL"
     assert said.confirm == ("pa66 swelling", "<b> PV")
     assert said.scope == "Not covered by this sign-off: key: none"
     assert said.unproven == ("B: not proven: 1.950 ± 0.060 against 2",)

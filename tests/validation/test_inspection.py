@@ -165,7 +165,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Case, Contour]:
 
 def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     from camwright.pipeline.cli import app
-    from camwright.pipeline.commands.terminal import FAILED, PASSED
+    from camwright.pipeline.commands.terminal import EXIT_CODE
 
     folder, _, made = run
     x, y = measured(made) * 1e3
@@ -174,7 +174,7 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     table.write_text("x_mm,y_mm\n" + rows, encoding="utf-8")
     code = app(args=["inspect", str(folder), str(table), "--jobs", "1"], standalone_mode=False)
     record = json.loads((folder / FOLDER / "inspection.json").read_text(encoding="utf-8"))
-    assert code == (PASSED if record["verdict"] == "pass" else FAILED)
+    assert code == EXIT_CODE[record["verdict"]]
     assert record["phase_deg"] == pytest.approx(3.0, rel=0.015)
     assert record["waves_um"]["12"] == pytest.approx(20.0, rel=1e-5)
     assert not record["within_tolerance"]
@@ -192,7 +192,9 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     assert record["tolerance_um"] == pytest.approx(20.0)  # of the inspection sheet
     checks = json.loads((folder / FOLDER / "checks.json").read_text(encoding="utf-8"))
     assert "certificate" in " ".join(check["id"] + check["method"] for check in checks)
-    assert any("verdict on the measured cam" in line for line in lines(record))
+    words = record["verdict"].upper()
+    assert any(line.startswith(f"verdict on the measured cam: {words}") for line in lines(record))
+    assert record["scope"]["statement"] == ""
     assert run_reader.read_run(folder).verdict == "pass"  # the run itself is left as it was
 
 
