@@ -242,6 +242,10 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "bore_stress": (
             *_CONTACT, "cam.material.yield_strength", "cam.material.core_yield_strength",
         ),
+        **{f"data_{name}": () for name in (
+            "cam", "follower", "roller", "face", "roller_bearing", "pin", "fork", "spring",
+            "guides", "camshaft", "camshaft_bearings", "key", "gear",
+        )},
     }
 )  # fmt: skip
 """Values besides its own limit on which a check of the design rests, by its id: dotted names in a
