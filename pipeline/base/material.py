@@ -97,7 +97,9 @@ class Material(Part):
     expansion: Annotated[float, In("1/K", at_least=0, at_most=1e-2)] | None = None
     swelling: Annotated[float, In(at_least=0, below=1)] | None = None
     strength_at: tuple[StrengthAt, ...] = ()
-    treatment: Literal["case_hardened", "induction_hardened", "through_hardened"] | None = None
+    treatment: (
+        Literal["case_hardened", "induction_hardened", "through_hardened", "not_hardened"] | None
+    ) = None
     density: Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
     condition: str = ""
     source: str
@@ -132,10 +134,13 @@ class Material(Part):
         return float(np.interp(temperature, at, strengths, right=np.nan))
 
     @property
-    def surface_hardened(self) -> bool:
-        """Whether a hardened case lies on a softer core."""
-        by_treatment = self.treatment in ("case_hardened", "induction_hardened")
-        return by_treatment or self.case_depth is not None
+    def surface_hardened(self) -> bool | None:
+        """Whether a hardened case lies on a softer core; None if the card does not state it."""
+        if self.case_depth is not None:
+            return True
+        if self.treatment is None:
+            return None
+        return self.treatment in ("case_hardened", "induction_hardened")
 
     def endurance(self, *, sliding: bool) -> Endurance:
         """Endurance of the surface in rolling, or in rolling with sliding.

@@ -465,7 +465,7 @@ def shakedown_traction(solution: Solution) -> Demand:
     " calculated",
 )
 def roller_overlap(solution: Solution) -> Demand | None:
-    """Axial offset up to which the smaller width bears whole, m; None under a flat face."""
+    """Axial offset of the roller from the middle of the cam, m; None under a flat face."""
     machine = solution.machine
     roller = machine.roller
     if roller is None:

@@ -18,6 +18,9 @@ from camwright.pipeline.cycle.solution import Solution
     method="twice the sum of |s' - e| and contact half-width, greatest over the turn",
     lift_can_help=True,
     needs="face",
+    formula="2 (|s' - e| + a) <= w; s': slope of the lift, e: cam.offset, a: half-width of the"
+    " contact, w: follower.face.width",
+    reason="decides: beyond the face the contact runs on its edge",
 )
 def face_width(solution: Solution) -> Demand | None:
     """Required width of the face, contact half-width included, m."""
@@ -40,6 +43,9 @@ def face_width(solution: Solution) -> Demand | None:
     method="greatest pi/4 p0 w (r + s) over the turn",
     lift_can_help=True,
     needs="face",
+    formula="pi/4 p0 omega (r + s) <= PV; p0: contact pressure, omega: speed of the cam, r: base"
+    " radius, s: lift, PV: follower.face.pv_limit",
+    reason="decides: a face slides at all angles, and beyond its PV limit it seizes or melts",
 )
 def face_pv(solution: Solution) -> Demand | None:
     """Mean contact pressure times sliding speed, Pa m/s."""
@@ -53,7 +59,6 @@ def face_pv(solution: Solution) -> Demand | None:
         worst,
         note="" if limit is not None else "no PV limit of the face is given",
         source=face.source,
-        must_have=limit is not None,
     )
 
 

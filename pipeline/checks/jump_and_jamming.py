@@ -97,6 +97,7 @@ def jam_index(solution: Solution) -> Demand:
     method="greatest friction of both guides over the axial cam force on the rise, at the maximum"
     " friction coefficients",
     lift_can_help=True,
+    moved_by_tolerance=False,
     part="guides",
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise, at guides.*.friction_max or the"
     " tolerance of friction; R: sum of the pushes on both sides of a guide, F_a: axial force of the"

@@ -219,9 +219,15 @@ def case_shear(solution: Solution) -> Demand | None:
 
 
 def hardened_bodies(solution: Solution) -> dict[str, Material]:
-    """Materials of cam and follower with a hardened case, by body."""
+    """Materials of cam and follower with a hardened case, or of no stated treatment, by body."""
     bodies = solution.machine.bodies
-    return {body: card for body, card in bodies.items() if card.surface_hardened}
+    return {body: card for body, card in bodies.items() if card.surface_hardened is not False}
+
+
+def _lacks(body: str, card: Material, datum: str) -> str:
+    """Missing datum of a hardened body in words."""
+    lacking = datum if card.surface_hardened else "treatment: hardened or not"
+    return f"the {body}, {card.name}, has no {lacking}"
 
 
 def _hardened_demand(
@@ -245,7 +251,7 @@ def _hardened_demand(
     governing = max(known or bodies, key=lambda body: _rank(worst[body].value))
     extreme = worst[governing]
     missing = bool(lacking) and not extreme.value > allowed
-    notes = [f"the {body}, {bodies[body].name}, has no {datum}" for body in lacking]
+    notes = [_lacks(body, bodies[body], datum) for body in lacking]
     return Demand(
         None if missing else extreme.value,
         allowed,
@@ -292,7 +298,7 @@ def case_depth(solution: Solution) -> Demand | None:
         None if missing else ratio,
         limit,
         worst,
-        note="; ".join(f"the {body}, {bodies[body].name}, has no case depth" for body in lacking),
+        note="; ".join(_lacks(body, bodies[body], "case depth") for body in lacking),
         figures=tuple(f"{card.name}: {card.source}" for card in bodies.values()),
     )
 
@@ -347,6 +353,8 @@ def pressure_by_gear_limits(solution: Solution) -> Demand:
     def reason(card: Material) -> str:
         if card.treatment is None:
             return "has no treatment"
+        if card.treatment == "not_hardened":
+            return "is not hardened, and has no line"
         return "has no Vickers hardness within the range of its line"
 
     return _estimate(solution, solution.machine.bodies, gear_limit, reason)
@@ -444,7 +452,7 @@ def gear_limit(card: Material) -> float | None:
         "induction_hardened": (0.541e6, 882e6, inf),
         "through_hardened": (1.313e6, 373e6, THROUGH_HARDENED_MAX),
     }
-    if card.treatment is None or card.hardness_vickers is None:
+    if card.treatment not in lines or card.hardness_vickers is None:
         return None
     slope, start, most = lines[card.treatment]
     return slope * card.hardness_vickers + start if card.hardness_vickers <= most else None

@@ -33,7 +33,8 @@ MUST_HAVE = {
     # forces and contact
     *("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed", "friction_balance"),
     *("jam_index", "jam_index_friction_max", "contact_pressure", "contact_pressure_at_life"),
-    *("shakedown", "shakedown_traction", "edge_pressure"),
+    *("shakedown", "shakedown_traction", "edge_pressure", "edge_shakedown", "roller_overlap"),
+    *("traction_demand", "hardened_case", "case_shear", "case_depth"),
     # parts
     *("roller_static", "roller_life", "roller_radial", "roller_speed", "roller_pin"),
     *("roller_static_radial", "roller_load_share", "roller_modified_life", "grease_life"),
