@@ -9,6 +9,7 @@ import numpy as np
 from camwright.geometry.arrays import Array, positive, readonly
 from camwright.geometry.contour import Contour
 from camwright.geometry.errors import GeometryError
+from camwright.geometry.interference import SecondContact, second_contact
 
 
 class CutterPath(NamedTuple):
@@ -51,3 +52,23 @@ def cutter_path(contour: Contour, tool_radius: float, theta: Array) -> CutterPat
         readonly(centre),
         readonly(contour.radius_of_curvature(theta) + tool_radius),
     )
+
+
+def tool_interference(contour: Contour, tool_radius: float) -> SecondContact:
+    """Minimum gap between a round tool on the contour and the contour away from their contact.
+
+    The tool touches every point of the contour from outside; a negative gap is the depth to which
+    it cuts another part, or its own neighbourhood where the concave radius is smaller.
+
+    Parameters
+    ----------
+    contour : Contour
+    tool_radius : float     m, > 0
+    """
+    positive("tool.radius", tool_radius, "m")
+
+    def gap(contact: Array, other: Array) -> Array:
+        centre = contour.points(contact) + tool_radius * contour.normal(contact)
+        return np.asarray(np.hypot(*(contour.points(other) - centre)) - tool_radius)
+
+    return second_contact(gap, len(contour.lift.theta))

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN
+from camwright.geometry.cutter_path import tool_interference
 from camwright.geometry.extrema import Extremum
 from camwright.geometry.extrema import greatest as greatest_of
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
     ACCELERATION_STEP,
@@ -24,6 +26,7 @@ from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.cycle.solution import Solution
 
 AT_REST = 1e-9  # range of s'' over the lift, 1/rad^2, of a round cam
+NO_TOOL = "no tool radius is given"
 TOOL_ALLOWANCE = 1.1  # minimum concave radius over tool radius
 
 
@@ -177,8 +180,35 @@ def concave_radius(solution: Solution) -> Demand | None:
         float(least.value),
         allowed,
         _at(least),
-        note="" if allowed is not None else "no tool radius is given",
+        note="" if allowed is not None else NO_TOOL,
     )
+
+
+@check(
+    SECOND_CONTACT_DEPTH,
+    id="tool_gouge",
+    title="Gouge depth of the tool",
+    unit="mm",
+    method="greatest penetration of the tool into the contour outside their contact, the tool on"
+    " every point of the contour",
+    lift_can_help=True,
+    moved_by_tolerance=False,
+    formula="max(R - |Q - P - R n|) <= d; P, n: point and outward normal of the contour, Q: any"
+    " other point of it, R: radius of cutter or grinding wheel, d: limits.second_contact_depth",
+    reason="A wheel that fits the concave radius can still cut a flank across it.",
+)
+def tool_gouge(solution: Solution) -> Demand:
+    """Depth to which the tool cuts the contour outside its contact, m; 0 for a convex cam."""
+    contour, tool = solution.contour, solution.case.workshop_order.tool_radius
+    allowed = solution.machine.limits[SECOND_CONTACT_DEPTH]
+    concave = contour.concave_radius_min().value
+    if np.isposinf(concave):
+        return Demand(0.0, allowed, note="the cam is convex: no tool cuts it twice")
+    if tool is None or np.isnan(concave):
+        return Demand(None, allowed, note=NO_TOOL if tool is None else "")
+    nearest = tool_interference(contour, tool)
+    depth = float(np.maximum(0.0, -nearest.clearance))  # NaN stays, infinite clearance is 0
+    return Demand(depth, allowed, _place(float(nearest.theta)), note=f"tool of {shown(tool, 'mm')}")
 
 
 def least_concave_radius(case: Case) -> float | None:

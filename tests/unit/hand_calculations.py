@@ -120,6 +120,17 @@ def curvature_rate() -> float:
     return float(np.max(np.abs(np.roll(bend, -1) - bend) / np.roll(chord, -1)))
 
 
+def gouge() -> float:
+    """Depth of a wheel of 200 mm in the hollow cam, mm, by distances to all points."""
+    shape = made.hollow()
+    x, y = shape.polygon(14400)
+    centre = shape.polygon(720) + 0.2 * np.stack(
+        [(np.roll(y, -1) - np.roll(y, 1))[::20], (np.roll(x, 1) - np.roll(x, -1))[::20]]
+    ) / np.hypot(np.roll(x, -1) - np.roll(x, 1), np.roll(y, -1) - np.roll(y, 1))[::20]  # fmt: skip
+    apart = np.hypot(x - centre[0][:, None], y - centre[1][:, None])
+    return 1e3 * float(np.max(0.2 - apart))
+
+
 def thrown() -> np.ndarray:
     """m e w^2 of a polygon of the contour less the keyway in strips, turning with the shaft."""
     x, y = made.contour().polygon(7200)

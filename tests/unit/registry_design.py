@@ -15,6 +15,7 @@ from trial_variants import (
     pressed,
     soft,
     unknown,
+    wheeled,
     with_bearing,
     with_contact,
     with_cycle,
@@ -132,6 +133,17 @@ by_limit(
     factor=1.0 / 1.1,
     base=hollow,
     missing=lambda: made.changed_solution(hollow(), case=made.limits(tool_radius=None)),
+)
+by_limit(
+    "tool_gouge",
+    "second_contact_depth",
+    unknown,
+    by_hand.gouge(),
+    "of 720 wheels on 14400 points of the contour",
+    base=wheeled,
+    missing=lambda: made.changed_solution(
+        hollow(), case=made.case(limits=made.limits(tool_radius=None).limits)
+    ),
 )
 by_limit(
     "curvature_rate",

@@ -28,7 +28,14 @@ from camwright.pipeline.preview import preview_case
 MUST_HAVE = {
     # shape, space and function
     *("closure", "acceleration_step", "pressure_angle", "curvature_ratio", "undercut"),
-    *("self_intersection", "second_contact", "concave_radius", "minimum_wall", "spring_travel"),
+    *(
+        "self_intersection",
+        "second_contact",
+        "tool_gouge",
+        "concave_radius",
+        "minimum_wall",
+        "spring_travel",
+    ),
     *("guide_gap", "cam_radius", "torque_reduction", "contact_torque"),
     # forces and contact
     *("contact_force_margin", "jump", "jump_speed", "contact_at_overspeed", "friction_balance"),

@@ -12,6 +12,7 @@ from trial_variants import with_certificate
 
 from camwright.geometry.acceleration_jump import acceleration_jump
 from camwright.geometry.contour import RollerContour
+from camwright.geometry.cutter_path import tool_interference
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
 from camwright.geometry.motion_laws import Motion, Segment
@@ -21,7 +22,7 @@ from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import torque_balance
-from camwright.pipeline.checks.cam_shape import acceleration_step, closure
+from camwright.pipeline.checks.cam_shape import acceleration_step, closure, tool_gouge
 from camwright.pipeline.checks.error_bars import with_error_bars
 from camwright.pipeline.checks.extremes import worst_case
 from camwright.pipeline.checks.plane_strain_validity import held_distance
@@ -388,3 +389,27 @@ def test_the_node_spacings_of_the_contact_are_those_of_the_mesh():
     assert check.demand == pytest.approx(mesh.half_width / np.diff(near).max(), rel=0.03)
     assert check.status == "pass"
     assert check.limit == 10.0
+
+
+# --- tool --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("radius", [0.02, 0.06, 0.075, 0.1, 0.3])
+def test_the_gouge_of_a_wheel_by_distances_to_all_points(radius):
+    """The least concave radius is 68 mm: a smaller wheel fits, a greater one cuts."""
+    shape = made.hollow()
+    x, y = shape.polygon(14400)
+    across = np.stack([np.roll(y, -1) - np.roll(y, 1), np.roll(x, 1) - np.roll(x, -1)])
+    centre = np.stack([x, y]) + radius * across / np.hypot(*across)
+    apart = np.hypot(x - centre[0, ::20, None], y - centre[1, ::20, None])
+    wanted = float(np.max(radius - apart))
+    gouge = max(0.0, -tool_interference(shape, radius).clearance)
+    assert gouge == pytest.approx(wanted if radius > 0.068 else 0.0, rel=0.01, abs=2e-7)
+    assert (gouge > 1e-6) == (radius > 0.07)
+
+
+def test_a_tool_is_needed_for_a_concave_cam_alone():
+    bare = made.case(limits=made.limits(tool_radius=None).limits)
+    concave = tool_gouge(made.changed_solution(made.solution(contour=made.hollow()), case=bare))
+    assert (concave.status, concave.must_have) == ("not_evaluated", True)
+    assert tool_gouge(made.solution(case=bare)).status == "pass"

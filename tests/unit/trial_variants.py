@@ -226,6 +226,17 @@ def hollow() -> Solution:
     return made.solution(contour=made.hollow())
 
 
+def wheeled() -> Solution:
+    """The hollow cam under a wheel three times its least concave radius."""
+    return made.changed_solution(
+        hollow(),
+        case=made.case(
+            workshop=made.changed(made.case().workshop, tool_radius=0.2),
+            limits=made.limits(tool_radius=None).limits,
+        ),
+    )
+
+
 def soft(**values: Any) -> Solution:
     """A cam without a hardened case."""
     card = {"case_depth": None, "treatment": "through_hardened"}
