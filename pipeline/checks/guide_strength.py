@@ -89,7 +89,7 @@ def _guide_pressure(side: Side) -> Declaration:
         " the limit at the temperature of the guide",
         lift_can_help=True,
         forecast=True,
-        error="guides",
+        error="guide_edges",
         part="guides",
         formula="F / (d l) <= p R(T) / R(T_p); F: push on one side of the bore, the integral of its"
         " line load, l: loaded length of that side, d: diameter of the bore, of the side and angle"
@@ -220,7 +220,7 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         " the beam; modulus at 20 degC, an upper bound; yield strength at the temperature of the"
         " guide",
         lift_can_help=True,
-        error="guides",
+        error="guide_edges",
         part="guides",
         formula="p <= R(T); p: greatest pressure between stem and bore, where the line load along"
         " the guide is greatest, R: yield strength of the bush at its temperature T.",

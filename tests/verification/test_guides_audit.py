@@ -22,9 +22,11 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.base.material import Material, StrengthAt
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of, read_case
+from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.toml_text import tables_of
 from camwright.pipeline.checks import guide_strength, jump_and_jamming, wear_and_grease
 from camwright.pipeline.checks.check import Check, Declaration
+from camwright.pipeline.checks.error_bars import GUIDE_EDGE_ERROR, GUIDE_ERROR, with_error_bars
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -146,25 +148,22 @@ def beam_in_bores(cycle: Cycle, k: int) -> dict[str, list[tuple[float, float]]]:
         outer = [near[2] + moment, near[3] - force, far[10], far[11]]
         return np.r_[outer, far[:8] - near[4:]]
 
-    t = np.linspace(0.0, 1.0, 150)
+    t = np.linspace(0.0, 1.0, 60)
     y = np.zeros((12, t.size))
     y[0], y[8] = 1e-5 * np.sign(force), -5e-5 * np.sign(force)
     y[4] = np.sign(force) * np.interp(t, [0.0, 1.0], [1e-5, -5e-5])
-    result = solve_bvp(slopes, ends, t, y, tol=1e-4, max_nodes=4000)
+    result = solve_bvp(slopes, ends, t, y, tol=1e-3, max_nodes=4000)
     assert result.success, result.message
     pushes = {}
     for side, guide, row in (("a", a, 0), ("b", b, 8)):
         at = np.linspace(0.0, 1.0, 20001)
         q, step = bore(guide, result.sol(at)[row]), guide.length * (at[1] - at[0])
-        pushes[side] = [
-            (
-                float(np.trapezoid(np.maximum(sign * q, 0.0), dx=step)),
-                float(np.sum(sign * q > 0.0)) * step,
-            )
-            for sign in (1.0, -1.0)
-        ]
+        pushes[side] = []
+        for pushed in (np.maximum(q, 0.0), np.maximum(-q, 0.0)):
+            length = float(np.count_nonzero(pushed)) * step
+            pushes[side].append((float(np.trapezoid(pushed, dx=step)), length))
     net = sum(sides[0][0] - sides[1][0] for sides in pushes.values())
-    assert net == pytest.approx(force, rel=1e-4)
+    assert net == pytest.approx(force, rel=1e-3)
     return pushes
 
 
@@ -208,7 +207,7 @@ def test_mean_line_load_of_straight_lines() -> None:
     assert np.isnan(mean_line_load(np.full((25, 1), np.nan), knots))
 
 
-@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("side", ["b", pytest.param("a", marks=pytest.mark.slow)])
 def test_edge_pressure_is_that_of_finite_elements(solved, checks, side) -> None:
     check = checks[f"guide_edge_pressure_{side.upper()}"]
     cycle, k = place(solved, check)
@@ -217,7 +216,7 @@ def test_edge_pressure_is_that_of_finite_elements(solved, checks, side) -> None:
     pin, bush = guide_bodies(solved.machine, guide)
     clearance = 0.5 * guide.clearance / radius
     _, pressures = pin_in_hole_by_elements(
-        load / radius, clearance, pin, bush, np.radians(60.0), knots=24
+        load / radius, clearance, pin, bush, np.radians(60.0), knots=16
     )
     assert check.demand == pytest.approx(float(pressures.pressure[0].max()), rel=0.03)
 
@@ -552,14 +551,30 @@ def test_a_roller_needs_a_means_against_rotation() -> None:
         assert guide_strength.anti_rotation(solved).status == status
 
 
-def test_a_bush_that_its_limits_do_not_describe_is_found_by_finer_guides(solved) -> None:
-    """Greatest one-sided push of 25 knots against 97."""
-    cycle = solved.cycles[0]
-    k = [int(np.argmax(cycle.guides.bearing_load_a))]
-    machine = cycle.machine
-    fine = guide_reactions(
-        cycle.loads.tangential_force[k], cycle.loads.overhang[k], machine.stem, machine.guides,
-        cycle.loads.end_moment[k], knots=97,
-    )  # fmt: skip
-    ratio = cycle.guides.bearing_load_a[k[0]] / fine.bearing_load_a[0]
-    assert ratio == pytest.approx(1.0, abs=0.03)
+def test_error_of_loaded_length_and_line_load_is_within_its_bar() -> None:
+    """25 knots against 97, at the greatest of some loads on nylon and on bronze."""
+    case, random = tight(), np.random.default_rng(3)
+    stem, guides = machines(case)[0].stem, case.guides
+    for number in range(6):
+        material = (guides.b if number % 2 else guides.a).material
+        gap, length = random.choice([2e-5, 1e-4]), 0.01 * random.uniform(1.5, 4.0)
+        a, b = (
+            replace(guide, material=material, length=length, wall=None, clearance=gap)
+            for _, guide in guides.both
+        )
+        force, reach = random.uniform(100.0, 1000.0, 4), random.uniform(0.03, 0.05, 4)
+        pair = replace(guides, a=a, b=b)
+        plain, fine = (guide_reactions(force, reach, stem, pair, knots=n) for n in (25, 97))
+        for name in ("bearing_load_a", "line_pressure_max_a", "bearing_load_b"):
+            exact = getattr(fine, name).max()
+            assert getattr(plain, name).max() > (1.0 - GUIDE_EDGE_ERROR) * exact, name
+
+
+def test_error_bar_of_an_edge_includes_that_of_its_mesh(solved) -> None:
+    made = [declared(solved) for declared in (guide_strength.guide_pressure_a,
+                                              guide_strength.guide_pv_a)]  # fmt: skip
+    mesh = replace(made[1], demand=0.01, declaration=replace(made[1].declaration, id=GUIDE_ERROR))
+    pressure, pv, _ = with_error_bars(solved, [*made, mesh])
+    assert pv.error_share == pytest.approx(0.01, rel=1e-6)
+    sampled = made[0].error_share
+    assert pressure.error_share == pytest.approx(0.01 + GUIDE_EDGE_ERROR + sampled, rel=1e-6)

@@ -187,7 +187,7 @@ def _heavier(case: Case, card: BearingCard) -> float:
 
 
 def _put_bushes(data: Tables, name: str) -> None:
-    place = ("length", "diameter", "clearance", "stiffness")
+    place = ("length", "diameter", "wall", "clearance", "stiffness", "housing_resistance")
     guides = table_in(data, "guides")
     for side in ("a", "b"):
         kept = {key: value for key, value in table_in(guides, side).items() if key in place}
