@@ -24,7 +24,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Declaration, Demand, check
-from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
+from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import bearing_life
@@ -200,7 +200,7 @@ def roller_modified_life(solution: Solution) -> Demand:
         pitch_diameter=circle,
     )
     missing += ["no life is required"] if limits[ROLLER_LIFE] is None else []
-    worst = Extreme(np.nan)
+    worst = NOWHERE
     if rating and endured and cleanliness and viscosity and circle:
         share = bearing_life.contamination_factor(cleanliness, circle)
 
@@ -222,7 +222,7 @@ def roller_modified_life(solution: Solution) -> Demand:
         limits[ROLLER_LIFE],
         worst,
         note="; ".join(missing),
-        figures=(limits.source(ROLLER_RELIABILITY), *_card(bearing)),
+        figures=(limits.source(ROLLER_RELIABILITY), bearing_life.SOURCE, *_card(bearing)),
     )
 
 
@@ -325,7 +325,7 @@ def bearing_lubrication(solution: Solution) -> Demand:
         solution.machine.limits[VISCOSITY_RATIO],
         worst,
         note="; ".join(missing),
-        figures=(bearing.source,),
+        figures=(bearing_life.SOURCE, bearing.source),
     )
 
 

@@ -1,4 +1,4 @@
-"""Follower on its elastic stem over a turn, at the computed cam speed."""
+"""Follower on its elastic train over a turn, at the computed cam speed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ BOUNCE_TURNS = 1.0
 class ElasticHistory:
     """One turn; arrays (n,) SI.
 
-    response is the periodic one with the contact kept, deflection the shortening of the stem.
+    response is the periodic one with the contact kept, deflection the shortening of the train.
     flights are the losses of contact in one turn from that state, if its contact force becomes
     negative; force_max is the maximum contact force. method states speed and solution.
     """
@@ -39,7 +39,7 @@ class ElasticHistory:
 
 
 def elastic_follower(machine: Machine) -> ElasticFollower:
-    """The follower's mass on its elastic stem."""
+    """The follower's mass on bearing, pin, fork, stem and camshaft in series."""
     return ElasticFollower.with_damping_ratio(
         machine.mass,
         machine.axial_stiffness,

@@ -101,9 +101,11 @@ class PartLoads:
                 "jam_index_friction_max", "", "Jam index at maximum guide friction, rise"
             ): friction.jam_index_max,
             Column(
-                "contact_force_elastic_stem", "N", "Contact force with an elastic stem"
+                "contact_force_elastic_stem", "N", "Contact force with an elastic follower"
             ): elastic.response.contact_force,
-            Column("stem_shortening", "um", "Shortening of the stem"): elastic.deflection,
+            Column(
+                "stem_shortening", "um", "Shortening of bearing, pin, fork, stem and camshaft"
+            ): elastic.deflection,
             Column(
                 "bore_pressure", "MPa", "Normal force over projected area of the cam bore"
             ): self.bore_pressure,

@@ -30,6 +30,8 @@ CONTAMINATION: MappingProxyType[Cleanliness, tuple[float, float]] = MappingProxy
 )
 """e_C below and from 100 mm of pitch diameter, lower ends of ISO 281:2007, table 13: verify."""
 
+SOURCE = "v1, e_C and a_ISO of ISO 281:2007, recalled: verify"
+
 
 def rated_viscosity(speed: float, pitch_diameter: float) -> float:
     """Rated kinematic viscosity v1 of a bearing, m2/s, at a speed, rpm, > 0; diameter in m.

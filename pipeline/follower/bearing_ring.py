@@ -104,7 +104,7 @@ class RingBending:
 def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
     """Equivalent fully reversed amplitude, Pa; infinite where the mean exceeds the strength.
 
-    A compressive mean stress counts as zero.
+    A compressive mean stress counts as zero; NaN where an input is.
 
     References
     ----------
@@ -112,6 +112,7 @@ def goodman(amplitude: Array, mean: Array, tensile_strength: float) -> Array:
     """
     left = 1.0 - np.maximum(mean, 0.0) / tensile_strength
     broken = np.where(amplitude > 0.0, np.inf, 0.0)
+    broken[np.isnan(amplitude + mean)] = np.nan
     return np.divide(amplitude, left, out=broken, where=left > 0.0)
 
 

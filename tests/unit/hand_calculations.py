@@ -80,6 +80,18 @@ def modified_life() -> float:
     return 1.0 / damage / 3600.0
 
 
+def pin_fatigue() -> float:
+    """Each fibre of the pin by itself under 300 + 100 sin along and 100 sin across: Goodman."""
+    bend = 32.0 * (16.0 / 4.0 - 10.0 / 8.0) / (np.pi * 5.0**3)  # MPa/N
+    least = np.inf
+    for fibre in np.arange(0.0, 360.0, 0.5):
+        along, across = np.cos(np.radians(fibre)), np.sin(np.radians(fibre))
+        stress = bend * ((300.0 + 100.0 * made.WAVE) * along + 100.0 * made.WAVE * across)
+        amplitude, mean = 0.5 * np.ptp(stress), 0.5 * (stress.max() + stress.min())
+        least = min(least, 700.0 * (1.0 - max(mean, 0.0) / 2000.0) / amplitude)
+    return float(least)
+
+
 def moving_mass() -> float:
     """Roller about its pin, pin, cheeks and bridge, stem, a fifth of the spring, g."""
     steel, stem = 7.85e-3, 140.0 - 12.0 - 5.0  # g/mm3; mm beyond the fork

@@ -334,9 +334,9 @@ by_limit(
 by_limit(
     "roller_pin_fatigue",
     "pin_fatigue_safety",
-    lambda: with_parts(pin_stress=NAN),
-    700.0 * (1.0 - 200.0 / 2000.0) / 100.0,
-    "Goodman: 100 MPa about 200 of 2000, Shigley ch. 6",
+    lambda: with_loads(axial_force=NAN),
+    by_hand.pin_fatigue(),
+    "Goodman, each fibre of the pin, Shigley ch. 6",
     missing=lambda: with_material("hard", fatigue_bending=None),
 )
 by_limit(

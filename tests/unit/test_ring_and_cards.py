@@ -91,6 +91,7 @@ def test_goodman():
     """400 about 1000 MPa of 2000 tires as 800 about none; a mean that presses changes nothing."""
     found = goodman(np.array([400e6, 400e6, 1.0, 0.0]), np.array([1e9, -1e9, 2e9, 3e9]), 2e9)
     np.testing.assert_allclose(found, [800e6, 400e6, np.inf, 0.0])
+    assert np.isnan(goodman(np.array([np.nan, 1e6]), np.array([1e6, np.nan]), 2e9)).all()
 
 
 def test_stiff_ring_loads_balls_as_a_rigid_one():
