@@ -151,7 +151,11 @@ def shaft_fatigue(solution: Solution) -> Demand:
         limit,
         worst,
         note=f"governing section: {_place(section)}",
-        figures=(f"{card.name}: {card.source}", "Shigley, 10th ed., sec. 6-9: verify"),
+        figures=(
+            machine.limits.source(SHAFT_RELIABILITY),
+            f"{card.name}: {card.source}",
+            "Shigley, 10th ed., sec. 6-9: verify",
+        ),
         method="rotating bending and torsion at every section, unbalance included; Goodman line;"
         f" fatigue notch factors {section.notch_bending:g} and {section.notch_torsion:g},"
         f" k_a {finish:.3f} ({shaft.camshaft.surface}), k_b {size:.3f}, k_e {rest:.3f}",

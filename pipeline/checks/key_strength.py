@@ -184,7 +184,8 @@ def keyway_root(solution: Solution) -> Demand:
 
     worst = least(solution.cycles, safety)
     note = f"root radius {shown(radius, 'mm')}, wall {shown(wall, 'mm')}"
-    return Demand(worst.value, limit, worst, note=note, figures=(f"{card.name}: {card.source}",))
+    figures = (machine.limits.source(SHAFT_RELIABILITY), f"{card.name}: {card.source}")
+    return Demand(worst.value, limit, worst, note=note, figures=figures)
 
 
 def _judged(
@@ -204,7 +205,9 @@ def _judged(
     cards = [card for card in (key.material, mate) if card is not None]
     figures = tuple(f"{card.name}: {card.source}" for card in cards)
     share = machine.limits[KEY_SHARE]
-    share *= machine.limits[KEY_REVERSAL] if _reverses(solution) else 1.0
+    if _reverses(solution):
+        share *= machine.limits[KEY_REVERSAL]
+        figures = (machine.limits.source(KEY_REVERSAL), *figures)
     weakest = min((card.core_yield_strength or card.yield_strength for card in cards), default=None)
     allowed = None if weakest is None or missing else factor * share * weakest
     if flanks is None:

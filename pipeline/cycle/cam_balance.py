@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -93,9 +94,13 @@ def _unbalance(cam: CamBody, contour: Contour) -> Unbalance:
 
 def unbalance_force(cam: CamBody, contour: Contour, cam_speed: float, theta: Array) -> Array:
     """Centrifugal force of the cam as manufactured on its shaft (2, n), N; see `rotating_force`."""
-    drilled = cam.counter_hole is not None
-    made = balance(cam, contour).as_made if drilled else _unbalance(cam, contour)
-    return rotating_force(made, cam_speed, theta)
+    return rotating_force(_as_made(cam, contour), cam_speed, theta)
+
+
+@lru_cache(maxsize=8)
+def _as_made(cam: CamBody, contour: Contour) -> Unbalance:
+    """Unbalance of the cam as manufactured; each load case and check of the shaft reads it."""
+    return _unbalance(cam, contour) if cam.counter_hole is None else balance(cam, contour).as_made
 
 
 def drilled_hole(cam: CamBody, contour: Contour) -> CounterHole | None:
