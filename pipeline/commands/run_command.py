@@ -11,6 +11,7 @@ import typer
 
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.commands.terminal import (
+    EXIT_CODE,
     PASSED,
     CaseArgument,
     DirArgument,
@@ -39,7 +40,10 @@ def run(
     ] = False,
     no_cache: NoCacheOption = False,
 ) -> int:
-    """Run a case and write its run folder."""
+    """Run a case and write its run folder.
+
+    Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing), 130: interrupted.
+    """
     from camwright.pipeline.case.case_file import read_case
 
     use_cache(not no_cache)
@@ -68,8 +72,9 @@ def run(
             )
     from camwright.pipeline.results.run_reader import read_verdict
 
-    show(read_verdict(out), out)
-    return PASSED
+    document = read_verdict(out)
+    show(document, out)
+    return EXIT_CODE[document["verdict"]]
 
 
 def _finished(out: Path, sha256: str) -> bool:
