@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -130,7 +131,7 @@ def shaft_fatigue(solution: Solution) -> Demand:
     finish = surface_factor(shaft.camshaft.surface, tensile)
     rest = reliability_factor(machine.limits[SHAFT_RELIABILITY])
 
-    loads = {cycle.load_case: _loads(cycle) for cycle in solution.cycles}
+    loads = cache(_loads)  # common to the sections
 
     def least(section: ShaftSection) -> Extreme:
         strength = finish * size_factor(section.diameter) * rest * endurance
@@ -138,7 +139,7 @@ def shaft_fatigue(solution: Solution) -> Demand:
         notched = Section(section.diameter, *notches, strength, tensile)
 
         def safety(cycle: Cycle) -> float:
-            moment = bending_moment(loads[cycle.load_case], shaft.camshaft, section.position)
+            moment = bending_moment(loads(cycle), shaft.camshaft, section.position)
             torque = torque_at(cycle.loads.cam_torque, shaft.camshaft, section.position)
             return fatigue_safety(cycle.theta, moment, torque, notched)
 
@@ -181,11 +182,11 @@ def shaft_yield(solution: Solution) -> Demand:
     if isinstance(shaft, str):
         return Demand(None, None, note=shaft)
 
-    loads = {cycle.load_case: _loads(cycle) for cycle in solution.cycles}
+    loads = cache(_loads)  # common to the sections
 
     def most(section: ShaftSection) -> Extreme:
         def stress(cycle: Cycle) -> Array:
-            moment = bending_moment(loads[cycle.load_case], shaft.camshaft, section.position)
+            moment = bending_moment(loads(cycle), shaft.camshaft, section.position)
             torque = torque_at(cycle.loads.cam_torque, shaft.camshaft, section.position)
             return greatest_stress(moment, torque, section)
 

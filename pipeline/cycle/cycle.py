@@ -267,7 +267,10 @@ Result = TypeVar("Result")
 
 
 def _at_every(result: Result, count: int, step: int) -> Result:
-    """A result with every few entries of its arrays (count, ...), those of its parts included."""
+    """A result with every few entries of its arrays (count, ...) or (..., count).
+
+    Those of its parts included.
+    """
     if isinstance(result, Machine) or not is_dataclass(result) or isinstance(result, type):
         return result
     changed: dict[str, object] = {}
@@ -276,6 +279,8 @@ def _at_every(result: Result, count: int, step: int) -> Result:
         if isinstance(value, np.ndarray):
             if value.shape[:1] == (count,):
                 changed[field.name] = value[::step]
+            elif value.shape[-1:] == (count,):
+                changed[field.name] = value[..., ::step]
         elif (part := _at_every(value, count, step)) is not value:
             changed[field.name] = part
     return replace(result, **changed) if changed else result
