@@ -1,0 +1,121 @@
+"""A machine is judged whole: no datum of a described part can be left out of a sign-off."""
+
+import tomllib
+from copy import deepcopy
+from typing import Any
+
+import made_trial as made
+import pytest
+from check_tools import BY_ID
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case_file import case_of
+from camwright.pipeline.case.scope_section import PART_WORDS
+from camwright.pipeline.checks.check import Check, verdict
+from camwright.pipeline.checks.registry import without_sign_off
+from camwright.pipeline.preview import preview_case
+
+TABLES: dict[str, Any] = tomllib.loads(made.CASE_FILE.read_text(encoding="utf-8"))
+NOT_OF_A_PART = ("schema_version", "name", "lift", "solver", "tolerances", "load_case", "limits")
+
+
+def judged(tables: dict[str, Any]) -> tuple[Check, ...]:
+    """Checks of a preview of the case, as if it were certified."""
+    coarse = deepcopy(tables)
+    coarse["solver"] = {"positions": 36}
+    return without_sign_off(preview_case(case_of(coarse), corners=False).checks)
+
+
+def without(*keys: str) -> dict[str, Any]:
+    """The case without a key, by the names of its tables and its own."""
+    tables = deepcopy(TABLES)
+    table = tables
+    for key in keys[:-1]:
+        table = table[key]
+    del table[keys[-1]]
+    return tables
+
+
+def data(table: dict[str, Any] = TABLES, above: tuple[str, ...] = ()) -> list[tuple[str, ...]]:
+    """Every key that the case states of a part, by its names."""
+    found = []
+    for key, value in table.items():
+        if not above and key in NOT_OF_A_PART:
+            continue
+        found.append((*above, key))
+        if isinstance(value, dict):
+            found += data(value, (*above, key))
+    return found
+
+
+def test_the_case_that_describes_every_part_passes():
+    assert verdict(judged(TABLES)) == "pass"
+
+
+# Keys with a documented default: the case is as complete without them.
+DEFAULTED = {
+    *("source", "condition", "rate_tolerance", "preload_tolerance", "friction_min"),
+    *("profile_tolerance", "chamfer", "friction_max"),
+}
+
+
+def outcome(keys: tuple[str, ...]) -> str:
+    """Verdict without a key; "error" if the schema needs it."""
+    try:
+        return verdict(judged(without(*keys)))
+    except InputError:
+        return "error"
+
+
+@settings(max_examples=12, deadline=None, derandomize=True)
+@given(st.sampled_from([keys for keys in data() if keys[-1] not in DEFAULTED]))
+def test_no_datum_of_a_described_part_can_be_left_out(keys):
+    """A sample; `make verify` tries every one."""
+    assert outcome(keys) in ("incomplete", "fail", "error"), ".".join(keys)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("keys", data(), ids=".".join)
+def test_every_datum_left_out_keeps_the_verdict_from_pass(keys):
+    found = outcome(keys)
+    assert found in (("pass",) if keys[-1] in DEFAULTED else ("incomplete", "fail", "error"))
+
+
+@pytest.mark.parametrize("part", PART_WORDS)
+def test_a_part_is_described_or_left_out_by_the_scope(part):
+    declared = BY_ID[f"data_{part}"]
+    whole = made.solution()
+    found = declared(whole)
+    assert found is not None
+    assert found.status == "pass"
+    left = made.changed(whole.case, scope=made.changed(whole.case.scope, not_covered=(part,)))
+    assert declared(made.changed_solution(whole, case=left)) is None
+    assert not any(
+        one.part == part and one(made.changed_solution(whole, case=left)) for one in BY_ID.values()
+    )
+
+
+@pytest.mark.parametrize(
+    ("keys", "name"),
+    [(("camshaft",), "camshaft"), (("camshaft",), "gear"), (("camshaft",), "camshaft_bearings"),
+     (("cam", "keyway"), "key"), (("roller", "pin"), "pin"), (("roller", "fork"), "fork"),
+     (("spring", "design"), "spring")],
+)  # fmt: skip
+def test_a_part_that_is_neither_described_nor_left_out_is_a_row(keys, name):
+    tables = without(*keys)
+    if keys == ("cam", "keyway"):
+        tables["cam"].pop("key", None)
+    checks = {one.id: one for one in judged(tables)}
+    row = checks[f"data_{name}"]
+    assert (row.status, row.must_have) == ("not_evaluated", True)
+    assert "[scope]" in row.note
+    tables["scope"] = {"not_covered": [name], "reason": "covered by the engine maker"}
+    assert f"data_{name}" not in {one.id for one in judged(tables)}
+
+
+def test_a_scope_has_a_reason():
+    tables = deepcopy(TABLES) | {"scope": {"not_covered": ["fork"]}}
+    with pytest.raises(InputError, match=r"scope\.reason"):
+        case_of(tables)
