@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
@@ -33,6 +34,15 @@ class Material(Part):
 
     table: ClassVar[str] = "material"
     labels: ClassVar[tuple[str, ...]] = ("name",)
+    defaults: ClassVar[Mapping[str, str]] = {
+        "hardness_brinell": "unknown: no Buckingham estimate, which is advisory",
+        "hardness_vickers": "unknown: no allowable of gear flanks, which is advisory",
+        "endurance_slope": "none: the endurance pressure holds up to endurance_cycles",
+        "endurance_intercept": "none: the endurance pressure holds up to endurance_cycles",
+        "sliding_endurance_slope": "none: the endurance pressure holds up to endurance_cycles",
+        "sliding_endurance_intercept": "none: the endurance pressure holds up to endurance_cycles",
+        "fatigue_bending": "unknown: no criteria of Crossland and Dang Van, which are advisory",
+    }
 
     E: Annotated[float, In("GPa", above=0, at_most=1e5)]
     nu: Annotated[float, In(at_least=0, below=0.5)]

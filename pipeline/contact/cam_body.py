@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
@@ -42,6 +43,9 @@ class CamBody(Part):
     """
 
     table: ClassVar[str] = "cam"
+    defaults: ClassVar[Mapping[str, str]] = {
+        "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
+    }
 
     prime_radius: Length
     offset: Annotated[float, In("mm", above=-10_000, below=10_000)] = 0.0

@@ -45,6 +45,7 @@ class Roller(Part):
     defaults: ClassVar[Mapping[str, str]] = {
         "crown_radius": "straight: the ends are derated by a flat factor, limits.edge_factor",
         "inertia": "that of a solid ring of the material, an upper bound",
+        "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
     }
 
     radius: Length
