@@ -24,8 +24,8 @@ class ModelLimit:
 MODEL_LIMITS = (
     ModelLimit(
         "The contact is two-dimensional in plane strain, with a uniform load over the common width."
-        " Edge stress at its ends and tilt are not solved: a flat edge factor derates straight ends."
-        " A crowned roller has the pressure of a Hertz ellipse in closed form.",
+        " Edge stress at its ends and tilt are not solved: a flat edge factor derates straight"
+        " ends. A crowned roller has the pressure of a Hertz ellipse in closed form.",
         "edge_factor",
     ),
     ModelLimit(
