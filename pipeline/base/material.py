@@ -72,6 +72,13 @@ class Material(Part):
     defaults: ClassVar[Mapping[str, str]] = {
         "swelling": "0 of a metal (Young's modulus of at least 40 GPa), else missing",
         "strength_at": "the yield strength holds to 100 degC of a metal, to 30 degC of a plastic",
+        "hardness_brinell": "unknown: no Buckingham estimate, which is advisory",
+        "hardness_vickers": "unknown: no allowable of gear flanks, which is advisory",
+        "endurance_slope": "none: the endurance pressure holds up to endurance_cycles",
+        "endurance_intercept": "none: the endurance pressure holds up to endurance_cycles",
+        "sliding_endurance_slope": "none: the endurance pressure holds up to endurance_cycles",
+        "sliding_endurance_intercept": "none: the endurance pressure holds up to endurance_cycles",
+        "fatigue_bending": "unknown: no criteria of Crossland and Dang Van, which are advisory",
     }
 
     E: Annotated[float, In("GPa", above=0, at_most=1e5)]

@@ -98,11 +98,14 @@ def film_ratio(solution: Solution) -> Demand:
         missing.append("no roughness of the cam")
     if kind.roughness is None:
         missing.append(f"no roughness of the {kind.word}")
+    notes = [f"{', '.join(missing)} is given"] if missing else []
+    if kind.crown_radius is not None:
+        notes.append("film of a line contact; that of an ellipse is thinner by its side flow")
     return Demand(
         worst.value,
         machine.limits[FILM_RATIO],
         worst,
-        note=f"{', '.join(missing)} is given" if missing else "",
+        note="; ".join(notes),
         figures=() if oil is None else (oil.source,),
     )
 

@@ -114,6 +114,9 @@ class CamBody(Part):
     """
 
     table: ClassVar[str] = "cam"
+    defaults: ClassVar[Mapping[str, str]] = {
+        "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
+    }
 
     prime_radius: Length
     offset: Annotated[float, In("mm", above=-10_000, below=10_000)] = 0.0

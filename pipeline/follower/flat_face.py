@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
@@ -32,6 +33,9 @@ class FlatFace(Part):
     word: ClassVar[str] = "face"
     slides: ClassVar[bool] = True
     crown_radius: ClassVar[None] = None
+    defaults: ClassVar[Mapping[str, str]] = {
+        "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
+    }
 
     width: Length
     depth: Length

@@ -44,8 +44,9 @@ class Roller(Part):
     slides: ClassVar[bool] = False
     defaults: ClassVar[Mapping[str, str]] = {
         "crown_radius": "straight: the ends are derated by a flat factor, limits.edge_factor",
-        "inertia": "that of a solid ring from hub to surface",
+        "inertia": "that of a solid ring from hub to surface, an upper bound",
         "mass": "that of a solid ring from pin, or else hub, to surface",
+        "roughness": "unknown: the film ratio, which is advisory, is not evaluated",
     }
 
     radius: Length

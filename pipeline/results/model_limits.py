@@ -24,7 +24,8 @@ class ModelLimit:
 MODEL_LIMITS = (
     ModelLimit(
         "The contact is two-dimensional in plane strain, with a uniform load over the common width."
-        " Edge stress at its ends, tilt and crowning are not solved; the edge factor covers them.",
+        " Edge stress at its ends and tilt are not solved: a flat edge factor derates straight"
+        " ends. A crowned roller has the pressure of a Hertz ellipse in closed form.",
         "edge_factor",
     ),
     ModelLimit(

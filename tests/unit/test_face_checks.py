@@ -36,7 +36,7 @@ def test_sliding_at_its_limit(share, status):
 def test_sliding_without_a_limit_is_not_evaluated():
     check = flat_face_sliding.face_pv(faced(pv_limit=None))
     assert check.status == "not_evaluated"
-    assert not check.must_have
+    assert check.blocks
     assert "no PV limit" in check.note
 
 

@@ -300,10 +300,12 @@ def scenario(count=180):
     )  # fmt: skip
 
 
+@pytest.mark.parametrize("crown", [None, 0.1])
 @pytest.mark.parametrize("free", [(), tuple(RANGES)])
-def test_gradients_match_differences(free):
+def test_gradients_match_differences(free, crown):
     given = Problem(
-        (scenario(), replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.0)), EVERY,
+        (scenario(), replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.0)),
+        replace(EVERY, crown_radius=crown),
         DesignVariables(24.2e3, 242.0, 0.05), freed={name: RANGES[name] for name in free},
         energy=(0.0, 0.0), coefficients=24, points=180, speed_weight=0.5, jerk_weight=1e-2,
     )  # fmt: skip

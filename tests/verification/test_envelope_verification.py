@@ -21,8 +21,8 @@ from camwright.pipeline.contact.follower_body import RollerBody
 from camwright.pipeline.contact.rolling_envelope import (
     STATIONS,
     FatigueLimits,
-    _smallest_sphere,
     rolling_pass,
+    smallest_sphere,
     swept,
 )
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
@@ -82,19 +82,19 @@ def test_finite_elements_go_through_the_same_pass():
 
 
 @pytest.mark.parametrize("length", [1.0, 3.0])
-def test_smallest_sphere_of_a_straight_path(length):
+def testsmallest_sphere_of_a_straight_path(length):
     path = np.zeros((3, 1, 50))
     path[1, 0] = np.linspace(-length, 0, 50)
-    centre, radius = _smallest_sphere(path)
+    centre, radius = smallest_sphere(path)
     assert radius == pytest.approx(length / 2, rel=1e-3)
     assert centre[:, 0] == pytest.approx([0, -length / 2, 0], abs=1e-3 * length)
 
 
-def test_smallest_sphere_of_a_circle_and_a_point_inside():
+def testsmallest_sphere_of_a_circle_and_a_point_inside():
     angle = np.linspace(0, 2 * np.pi, 100)
     path = np.stack([np.cos(angle), np.sin(angle), 0 * angle])[:, None]
     path = np.concatenate([path, np.full((3, 1, 1), 0.2)], axis=2)
-    assert _smallest_sphere(path)[1] == pytest.approx(1.0, rel=2e-3)
+    assert smallest_sphere(path)[1] == pytest.approx(1.0, rel=2e-3)
 
 
 def test_fatigue_weights_give_back_both_limits():

@@ -18,7 +18,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_file import parse_case, read_case
+from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Corner, Machine, machines
 from camwright.pipeline.case.template import template
@@ -102,17 +102,23 @@ def test_friction_raises_the_reactions_on_the_rise_and_lowers_them_on_the_return
         assert np.all(more[moves & (slope < 0)] < 0)
 
 
+def plate_text() -> str:
+    """The published machine with friction and endurance of its roller."""
+    text = GX120.read_text(encoding="utf-8").replace("[roller]\n", "[roller]\nfriction = 0.1\n")
+    text = text.replace('material = "bearing_steel"', 'material = "ring"')
+    return text + '\n[materials.ring]\ncard = "bearing_steel"\n'
+
+
 def hardened_case() -> Case:
-    """The published machine with a case-hardened cam."""
-    text = GX120.read_text(encoding="utf-8")
-    text = text.replace('material = "s355"', 'material = "hardened"')
+    """The same machine with a case-hardened cam."""
+    text = plate_text().replace('material = "s355"', 'material = "hardened"')
     return parse_case(text + '\n[materials.hardened]\ncard = "case_hardened"\n')
 
 
 @lru_cache(maxsize=2)
 def published(hardened: bool) -> dict[str, Check]:
     """The first trial of the published machine, its cam of plate or case-hardened."""
-    case = hardened_case() if hardened else read_case(GX120)
+    case = hardened_case() if hardened else parse_case(plate_text())
     return {check.id: check for check in preview_case(case.with_positions(180)).checks}
 
 
@@ -147,7 +153,7 @@ def test_a_hardened_cam_passes_its_own_checks_and_the_others_still_fail():
 @lru_cache(maxsize=1)
 def by_elements() -> Solution:
     """The published cam's first trial, solved by finite elements at few angles."""
-    case = read_case(GX120)
+    case = parse_case(plate_text())
     torques = engine_torques(case)
     contour = case.contour(cam_lift(case, torques))
     return solution(case, contour, torques=torques, positions=72)
