@@ -17,7 +17,7 @@ from camwright.pipeline.cycle.solution import Solution
 
 Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
-Error = Literal["sampling", "contact", "guides", "unknown"]
+Error = Literal["sampling", "contact", "guides", "bore", "unknown"]
 Record = dict[str, str | float | bool | None]
 ROUNDING = 1e-9
 """Relative error of closed forms and exact integrals: no uncertainty of a demand."""

@@ -86,7 +86,7 @@ def excluded_zone(solution: Solution) -> Demand | None:
     must_have=False,
     lift_can_help=True,
     tier=Tier.FINITE_ELEMENTS,
-    error="unknown",
+    error="bore",
 )
 def bore_stress(solution: Solution) -> Demand | None:
     """Maximum von Mises stress at bore and keyway without the excluded zones, Pa."""

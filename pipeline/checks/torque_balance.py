@@ -65,9 +65,7 @@ def speed_reduction(solution: Solution) -> Demand | None:
     """Reduction of the crank speed ripple by the cam; None without a crankshaft."""
     idle = {m.load_case for m in solution.machines if not m.ripple_weight > 0}
     shares = {
-        name: 1.0 - after / before if before > 0 else np.nan
-        for name, (before, after) in solution.crank_speed.items()
-        if name not in idle
+        name: _reduced(*speeds) for name, speeds in solution.crank_speed.items() if name not in idle
     }
     if not shares:
         return None
@@ -76,10 +74,23 @@ def speed_reduction(solution: Solution) -> Demand | None:
     return Demand(
         float(shares[worst]),
         allowed,
-        Extreme(float(shares[worst]), worst),
+        Extreme(float(shares[worst]), worst, None, _speed_error(solution, worst)),
         note="" if allowed is not None else "no reduction of the speed ripple is required",
         must_have=allowed is not None,
     )
+
+
+def _reduced(before: float, after: float) -> float:
+    return 1.0 - after / before if before > 0 else np.nan
+
+
+def _speed_error(solution: Solution, load_case: str) -> float:
+    """Change of a speed reduction with every second crank angle alone, over its value."""
+    halved = solution.crank_speed_halved.get(load_case)
+    if halved is None:
+        return 0.0
+    value = _reduced(*solution.crank_speed[load_case])
+    return _relative(_reduced(*halved) - value, abs(value))
 
 
 def _reduction(cycle: Cycle) -> float:
