@@ -27,6 +27,9 @@ _CHORD = 1e-5
 @check(
     TORQUE_REDUCTION,
     title="Torque ripple reduction",
+    formula="min over the load cases of 1 - std(T_e - T_c)/std(T_e) >= c; T_e, T_c: crank torque"
+    " of engine and cam about their means, c: limits.torque_reduction",
+    reason="It is the purpose of the cam.",
     method="1 - std of the crank torque with the cam, friction and inertia included, over that"
     " without it",
     forecast=True,
@@ -58,6 +61,9 @@ def cycles_of_ripple(solution: Solution) -> tuple[Cycle, ...]:
 @check(
     SPEED_REDUCTION,
     title="Speed ripple reduction of the crank",
+    formula="min over the load cases of 1 - std(w_c)/std(w_e) >= c; w_c, w_e: crank speed with"
+    " and without the cam, c: limits.speed_reduction",
+    reason="Decides where the case requires it.",
     method="1 - std of the crank speed with the cam over that of the engine alone,"
     " inertia of crank and follower included",
 )
@@ -186,6 +192,10 @@ def _integral(values: Array, at: Array) -> Array:
 @check(
     FRICTION_BALANCE,
     title="Friction work vs. heat in guides and face",
+    formula="|integral of (T - (F_s + F_i) s') - Q| / Q <= c; T: cam torque, F_s, F_i: spring and"
+    " inertia force, s': slope of the lift, Q: friction heat of guides and face over a"
+    " turn, c: limits.friction_balance",
+    reason="Work that the guides do not dissipate would be an error of the forces.",
     method="cam work less work of spring and inertia, against friction force times sliding distance"
     " of guides and face, relative",
     evidence=True,
