@@ -24,7 +24,7 @@ from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import torque_balance
 from camwright.pipeline.checks.cam_shape import acceleration_step, closure, tool_gouge
 from camwright.pipeline.checks.error_bars import with_error_bars
-from camwright.pipeline.checks.extremes import worst_case
+from camwright.pipeline.checks.extremes import greatest, least, worst_case
 from camwright.pipeline.checks.plane_strain_validity import bore_stress as bore_check
 from camwright.pipeline.checks.plane_strain_validity import held_distance
 from camwright.pipeline.checks.roller_bearing import roller_life
@@ -340,6 +340,31 @@ def test_the_bar_of_a_bearing_life_covers_its_error():
     coarse, fine = roller_life(previewed(36)), roller_life(previewed(1440))
     assert abs(coarse.demand / fine.demand - 1.0) <= (coarse.error_share or 0.0) + 1e-9
     assert (coarse.error_share or 0.0) > (fine.error_share or 0.0)
+
+
+PEAKS = {
+    "a sine": lambda t: 2.0 + np.sin(t),
+    "a narrow peak": lambda t: np.exp(6.0 * (np.cos(t) - 1.0)),
+    "two peaks of one height": lambda t: 2.0 + np.sin(2.0 * t) ** 3,
+    "a tent": lambda t: 4.0 - np.abs(np.mod(t, 2.0 * np.pi) - np.pi),
+    "a cubed cosine": lambda t: (2.0 + np.cos(t)) ** 3,
+    "a jump at its top": lambda t: 1.0 + np.where(
+        np.mod(t, 2.0 * np.pi) < 2.0, np.mod(t, 2.0 * np.pi), 0.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("positions", [36, 72, 360])
+@pytest.mark.parametrize("name", PEAKS)
+def test_the_bar_of_an_extreme_covers_the_value_between_samples(name, positions):
+    function = PEAKS[name]
+    cycles = previewed(positions).cycles
+    dense = np.linspace(0.0, 2.0 * np.pi, 200001)
+    for shift in np.linspace(0.0, 2.0 * np.pi / positions, 9):
+        for sign, search in ((1.0, greatest), (-1.0, least)):
+            extreme = search(cycles, lambda c, s=sign, h=shift: s * function(c.theta + h))
+            error = function(dense).max() - sign * extreme.value
+            # the parabola leaves the fourth order of a peak beside a sample
+            assert error <= abs(extreme.value) * (extreme.error_share + 2e-6)
 
 
 def test_a_residual_has_no_error_of_an_integral():
