@@ -42,6 +42,8 @@ def _at(extremum: Extremum) -> Extreme:
 @check(
     CLOSURE,
     title="Lift closure over one turn",
+    formula="|s(2 pi) - s(0)| <= c; s: lift as its source gives it, c: limits.closure",
+    reason="A step of the lift at the end of the turn is a step of the cam surface.",
     unit="m",
     method="difference of the lift between the ends of the turn, before closing",
     forecast=True,
@@ -83,6 +85,9 @@ def acceleration_step(solution: Solution) -> Demand:
 @check(
     PRESSURE_ANGLE,
     title="Maximum pressure angle",
+    formula="max |atan((s' - e)/(d + s))| <= alpha; s, s': lift and its slope, e: offset, d:"
+    " height of the roller centre at zero lift, alpha: limits.pressure_angle",
+    reason="Side force, guide friction and jamming grow with the tangent of the angle.",
     method="greatest |atan((s' - e)/d)| of the pitch curve, refined between samples",
     lift_can_help=True,
     forecast=True,
@@ -98,6 +103,9 @@ def pressure_angle(solution: Solution) -> Demand:
 @check(
     CURVATURE_RATIO,
     title="Minimum convex pitch radius / roller radius",
+    formula="min rho_p / r >= c; rho_p: convex radius of curvature of the pitch curve, r: roller"
+    " radius, c: limits.curvature_ratio",
+    reason="Near a ratio of 1 the convex cam surface becomes an edge.",
     method="least radius of curvature of the convex pitch curve, refined between samples",
     lift_can_help=True,
     forecast=True,
@@ -115,6 +123,9 @@ def curvature_ratio(solution: Solution) -> Demand:
     UNDERCUT_FACTOR,
     id="undercut",
     title="Minimum undercut factor",
+    formula="min(1 - r kappa_p) >= c; r: roller radius, kappa_p: curvature of the pitch curve, c:"
+    " limits.undercut_factor; flat face: min((R + s + s'')/(R + s)), R: base radius",
+    reason="At zero the cam has a cusp; below, the follower does not follow the lift.",
     method="least 1 - roller radius x pitch curvature, refined between samples",
     lift_can_help=True,
     forecast=True,
@@ -134,6 +145,8 @@ def undercut(solution: Solution) -> Demand:
 
 @check(
     title="Contour self-intersections",
+    formula="number of pairs of cam angles with the same contour point = 0",
+    reason="A contour that crosses itself bounds no body.",
     unit="crossings",
     source="no undercut: the cutter removes a self-intersecting part",
     method="number of crossings of the contour with itself, between samples too",
@@ -150,6 +163,9 @@ def self_intersection(solution: Solution) -> Demand:
     SECOND_CONTACT_DEPTH,
     id="second_contact",
     title="Interference of the {follower} outside the contact",
+    formula="max(-g) <= d; g: gap between the follower and any other point of the contour, d:"
+    " limits.second_contact_depth",
+    reason="A follower with two contacts does not follow the lift.",
     method="greatest penetration of the follower into the contour outside the contact",
     lift_can_help=True,
     moved_by_tolerance=False,
@@ -166,6 +182,9 @@ def second_contact(solution: Solution) -> Demand:
     TOOL_RADIUS,
     id="concave_radius",
     title="Minimum concave radius",
+    formula="min rho_c >= 1.1 R; rho_c: concave radius of the contour, R: limits.tool_radius or"
+    " workshop.tool_radius",
+    reason="A larger wheel or cutter cannot make the contour.",
     method="least concave pitch radius plus the roller radius, refined between samples",
     lift_can_help=True,
     forecast=True,
@@ -244,6 +263,9 @@ def curvature_rate(solution: Solution) -> Demand:
 @check(
     MINIMUM_WALL,
     title="Minimum contour radius / bore radius including keyway",
+    formula="min |P| / (R_b + t) >= c; P: contour, R_b: bore radius, t: depth of the keyway, c:"
+    " limits.minimum_wall",
+    reason="A thinner ring bursts at the keyway or opens on the shaft.",
     method="least contour radius over bore radius plus keyway depth",
     forecast=True,
 )
@@ -259,6 +281,8 @@ def minimum_wall(solution: Solution) -> Demand:
 
 @check(
     title="Maximum lift vs. spring travel",
+    formula="max s <= x; s: lift, x: spring.travel_max",
+    reason="Beyond its travel the spring is solid and the follower is blocked.",
     unit="mm",
     source="spring travel of the case",
     method="greatest lift, between samples too",

@@ -17,7 +17,7 @@ from camwright.pipeline.cycle.solution import Solution
 
 Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
-Error = Literal["sampling", "contact", "guides", "guide_edges", "unknown"]
+Error = Literal["sampling", "contact", "guides", "guide_edges", "bore", "unknown"]
 Record = dict[str, str | float | bool | list[str] | None]
 EVERY = "all, standstill and over-speed included"
 NONE = "none: the shape of the cam or a part as drawn"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from camwright.pipeline.checks.check import ROUNDING, Check
+from camwright.pipeline.checks.check import ROUNDING, Check, Error
 from camwright.pipeline.cycle.solution import Solution
 
 GUIDE_ERROR = "mesh_reaction"
@@ -41,15 +41,22 @@ def with_error_bars(solution: Solution, checks: Iterable[Check]) -> tuple[Check,
 
     A demand on a guide has the discretisation uncertainty of the guide reaction, and one on its
     edges `GUIDE_EDGE_ERROR` besides. One on the contact has the greatest sum of difference and grid
-    convergence index of its certified quantity, and the sampling error; without a certificate its
-    error is not known.
+    convergence index of its certified quantity, and the sampling error; one on the bore the change
+    with a finer mesh. Without a certificate its error is not known.
     """
     checks = tuple(checks)
     beam = [each.demand for each in checks if each.id == GUIDE_ERROR]
     guides = None if beam in ([], [None]) else float(beam[0] or 0.0)
 
     def share(one: Check) -> float | None:
-        return _share(one, contact_error(solution, FIGURES.get(one.id)), guides)
+        contact = contact_error(solution, FIGURES.get(one.id))
+        meshes: dict[Error, float | None] = {
+            "contact": contact,
+            "guides": guides,
+            "guide_edges": None if guides is None else guides + GUIDE_EDGE_ERROR,
+            "bore": solution.bore_error,
+        }
+        return _share(one, meshes)
 
     return tuple(replace(each, error_share=share(each)) for each in checks)
 
@@ -75,15 +82,9 @@ def contact_error(solution: Solution, figure: str | None = None) -> float | None
     )
 
 
-def _share(one: Check, contact: float | None, guides: float | None) -> float | None:
-    sampled = ROUNDING if one.error_share is None else max(one.error_share, ROUNDING)
+def _share(one: Check, meshes: Mapping[Error, float | None]) -> float | None:
+    """Sampling error plus that of the meshes of its origin; None where that is not known."""
     kind = one.declaration.error
-    if kind == "unknown":
-        return None
-    if kind == "contact":
-        return None if contact is None else sampled + contact
-    if kind == "guides":
-        return None if guides is None else sampled + guides
-    if kind == "guide_edges":
-        return None if guides is None else sampled + guides + GUIDE_EDGE_ERROR
-    return sampled
+    sampled = ROUNDING if one.error_share is None else max(one.error_share, ROUNDING)
+    of_mesh = 0.0 if kind == "sampling" else meshes.get(kind)
+    return None if of_mesh is None else sampled + of_mesh

@@ -29,6 +29,9 @@ class Extreme(NamedTuple):
 
 
 NOWHERE = Extreme(np.nan)
+_LEAST = 5  # samples, for the bends on either side of a peak
+_KINK = 3.0  # bend at a kink over those two samples away; 1 on a parabola
+_SAFETY = 1.25
 
 
 def greatest(cycles: Iterable[Cycle], measure: Callable[[Cycle], Array]) -> Extreme:
@@ -104,22 +107,38 @@ def _extreme(
         if extreme.load_case and not (np.isnan(value) or sign * value > sign * extreme.value):
             continue
         theta = float(cycle.theta[worst]) if error is None else None
-        share = _sampling_error(values, worst) if error is None and values.size > 2 else 0.0
+        share = _sampling_error(values, sign) if error is None else 0.0
         extreme, at = Extreme(value, cycle.load_case, theta, share), cycle
     if error is None or at is None:
         return extreme
     return extreme._replace(error_share=error(at, extreme.value))
 
 
-def _sampling_error(values: Array, worst: int) -> float:
-    """Vertex of the parabola through three samples less the middle one, relative.
+def _sampling_error(values: Array, sign: float) -> float:
+    """Greatest value between the samples less the greatest sample, relative; of -values at sign -1.
 
-    At a kink it is below half of the difference of neighbouring samples: the sampling error there.
+    At a smooth peak the vertex of the parabola through three samples, with the safety factor 1.25;
+    at a kink or a jump the lines through the two samples on either side, up to their crossing.
+    Every peak counts: another than that of the greatest sample may be the greatest.
     """
-    before, here, after = values[worst - 1], values[worst], values[(worst + 1) % values.size]
-    if not np.isfinite([before, here, after]).all():
+    if values.size < _LEAST or not np.isfinite(values).all():
         return 0.0
-    bend = before - 2.0 * here + after
-    if bend == 0.0 or here == 0.0:
-        return 0.0
-    return float(abs((after - before) ** 2 / (8.0 * bend) / here))
+    peaks = sign * values
+    before, after = np.roll(peaks, 1), np.roll(peaks, -1)
+    bend = before - 2.0 * peaks + after
+    vertex = np.divide(
+        (after - before) ** 2, -8.0 * bend, out=np.zeros_like(peaks), where=bend < 0.0
+    )
+    above = _SAFETY * vertex
+    for way in (1, -1):
+        rise, fall = peaks - np.roll(peaks, way), np.roll(peaks, -way) - np.roll(peaks, -2 * way)
+        drop = peaks - np.roll(peaks, -way)
+        part = np.divide(fall - drop, rise + fall, out=np.ones_like(peaks), where=rise + fall > 0.0)
+        line = np.maximum(rise, 0.0) * np.where(part < 0.0, 1.0, np.minimum(part, 1.0))
+        sharp = np.abs(bend) + np.abs(np.roll(bend, -way))
+        outer = np.abs(np.roll(bend, 2)) + np.abs(np.roll(bend, -2))
+        above = np.where(sharp > _KINK * outer, np.maximum(above, line), above)
+    peaked = (peaks >= before) & (peaks >= after)
+    top = float(peaks.max())
+    error = float(np.max(np.where(peaked, peaks + above, top))) - top
+    return error / abs(top) if top != 0.0 else 0.0

@@ -24,6 +24,10 @@ from camwright.pipeline.cycle.solution import Solution
 @check(
     GUIDE_GAP,
     title="Gap between guide A and cam or {follower}",
+    formula="min(h - max|P|, l - x) >= g; h: end of guide A over the cam axis, P: contour, l: end"
+    " of guide A over the roller centre at maximum lift, x: extent of the follower, g:"
+    " limits.guide_gap",
+    reason="Cam or roller would strike the guide.",
     method="end of guide A less maximum contour radius, and less the follower, at maximum lift",
     lift_can_help=True,
 )
@@ -42,6 +46,8 @@ def guide_gap(solution: Solution) -> Demand:
 @check(
     CAM_RADIUS,
     title="Maximum cam radius",
+    formula="max |P| <= R; P: contour, R: limits.cam_radius",
+    reason="The cam must fit into its space.",
     method="greatest radius of the contour, refined between samples",
     lift_can_help=True,
 )
@@ -60,6 +66,10 @@ def cam_radius(solution: Solution) -> Demand:
     WAVINESS,
     id="profile_waviness",
     title="Waviness inertia force / contact force",
+    formula="max m a (2 pi v/lambda)^2 / N <= c; m: moving mass, a: half of"
+    " cam.profile_tolerance, v: speed of the contact along the contour, lambda:"
+    " cam.waviness_length, N: contact force, c: limits.waviness",
+    reason="Waves of the ground surface unload the contact and mark it.",
     method="m delta (2 pi v/lambda)^2, waves over the full profile tolerance",
 )
 def profile_waviness(solution: Solution) -> Demand:
@@ -93,6 +103,9 @@ _NO_BAND = "no profile tolerance is given"
     CHORD_SHARE,
     id="chord_error",
     title="Chord error of the contour table",
+    formula="max step^2/(8 rho) <= c t; step: distance of neighbouring points, rho: radius of"
+    " curvature, c: limits.chord_share, t: cam.profile_tolerance",
+    reason="A machine that joins the points by lines makes the error.",
     unit="um",
     method="greatest step^2/(8 rho) between the points of workshop/contour.csv",
     moved_by_tolerance=False,
@@ -118,6 +131,10 @@ def chord_error(solution: Solution) -> Demand:
     TORQUE_REDUCTION,
     id="phase_tolerance",
     title="Torque ripple reduction at phase tolerance",
+    formula="min over +-d of 1 - std(T_e(phi + d) - T_c)/std(T_e) >= c; T_e, T_c: crank torque of"
+    " engine and cam, d: tolerances.phase, c: limits.torque_reduction",
+    reason="Does not decide: the tolerance corners judge torque_reduction at the phase tolerance"
+    " too.",
     method="engine torque shifted by plus and minus the phase tolerance; the lesser",
     must_have=False,
     moved_by_tolerance=False,

@@ -45,6 +45,9 @@ def edge_factor(solution: Solution) -> Demand:
 
 @check(
     title="Distance of the contact from fixed boundaries / half-width",
+    formula="min(w, t)/max a >= 10; w: least wall from contour to bore or keyway, t: thickness of"
+    " the outer ring, or of the roller to its hub, a: half-width of the contact",
+    reason="Nearer supports change the contact itself, and with it every pressure.",
     unit="-",
     sense="at_least",
     source="Saint-Venant: the stress at a fixed boundary is that of the model, not of the part",
@@ -68,6 +71,8 @@ def held_distance(solution: Solution) -> Demand:
 
 @check(
     title="Radius of the excluded zone at keyway edges",
+    formula="1.5 h <= t/2; h: element length at the keyway, t: depth of the keyway",
+    reason="A larger zone would hide the stress of the keyway.",
     unit="mm",
     source="singular stress at an edge: at most half of the keyway depth is excluded",
     method="1.5 element lengths at the keyway; the stress within is stated separately",
@@ -87,12 +92,16 @@ def excluded_zone(solution: Solution) -> Demand | None:
     BORE_SAFETY,
     id="bore_stress",
     title="Von Mises stress at bore and keyway vs. yield strength",
+    formula="max sigma <= Y / S; sigma: von Mises stress on bore and keyway outside the excluded"
+    " zones, Y: yield strength of the core, S: limits.bore_safety",
+    reason="Does not decide: the shaft is taken as rigid and bonded, which overestimates the"
+    " stress beside the keyway and omits the fit.",
     unit="MPa",
     method="finite elements on a rigid shaft, keyway edges excluded, see excluded_zone",
     must_have=False,
     lift_can_help=True,
     tier=Tier.FINITE_ELEMENTS,
-    error="unknown",
+    error="bore",
 )
 def bore_stress(solution: Solution) -> Demand | None:
     """Maximum von Mises stress at bore and keyway without the excluded zones, Pa."""
@@ -116,6 +125,8 @@ def bore_stress(solution: Solution) -> Demand | None:
 
 @check(
     title="Depth of maximum von Mises stress / half-width",
+    formula="min z/a >= 0.3; z: depth of the maximum von Mises stress, a: half-width",
+    reason="A maximum at the surface is that of an element, not of the contact.",
     unit="-",
     sense="at_least",
     source="0.70 half-widths under a frictionless line contact, Johnson (1985) sec. 4.2(c)",

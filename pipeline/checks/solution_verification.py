@@ -42,6 +42,7 @@ def _residual(
     *,
     title: str,
     method: str,
+    formula: str,
     allowed: Callable[[Solution], float],
     limit: bool = True,
 ) -> Declaration:
@@ -55,6 +56,8 @@ def _residual(
         unit="-",
         source=f"equilibrium and contact conditions, {VERIFICATION}",
         method=method,
+        formula=formula,
+        reason="Forces that are not in equilibrium are no solution.",
         evidence=True,
         tier=Tier.FINITE_ELEMENTS,
     )
@@ -69,6 +72,8 @@ guide_equilibrium_force = _residual(
     "guide_equilibrium_force",
     lambda cycle: np.maximum(np.abs(cycle.guides.force_residual), cycle.turn.friction_residual),
     title="Force equilibrium residual of the guides",
+    formula="max |sum F| / |F_t| <= c; F: guide and side forces across the stem, F_t: side force,"
+    " c: limits.equilibrium; likewise the forces along the stem over the axial force",
     method="greatest sum of guide and side forces over the side force, beam on elastic supports; or"
     " of cam, spring, inertia and friction forces over the cam force",
     allowed=lambda solution: solution.machine.limits[EQUILIBRIUM],
@@ -77,6 +82,8 @@ guide_equilibrium_moment = _residual(
     "guide_equilibrium_moment",
     lambda cycle: np.abs(cycle.guides.moment_residual),
     title="Moment equilibrium residual of the guides",
+    formula="max |sum M| / |M_t| <= c; M: moments on the stem, M_t: moment of the side force, c:"
+    " limits.equilibrium",
     method="greatest sum of moments over that of the side force, beam on elastic supports",
     allowed=lambda solution: solution.machine.limits[EQUILIBRIUM],
 )
@@ -84,6 +91,7 @@ contact_equilibrium = _residual(
     "contact_equilibrium",
     lambda cycle: np.abs(cycle.contact.residual_equilibrium),
     title="Force equilibrium residual of the contact",
+    formula="max |integral of p - P| / P <= 1e-6; p: contact pressure, P: line load",
     method="greatest relative difference of the integrated pressure from the load",
     allowed=lambda _: CONTACT_EQUILIBRIUM,
     limit=False,
@@ -92,6 +100,8 @@ contact_complementarity = _residual(
     "contact_complementarity",
     lambda cycle: np.abs(cycle.contact.residual_complementarity),
     title="Complementarity residual of the contact",
+    formula="max of -p/p0, -g/d and p g/(p0 d) <= c; p: pressure, g: gap, p0, d: peak pressure"
+    " and approach, c: limits.complementarity",
     method="greatest relative tension, penetration or gap under pressure",
     allowed=lambda solution: solution.machine.limits[COMPLEMENTARITY],
 )
@@ -99,6 +109,9 @@ contact_complementarity = _residual(
 
 @check(
     title="Peak pressure, finite elements vs. Hertz",
+    formula="max |p_FE/p_H - 1| <= 0.03; p_FE, p_H: peak pressure by finite elements and by Hertz",
+    reason="Does not decide: the bending of real bodies is a true difference; benchmarks and"
+    " certificate decide.",
     unit="%",
     source="Johnson (1985) sec. 4.2(c); 2 to 3 % usual",
     method="greatest |p0 by finite elements / p0 by Hertz - 1| over the turn",
@@ -126,6 +139,10 @@ def _certified(
 
 @check(
     title="Peak pressure, cycle vs. certificate",
+    formula="max |f_c/f - 1| <= 0.01 over p0, half-width, von Mises and maximum shear stress;"
+    " f_c: of the cycle, f: of both bodies by finite elements, extrapolated to zero"
+    " element size",
+    reason="The pressures of the cycle rest on a two-scale model.",
     unit="%",
     source=CERTIFIED,
     method="p0 of the cycle against the finite-element solution of both bodies at certified angles",
@@ -141,6 +158,9 @@ def certificate_spread(solution: Solution) -> Demand:
     MESH_UNCERTAINTY,
     id="certificate_gci",
     title="Greatest grid convergence index of the certificate",
+    formula="max F_s |f1 - f2|/(f1 (r^p - 1)) <= c; f1, f2: fine and middle mesh, r: their ratio"
+    " of size, p: observed order, F_s: 1.25, 3 at p < 1, c: limits.mesh_uncertainty",
+    reason="A solution that depends on its mesh proves nothing.",
     unit="%",
     method="greatest of p0, half-width, von Mises and maximum shear stress on three meshes,"
     " observed order; safety factor 1.25, at an order below 1 factor 3",
@@ -159,6 +179,7 @@ def _mesh(
     allowed: float,
     *,
     title: str,
+    formula: str,
     unit: str = "-",
     method: str = "worst over all elements of cam and follower",
     source: str = VERIFICATION,
@@ -172,6 +193,8 @@ def _mesh(
         sense="at_least",
         source=source,
         method=method,
+        formula=formula,
+        reason="Poor elements give stresses of no known error.",
         evidence=True,
         tier=Tier.FINITE_ELEMENTS,
     )
@@ -189,6 +212,7 @@ mesh_angle = _mesh(
     lambda mesh: radians(mesh.min_angle_deg),
     radians(LEAST_ANGLE_DEG),
     title="Minimum element angle",
+    formula="min angle >= 20 deg; angle: corner of a curved triangle",
     unit="deg",
 )
 mesh_jacobian = _mesh(
@@ -196,12 +220,14 @@ mesh_jacobian = _mesh(
     lambda mesh: mesh.min_scaled_jacobian,
     LEAST_SCALED_JACOBIAN,
     title="Minimum scaled Jacobian",
+    formula="min J >= 0.3; J: Jacobian over the two longer edges at a node, 1 if equilateral",
 )
 mesh_edges = _mesh(
     "mesh_edges",
     lambda mesh: SPACINGS_PER_EDGE * mesh.edges_across_half_width,
     LEAST_SPACINGS,
     title="Node spacings across the contact half-width",
+    formula="2 a/h >= 10; a: half-width of the contact, h: longest edge in it",
     method="two spacings a quadratic edge, of the longest edge in the contact of cam and follower",
     source="10 to 20 linear edges across the half-width, usual for line contact: verify",
 )
@@ -219,6 +245,10 @@ def _uncertainty(
         title=f"Discretisation uncertainty of the {words}",
         unit="%",
         method=meshes,
+        formula="max F_s |f1 - f2|/(f1 (r^p - 1)) <= c over the certified angles; f1, f2: "
+        f"{words} of fine and middle mesh, r = 2, p: observed order, F_s: 1.25, 3 at p < 1, "
+        "c: limits.mesh_uncertainty",
+        reason="It is the error bar of every demand on this quantity.",
         evidence=True,
         tier=Tier.FINITE_ELEMENTS,
     )
@@ -248,6 +278,9 @@ mesh_tau_max = _uncertainty("tau_max", "maximum shear stress", lambda point: poi
     MESH_UNCERTAINTY,
     id="mesh_reaction",
     title="Discretisation uncertainty of the reaction in guide A",
+    formula="F_s |f1 - f2|/(f1 (r^p - 1)) <= c; f1, f2: greatest reaction by 25 and 13 knots, r ="
+    " 2, p: observed order, F_s: 1.25, 3 at p < 1, c: limits.mesh_uncertainty",
+    reason="Every demand on a guide has this error.",
     unit="%",
     method=f"beam in guides of {', '.join(map(str, KNOTS_TRIED))} knots",
     evidence=True,
@@ -281,6 +314,9 @@ def _benchmark(name: str, *, title: str, source: str) -> Declaration:
         title=title,
         unit="%",
         source=f"{source}; 2 to 3 % usual",
+        formula="max(|p0/p_r - 1|, |a/a_r - 1|) <= 0.03; p0, a: peak pressure and half-width by"
+        " finite elements, p_r, a_r: of the reference",
+        reason="The libraries of this run must solve a known contact.",
         method="greater difference of p0 and half-width from the reference, by the libraries"
         " of this run",
         evidence=True,

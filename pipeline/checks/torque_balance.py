@@ -27,6 +27,9 @@ _CHORD = 1e-5
 @check(
     TORQUE_REDUCTION,
     title="Torque ripple reduction",
+    formula="min over the load cases of 1 - std(T_e - T_c)/std(T_e) >= c; T_e, T_c: crank torque"
+    " of engine and cam about their means, c: limits.torque_reduction",
+    reason="It is the purpose of the cam.",
     method="1 - std of the crank torque with the cam, friction and inertia included, over that"
     " without it",
     forecast=True,
@@ -58,6 +61,9 @@ def cycles_of_ripple(solution: Solution) -> tuple[Cycle, ...]:
 @check(
     SPEED_REDUCTION,
     title="Speed ripple reduction of the crank",
+    formula="min over the load cases of 1 - std(w_c)/std(w_e) >= c; w_c, w_e: crank speed with"
+    " and without the cam, c: limits.speed_reduction",
+    reason="Decides where the case requires it.",
     method="1 - std of the crank speed with the cam over that of the engine alone,"
     " inertia of crank and follower included",
 )
@@ -65,9 +71,7 @@ def speed_reduction(solution: Solution) -> Demand | None:
     """Reduction of the crank speed ripple by the cam; None without a crankshaft."""
     idle = {m.load_case for m in solution.machines if not m.ripple_weight > 0}
     shares = {
-        name: 1.0 - after / before if before > 0 else np.nan
-        for name, (before, after) in solution.crank_speed.items()
-        if name not in idle
+        name: _reduced(*speeds) for name, speeds in solution.crank_speed.items() if name not in idle
     }
     if not shares:
         return None
@@ -76,10 +80,23 @@ def speed_reduction(solution: Solution) -> Demand | None:
     return Demand(
         float(shares[worst]),
         allowed,
-        Extreme(float(shares[worst]), worst),
+        Extreme(float(shares[worst]), worst, None, _speed_error(solution, worst)),
         note="" if allowed is not None else "no reduction of the speed ripple is required",
         must_have=allowed is not None,
     )
+
+
+def _reduced(before: float, after: float) -> float:
+    return 1.0 - after / before if before > 0 else np.nan
+
+
+def _speed_error(solution: Solution, load_case: str) -> float:
+    """Change of a speed reduction with every second crank angle alone, over its value."""
+    halved = solution.crank_speed_halved.get(load_case)
+    if halved is None:
+        return 0.0
+    value = _reduced(*solution.crank_speed[load_case])
+    return _relative(_reduced(*halved) - value, abs(value))
 
 
 def _reduction(cycle: Cycle) -> float:
@@ -175,6 +192,10 @@ def _integral(values: Array, at: Array) -> Array:
 @check(
     FRICTION_BALANCE,
     title="Friction work vs. heat in guides and face",
+    formula="|integral of (T - (F_s + F_i) s') - Q| / Q <= c; T: cam torque, F_s, F_i: spring and"
+    " inertia force, s': slope of the lift, Q: friction heat of guides and face over a"
+    " turn, c: limits.friction_balance",
+    reason="Work that the guides do not dissipate would be an error of the forces.",
     method="cam work less work of spring and inertia, against friction force times sliding distance"
     " of guides and face, relative",
     evidence=True,

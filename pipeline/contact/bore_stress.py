@@ -42,12 +42,20 @@ class BoreStress:
         freeze(self, **{name: getattr(self, name) for name in names})
 
 
-def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Array) -> BoreStress:
+def bore_stress(
+    cam: LoadedBody,
+    contacts: Array,
+    normals: Array,
+    line_load: Array,
+    *,
+    excluded: float | None = None,
+) -> BoreStress:
     """Stress of bore and keyway under contacts at points (2, n), m, with outward normals (2, n).
 
-    line_load (n,) N/m acts as a line force: the bore lies many half-widths below the contact.
+    line_load (n,) N/m acts as a line force: the bore lies many half-widths below the contact. The
+    radius excluded at the keyway edges, m, is by default 1.5 elements.
     """
-    nodes, by_edge, recovery, excluded = _holes(cam)
+    nodes, by_edge, recovery, excluded = _holes(cam, excluded)
     rows = _rows(recovery, nodes)
     points = cam.body.mesh.points[:, nodes]
     measured = np.empty((nodes.size, contacts.shape[1]))
@@ -71,7 +79,7 @@ def bore_stress(cam: LoadedBody, contacts: Array, normals: Array, line_load: Arr
 
 
 def _holes(
-    cam: LoadedBody,
+    cam: LoadedBody, excluded: float | None
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], StressRecovery, float]:
     """Nodes (m,) of bore and keyway, those at an edge (m,), stress recovery, edge distance in m."""
     mesh = cam.body.mesh
@@ -82,7 +90,8 @@ def _holes(
         nodes = np.union1d(bore, keyway)
         edges = mesh.points[:, np.intersect1d(bore, keyway)]
         start, end, _ = mesh.facet_triples("keyway")
-        near = 1.5 * float(np.hypot(*(mesh.points[:, end] - mesh.points[:, start])).max())
+        length = float(np.hypot(*(mesh.points[:, end] - mesh.points[:, start])).max())
+        near = 1.5 * length if excluded is None else excluded
         arm = mesh.points[:, nodes, None] - edges[:, None, :]
         by_edge = (np.hypot(*arm) < near).any(axis=1)
     held = np.zeros(mesh.points.shape[1], dtype=bool)

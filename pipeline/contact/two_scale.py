@@ -34,24 +34,25 @@ class CycleBodies:
     @classmethod
     def meshed(cls, pair: ContactPair) -> CycleBodies:
         """Bodies of a pair; the element size follows from the contour and the minimum wall."""
-        outline = float(pair.contour.perimeter())
-        depth = 0.0 if pair.keyway is None else pair.keyway.depth
-        wall = float(pair.contour.radius_min().value) - pair.bore_radius - depth
-        cam = cam_mesh(
-            pair.contour,
-            pair.bore_radius,
-            pair.keyway,
-            Sizing(far_size=min(outline / _GRID_OF_CYCLE_MESH, wall / EDGES_ACROSS_WALL)),
-            pair.counter_hole,
-        )
-        cut = tuple(name for name in ("keyway", "counter_hole") if name in cam.boundaries)
         other = pair.follower
         mesh = other.coarse_mesh()
         facing = elastic_body(mesh, other.material, other.held, other.springs(mesh, None, 0.0))
         return cls(
-            LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", cut),
+            loaded_cam(pair),
             LoadedBody(facing, other.surface, other.free),
         )
+
+
+def loaded_cam(pair: ContactPair, refinement: float = 1.0) -> LoadedBody:
+    """Cam on a coarse mesh, of an element size divided by a refinement."""
+    outline = float(pair.contour.perimeter())
+    depth = 0.0 if pair.keyway is None else pair.keyway.depth
+    wall = float(pair.contour.radius_min().value) - pair.bore_radius - depth
+    size = min(outline / _GRID_OF_CYCLE_MESH, wall / EDGES_ACROSS_WALL) / refinement
+    sizing = Sizing(far_size=size)
+    cam = cam_mesh(pair.contour, pair.bore_radius, pair.keyway, sizing, pair.counter_hole)
+    cut = tuple(name for name in ("keyway", "counter_hole") if name in cam.boundaries)
+    return LoadedBody(elastic_body(cam, pair.cam, "bore"), "contour", cut)
 
 
 def two_scale_history(

@@ -18,13 +18,14 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Machine, machines
+from camwright.pipeline.contact.bore_stress import bore_stress
 from camwright.pipeline.contact.certificate import EDGES, contact_meshes
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.contact.contact_benchmarks import benchmarks
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
+from camwright.pipeline.contact.two_scale import CycleBodies, loaded_cam, two_scale_history
 from camwright.pipeline.cycle.certificate_angles import certified, positions_to_certify
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.crank_speed import speed_ripple
@@ -73,6 +74,8 @@ class Solution:
     benchmarks : mapping         see `benchmarks`; None unless certified
     crank_speed : mapping        load case -> std of the crank speed, rad/s, without and with the
                                  cam; empty without a crankshaft
+    crank_speed_halved : mapping   the same of the torque at every second crank angle
+    bore_error : float           discretisation error of the bore stress, relative; None: not known
     final : bool                 to be signed off: it must be certified
     coarse : bool                coarse guide mesh, constant crank speed: for ratios of demands
     """
@@ -86,6 +89,8 @@ class Solution:
     certificate: tuple[CertificatePoint, ...] = ()
     benchmarks: Mapping[str, float] | None = None
     crank_speed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    crank_speed_halved: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    bore_error: float | None = None
     final: bool = False
     coarse: bool = False
 
@@ -250,8 +255,15 @@ def solved_turns(
     rubbing = {c.load_case: c.loads.rubbing for c in cycles}
     rubbing = {name: replace(each, theta=each.theta - advance) for name, each in rubbing.items()}
     pitch = (speed_contour or contour).pitch
-    speed = {} if coarse else speed_ripple(states, known, pitch, rubbing)
-    return Solution(case, contour, states, tier, mesh, cycles, crank_speed=speed, coarse=coarse)
+    solved = Solution(case, contour, states, tier, mesh, cycles, coarse=coarse)
+    if coarse:
+        return solved
+    halved = {name: each.resampled(each.theta_crank.size // 2) for name, each in known.items()}
+    return replace(
+        solved,
+        crank_speed=speed_ripple(states, known, pitch, rubbing),
+        crank_speed_halved=speed_ripple(states, halved, pitch, rubbing),
+    )
 
 
 def certified_solution(
@@ -275,7 +287,40 @@ def certified_solution(
     points = certified(pair, solved.cycles, chosen, jobs, progress.advance)
     progress.stage(BENCHMARKS)
     known = benchmarks(solved.case.contact_radius)
-    return replace(final, certificate=points, benchmarks=known)
+    error = bore_error(pair, solved.cycles)
+    return replace(final, certificate=points, benchmarks=known, bore_error=error)
+
+
+def bore_error(pair: ContactPair, cycles: tuple[Cycle, ...]) -> float | None:
+    """Relative error bar of the greatest bore stress by a mesh of half the element size.
+
+    3 times the change at the worst cam angle, under the same excluded zone: the grid convergence
+    index of two meshes at the order 1. None where no bore is solved.
+
+    References
+    ----------
+    Roache (1998), sec. 5.6.
+    """
+    worst: tuple[float, Cycle, int] | None = None
+    for cycle in cycles:
+        bore = cycle.rolling.bore
+        if bore is None or np.isnan(bore.away_from_edges).any():
+            return None
+        k = int(np.argmax(bore.away_from_edges))
+        if worst is None or bore.away_from_edges[k] > worst[0]:
+            worst = float(bore.away_from_edges[k]), cycle, k
+    if worst is None or not worst[0] > 0:
+        return None
+    value, cycle, k = worst
+    theta, bore = cycle.theta[[k]], cycle.rolling.bore
+    fine = bore_stress(
+        loaded_cam(pair, refinement=2.0),
+        pair.contour.points(theta),
+        pair.contour.normal(theta),
+        cycle.contact.line_load[[k]],
+        excluded=None if bore is None else bore.excluded,
+    )
+    return float(3.0 * abs(fine.away_from_edges[0] / value - 1.0))
 
 
 def is_body(contour: Contour) -> bool:

@@ -8,7 +8,7 @@ import made_trial as made
 import numpy as np
 import pytest
 from made_check import made_check
-from trial_variants import with_certificate
+from trial_variants import with_certificate, with_cycle
 
 from camwright.geometry.acceleration_jump import acceleration_jump
 from camwright.geometry.contour import RollerContour
@@ -24,7 +24,8 @@ from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import torque_balance
 from camwright.pipeline.checks.cam_shape import acceleration_step, closure, tool_gouge
 from camwright.pipeline.checks.error_bars import with_error_bars
-from camwright.pipeline.checks.extremes import worst_case
+from camwright.pipeline.checks.extremes import greatest, least, worst_case
+from camwright.pipeline.checks.plane_strain_validity import bore_stress as bore_check
 from camwright.pipeline.checks.plane_strain_validity import held_distance
 from camwright.pipeline.checks.roller_bearing import roller_life
 from camwright.pipeline.checks.solution_verification import mesh_edges
@@ -33,8 +34,11 @@ from camwright.pipeline.checks.torque_balance import (
     contact_work,
     pressure_torque,
 )
+from camwright.pipeline.contact.bore_stress import bore_stress
 from camwright.pipeline.contact.elasticity.mesh_convergence import converged
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.contact.two_scale import loaded_cam
+from camwright.pipeline.cycle.solution import bore_error
 from camwright.pipeline.cycle.solution import solution as solve
 
 # --- grid convergence index ------------------------------------------------------------------
@@ -338,6 +342,31 @@ def test_the_bar_of_a_bearing_life_covers_its_error():
     assert (coarse.error_share or 0.0) > (fine.error_share or 0.0)
 
 
+PEAKS = {
+    "a sine": lambda t: 2.0 + np.sin(t),
+    "a narrow peak": lambda t: np.exp(6.0 * (np.cos(t) - 1.0)),
+    "two peaks of one height": lambda t: 2.0 + np.sin(2.0 * t) ** 3,
+    "a tent": lambda t: 4.0 - np.abs(np.mod(t, 2.0 * np.pi) - np.pi),
+    "a cubed cosine": lambda t: (2.0 + np.cos(t)) ** 3,
+    "a jump at its top": lambda t: 1.0 + np.where(
+        np.mod(t, 2.0 * np.pi) < 2.0, np.mod(t, 2.0 * np.pi), 0.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("positions", [36, 72, 360])
+@pytest.mark.parametrize("name", PEAKS)
+def test_the_bar_of_an_extreme_covers_the_value_between_samples(name, positions):
+    function = PEAKS[name]
+    cycles = previewed(positions).cycles
+    dense = np.linspace(0.0, 2.0 * np.pi, 200001)
+    for shift in np.linspace(0.0, 2.0 * np.pi / positions, 9):
+        for sign, search in ((1.0, greatest), (-1.0, least)):
+            extreme = search(cycles, lambda c, s=sign, h=shift: s * function(c.theta + h))
+            error = function(dense).max() - sign * extreme.value
+            # the parabola leaves the fourth order of a peak beside a sample
+            assert error <= abs(extreme.value) * (extreme.error_share + 2e-6)
+
+
 def test_a_residual_has_no_error_of_an_integral():
     assert not torque_balance.friction_balance(previewed(72)).error_share
 
@@ -352,8 +381,10 @@ def test_every_few_positions_of_every_result(step):
     assert half.machine is cycle.machine
     assert half.contact.pressure.tolist() == cycle.contact.pressure[::step].tolist()
     assert half.loads.cam_torque.tolist() == cycle.loads.cam_torque[::step].tolist()
-    assert half.parts.heat_a.power.tolist() == cycle.parts.heat_a.power[::step].tolist()
-    assert half.rolling.bore.von_mises.tolist() == cycle.rolling.bore.von_mises[::step].tolist()
+    quick = previewed(36).cycles[0]
+    part, rolling = quick.thinned[step].parts, quick.thinned[step].rolling
+    assert part.heat_a.power.tolist() == quick.parts.heat_a.power[::step].tolist()
+    assert rolling.traction_demand.tolist() == quick.rolling.traction_demand[::step].tolist()
 
 
 # --- mesh and model --------------------------------------------------------------------------
@@ -398,7 +429,7 @@ def test_the_node_spacings_of_the_contact_are_those_of_the_mesh():
 def test_the_gouge_of_a_wheel_by_distances_to_all_points(radius):
     """The least concave radius is 68 mm: a smaller wheel fits, a greater one cuts."""
     shape = made.hollow()
-    x, y = shape.polygon(14400)
+    x, y = shape.polygon(10800)
     across = np.stack([np.roll(y, -1) - np.roll(y, 1), np.roll(x, 1) - np.roll(x, -1)])
     centre = np.stack([x, y]) + radius * across / np.hypot(*across)
     apart = np.hypot(x - centre[0, ::20, None], y - centre[1, ::20, None])
@@ -413,3 +444,50 @@ def test_a_tool_is_needed_for_a_concave_cam_alone():
     concave = tool_gouge(made.changed_solution(made.solution(contour=made.hollow()), case=bare))
     assert (concave.status, concave.must_have) == ("not_evaluated", True)
     assert tool_gouge(made.solution(case=bare)).status == "pass"
+
+
+# --- ripple ------------------------------------------------------------------------------------
+
+
+def test_the_bar_of_a_speed_reduction_is_its_change_with_half_of_the_angles():
+    halved = made.solution(crank_speed_halved={"idle": (2.0, 1.002)})
+    check = torque_balance.speed_reduction(halved)
+    assert (check.demand, check.error) == (pytest.approx(0.5), pytest.approx(0.001))
+    at_limit = replace(halved, case=made.limits(speed_reduction=0.4995))
+    assert torque_balance.speed_reduction(made.changed_solution(at_limit)).status == "fail"
+
+
+def test_the_bars_of_the_torque_reductions_cover_a_rough_trace():
+    """A cam torque with one harmonic above the half sampling of 18 positions."""
+    theta = made.THETA
+    before, after = 10.0 * np.sin(theta), 2.0 * np.sin(theta) + 4.0 * np.cos(19.0 * theta)
+    solution = with_cycle(torque_before=before, torque_after=after)
+    check = torque_balance.torque_reduction(solution)
+    assert check.demand == pytest.approx(1.0 - np.std(after) / np.std(before))
+    assert check.error is not None
+    halved = 1.0 - np.std(after[::2]) / np.std(before[::2])
+    assert check.error >= abs(halved - check.demand) - 1e-12
+
+
+# --- bore --------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_the_bar_of_the_bore_stress_covers_a_four_times_finer_mesh():
+    plain = solved()
+    pair, cycle = plain.cycles[0].pair, plain.cycles[0]
+    error = bore_error(pair, plain.cycles)
+    bore = cycle.rolling.bore
+    k = int(np.argmax(bore.away_from_edges))
+    at = cycle.theta[[k]]
+    fine = bore_stress(
+        loaded_cam(pair, refinement=4.0), pair.contour.points(at), pair.contour.normal(at),
+        cycle.contact.line_load[[k]], excluded=bore.excluded,
+    )  # fmt: skip
+    assert error is not None
+    assert abs(fine.away_from_edges[0] / bore.away_from_edges[k] - 1.0) <= error
+    assert error < 0.5
+    (barred,) = with_error_bars(replace(plain, bore_error=error), [bore_check(plain)])
+    assert barred.error == pytest.approx(error * barred.demand, rel=0.2)
+    (bare,) = with_error_bars(plain, [bore_check(plain)])
+    assert bare.error is None
