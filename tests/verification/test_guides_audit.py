@@ -457,7 +457,7 @@ def test_limits_are_those_at_the_temperature() -> None:
     celsius = guide_strength.guide_temperature_b(solved).demand
     assert 40.0 < celsius < 100.0
     share = (celsius - 20.0) / 80.0
-    strength = 60e6 * (1.0 - share) + 20e6 * share
+    strength = 60e6 * (1.0 - share) + 40e6 * share
     edge, mean = (
         check(solved)
         for check in (guide_strength.guide_edge_pressure_b, guide_strength.guide_pressure_b)
