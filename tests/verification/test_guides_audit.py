@@ -476,6 +476,16 @@ def test_a_strength_that_ends_below_the_temperature_is_missing() -> None:
     assert guide_strength.guide_edge_pressure_b(weak).status == "fail"
 
 
+def test_without_a_temperature_the_limit_is_that_at_20_degrees_and_the_temperature_blocks() -> None:
+    case = tight()
+    b = replace(case.guides.b, housing_resistance=None)
+    solved = solved_of(case.model_copy(update={"guides": replace(case.guides, b=b)}))
+    mean = guide_strength.guide_pressure_b(solved)
+    assert (mean.limit, mean.status) == (b.pressure_limit, "pass")
+    assert "the temperature of the guide is not known" in mean.note
+    assert guide_strength.guide_temperature_b(solved).blocks
+
+
 # --- data ------------------------------------------------------------------------------------
 
 
