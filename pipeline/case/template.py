@@ -119,10 +119,12 @@ mass = "250 g"                       # with the roller and half of the spring
 stem_diameter = "12 mm"
 stem_material = "hardened_steel"
 overhang_at_max_lift = "30 mm"       # from guide A to the roller's centre
+anti_rotation = "flat"               # or key, square, guided_fork; not_needed by a flat face
 # kind = "flat"                      # with a table [follower.face] instead of [roller]: see README
 
 [guides]
 spacing = "80 mm"                    # middle to middle
+ambient_temperature = "40 degC"      # of the air that cools the housing
 
 [guides.a]                           # next to the cam
 length = "24 mm"
@@ -130,9 +132,13 @@ diameter = "12 mm"
 friction = 0.04                      # friction_min and friction_max bound it; of a nylon bush
                                      # lubrication, "dry" to "flooded", grades the PV limit
 clearance = "0.05 mm"
+wall = "1.5 mm"
+housing_resistance = "2 K/W"         # from the outside of the bush to the ambient; assumed
 material = "bronze"
-pressure_limit = "14 MPa"
+pressure_limit = "14 MPa"            # pressure_limit_temperature: where it holds above 20 degC
+speed_limit = "6 m/s"                # assumed: take it from the maker's table, as all limits
 pv_limit = "1.75 MPa m/s"
+# wear_rate = "1e-7 mm^3/N/m"        # of the maker, for the wear at limits.target_life
 source = "Mott, Machine Elements in Mechanical Design, porous bronze, oiled"
 
 [guides.b]
@@ -140,8 +146,11 @@ length = "24 mm"
 diameter = "12 mm"
 friction = 0.04
 clearance = "0.05 mm"
+wall = "1.5 mm"
+housing_resistance = "2 K/W"
 material = "bronze"
 pressure_limit = "14 MPa"
+speed_limit = "6 m/s"
 pv_limit = "1.75 MPa m/s"
 source = "as guide A"
 
@@ -152,6 +161,7 @@ nu = 0.3
 yield_strength = "1200 MPa"
 endurance_pressure = "1490 MPa"      # p0 for 1e8 cycles of rolling with some sliding
 density = "7850 kg/m^3"
+expansion = "1.2e-5 1/K"             # with that of the bush, for the clearance when warm
 condition = "AISI 4340, induction hardened, 50 to 58 HRC"
 source = "endurance: Rothbart, Cam Design Handbook (2004), table 9.3; yield assumed"
 
@@ -159,7 +169,11 @@ source = "endurance: Rothbart, Cam Design Handbook (2004), table 9.3; yield assu
 E = "110 GPa"
 nu = 0.34
 yield_strength = "150 MPa"
+# strength_at = [{ temperature = "150 degC", yield_strength = "120 MPa" }]  # above 100 degC
 density = "8800 kg/m^3"
+conductivity = "60 W/m/K"
+temperature_limit = "150 degC"
+expansion = "1.8e-5 1/K"
 source = "assumed"
 
 # --- Smoothing, limits and solver

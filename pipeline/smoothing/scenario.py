@@ -45,7 +45,8 @@ class Ratings:
     dynamic_rating : float     C of the roller bearing, N
     life_force_cubed : float   limit of the mean of N^3 |n| over the turn, N^3 rad/s
     roller_spin : float        rad/s
-    guide_pressure, guide_pv, guide_area : pairs   of guides A and B, Pa, Pa m/s, m^2
+    guide_pressure, guide_pv, guide_area : pairs   of guides A and B, Pa, Pa m/s, m^2; pressures as
+                               stated, where the check takes them at the temperature of the guide
     """
 
     roller_radius: float

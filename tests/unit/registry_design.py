@@ -256,10 +256,10 @@ tried(
     by_hand.RPM * made.CAM_SPEED * (60.0 - 8.0) / 8.0,
     "w (R - r)/r at full lift",
 )
-# guides: nylon of 60 MPa at 20 degC and 20 MPa at 100 degC, at 56.85 degC
+# guides: nylon of 60 MPa at 20 degC and 40 MPa at 100 degC, at 56.85 degC
 HOT = (56.85 - 20.0) / 80.0
 COLD = 1.0 - HOT
-WARM = COLD + HOT / 3.0
+WARM = COLD + HOT * 2.0 / 3.0
 for _side, _load in (("a", 500.0), ("b", 200.0)):
     _name = f"guide_pressure_{_side.upper()}"
     tried(
@@ -282,7 +282,7 @@ for _side, _load in (("a", 500.0), ("b", 200.0)):
     _name = f"guide_edge_pressure_{_side.upper()}"
     tried(
         _name,
-        limited(_name, lambda p: with_material("nylon", yield_strength=(p - 20e6 * HOT) / COLD)),
+        limited(_name, lambda p: with_material("nylon", yield_strength=(p - 40e6 * HOT) / COLD)),
         lambda: with_material("nylon", strength_at=()),
         lambda s=_side: with_parts(**{f"guide_edge_pressure_{s}": NAN}),
         40.0 if _side == "a" else 30.0,

@@ -457,7 +457,7 @@ def test_limits_are_those_at_the_temperature() -> None:
     celsius = guide_strength.guide_temperature_b(solved).demand
     assert 40.0 < celsius < 100.0
     share = (celsius - 20.0) / 80.0
-    strength = 60e6 * (1.0 - share) + 20e6 * share
+    strength = 60e6 * (1.0 - share) + 40e6 * share
     edge, mean = (
         check(solved)
         for check in (guide_strength.guide_edge_pressure_b, guide_strength.guide_pressure_b)
@@ -474,6 +474,16 @@ def test_a_strength_that_ends_below_the_temperature_is_missing() -> None:
         assert "no strength of nylon" in check.note
     weak = heated(strength_at=(), yield_strength=0.5e6)
     assert guide_strength.guide_edge_pressure_b(weak).status == "fail"
+
+
+def test_without_a_temperature_the_limit_is_that_at_20_degrees_and_the_temperature_blocks() -> None:
+    case = tight()
+    b = replace(case.guides.b, housing_resistance=None)
+    solved = solved_of(case.model_copy(update={"guides": replace(case.guides, b=b)}))
+    mean = guide_strength.guide_pressure_b(solved)
+    assert (mean.limit, mean.status) == (b.pressure_limit, "pass")
+    assert "the temperature of the guide is not known" in mean.note
+    assert guide_strength.guide_temperature_b(solved).blocks
 
 
 # --- data ------------------------------------------------------------------------------------
