@@ -25,7 +25,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.contact.hertz import contact_modulus
-from camwright.pipeline.cycle.cam_balance import unbalance_force
+from camwright.pipeline.cycle.cam_balance import camshaft_loads
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import (
@@ -33,7 +33,6 @@ from camwright.pipeline.follower.camshaft_loads import (
     CamshaftGear,
     ShaftLoads,
     ShaftSection,
-    shaft_loads,
 )
 from camwright.pipeline.follower.roller_motion import rating_life, static_safety
 from camwright.pipeline.follower.shaft_strength import (
@@ -428,10 +427,8 @@ def _tooth_force(cycle: Cycle, shaft: Camshaft, gear: CamshaftGear) -> Array:
 
 
 def _loads(cycle: Cycle) -> ShaftLoads:
-    loads, speed = cycle.loads, cycle.cam_speed
-    thrown = unbalance_force(cycle.machine.cam, cycle.contour, speed, cycle.theta)
-    forces = (loads.axial_force, loads.tangential_force, loads.cam_torque)
-    return shaft_loads(*forces, _camshaft(cycle.machine), thrown)
+    shaft, cam = _camshaft(cycle.machine), cycle.machine.cam
+    return camshaft_loads(cycle.loads, shaft, cam, cycle.contour, cycle.cam_speed)
 
 
 def _bending(cycle: Cycle, shaft: _Shaft) -> ShaftBending:

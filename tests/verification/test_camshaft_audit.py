@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cam_parts import Keyway
+from scipy.integrate import cumulative_trapezoid
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -29,8 +30,14 @@ from camwright.pipeline.contact.elasticity.elastic_body import (
 )
 from camwright.pipeline.contact.hertz import line_contact
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.cam_balance import camshaft_loads
 from camwright.pipeline.cycle.solution import Solution, solution
-from camwright.pipeline.follower.camshaft_loads import Camshaft, ShaftSection, shaft_loads
+from camwright.pipeline.follower.camshaft_loads import (
+    Camshaft,
+    Counterweight,
+    ShaftSection,
+    shaft_loads,
+)
 from camwright.pipeline.follower.shaft_strength import (
     bending_moment,
     judged_sections,
@@ -414,6 +421,43 @@ def test_unbalance_by_point_masses():
     assert demand(part_strength.cam_unbalance) == pytest.approx(
         force / fast.cam_speed / 0.9, rel=1e-4
     )
+
+
+def test_a_counterweight_beside_the_cam_balances_the_rotor_and_loads_the_shaft():
+    """Opposite to the cam, as heavy, at the second bearing: a couple remains, no resultant."""
+    base = solved()
+    fast = base.cycles[1]
+    product = float(np.hypot(*thrown(fast)).max()) / fast.cam_speed**2
+    weight = Counterweight(unbalance=product, angle=0.0, position=0.02)
+    heavy = base.case.camshaft
+    balanced = with_case(
+        base.case.model_copy(update={"camshaft": replace(heavy, counterweight=weight)})
+    )
+    # The centre of mass of the cam lies opposite to its nose.
+    assert part_strength.cam_unbalance(balanced).demand < 1e-4 * demand(part_strength.cam_unbalance)
+    cycle = balanced.cycles[1]
+    shaft, loads = cycle.machine.camshaft, cycle.loads
+    held = product * cycle.cam_speed**2 * np.stack([np.cos(cycle.theta), np.sin(cycle.theta)])
+    acting = camshaft_loads(loads, shaft, cycle.machine.cam, cycle.contour, cycle.cam_speed)
+    np.testing.assert_allclose(acting.counterweight, held, rtol=1e-4, atol=1e-6)
+    places = {CAM: acting.cam, GEAR: acting.gear, 0.02: held}
+    places |= {0.0: acting.bearing_1, SPAN: acting.bearing_2}
+    size = np.abs(acting.cam).max()
+    assert np.abs(sum(places.values())).max() < 1e-4 * size
+    assert np.abs(sum(at * force for at, force in places.items())).max() < 1e-4 * size * SPAN
+    # Every moment vanishes at the far end; deflection against a twice integrated moment.
+    np.testing.assert_allclose(bending_moment(acting, shaft, 0.1), 0.0, atol=1e-9 * size)
+    x = np.linspace(CAM, SPAN, 3401)
+    bend = np.stack([bending_moment(acting, shaft, at) for at in x], axis=-1)
+    slope = cumulative_trapezoid(bend / (YOUNG * pi * DIAMETER**4 / 64), x, initial=0.0)
+    sag = cumulative_trapezoid(slope, x, initial=0.0)
+    first = np.argmin(np.abs(x))
+    tilt = (sag[..., -1] - sag[..., first]) / SPAN
+    at_cam = sag[..., 0] - sag[..., first] + tilt * x[first] - tilt * (CAM)
+    bent = shaft_bending(acting, shaft, DIAMETER, YOUNG)
+    np.testing.assert_allclose(np.hypot(*bent.deflection), np.hypot(*at_cam), rtol=1e-4)
+    judged = {one.name for one in judged_sections(shaft, DIAMETER, 0.0, 0.0)}
+    assert judged == {"cam", "gear", "bearing 1", "bearing 2", "counterweight"}
 
 
 def tooth_force() -> float:
