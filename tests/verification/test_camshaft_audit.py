@@ -3,7 +3,7 @@
 Two load cases of the case that describes every part, its cam overhung beyond the first bearing.
 """
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 from math import pi, radians
 from pathlib import Path
@@ -23,6 +23,9 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import camshaft_strength as shaft_checks
 from camwright.pipeline.checks import key_strength, part_strength
+from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.contact.cam_body import Key
+from camwright.pipeline.contact.cam_body import Keyway as CamKeyway
 from camwright.pipeline.contact.elasticity.elastic_body import (
     ElasticBody,
     Springs,
@@ -34,6 +37,7 @@ from camwright.pipeline.cycle.cam_balance import camshaft_loads
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
+    CamshaftGear,
     Counterweight,
     ShaftSection,
     shaft_loads,
@@ -254,6 +258,16 @@ def test_bearings_by_reactions_of_the_elements_and_damage_sums():
             damage = sum(1 / 72 / (1e6 * (9950 / load) ** 3) for load in np.hypot(*force))
             lives.append(2 * pi / cycle.cam_speed / damage)  # Miner, turn by turn
     assert demand(shaft_checks.shaft_bearing_life) == pytest.approx(min(lives), rel=1e-6)
+
+
+def test_no_life_above_half_of_the_dynamic_rating():
+    base, loads = solved(), [f for beam in beams().values() for f in beam.bearings]
+    greatest = max(float(np.hypot(*load).max()) for load in loads)
+    for factor, status in ((2.01, "pass"), (1.99, "not_evaluated")):
+        shaft = replace(base.case.camshaft, bearing_rating=factor * greatest)
+        limits = base.case.limits.model_copy(update={"shaft_bearing_life": 1.0})
+        case = base.case.model_copy(update={"camshaft": shaft, "limits": limits})
+        assert shaft_checks.shaft_bearing_life(with_case(case)).status == status
 
 
 def cam_torque() -> float:
@@ -516,3 +530,38 @@ def test_a_listed_section_takes_the_place_of_a_seat():
     assert shaft_checks.shaft_fatigue(thin).demand == pytest.approx(
         share * demand(shaft_checks.shaft_fatigue), rel=0.02
     )
+
+
+def lacking(field: str) -> Solution:
+    """The solved case without one datum of shaft, gear, key or keyway."""
+    base = solved().case
+    shaft, cam = base.camshaft, base.cam
+    part, _, name = field.partition(".")
+    if part == "camshaft":
+        shaft = replace(shaft, **{name: None})
+    elif part == "gear":
+        shaft = replace(shaft, gear=replace(shaft.gear, **{name: None}))
+    else:
+        cam = replace(cam, **{part: replace(getattr(cam, part), **{name: None})})
+    return with_case(base.model_copy(update={"camshaft": shaft, "cam": cam}))
+
+
+PARTS = {"camshaft": Camshaft, "gear": CamshaftGear, "key": Key, "keyway": CamKeyway}
+DATA = [
+    (f"{name}.{field.name}", field.name in part.defaults)
+    for name, part in PARTS.items()
+    for field in fields(part)
+    if field.default is None and field.name != "counterweight"
+]
+
+
+@pytest.mark.parametrize(("field", "has_default"), DATA)
+def test_a_missing_datum_is_a_row_unless_its_default_is_documented(field, has_default):
+    """A shaft without gear is a row of the gear: it is described or left out in the scope."""
+    bare = lacking(field)
+    modules = (shaft_checks, key_strength, part_strength)
+    declared = [one for module in modules for one in vars(module).values()]
+    made = [one(bare) for one in declared if isinstance(one, Declaration)]
+    opened = {one.id for one in made if one is not None and one.status == "not_evaluated"}
+    assert bool(opened) is not has_default
+    assert all(one.blocks and one.note for one in made if one is not None and one.id in opened)
