@@ -21,7 +21,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
-from camwright.pipeline.cycle.cam_balance import Balance, balance
+from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.solution import Solution
@@ -412,7 +412,7 @@ def torque_reversals(solution: Solution) -> Demand:
     title="Unbalance of the camshaft with its cam",
     method="exact first moment of the area of the contour less bore, keyway and counter-hole",
     moved_by_tolerance=False,
-    formula="e w <= limits.unbalance; e = U/m, U: unbalance of the cam, kg m, m:"
+    formula="e w <= limits.unbalance; e = U/m, U: unbalance of cam and counterweight, m:"
     " camshaft.rotor_mass, or the mass of the cam alone, w: greatest cam speed of all load cases",
     reason="must-have: the force m e w^2 loads shaft, bearings and frame at every speed",
 )
@@ -424,7 +424,7 @@ def cam_unbalance(solution: Solution) -> Demand:
     angle = f"{np.degrees(made.angle) % 360:.1f} deg"
     whole = "cam alone" if rotor == made.mass else "cam, shaft and gear"
     return Demand(
-        made.product / rotor * speed,
+        rotor_unbalance(made, shaft) / rotor * speed,
         solution.machine.limits[UNBALANCE],
         note=f"{made.force(speed):.1f} N at {angle} of the cam; mass of {whole},"
         f" {shown(rotor, 'g')}{_hole(balanced)}",

@@ -1,4 +1,4 @@
-"""Unbalance of the cam, and the counter-hole that balances it."""
+"""Unbalance of the cam, the counter-hole that balances it, and its force on the shaft."""
 
 from __future__ import annotations
 
@@ -13,13 +13,17 @@ from camwright.geometry.errors import GeometryError
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.follower.camshaft_loads import (
+    Camshaft,
     CounterHole,
+    ShaftLoads,
     Unbalance,
     counter_hole,
     greatest_hole,
     rotating_force,
+    shaft_loads,
     unbalance,
 )
+from camwright.pipeline.follower.follower_forces import Loads
 
 WALL = 3e-3
 """Wall around a proposed hole, which no case states, m."""
@@ -94,7 +98,29 @@ def _unbalance(cam: CamBody, contour: Contour) -> Unbalance:
 
 def unbalance_force(cam: CamBody, contour: Contour, cam_speed: float, theta: Array) -> Array:
     """Centrifugal force of the cam as manufactured on its shaft (2, n), N; see `rotating_force`."""
-    return rotating_force(_as_made(cam, contour), cam_speed, theta)
+    made = _as_made(cam, contour)
+    return rotating_force(made.product, made.angle, cam_speed, theta)
+
+
+def camshaft_loads(
+    loads: Loads, shaft: Camshaft, cam: CamBody, contour: Contour, cam_speed: float
+) -> ShaftLoads:
+    """Loads of the camshaft over a turn, with the centrifugal forces of cam and counterweight."""
+    thrown = unbalance_force(cam, contour, cam_speed, loads.theta)
+    weight, held = shaft.counterweight, np.zeros_like(thrown)
+    if weight is not None:
+        held = rotating_force(weight.unbalance, weight.angle, cam_speed, loads.theta)
+    forces = (loads.axial_force, loads.tangential_force, loads.cam_torque)
+    return shaft_loads(*forces, shaft, thrown, held)
+
+
+def rotor_unbalance(made: Unbalance, shaft: Camshaft | None) -> float:
+    """Unbalance of cam and counterweight together, kg m."""
+    weight = None if shaft is None else shaft.counterweight
+    total = made.product * np.exp(1j * made.angle)
+    if weight is not None:
+        total += weight.unbalance * np.exp(1j * weight.angle)
+    return float(abs(total))
 
 
 @lru_cache(maxsize=8)

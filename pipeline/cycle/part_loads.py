@@ -12,14 +12,13 @@ from camwright.pipeline.base.tables import Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.contact.elasticity.radial_compliance import Bush, Pin
 from camwright.pipeline.contact.pin_in_hole import peak_pressure
-from camwright.pipeline.cycle.cam_balance import unbalance_force
+from camwright.pipeline.cycle.cam_balance import camshaft_loads
 from camwright.pipeline.cycle.elastic_response import ElasticHistory, elastic_history
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.camshaft_loads import (
     Reversal,
     ShaftLoads,
     key_stress,
-    shaft_loads,
     torque_reversals,
 )
 from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
@@ -248,9 +247,8 @@ def _key_pressure(machine: Machine, loads: Loads) -> Array | None:
 def _shaft(machine: Machine, contour: Contour, loads: Loads) -> ShaftLoads | None:
     if machine.camshaft is None:
         return None
-    thrown = unbalance_force(machine.cam, contour, machine.cam_speed, loads.theta)
-    forces = (loads.axial_force, loads.tangential_force, loads.cam_torque)
-    return shaft_loads(*forces, machine.camshaft, thrown)
+    shaft, cam = machine.camshaft, machine.cam
+    return camshaft_loads(loads, shaft, cam, contour, machine.cam_speed)
 
 
 def _roller_motion(machine: Machine, contour: Contour, loads: Loads) -> RollerMotion | None:

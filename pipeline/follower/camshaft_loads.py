@@ -153,6 +153,18 @@ class ShaftSection(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Counterweight(Part):
+    """Counterweight on the camshaft: unbalance m e, its direction in the cam frame, position."""
+
+    table: ClassVar[str] = "camshaft.counterweight"
+
+    unbalance: Annotated[float, In("g mm", above=0, at_most=1e9)]
+    angle: Angle
+    position: Place
+    source: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Camshaft(Part):
     """Camshaft: positions from its first bearing, driving gear, two ball bearings.
 
@@ -163,8 +175,9 @@ class Camshaft(Part):
     end-milled keyway; seat_notch_bending, seat_notch_torsion: at the bearings, shoulder with a
     sharp fillet; sections: further sections, or seats of another diameter or notch; bearing_rating,
     bearing_static_rating: C and C0 of each bearing; rotor_mass: of cam, shaft and gear together;
-    slip_torque: at which the cam slips on its seat without its key, 0 for a sliding fit. The
-    fatigue_bending of its material is that of a polished specimen under rotating bending.
+    slip_torque: at which the cam slips on its seat without its key, 0 for a sliding fit;
+    counterweight: against the unbalance of the cam. The fatigue_bending of its material is that of
+    a polished specimen under rotating bending.
     """
 
     table: ClassVar[str] = "camshaft"
@@ -192,6 +205,7 @@ class Camshaft(Part):
     rotor_mass: Mass | None = None
     slip_torque: Annotated[float, In("N m", at_least=0, at_most=1e6)] | None = None
     gear: CamshaftGear | None = None
+    counterweight: Counterweight | None = None
     source: str = ""
 
 
@@ -199,11 +213,12 @@ class Camshaft(Part):
 class ShaftLoads:
     """Forces on the camshaft in the engine frame, x along the follower outwards; (2, n), N.
 
-    `cam` and `gear` loads, reactions `bearing_1` and `bearing_2`.
+    Loads of `cam`, `gear` and `counterweight`, reactions `bearing_1` and `bearing_2`.
     """
 
     cam: Array
     gear: Array
+    counterweight: Array
     bearing_1: Array
     bearing_2: Array
 
@@ -227,6 +242,7 @@ def shaft_loads(
     cam_torque: ArrayLike,
     shaft: Camshaft,
     unbalance_force: ArrayLike = 0.0,
+    counterweight_force: ArrayLike = 0.0,
 ) -> ShaftLoads:
     """Bearing loads of the camshaft from contact force and gear force.
 
@@ -238,6 +254,7 @@ def shaft_loads(
     axial_force, tangential_force, cam_torque : array (n,)   N, N, N m
     shaft : Camshaft
     unbalance_force : array (2, n)   N, on the cam
+    counterweight_force : array (2, n)   N, on the counterweight, if the shaft has one
 
     Raises
     ------
@@ -252,10 +269,13 @@ def shaft_loads(
     outward = np.array([np.cos(shaft.mesh_angle), np.sin(shaft.mesh_angle)])[:, None]
     sideways = np.array([-np.sin(shaft.mesh_angle), np.cos(shaft.mesh_angle)])[:, None]
     gear = tooth * sideways - np.abs(tooth) * np.tan(shaft.pressure_angle) * outward
-    share_cam = shaft.cam_position / shaft.bearing_spacing
-    share_gear = shaft.gear_position / shaft.bearing_spacing
-    second = -(cam * share_cam + gear * share_gear)
-    return ShaftLoads(cam, gear, -cam - gear - second, second)
+    weight = np.zeros_like(cam) + finite("counterweight_force", counterweight_force)
+    acting = [(shaft.cam_position, cam), (shaft.gear_position, gear)]
+    if shaft.counterweight is not None:
+        acting.append((shaft.counterweight.position, weight))
+    second = -np.sum([force * (at / shaft.bearing_spacing) for at, force in acting], axis=0)
+    first = -np.sum([force for _, force in acting], axis=0) - second
+    return ShaftLoads(cam, gear, weight, first, second)
 
 
 @dataclass(frozen=True, eq=False)
@@ -290,14 +310,20 @@ class Unbalance:
         return self.product * cam_speed**2
 
 
-def rotating_force(unbalance: Unbalance, cam_speed: float, theta: Array) -> Array:
+def rotating_force(product: float, direction: float, cam_speed: float, theta: Array) -> Array:
     """Centrifugal force of an unbalance on the shaft (2, n), N, in the frame of `ShaftLoads`.
 
     It points along the follower at the cam angle of the centre of mass and rotates with the
     cam.
+
+    Parameters
+    ----------
+    product, direction : float   m e, kg m, and its direction in the cam frame, rad
+    cam_speed : float            rad/s
+    theta : array (n,)           cam angles, rad
     """
-    turned = finite("theta", theta) - unbalance.angle
-    return unbalance.force(cam_speed) * np.stack([np.cos(turned), np.sin(turned)])
+    turned = finite("theta", theta) - direction
+    return product * cam_speed**2 * np.stack([np.cos(turned), np.sin(turned)])
 
 
 def unbalance(

@@ -60,7 +60,7 @@ class Section:
 def judged_sections(
     shaft: Camshaft, diameter: float, cam_reach: float, gear_reach: float
 ) -> tuple[ShaftSection, ...]:
-    """Sections of the shaft: at cam, gear, both bearings, and those that the case adds.
+    """Sections of the shaft: at cam, gear, bearings, counterweight, and those that the case adds.
 
     The bending moment is linear between forces, so its maximum lies at one of them. The seats of
     cam and gear are taken at their middle and, since their force is spread, at both ends.
@@ -72,12 +72,15 @@ def judged_sections(
     """
     keyed = (shaft.notch_bending, shaft.notch_torsion)
     shouldered = (shaft.seat_notch_bending, shaft.seat_notch_torsion)
-    seats = (
+    seats: tuple[tuple[str, float, float, tuple[float, float]], ...] = (
         ("cam", shaft.cam_position, cam_reach, keyed),
         ("gear", shaft.gear_position, gear_reach, keyed),
         ("bearing 1", 0.0, 0.0, shouldered),
         ("bearing 2", shaft.bearing_spacing, 0.0, shouldered),
     )
+    weight = shaft.counterweight
+    if weight is not None:
+        seats = (*seats, ("counterweight", weight.position, 0.0, keyed))
     others, judged = list(shaft.sections), []
     for name, place, reach, (bending, torsion) in seats:
         listed = [one for one in others if abs(one.position - place) < _SAME_PLACE]
@@ -97,12 +100,14 @@ def judged_sections(
 
 def bending_moment(loads: ShaftLoads, shaft: Camshaft, place: float) -> Array:
     """Bending moment (2, n), N m, at a place (m from the first bearing), by force component."""
-    acting = (
+    acting = [
         (0.0, loads.bearing_1),
         (shaft.bearing_spacing, loads.bearing_2),
         (shaft.cam_position, loads.cam),
         (shaft.gear_position, loads.gear),
-    )
+    ]
+    if shaft.counterweight is not None:
+        acting.append((shaft.counterweight.position, loads.counterweight))
     return np.asarray(sum(force * max(place - at, 0.0) for at, force in acting))
 
 
@@ -227,7 +232,9 @@ def shaft_bending(
     """
     span, cam = shaft.bearing_spacing, shaft.cam_position
     stiffness = elastic_modulus * np.pi * diameter**4 / 64.0
-    places = np.unique([0.0, span, cam, shaft.gear_position])
+    weight = shaft.counterweight
+    beside = cam if weight is None else weight.position
+    places = np.unique([0.0, span, cam, shaft.gear_position, beside])
 
     def under_cam(x: float) -> float:
         """Moment of a unit force at the cam."""
@@ -245,8 +252,8 @@ def shaft_bending(
     total = np.zeros((3, *loads.cam.shape))
     for start, end in pairwise(places):
         inside = start >= 0.0 and end <= span
-        for at, weight in ((start, 1.0), (0.5 * (start + end), 4.0), (end, 1.0)):
-            moment = bending_moment(loads, shaft, at) * weight * (end - start) / 6.0
+        for at, part in ((start, 1.0), (0.5 * (start + end), 4.0), (end, 1.0)):  # Simpson
+            moment = bending_moment(loads, shaft, at) * part * (end - start) / 6.0
             total[0] += under_cam(at) * moment
             if inside:  # a couple leaves the overhung ends without moment
                 total[1] += under_couple(at) * moment

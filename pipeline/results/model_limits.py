@@ -52,6 +52,8 @@ MODEL_LIMITS = (
     ),
     ModelLimit(
         "Camshaft, camshaft bearings and the drive from crank to cam are rigid, without backlash."
+        " The deflection of the camshaft is checked apart, without effect on the contact.",
+        "shaft_deflection",
     ),
     ModelLimit(
         "The loads are those of a rigid follower on a spring without mass. The surge of the spring"
@@ -73,8 +75,9 @@ MODEL_LIMITS = (
         " between Hertz theory and finite elements."
     ),
     ModelLimit(
-        "Stress at the keyway corners and at the edge of the bore depends on fillets that the case"
-        " does not state. It has no bound as the mesh is refined and is excluded from all checks.",
+        "The keyway corners are meshed sharp. Stress there and at the edge of the bore has no bound"
+        " as the mesh is refined and is excluded from all checks; the root of the keyway is checked"
+        " apart by its fillet.",
         "excluded_zone",
         singular=True,
     ),

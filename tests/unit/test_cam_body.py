@@ -171,7 +171,9 @@ def test_unbalance_turns_with_the_cam():
     turn later.
     """
     found = unbalance(eccentric(), 8.5e-3, None, WIDTH, DENSITY)
-    force = rotating_force(found, 80.0, found.angle + np.array([0.0, 0.5 * np.pi, 4.0]))
+    force = rotating_force(
+        found.product, found.angle, 80.0, found.angle + np.array([0.0, 0.5 * np.pi, 4.0])
+    )
     np.testing.assert_allclose(np.hypot(*force), found.force(80.0), rtol=1e-12)
     np.testing.assert_allclose(force[:, 0], [found.force(80.0), 0.0], atol=1e-9)
     np.testing.assert_allclose(force[:, 1], [0.0, found.force(80.0)], atol=1e-9)

@@ -27,7 +27,7 @@ from camwright.pipeline.engine.pressure_trace import PressureTable
 from camwright.pipeline.engine.speed_trace import Filter, SpeedTable
 from camwright.pipeline.engine.torque import TorqueTable
 from camwright.pipeline.engine.trigger_wheel import TriggerWheel
-from camwright.pipeline.follower.camshaft_loads import ShaftSection
+from camwright.pipeline.follower.camshaft_loads import Counterweight, ShaftSection
 from camwright.pipeline.follower.flat_face import FlatFace
 from camwright.pipeline.follower.spring import Spring
 
@@ -71,6 +71,7 @@ def every_part() -> dict[type[Part], Part]:
         FlatFace(width=0.02, depth=0.01, thickness=0.005, material=steel),
         Crankshaft(inertia=0.01),
         BalanceHole(),
+        Counterweight(unbalance=1e-4, angle=0.0, position=0.0),
         ShaftSection(
             name="groove", position=0.0, diameter=0.016, notch_bending=2.0, notch_torsion=1.5
         ),

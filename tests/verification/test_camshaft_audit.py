@@ -3,7 +3,7 @@
 Two load cases of the case that describes every part, its cam overhung beyond the first bearing.
 """
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 from math import pi, radians
 from pathlib import Path
@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cam_parts import Keyway
+from scipy.integrate import cumulative_trapezoid
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -22,6 +23,9 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import camshaft_strength as shaft_checks
 from camwright.pipeline.checks import key_strength, part_strength
+from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.contact.cam_body import Key
+from camwright.pipeline.contact.cam_body import Keyway as CamKeyway
 from camwright.pipeline.contact.elasticity.elastic_body import (
     ElasticBody,
     Springs,
@@ -29,8 +33,15 @@ from camwright.pipeline.contact.elasticity.elastic_body import (
 )
 from camwright.pipeline.contact.hertz import line_contact
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.cam_balance import camshaft_loads
 from camwright.pipeline.cycle.solution import Solution, solution
-from camwright.pipeline.follower.camshaft_loads import Camshaft, ShaftSection, shaft_loads
+from camwright.pipeline.follower.camshaft_loads import (
+    Camshaft,
+    CamshaftGear,
+    Counterweight,
+    ShaftSection,
+    shaft_loads,
+)
 from camwright.pipeline.follower.shaft_strength import (
     bending_moment,
     judged_sections,
@@ -249,6 +260,16 @@ def test_bearings_by_reactions_of_the_elements_and_damage_sums():
     assert demand(shaft_checks.shaft_bearing_life) == pytest.approx(min(lives), rel=1e-6)
 
 
+def test_no_life_above_half_of_the_dynamic_rating():
+    base, loads = solved(), [f for beam in beams().values() for f in beam.bearings]
+    greatest = max(float(np.hypot(*load).max()) for load in loads)
+    for factor, status in ((2.01, "pass"), (1.99, "not_evaluated")):
+        shaft = replace(base.case.camshaft, bearing_rating=factor * greatest)
+        limits = base.case.limits.model_copy(update={"shaft_bearing_life": 1.0})
+        case = base.case.model_copy(update={"camshaft": shaft, "limits": limits})
+        assert shaft_checks.shaft_bearing_life(with_case(case)).status == status
+
+
 def cam_torque() -> float:
     """Greatest cam torque, N m: moment of the contact force about the cam axis.
 
@@ -416,6 +437,43 @@ def test_unbalance_by_point_masses():
     )
 
 
+def test_a_counterweight_beside_the_cam_balances_the_rotor_and_loads_the_shaft():
+    """Opposite to the cam, as heavy, at the second bearing: a couple remains, no resultant."""
+    base = solved()
+    fast = base.cycles[1]
+    product = float(np.hypot(*thrown(fast)).max()) / fast.cam_speed**2
+    weight = Counterweight(unbalance=product, angle=0.0, position=0.02)
+    heavy = base.case.camshaft
+    balanced = with_case(
+        base.case.model_copy(update={"camshaft": replace(heavy, counterweight=weight)})
+    )
+    # The centre of mass of the cam lies opposite to its nose.
+    assert part_strength.cam_unbalance(balanced).demand < 1e-4 * demand(part_strength.cam_unbalance)
+    cycle = balanced.cycles[1]
+    shaft, loads = cycle.machine.camshaft, cycle.loads
+    held = product * cycle.cam_speed**2 * np.stack([np.cos(cycle.theta), np.sin(cycle.theta)])
+    acting = camshaft_loads(loads, shaft, cycle.machine.cam, cycle.contour, cycle.cam_speed)
+    np.testing.assert_allclose(acting.counterweight, held, rtol=1e-4, atol=1e-6)
+    places = {CAM: acting.cam, GEAR: acting.gear, 0.02: held}
+    places |= {0.0: acting.bearing_1, SPAN: acting.bearing_2}
+    size = np.abs(acting.cam).max()
+    assert np.abs(sum(places.values())).max() < 1e-4 * size
+    assert np.abs(sum(at * force for at, force in places.items())).max() < 1e-4 * size * SPAN
+    # Every moment vanishes at the far end; deflection against a twice integrated moment.
+    np.testing.assert_allclose(bending_moment(acting, shaft, 0.1), 0.0, atol=1e-9 * size)
+    x = np.linspace(CAM, SPAN, 3401)
+    bend = np.stack([bending_moment(acting, shaft, at) for at in x], axis=-1)
+    slope = cumulative_trapezoid(bend / (YOUNG * pi * DIAMETER**4 / 64), x, initial=0.0)
+    sag = cumulative_trapezoid(slope, x, initial=0.0)
+    first = np.argmin(np.abs(x))
+    tilt = (sag[..., -1] - sag[..., first]) / SPAN
+    at_cam = sag[..., 0] - sag[..., first] + tilt * x[first] - tilt * (CAM)
+    bent = shaft_bending(acting, shaft, DIAMETER, YOUNG)
+    np.testing.assert_allclose(np.hypot(*bent.deflection), np.hypot(*at_cam), rtol=1e-4)
+    judged = {one.name for one in judged_sections(shaft, DIAMETER, 0.0, 0.0)}
+    assert judged == {"cam", "gear", "bearing 1", "bearing 2", "counterweight"}
+
+
 def tooth_force() -> float:
     torque = max(np.abs(c.loads.cam_torque + DRAG).max() for c in solved().cycles)
     return K * float(torque) / GEAR_RADIUS
@@ -472,3 +530,38 @@ def test_a_listed_section_takes_the_place_of_a_seat():
     assert shaft_checks.shaft_fatigue(thin).demand == pytest.approx(
         share * demand(shaft_checks.shaft_fatigue), rel=0.02
     )
+
+
+def lacking(field: str) -> Solution:
+    """The solved case without one datum of shaft, gear, key or keyway."""
+    base = solved().case
+    shaft, cam = base.camshaft, base.cam
+    part, _, name = field.partition(".")
+    if part == "camshaft":
+        shaft = replace(shaft, **{name: None})
+    elif part == "gear":
+        shaft = replace(shaft, gear=replace(shaft.gear, **{name: None}))
+    else:
+        cam = replace(cam, **{part: replace(getattr(cam, part), **{name: None})})
+    return with_case(base.model_copy(update={"camshaft": shaft, "cam": cam}))
+
+
+PARTS = {"camshaft": Camshaft, "gear": CamshaftGear, "key": Key, "keyway": CamKeyway}
+DATA = [
+    (f"{name}.{field.name}", field.name in part.defaults)
+    for name, part in PARTS.items()
+    for field in fields(part)
+    if field.default is None and field.name != "counterweight"
+]
+
+
+@pytest.mark.parametrize(("field", "has_default"), DATA)
+def test_a_missing_datum_is_a_row_unless_its_default_is_documented(field, has_default):
+    """A shaft without gear is a row of the gear: it is described or left out in the scope."""
+    bare = lacking(field)
+    modules = (shaft_checks, key_strength, part_strength)
+    declared = [one for module in modules for one in vars(module).values()]
+    made = [one(bare) for one in declared if isinstance(one, Declaration)]
+    opened = {one.id for one in made if one is not None and one.status == "not_evaluated"}
+    assert bool(opened) is not has_default
+    assert all(one.blocks and one.note for one in made if one is not None and one.id in opened)
