@@ -35,7 +35,7 @@ NO_OVERSPEED = "no limits.overspeed is given"
     forecast=True,
     formula="N_min / P >= limits.contact_force_margin; N_min: least normal force over all load"
     " cases and angles with guide friction and inertia, without surge, P: preload",
-    reason="Decides: a follower that leaves the cam lands on it with an impact.",
+    reason="A follower that leaves the cam lands on it with an impact.",
 )
 def contact_force_margin(solution: Solution) -> Demand:
     """Minimum contact force over the preload."""
@@ -51,7 +51,7 @@ def contact_force_margin(solution: Solution) -> Demand:
     forecast=True,
     formula="max(-m w^2 s'' / F_s) <= limits.jump over all load cases and angles; m: moving mass,"
     " w: cam speed, s'': second derivative of the lift, F_s: spring force",
-    reason="Decides: at 1 the inertia of the follower lifts it off the cam.",
+    reason="At 1 the inertia of the follower lifts it off the cam.",
 )
 def jump(solution: Solution) -> Demand:
     """Maximum unloading inertia force over the spring force."""
@@ -114,7 +114,7 @@ def jam_index_friction_max(solution: Solution) -> Demand:
     lift_can_help=True,
     formula="min(w sqrt(F_s / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
     " speed, F_s: spring force, m: moving mass, s'': second derivative of the lift",
-    reason="Decides: an engine exceeds its governed speed, and damping and tolerances are not known"
+    reason="An engine exceeds its governed speed, and damping and tolerances are not known"
     " closely.",
 )
 def jump_speed(solution: Solution) -> Demand:
@@ -134,7 +134,7 @@ def jump_speed(solution: Solution) -> Demand:
     lift_can_help=True,
     formula="min(F_s + m w^2 s'') / P >= limits.contact_force_margin at w of limits.overspeed; F_s:"
     " spring force, m: moving mass, s'': second derivative of the lift, P: preload",
-    reason="Decides: the synthesis keeps the contact by this closed form; the sweep adds friction"
+    reason="The synthesis keeps the contact by this closed form; the sweep adds friction"
     " and surge.",
 )
 def contact_at_overspeed(solution: Solution) -> Demand:
@@ -166,7 +166,7 @@ def contact_at_overspeed(solution: Solution) -> Demand:
     " the harmonics of k (phi cot phi - 1) s_h, phi = pi h w / w_1 sqrt(1 - 2 i zeta), j: jam"
     " index with the sign of the motion, w_1: first natural frequency of the spring, zeta:"
     " spring.design.damping_ratio",
-    reason="Decides: between the load cases a harmonic of the lift may meet a natural frequency of"
+    reason="Between the load cases a harmonic of the lift may meet a natural frequency of"
     " the spring and lift the follower off the cam.",
 )
 def contact_over_speed(solution: Solution) -> Demand:
@@ -187,7 +187,7 @@ def contact_over_speed(solution: Solution) -> Demand:
     formula="min N(w, theta) / P >= limits.contact_force_margin over all speeds from standstill to"
     " over-speed and over the load cases at their varying speed; N: contact force of one mass on"
     " the stiffness between cam and mass, on the spring with its surge",
-    reason="Decides: the resonance of the follower on its own stiffness unloads the contact more"
+    reason="The resonance of the follower on its own stiffness unloads the contact more"
     " than the rigid follower shows.",
 )
 def elastic_contact(solution: Solution) -> Demand:

@@ -143,7 +143,7 @@ def _worst_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> tup
     formula="tau_max / (0.56 R_m) <= 1, tau = K_w 8 D F / (pi d^3); F: greatest force in the coils"
     " from standstill to over-speed, preload high and rate at either end, K_w: Wahl factor, R_m:"
     " tensile strength of the wire",
-    reason="Decides: a spring beyond its yield strength sets and loses the preload that keeps the"
+    reason="A spring beyond its yield strength sets and loses the preload that keeps the"
     " follower on the cam.",
 )
 def spring_stress(solution: Solution) -> Demand:
@@ -167,7 +167,7 @@ def spring_stress(solution: Solution) -> Demand:
     formula="1 / (tau_a / S_e + tau_m / S_su) >= limits.spring_fatigue; tau_a, tau_m: amplitude and"
     " mean at the end of the spring with the greater range, over all speeds from standstill to"
     " over-speed, S_su = 0.67 R_m, S_e: endurance by Zimmerli's point",
-    reason="Decides: a broken spring releases the follower.",
+    reason="A broken spring releases the follower.",
 )
 def spring_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the wire with surge over the speed range."""
@@ -193,7 +193,7 @@ spring_solid = _slow(
     method="free length less solid length less deflection at maximum lift, over that deflection",
     formula="(L0 - Lc - s_max) / s_max >= limits.spring_solid; L0, Lc: free and solid length,"
     " s_max = P/k + h: deflection at maximum lift h, preload P high",
-    reason="Decides: a spring that goes solid stops the follower.",
+    reason="A spring that goes solid stops the follower.",
 )
 spring_coil_gap = _slow(
     "spring_coil_gap",
@@ -206,8 +206,7 @@ spring_coil_gap = _slow(
     method="free length less solid length less deflection at maximum lift",
     formula="L0 - Lc - s_max >= 1.5 n (0.0015 D^2/d + 0.1 d); L0, Lc: free and solid length, s_max:"
     " deflection at maximum lift with the preload high, n: active coils, D: mean diameter, d: wire",
-    reason="Decides: below it coils touch before the solid length, the rate rises and the wire"
-    " wears.",
+    reason="Below it coils touch before the solid length, the rate rises and the wire wears.",
 )
 spring_solid_stress = _slow(
     "spring_solid_stress",
@@ -219,7 +218,7 @@ spring_solid_stress = _slow(
     method="rate times free less solid length, without correction factor, rate high",
     formula="tau_c = 8 D F_c / (pi d^3) <= 0.56 R_m; F_c = k (L0 - Lc): force at solid length with"
     " the rate high, R_m: tensile strength of the wire",
-    reason="Decides: a spring is pressed solid when it is coiled, mounted and over-run, and sets"
+    reason="A spring is pressed solid when it is coiled, mounted and over-run, and sets"
     " beyond this stress.",
     lift_can_help=False,
 )
@@ -235,7 +234,7 @@ spring_buckling = _slow(
     formula="s_max / s_K <= 1, s_K = L0 / (2 (1 - G/E)) (1 - sqrt(1 - (1 - G/E) / (0.5 + G/E)"
     " (pi D / (nu L0))^2)); s_max: deflection at maximum lift with the preload high, nu: seating"
     " coefficient",
-    reason="Decides: a spring that buckles rubs on the stem and loses its force.",
+    reason="A spring that buckles rubs on the stem and loses its force.",
     note=lambda design: STABLE if np.isinf(design.buckling_deflection) else "",
 )
 
@@ -248,7 +247,7 @@ spring_buckling = _slow(
     moved_by_tolerance=False,
     part="spring",
     formula="|G d^4 / (8 D^3 n) / k - 1| <= tolerance of the rate; k: spring.rate",
-    reason="Decides: all loads are those of spring.rate, all stresses those of the design.",
+    reason="All loads are those of spring.rate, all stresses those of the design.",
 )
 def spring_rate(solution: Solution) -> Demand:
     """Deviation of the rate of the spring design from that of the case, relative."""
@@ -266,7 +265,7 @@ def spring_rate(solution: Solution) -> Demand:
     part="spring",
     formula="f1 / f_cam >= limits.spring_surge; f1 = sqrt(k/m)/2: first natural frequency of the"
     " active coils, f_cam: turns of the cam at over-speed, at least at the fastest load case",
-    reason="Decides: below it strong harmonics of the lift drive the coils, and the force on the"
+    reason="Below it strong harmonics of the lift drive the coils, and the force on the"
     " cam depends on a damping that is hardly known.",
 )
 def spring_surge(solution: Solution) -> Demand:
@@ -299,7 +298,7 @@ def spring_surge(solution: Solution) -> Demand:
     part="spring",
     formula="R F_max / P <= tolerance of the preload; R: spring.design.relaxation, share of the"
     " force lost in 48 h at spring.design.temperature, F_max: force at maximum lift, P: preload",
-    reason="Decides: a relaxed spring no longer has the preload on which every force is based.",
+    reason="A relaxed spring no longer has the preload on which every force is based.",
 )
 def spring_relaxation(solution: Solution) -> Demand:
     """Loss of preload by relaxation at temperature, relative."""

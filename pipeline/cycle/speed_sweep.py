@@ -28,6 +28,8 @@ SIGNIFICANT = 0.01  # force of a harmonic at resonance over the preload
 # Speeds about a resonance, in widths: the damping ratio times its speed.
 _ABOUT = np.array([-2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0])
 _REFINED = 17
+_MODES = 100  # beyond, the damping merges the resonances
+_MET = 600  # resonances resolved, the strongest
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,18 +214,16 @@ class _Resonant:
         top = float(known.max())
         speeds = [np.linspace(0.0, top, UNIFORM), known]
         enough = SIGNIFICANT * self.spring.preload
-        order = self.order[1:]
         if self.design is not None:
             damping = self.design.damping_ratio
-            strong = order[self.spring.rate * self.amplitude / damping >= enough]
-            modes = np.arange(1.0, top * max(strong, default=0.0) / self.first + 1.0)
-            met = (modes * self.first / strong[:, None]).ravel()
-            speeds.append(_about(met[met <= top], damping))
+            peak = self.spring.rate * self.amplitude / damping
+            modes = self.first * np.arange(1.0, _MODES + 1.0)
+            speeds.append(_about(_met(modes, peak, enough, top), damping))
         total = machine.axial_stiffness + self.spring.rate
         damping = max(machine.damping_ratio, 1e-3)
-        strong = order[total * self.amplitude / (2.0 * damping) >= enough]
-        met = np.sqrt(total / machine.mass) / strong
-        speeds.append(_about(met[met <= top], damping))
+        peak = total * self.amplitude / (2.0 * damping)
+        own = np.array([np.sqrt(total / machine.mass)])
+        speeds.append(_about(_met(own, peak, enough, top), damping))
         return np.unique(np.clip(np.concatenate(speeds), 0.0, top))
 
 
@@ -296,6 +296,22 @@ class _Follower:
         drive = behind * spectrum
         drive[:, 0] += ANGLES * machine.spring.preload
         return self.resonant.back(joint * drive / (joint + behind))
+
+
+def _met(modes: Array, peak: Array, enough: float, top: float) -> Array:
+    """Speeds up to `top` at which a harmonic meets a mode; the strongest.
+
+    Parameters
+    ----------
+    modes : array (k,)   natural frequencies, rad/s
+    peak : array (h,)    force of each harmonic at resonance, from the first, N
+    enough : float       least force of a resonance, N
+    """
+    order = np.arange(1.0, peak.size + 1.0)[peak >= enough]
+    met = modes / order[:, None]
+    inside = met <= top
+    force = np.broadcast_to(peak[peak >= enough][:, None], met.shape)[inside]
+    return np.asarray(met[inside][np.argsort(-force, kind="stable")[:_MET]])
 
 
 def _about(speeds: Array, damping: float) -> Array:

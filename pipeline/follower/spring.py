@@ -72,7 +72,7 @@ class HelicalSpring(Part):
     strength_at_1mm: Pressure
     strength_exponent: WireExponent
     treatment: Treatment = "plain"
-    damping_ratio: Annotated[float, In(above=0, at_most=0.5)] = 0.01
+    damping_ratio: Annotated[float, In(at_least=1e-4, at_most=0.5)] = 0.01
     temperature: Temperature | None = None
     relaxation: Share | None = None
     source: str = ""
