@@ -10,7 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit
+from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit, Sense
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.cycle.solution import Solution
@@ -20,7 +20,6 @@ from camwright.pipeline.follower.spring import HelicalSpring, Spring, surge_harm
 RATE_TOLERANCE = 0.05  # of the rate, where the case has none
 PRELOAD_TOLERANCE = 0.05  # of the preload, where the case has none
 HARDEST = "preload and rate high"
-RATE_ENDS = "preload high, worst end of the rate"
 STABLE = "stable at any deflection"
 
 
@@ -77,7 +76,7 @@ def _slow(
     reason: str,
     limit: Limit | None = None,
     allowed: Callable[[HelicalSpring], float] = lambda _: 1.0,
-    sense: str = "at_most",
+    sense: Sense = "at_most",
     unit: str = "-",
     source: str = "",
     note: Callable[[HelicalSpring], str] = lambda _: "",
@@ -90,7 +89,7 @@ def _slow(
         id=name,
         title=title,
         unit=unit,
-        sense="at_least" if sense == "at_least" else "at_most",
+        sense=sense,
         method=method,
         source=source,
         lift_can_help=lift_can_help,
@@ -118,16 +117,13 @@ def _corner(spring: Spring, words: str) -> str:
 
 
 def _worst_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> tuple[float, str]:
-    """Greatest value over the ends of the spring, speeds and ends of the rate, with its speed."""
-    worst, at = -np.inf, 0.0
-    for sweep in solution.spring_sweeps:
-        values = np.max(use(sweep), axis=0)
-        k = int(np.argmax(values))  # the first NaN, where there is one
-        if np.isnan(values[k]) or values[k] > worst:
-            worst, at = float(values[k]), float(sweep.crank_speed[k])
-        if np.isnan(worst):
-            break
-    return worst, f"at {shown(at, 'rpm', 4)} of the crank"
+    """Greatest value (2, m) over both ends of the spring and all speeds, and its speed in words."""
+    sweep = solution.hardest_spring
+    if sweep is None:
+        return np.nan, ""
+    values = np.max(use(sweep), axis=0)
+    k = int(np.argmax(values))  # the first NaN, where there is one
+    return float(values[k]), f"at {shown(float(sweep.crank_speed[k]), 'rpm', 4)} of the crank"
 
 
 @check(
@@ -141,8 +137,8 @@ def _worst_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> tup
     moved_by_tolerance=False,
     part="spring",
     formula="tau_max / (0.56 R_m) <= 1, tau = K_w 8 D F / (pi d^3); F: greatest force in the coils"
-    " from standstill to over-speed, preload high and rate at either end, K_w: Wahl factor, R_m:"
-    " tensile strength of the wire",
+    " from standstill to over-speed with preload and rate high, resonances of any rate in tolerance"
+    " included, K_w: Wahl factor, R_m: tensile strength of the wire",
     reason="A spring beyond its yield strength sets and loses the preload that keeps the"
     " follower on the cam.",
 )
@@ -152,7 +148,7 @@ def spring_stress(solution: Solution) -> Demand:
     worst, note = _worst_speed(
         solution, lambda sweep: design.stress(sweep.greatest) / design.static_strength
     )
-    corner = _corner(solution.machine.spring, RATE_ENDS)
+    corner = _corner(solution.machine.spring, HARDEST)
     return Demand(worst, 1.0, note=note, figures=(design.source,), corner=corner)
 
 
@@ -180,7 +176,7 @@ def spring_fatigue(solution: Solution) -> Demand:
         solution.machine.limits[SPRING_FATIGUE],
         note=note,
         figures=(design.source,),
-        corner=_corner(solution.machine.spring, RATE_ENDS),
+        corner=_corner(solution.machine.spring, HARDEST),
     )
 
 

@@ -104,29 +104,13 @@ class Solution:
         )
 
     @cached_property
-    def spring_sweeps(self) -> tuple[SpringSweep, ...]:
-        """Forces in the spring over the speed, at the highest preload and each end of the rate.
-
-        Empty without a spring design.
-        """
-        spring = self.machine.spring
-        design = spring.design
+    def hardest_spring(self) -> SpringSweep | None:
+        """Forces in the hardest spring in tolerance over the speed; None without its design."""
+        design = self.machine.spring.design
         if design is None:
-            return ()
+            return None
         preload = max(machine.spring.preload for machine in self.machines)
-        hard = preload * (1.0 + spring.preload_tolerance)
-        shares = dict.fromkeys((1.0 - spring.rate_tolerance, 1.0, 1.0 + spring.rate_tolerance))
-        return tuple(
-            spring_sweep(
-                replace(
-                    self.machine, spring=replace(spring, rate=design.rate * share, preload=hard)
-                ),
-                design,
-                self.contour.pitch,
-                self._speeds,
-            )
-            for share in shares
-        )
+        return spring_sweep(self.machine, design, self.contour.pitch, preload, self._speeds)
 
     @property
     def _speeds(self) -> tuple[float, ...]:

@@ -27,6 +27,7 @@ UNIFORM = 61  # speeds at equal distances
 SIGNIFICANT = 0.01  # force of a harmonic at resonance over the preload
 # Speeds about a resonance, in widths: the damping ratio times its speed.
 _ABOUT = np.array([-2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0])
+_WIDTH = 0.2  # at most, so that every speed is positive
 _REFINED = 17
 _MODES = 100  # beyond, the damping merges the resonances
 _MET = 600  # resonances resolved, the strongest
@@ -87,9 +88,9 @@ class SpeedSweep:
 
 @dataclass(frozen=True, eq=False)
 class SpringSweep:
-    """Least and greatest force (2, m), N, at moving and fixed end of a spring over the speed.
+    """Least and greatest force (2, m), N, at moving and fixed end of the hardest spring.
 
-    crank_speed (m,), rad/s.
+    crank_speed (m,), rad/s: at which a spring of the nominal rate meets the same harmonics.
     """
 
     crank_speed: Array
@@ -137,22 +138,39 @@ def speed_sweep(
 
 
 def spring_sweep(
-    machine: Machine, design: HelicalSpring, pitch: FollowerPath, speeds: Sequence[float]
+    machine: Machine,
+    design: HelicalSpring,
+    pitch: FollowerPath,
+    preload: float,
+    speeds: Sequence[float],
 ) -> SpringSweep:
-    """Forces at both ends of the spring from standstill to the greatest of some speeds.
+    """Forces at both ends of the hardest spring from standstill to the greatest of some speeds.
+
+    The forces are those of the highest rate and preload in tolerance; the sweep extends to the
+    speed at which the softest spring meets the same harmonics as at the greatest one.
 
     Parameters
     ----------
-    machine : Machine    with the rate and the preload of the spring at its tolerances
+    preload : float      greatest of the load cases, N
     speeds : of float    crank speeds that the sweep contains, rad/s
     """
-    resonant = _Resonant.of(machine.spring, design, pitch)
-    grid = resonant.grid(machine, np.asarray(speeds) / machine.gear_ratio)
+    spring, spread = machine.spring, machine.spring.rate_tolerance
+    hard = replace(
+        spring,
+        rate=design.rate * (1.0 + spread),
+        preload=preload * (1.0 + spring.preload_tolerance),
+    )
+    # The resonances of the hardest spring lie this much above those of the nominal and softest one.
+    nominal, softest = np.sqrt(1.0 + spread), np.sqrt((1.0 + spread) / (1.0 - spread))
+    resonant = _Resonant.of(hard, design, pitch)
+    known = softest * np.asarray(speeds) / machine.gear_ratio
+    grid = resonant.grid(machine, known)
     least, greatest = resonant.end_forces(grid)
     finer = _between(grid, {int(np.argmax(np.max(greatest - least, axis=0)))})
     more = resonant.end_forces(finer)
+    swept = machine.gear_ratio * np.concatenate([grid, finer]) / nominal
     return SpringSweep(
-        machine.gear_ratio * np.concatenate([grid, finer]),
+        np.minimum(swept, np.max(speeds)),
         np.concatenate([least, more[0]], axis=1),
         np.concatenate([greatest, more[1]], axis=1),
     )
@@ -316,8 +334,9 @@ def _met(modes: Array, peak: Array, enough: float, top: float) -> Array:
 
 def _about(speeds: Array, damping: float) -> Array:
     """Speeds about the resonances, none closer to another than a fifth of the width."""
-    every = np.sort((speeds[:, None] * (1.0 + damping * _ABOUT)).ravel())
-    _, kept = np.unique(np.round(np.log(every) / (0.2 * damping)), return_index=True)
+    width = min(damping, _WIDTH)
+    every = np.sort((speeds[:, None] * (1.0 + width * _ABOUT)).ravel())
+    _, kept = np.unique(np.round(np.log(every) / (0.2 * width)), return_index=True)
     return every[kept]
 
 
