@@ -116,14 +116,24 @@ def _corner(spring: Spring, words: str) -> str:
     return words if spring.preload_tolerance > 0 or spring.rate_tolerance > 0 else ""
 
 
-def _worst_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> tuple[float, str]:
-    """Greatest value (2, m) over both ends of the spring and all speeds, and its speed in words."""
-    sweep = solution.hardest_spring
+class OverSpeed(NamedTuple):
+    """Greatest value over the speed, the same at the least damping of the surge, the speed."""
+
+    value: float
+    least_damped: float
+    words: str
+
+
+def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> OverSpeed:
+    """Greatest value (2, m) over both ends of the spring and all speeds."""
+    sweep, damped = solution.hardest_spring, solution.least_damped
     if sweep is None:
-        return np.nan, ""
+        return OverSpeed(np.nan, np.nan, "")
     values = np.max(use(sweep), axis=0)
     k = int(np.argmax(values))  # the first NaN, where there is one
-    return float(values[k]), f"at {shown(float(sweep.crank_speed[k]), 'rpm', 4)} of the crank"
+    value, further = float(values[k]), None if damped is None else damped.hardest_spring
+    most = value if further is None else max(float(np.max(use(further))), value)
+    return OverSpeed(value, most, f"at {shown(float(sweep.crank_speed[k]), 'rpm', 4)} of the crank")
 
 
 @check(
@@ -145,11 +155,18 @@ def _worst_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> tup
 def spring_stress(solution: Solution) -> Demand:
     """Greatest shear stress of the wire with surge over the static strength."""
     design = _design(solution)
-    worst, note = _worst_speed(
+    worst = _over_speed(
         solution, lambda sweep: design.stress(sweep.greatest) / design.static_strength
     )
-    corner = _corner(solution.machine.spring, HARDEST)
-    return Demand(worst, 1.0, note=note, figures=(design.source,), corner=corner)
+    share = worst.least_damped / worst.value - 1.0
+    return Demand(
+        worst.value,
+        1.0,
+        Extreme(worst.value, error_share=share),
+        note=worst.words,
+        figures=(design.source,),
+        corner=_corner(solution.machine.spring, HARDEST),
+    )
 
 
 @check(
@@ -168,13 +185,14 @@ def spring_stress(solution: Solution) -> Demand:
 def spring_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the wire with surge over the speed range."""
     design = _design(solution)
-    use, note = _worst_speed(
-        solution, lambda sweep: design.fatigue_use(sweep.least, sweep.greatest)
-    )
+    worst = _over_speed(solution, lambda sweep: design.fatigue_use(sweep.least, sweep.greatest))
+    safety = 1.0 / worst.value  # of a preload above zero
+    share = 0.0 if safety == 0.0 else 1.0 - worst.value / worst.least_damped
     return Demand(
-        np.inf if use == 0.0 else 1.0 / use,
+        safety,
         solution.machine.limits[SPRING_FATIGUE],
-        note=note,
+        Extreme(safety, error_share=share),
+        note=worst.words,
         figures=(design.source,),
         corner=_corner(solution.machine.spring, HARDEST),
     )
@@ -280,7 +298,7 @@ def spring_surge(solution: Solution) -> Demand:
         note=f"highest harmonic of at least 1 % of the acceleration: {highest}; surge lies"
         f" {margin:.2f} times above it and adds up to {shown(added, 'N', 3)} at"
         f" {shown(speed, 'rpm', 4)} of the crank with a damping ratio of"
-        f" {design.damping_ratio:g}",
+        f" {design.damping:g}",
     )
 
 

@@ -213,7 +213,7 @@ class _Resonant:
             zero = np.zeros(drive.shape, dtype=complex)
             return zero, zero
         frequency = self.first / (2.0 * np.pi)
-        return dynamic_stiffness(drive, self.spring.rate, frequency, self.design.damping_ratio)
+        return dynamic_stiffness(drive, self.spring.rate, frequency, self.design.damping)
 
     def back(self, spectrum: NDArray[np.complex128]) -> Array:
         return np.fft.irfft(spectrum, ANGLES)
@@ -233,7 +233,7 @@ class _Resonant:
         speeds = [np.linspace(0.0, top, UNIFORM), known]
         enough = SIGNIFICANT * self.spring.preload
         if self.design is not None:
-            damping = self.design.damping_ratio
+            damping = self.design.damping
             peak = self.spring.rate * self.amplitude / damping
             modes = self.first * np.arange(1.0, _MODES + 1.0)
             speeds.append(_about(_met(modes, peak, enough, top), damping))

@@ -22,7 +22,7 @@ THETA = uniform_turn(720)
 LIFT = Lift(THETA, 0.01 * (1.0 - np.cos(THETA)) + 1.5e-4 * (1.0 - np.cos(6.0 * THETA)))
 
 
-def solved_case(overspeed=3600.0 * RPM, rate_tolerance=0.0, **design):
+def solved_case(overspeed=3600.0 * RPM, rate_tolerance=0.0, lift=LIFT, **design):
     case = read_case(SIGNED)
     spring = replace(
         case.spring,
@@ -31,8 +31,8 @@ def solved_case(overspeed=3600.0 * RPM, rate_tolerance=0.0, **design):
     )
     limits = case.limits.model_copy(update={"overspeed": overspeed})
     case = case.model_copy(update={"spring": spring, "limits": limits})
-    contour = case.contour(LIFT)
-    return solution(case, contour, Tier.PREVIEW, torques={}, positions=180, coarse=True)
+    contour = case.contour(lift)
+    return solution(case, contour, Tier.PREVIEW, torques={}, positions=180)
 
 
 @pytest.fixture(scope="module")
@@ -102,6 +102,29 @@ def test_less_damping_unloads_the_contact_further():
     ]
     assert least == sorted(least)
     assert least[0] < -2.0
+
+
+def test_a_damping_that_is_not_stated_widens_the_error_bar():
+    """Down to 0.002: a contact kept at 1 % of damping is not proven then."""
+    limit = 0.2
+    small = replace(LIFT, values=0.01 * (1.0 - np.cos(THETA)) + 4e-5 * (1.0 - np.cos(6.0 * THETA)))
+    demands = {}
+    for damping in (None, 0.002, 0.01):
+        solved = solved_case(lift=small, damping_ratio=damping)
+        demands[damping] = (
+            jump_and_jamming.contact_over_speed(solved),
+            spring_strength.spring_stress(solved),
+            spring_strength.spring_fatigue(solved),
+        )
+    for open_one, low, stated in zip(*demands.values(), strict=True):
+        assert open_one.demand == pytest.approx(stated.demand, rel=1e-9)
+        worse = 1.0 if open_one.sense == "at_most" else -1.0
+        reach = open_one.demand + worse * open_one.error
+        assert reach == pytest.approx(low.demand, rel=1e-6), open_one.id
+    contact, low, stated = (each[0] for each in demands.values())
+    assert contact.limit == limit < stated.demand
+    assert low.demand < limit
+    assert (contact.not_proven, contact.status, stated.status) == (True, "fail", "pass")
 
 
 def test_a_wider_tolerance_of_the_rate_never_relieves_the_spring():
