@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,7 +36,7 @@ NO_OVERSPEED = "no limits.overspeed is given"
     forecast=True,
     formula="N_min / P >= limits.contact_force_margin; N_min: least normal force over all load"
     " cases and angles with guide friction and inertia, without surge, P: preload",
-    reason="Decides: a follower that leaves the cam lands on it with an impact.",
+    reason="A follower that leaves the cam lands on it with an impact.",
 )
 def contact_force_margin(solution: Solution) -> Demand:
     """Minimum contact force over the preload."""
@@ -51,7 +52,7 @@ def contact_force_margin(solution: Solution) -> Demand:
     forecast=True,
     formula="max(-m w^2 s'' / F_s) <= limits.jump over all load cases and angles; m: moving mass,"
     " w: cam speed, s'': second derivative of the lift, F_s: spring force",
-    reason="Decides: at 1 the inertia of the follower lifts it off the cam.",
+    reason="At 1 the inertia of the follower lifts it off the cam.",
 )
 def jump(solution: Solution) -> Demand:
     """Maximum unloading inertia force over the spring force."""
@@ -125,7 +126,7 @@ def jam_index_friction_max(solution: Solution) -> Demand:
     lift_can_help=True,
     formula="min(w sqrt(F_s / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
     " speed, F_s: spring force, m: moving mass, s'': second derivative of the lift",
-    reason="Decides: an engine exceeds its governed speed, and damping and tolerances are not known"
+    reason="An engine exceeds its governed speed, and damping and tolerances are not known"
     " closely.",
 )
 def jump_speed(solution: Solution) -> Demand:
@@ -145,7 +146,7 @@ def jump_speed(solution: Solution) -> Demand:
     lift_can_help=True,
     formula="min(F_s + m w^2 s'') / P >= limits.contact_force_margin at w of limits.overspeed; F_s:"
     " spring force, m: moving mass, s'': second derivative of the lift, P: preload",
-    reason="Decides: the synthesis keeps the contact by this closed form; the sweep adds friction"
+    reason="The synthesis keeps the contact by this closed form; the sweep adds friction"
     " and surge.",
 )
 def contact_at_overspeed(solution: Solution) -> Demand:
@@ -176,17 +177,19 @@ def contact_at_overspeed(solution: Solution) -> Demand:
     " over-speed; N = (P + k s + m w^2 s'' + c w s' + F_w) / ((1 - j) cos(alpha)), F_w: sum over"
     " the harmonics of k (phi cot phi - 1) s_h, phi = pi h w / w_1 sqrt(1 - 2 i zeta), j: jam"
     " index with the sign of the motion, w_1: first natural frequency of the spring, zeta:"
-    " spring.design.damping_ratio",
-    reason="Decides: between the load cases a harmonic of the lift may meet a natural frequency of"
+    " spring.design.damping_ratio; if the case does not state it, 0.01 with an error bar down to"
+    " 0.002",
+    reason="Between the load cases a harmonic of the lift may meet a natural frequency of"
     " the spring and lift the follower off the cam.",
 )
 def contact_over_speed(solution: Solution) -> Demand:
     """Minimum contact force over the preload, surge included, from standstill to over-speed."""
-    worst, note = _least_over_speed(
+    swept = _least_over_speed(
         solution,
         lambda sweep: (sweep.contact_force_min, sweep.contact_angle, sweep.contact_error),
     )
-    return Demand(worst.value, solution.machine.limits[CONTACT_FORCE_MARGIN], worst, note=note)
+    worst, limit = swept.barred(swept.worst), solution.machine.limits[CONTACT_FORCE_MARGIN]
+    return Demand(worst.value, limit, worst, note=swept.words)
 
 
 @check(
@@ -198,7 +201,7 @@ def contact_over_speed(solution: Solution) -> Demand:
     formula="min N(w, theta) / P >= limits.contact_force_margin over all speeds from standstill to"
     " over-speed and over the load cases at their varying speed; N: contact force of one mass on"
     " the stiffness between cam and mass, on the spring with its surge",
-    reason="Decides: the resonance of the follower on its own stiffness unloads the contact more"
+    reason="The resonance of the follower on its own stiffness unloads the contact more"
     " than the rigid follower shows.",
 )
 def elastic_contact(solution: Solution) -> Demand:
@@ -207,16 +210,16 @@ def elastic_contact(solution: Solution) -> Demand:
         solution.cycles,
         lambda c: c.parts.elastic.response.contact_force / c.machine.spring.preload,
     )
-    swept, note = _least_over_speed(
+    swept = _least_over_speed(
         solution,
         lambda sweep: (sweep.elastic_force_min, sweep.elastic_angle, sweep.elastic_error),
     )
     histories = [cycle.parts.elastic for cycle in solution.cycles]
     methods = "; ".join(dict.fromkeys(history.method for history in histories))
-    if np.isnan(swept.value) or swept.value < worst.value:
-        worst = swept
-    else:
-        note = ""
+    note = ""
+    if np.isnan(swept.worst.value) or swept.worst.value < worst.value:
+        worst, note = swept.worst, swept.words
+    worst = swept.barred(worst)
     return Demand(
         worst.value,
         solution.machine.limits[CONTACT_FORCE_MARGIN],
@@ -227,9 +230,24 @@ def elastic_contact(solution: Solution) -> Demand:
     )
 
 
+class Swept(NamedTuple):
+    """Least force over the preload over the speed; `least_damped`: at the least damping."""
+
+    worst: Extreme
+    least_damped: float
+    words: str
+
+    def barred(self, worst: Extreme) -> Extreme:
+        """An extreme whose error bar reaches down to the least damping of the surge."""
+        further = worst.value - self.least_damped
+        if not further > 0.0 or worst.value == 0.0:
+            return worst
+        return worst._replace(error_share=max(worst.error_share, further / abs(worst.value)))
+
+
 def _least_over_speed(
     solution: Solution, measure: Callable[[SpeedSweep], tuple[Array, Array, Array]]
-) -> tuple[Extreme, str]:
+) -> Swept:
     """Least force over the preload in all sweeps with its angle, and its speed in words.
 
     Parameters
@@ -247,10 +265,16 @@ def _least_over_speed(
             at = float(sweep.crank_speed[k])
         if np.isnan(value):
             break
+    damped = solution.least_damped
+    sweeps = () if damped is None else damped.speed_sweeps
+    least_damped = min(
+        (float(measure(one)[0].min()) / one.preload for one in sweeps), default=np.inf
+    )
     top = max(float(sweep.crank_speed[-1]) for sweep in solution.speed_sweeps)
     stated = overspeed(solution.machines) is not None
     end = shown(top, "rpm", 4) + ("" if stated else f", the fastest load case: {NO_OVERSPEED}")
-    return worst, f"at {shown(at, 'rpm', 4)} of the crank; swept from standstill to {end}"
+    words = f"at {shown(at, 'rpm', 4)} of the crank; swept from standstill to {end}"
+    return Swept(worst, least_damped, words)
 
 
 def _flights(histories: list[ElasticHistory]) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit
+from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit, Sense
 from camwright.pipeline.checks.check import Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.cycle.solution import Solution
@@ -20,7 +20,6 @@ from camwright.pipeline.follower.spring import HelicalSpring, Spring, surge_harm
 RATE_TOLERANCE = 0.05  # of the rate, where the case has none
 PRELOAD_TOLERANCE = 0.05  # of the preload, where the case has none
 HARDEST = "preload and rate high"
-RATE_ENDS = "preload high, worst end of the rate"
 STABLE = "stable at any deflection"
 
 
@@ -77,7 +76,7 @@ def _slow(
     reason: str,
     limit: Limit | None = None,
     allowed: Callable[[HelicalSpring], float] = lambda _: 1.0,
-    sense: str = "at_most",
+    sense: Sense = "at_most",
     unit: str = "-",
     source: str = "",
     note: Callable[[HelicalSpring], str] = lambda _: "",
@@ -90,7 +89,7 @@ def _slow(
         id=name,
         title=title,
         unit=unit,
-        sense="at_least" if sense == "at_least" else "at_most",
+        sense=sense,
         method=method,
         source=source,
         lift_can_help=lift_can_help,
@@ -117,17 +116,24 @@ def _corner(spring: Spring, words: str) -> str:
     return words if spring.preload_tolerance > 0 or spring.rate_tolerance > 0 else ""
 
 
-def _worst_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> tuple[float, str]:
-    """Greatest value over the ends of the spring, speeds and ends of the rate, with its speed."""
-    worst, at = -np.inf, 0.0
-    for sweep in solution.spring_sweeps:
-        values = np.max(use(sweep), axis=0)
-        k = int(np.argmax(values))  # the first NaN, where there is one
-        if np.isnan(values[k]) or values[k] > worst:
-            worst, at = float(values[k]), float(sweep.crank_speed[k])
-        if np.isnan(worst):
-            break
-    return worst, f"at {shown(at, 'rpm', 4)} of the crank"
+class OverSpeed(NamedTuple):
+    """Greatest value over the speed, the same at the least damping of the surge, the speed."""
+
+    value: float
+    least_damped: float
+    words: str
+
+
+def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> OverSpeed:
+    """Greatest value (2, m) over both ends of the spring and all speeds."""
+    sweep, damped = solution.hardest_spring, solution.least_damped
+    if sweep is None:
+        return OverSpeed(np.nan, np.nan, "")
+    values = np.max(use(sweep), axis=0)
+    k = int(np.argmax(values))  # the first NaN, where there is one
+    value, further = float(values[k]), None if damped is None else damped.hardest_spring
+    most = value if further is None else max(float(np.max(use(further))), value)
+    return OverSpeed(value, most, f"at {shown(float(sweep.crank_speed[k]), 'rpm', 4)} of the crank")
 
 
 @check(
@@ -141,19 +147,26 @@ def _worst_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> tup
     moved_by_tolerance=False,
     part="spring",
     formula="tau_max / (0.56 R_m) <= 1, tau = K_w 8 D F / (pi d^3); F: greatest force in the coils"
-    " from standstill to over-speed, preload high and rate at either end, K_w: Wahl factor, R_m:"
-    " tensile strength of the wire",
-    reason="Decides: a spring beyond its yield strength sets and loses the preload that keeps the"
+    " from standstill to over-speed with preload and rate high, resonances of any rate in tolerance"
+    " included, K_w: Wahl factor, R_m: tensile strength of the wire",
+    reason="A spring beyond its yield strength sets and loses the preload that keeps the"
     " follower on the cam.",
 )
 def spring_stress(solution: Solution) -> Demand:
     """Greatest shear stress of the wire with surge over the static strength."""
     design = _design(solution)
-    worst, note = _worst_speed(
+    worst = _over_speed(
         solution, lambda sweep: design.stress(sweep.greatest) / design.static_strength
     )
-    corner = _corner(solution.machine.spring, RATE_ENDS)
-    return Demand(worst, 1.0, note=note, figures=(design.source,), corner=corner)
+    share = worst.least_damped / worst.value - 1.0
+    return Demand(
+        worst.value,
+        1.0,
+        Extreme(worst.value, error_share=share),
+        note=worst.words,
+        figures=(design.source,),
+        corner=_corner(solution.machine.spring, HARDEST),
+    )
 
 
 @check(
@@ -167,20 +180,21 @@ def spring_stress(solution: Solution) -> Demand:
     formula="1 / (tau_a / S_e + tau_m / S_su) >= limits.spring_fatigue; tau_a, tau_m: amplitude and"
     " mean at the end of the spring with the greater range, over all speeds from standstill to"
     " over-speed, S_su = 0.67 R_m, S_e: endurance by Zimmerli's point",
-    reason="Decides: a broken spring releases the follower.",
+    reason="A broken spring releases the follower.",
 )
 def spring_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the wire with surge over the speed range."""
     design = _design(solution)
-    use, note = _worst_speed(
-        solution, lambda sweep: design.fatigue_use(sweep.least, sweep.greatest)
-    )
+    worst = _over_speed(solution, lambda sweep: design.fatigue_use(sweep.least, sweep.greatest))
+    safety = 1.0 / worst.value  # of a preload above zero
+    share = 0.0 if safety == 0.0 else 1.0 - worst.value / worst.least_damped
     return Demand(
-        np.inf if use == 0.0 else 1.0 / use,
+        safety,
         solution.machine.limits[SPRING_FATIGUE],
-        note=note,
+        Extreme(safety, error_share=share),
+        note=worst.words,
         figures=(design.source,),
-        corner=_corner(solution.machine.spring, RATE_ENDS),
+        corner=_corner(solution.machine.spring, HARDEST),
     )
 
 
@@ -193,7 +207,7 @@ spring_solid = _slow(
     method="free length less solid length less deflection at maximum lift, over that deflection",
     formula="(L0 - Lc - s_max) / s_max >= limits.spring_solid; L0, Lc: free and solid length,"
     " s_max = P/k + h: deflection at maximum lift h, preload P high",
-    reason="Decides: a spring that goes solid stops the follower.",
+    reason="A spring that goes solid stops the follower.",
 )
 spring_coil_gap = _slow(
     "spring_coil_gap",
@@ -206,8 +220,7 @@ spring_coil_gap = _slow(
     method="free length less solid length less deflection at maximum lift",
     formula="L0 - Lc - s_max >= 1.5 n (0.0015 D^2/d + 0.1 d); L0, Lc: free and solid length, s_max:"
     " deflection at maximum lift with the preload high, n: active coils, D: mean diameter, d: wire",
-    reason="Decides: below it coils touch before the solid length, the rate rises and the wire"
-    " wears.",
+    reason="Below it coils touch before the solid length, the rate rises and the wire wears.",
 )
 spring_solid_stress = _slow(
     "spring_solid_stress",
@@ -219,7 +232,7 @@ spring_solid_stress = _slow(
     method="rate times free less solid length, without correction factor, rate high",
     formula="tau_c = 8 D F_c / (pi d^3) <= 0.56 R_m; F_c = k (L0 - Lc): force at solid length with"
     " the rate high, R_m: tensile strength of the wire",
-    reason="Decides: a spring is pressed solid when it is coiled, mounted and over-run, and sets"
+    reason="A spring is pressed solid when it is coiled, mounted and over-run, and sets"
     " beyond this stress.",
     lift_can_help=False,
 )
@@ -235,7 +248,7 @@ spring_buckling = _slow(
     formula="s_max / s_K <= 1, s_K = L0 / (2 (1 - G/E)) (1 - sqrt(1 - (1 - G/E) / (0.5 + G/E)"
     " (pi D / (nu L0))^2)); s_max: deflection at maximum lift with the preload high, nu: seating"
     " coefficient",
-    reason="Decides: a spring that buckles rubs on the stem and loses its force.",
+    reason="A spring that buckles rubs on the stem and loses its force.",
     note=lambda design: STABLE if np.isinf(design.buckling_deflection) else "",
 )
 
@@ -248,7 +261,7 @@ spring_buckling = _slow(
     moved_by_tolerance=False,
     part="spring",
     formula="|G d^4 / (8 D^3 n) / k - 1| <= tolerance of the rate; k: spring.rate",
-    reason="Decides: all loads are those of spring.rate, all stresses those of the design.",
+    reason="All loads are those of spring.rate, all stresses those of the design.",
 )
 def spring_rate(solution: Solution) -> Demand:
     """Deviation of the rate of the spring design from that of the case, relative."""
@@ -266,7 +279,7 @@ def spring_rate(solution: Solution) -> Demand:
     part="spring",
     formula="f1 / f_cam >= limits.spring_surge; f1 = sqrt(k/m)/2: first natural frequency of the"
     " active coils, f_cam: turns of the cam at over-speed, at least at the fastest load case",
-    reason="Decides: below it strong harmonics of the lift drive the coils, and the force on the"
+    reason="Below it strong harmonics of the lift drive the coils, and the force on the"
     " cam depends on a damping that is hardly known.",
 )
 def spring_surge(solution: Solution) -> Demand:
@@ -285,7 +298,7 @@ def spring_surge(solution: Solution) -> Demand:
         note=f"highest harmonic of at least 1 % of the acceleration: {highest}; surge lies"
         f" {margin:.2f} times above it and adds up to {shown(added, 'N', 3)} at"
         f" {shown(speed, 'rpm', 4)} of the crank with a damping ratio of"
-        f" {design.damping_ratio:g}",
+        f" {design.damping:g}",
     )
 
 
@@ -299,7 +312,7 @@ def spring_surge(solution: Solution) -> Demand:
     part="spring",
     formula="R F_max / P <= tolerance of the preload; R: spring.design.relaxation, share of the"
     " force lost in 48 h at spring.design.temperature, F_max: force at maximum lift, P: preload",
-    reason="Decides: a relaxed spring no longer has the preload on which every force is based.",
+    reason="A relaxed spring no longer has the preload on which every force is based.",
 )
 def spring_relaxation(solution: Solution) -> Demand:
     """Loss of preload by relaxation at temperature, relative."""

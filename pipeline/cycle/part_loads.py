@@ -196,7 +196,7 @@ def spring_surge(machine: Machine, lift: Array) -> Array | None:
     if design is None:
         return None
     frequency = natural_frequency(rate, design.active_mass)
-    return surge_force(lift, machine.cam_speed, rate, frequency, design.damping_ratio)
+    return surge_force(lift, machine.cam_speed, rate, frequency, design.damping)
 
 
 def guide_bodies(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:

@@ -39,6 +39,7 @@ from camwright.pipeline.cycle.speed_sweep import (
 )
 from camwright.pipeline.cycle.turn import Turn, turn
 from camwright.pipeline.engine.torque import Torque
+from camwright.pipeline.follower.spring import LEAST_DAMPING
 
 # Positions solved and stored together; an interruption loses at most one such piece.
 CHUNK = 90
@@ -109,28 +110,30 @@ class Solution:
         )
 
     @cached_property
-    def spring_sweeps(self) -> tuple[SpringSweep, ...]:
-        """Forces in the spring over the speed, at the highest preload and each end of the rate.
-
-        Empty without a spring design.
-        """
-        spring = self.machine.spring
-        design = spring.design
+    def hardest_spring(self) -> SpringSweep | None:
+        """Forces in the hardest spring in tolerance over the speed; None without its design."""
+        design = self.machine.spring.design
         if design is None:
-            return ()
+            return None
         preload = max(machine.spring.preload for machine in self.machines)
-        hard = preload * (1.0 + spring.preload_tolerance)
-        shares = dict.fromkeys((1.0 - spring.rate_tolerance, 1.0, 1.0 + spring.rate_tolerance))
-        return tuple(
-            spring_sweep(
-                replace(
-                    self.machine, spring=replace(spring, rate=design.rate * share, preload=hard)
-                ),
-                design,
-                self.contour.pitch,
-                self._speeds,
-            )
-            for share in shares
+        return spring_sweep(self.machine, design, self.contour.pitch, preload, self._speeds)
+
+    @cached_property
+    def least_damped(self) -> Solution | None:
+        """The solution at the least damping of the surge; None if the case states the damping.
+
+        None in a coarse solution, too.
+        """
+        design = self.machine.spring.design
+        if self.coarse or design is None or design.damping_ratio is not None:
+            return None
+        return replace(
+            self,
+            machines=tuple(_least_damped(each) for each in self.machines),
+            cycles=tuple(
+                replace(each, turn=replace(each.turn, machine=_least_damped(each.machine)))
+                for each in self.cycles
+            ),
         )
 
     @property
@@ -138,6 +141,12 @@ class Solution:
         """Crank speeds of the load cases and over-speed, rad/s."""
         speeds = [machine.crank_speed for machine in self.machines]
         return (*speeds, highest_speed(self.machines))
+
+
+def _least_damped(machine: Machine) -> Machine:
+    spring = machine.spring
+    design = spring.design and replace(spring.design, damping_ratio=LEAST_DAMPING)
+    return replace(machine, spring=replace(spring, design=design))
 
 
 class ContactStore(Protocol):

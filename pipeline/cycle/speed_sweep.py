@@ -27,7 +27,10 @@ UNIFORM = 61  # speeds at equal distances
 SIGNIFICANT = 0.01  # force of a harmonic at resonance over the preload
 # Speeds about a resonance, in widths: the damping ratio times its speed.
 _ABOUT = np.array([-2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0])
+_WIDTH = 0.2  # at most, so that every speed is positive
 _REFINED = 17
+_MODES = 100  # beyond, the damping merges the resonances
+_MET = 600  # resonances resolved, the strongest
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,9 +88,9 @@ class SpeedSweep:
 
 @dataclass(frozen=True, eq=False)
 class SpringSweep:
-    """Least and greatest force (2, m), N, at moving and fixed end of a spring over the speed.
+    """Least and greatest force (2, m), N, at moving and fixed end of the hardest spring.
 
-    crank_speed (m,), rad/s.
+    crank_speed (m,), rad/s: at which a spring of the nominal rate meets the same harmonics.
     """
 
     crank_speed: Array
@@ -135,22 +138,39 @@ def speed_sweep(
 
 
 def spring_sweep(
-    machine: Machine, design: HelicalSpring, pitch: FollowerPath, speeds: Sequence[float]
+    machine: Machine,
+    design: HelicalSpring,
+    pitch: FollowerPath,
+    preload: float,
+    speeds: Sequence[float],
 ) -> SpringSweep:
-    """Forces at both ends of the spring from standstill to the greatest of some speeds.
+    """Forces at both ends of the hardest spring from standstill to the greatest of some speeds.
+
+    The forces are those of the highest rate and preload in tolerance; the sweep extends to the
+    speed at which the softest spring meets the same harmonics as at the greatest one.
 
     Parameters
     ----------
-    machine : Machine    with the rate and the preload of the spring at its tolerances
+    preload : float      greatest of the load cases, N
     speeds : of float    crank speeds that the sweep contains, rad/s
     """
-    resonant = _Resonant.of(machine.spring, design, pitch)
-    grid = resonant.grid(machine, np.asarray(speeds) / machine.gear_ratio)
+    spring, spread = machine.spring, machine.spring.rate_tolerance
+    hard = replace(
+        spring,
+        rate=design.rate * (1.0 + spread),
+        preload=preload * (1.0 + spring.preload_tolerance),
+    )
+    # The resonances of the hardest spring lie this much above those of the nominal and softest one.
+    nominal, softest = np.sqrt(1.0 + spread), np.sqrt((1.0 + spread) / (1.0 - spread))
+    resonant = _Resonant.of(hard, design, pitch)
+    known = softest * np.asarray(speeds) / machine.gear_ratio
+    grid = resonant.grid(machine, known)
     least, greatest = resonant.end_forces(grid)
     finer = _between(grid, {int(np.argmax(np.max(greatest - least, axis=0)))})
     more = resonant.end_forces(finer)
+    swept = machine.gear_ratio * np.concatenate([grid, finer]) / nominal
     return SpringSweep(
-        machine.gear_ratio * np.concatenate([grid, finer]),
+        np.minimum(swept, np.max(speeds)),
         np.concatenate([least, more[0]], axis=1),
         np.concatenate([greatest, more[1]], axis=1),
     )
@@ -193,7 +213,7 @@ class _Resonant:
             zero = np.zeros(drive.shape, dtype=complex)
             return zero, zero
         frequency = self.first / (2.0 * np.pi)
-        return dynamic_stiffness(drive, self.spring.rate, frequency, self.design.damping_ratio)
+        return dynamic_stiffness(drive, self.spring.rate, frequency, self.design.damping)
 
     def back(self, spectrum: NDArray[np.complex128]) -> Array:
         return np.fft.irfft(spectrum, ANGLES)
@@ -212,18 +232,16 @@ class _Resonant:
         top = float(known.max())
         speeds = [np.linspace(0.0, top, UNIFORM), known]
         enough = SIGNIFICANT * self.spring.preload
-        order = self.order[1:]
         if self.design is not None:
-            damping = self.design.damping_ratio
-            strong = order[self.spring.rate * self.amplitude / damping >= enough]
-            modes = np.arange(1.0, top * max(strong, default=0.0) / self.first + 1.0)
-            met = (modes * self.first / strong[:, None]).ravel()
-            speeds.append(_about(met[met <= top], damping))
+            damping = self.design.damping
+            peak = self.spring.rate * self.amplitude / damping
+            modes = self.first * np.arange(1.0, _MODES + 1.0)
+            speeds.append(_about(_met(modes, peak, enough, top), damping))
         total = machine.axial_stiffness + self.spring.rate
         damping = max(machine.damping_ratio, 1e-3)
-        strong = order[total * self.amplitude / (2.0 * damping) >= enough]
-        met = np.sqrt(total / machine.mass) / strong
-        speeds.append(_about(met[met <= top], damping))
+        peak = total * self.amplitude / (2.0 * damping)
+        own = np.array([np.sqrt(total / machine.mass)])
+        speeds.append(_about(_met(own, peak, enough, top), damping))
         return np.unique(np.clip(np.concatenate(speeds), 0.0, top))
 
 
@@ -298,10 +316,27 @@ class _Follower:
         return self.resonant.back(joint * drive / (joint + behind))
 
 
+def _met(modes: Array, peak: Array, enough: float, top: float) -> Array:
+    """Speeds up to `top` at which a harmonic meets a mode; the strongest.
+
+    Parameters
+    ----------
+    modes : array (k,)   natural frequencies, rad/s
+    peak : array (h,)    force of each harmonic at resonance, from the first, N
+    enough : float       least force of a resonance, N
+    """
+    order = np.arange(1.0, peak.size + 1.0)[peak >= enough]
+    met = modes / order[:, None]
+    inside = met <= top
+    force = np.broadcast_to(peak[peak >= enough][:, None], met.shape)[inside]
+    return np.asarray(met[inside][np.argsort(-force, kind="stable")[:_MET]])
+
+
 def _about(speeds: Array, damping: float) -> Array:
     """Speeds about the resonances, none closer to another than a fifth of the width."""
-    every = np.sort((speeds[:, None] * (1.0 + damping * _ABOUT)).ravel())
-    _, kept = np.unique(np.round(np.log(every) / (0.2 * damping)), return_index=True)
+    width = min(damping, _WIDTH)
+    every = np.sort((speeds[:, None] * (1.0 + width * _ABOUT)).ravel())
+    _, kept = np.unique(np.round(np.log(every) / (0.2 * width)), return_index=True)
     return every[kept]
 
 

@@ -66,6 +66,12 @@ def test_goes_solid_without_an_exception():
     assert SPRING.solid_clearance(preload, room - 0.01) == pytest.approx(0.0, abs=1e-12)
     assert SPRING.solid_clearance(preload, 2 * room) < 0.0
     assert "goes solid" in SpringDemand(SPRING.rate, preload, 2 * room).shortfalls(SPRING)
+    close = SpringDemand(SPRING.rate, preload, room - 0.01 - 0.99 * SPRING.minimum_gaps)
+    assert "gap between coils" in close.shortfalls(SPRING)
+    weak = replace(SPRING, strength_at_1mm=1000e6)
+    assert "stress at solid length" in SpringDemand(SPRING.rate, preload, 0.01).shortfalls(weak)
+    slender = replace(SPRING, end_factor=2.0)
+    assert "buckling" in SpringDemand(SPRING.rate, preload, 0.03).shortfalls(slender)
 
 
 def test_buckling_and_surge():

@@ -109,7 +109,7 @@ def driven_coils(design, rate, cam_speed):
     acceleration = cam_speed**2 * (0.01 * np.cos(theta) + 36.0 * 1.5e-4 * np.cos(6.0 * theta))
     inside = slice(1, ELEMENTS)
     m, k = M[inside, inside], K[inside, inside]
-    c = modal_damping(m, k, design.damping_ratio)
+    c = modal_damping(m, k, design.damping)
     # relative to the coils that follow the moving end in proportion
     share = np.linspace(0.0, 1.0, ELEMENTS + 1)
     load = -np.outer(acceleration, (M @ share)[inside])
@@ -129,11 +129,11 @@ def test_surge_is_that_of_coils_integrated_in_time(solved, rpm):
     moving, fixed = driven_coils(design, rate, cam_speed)
     s = lift_of(uniform_turn(STEPS))
     frequency = 0.5 * np.sqrt(rate / design.active_mass)
-    surge = surge_force(s, cam_speed, rate, frequency, design.damping_ratio)
+    surge = surge_force(s, cam_speed, rate, frequency, design.damping)
     swing = np.abs(moving - rate * s).max()
     np.testing.assert_allclose(surge, moving - rate * s, atol=0.02 * swing)
     drive = np.arange(STEPS // 2 + 1) * cam_speed
-    stiffness = dynamic_stiffness(drive, rate, frequency, design.damping_ratio).fixed
+    stiffness = dynamic_stiffness(drive, rate, frequency, design.damping).fixed
     held = np.fft.irfft(stiffness * np.fft.rfft(s), STEPS)
     np.testing.assert_allclose(held, fixed - rate * s, atol=0.02 * swing)
 
@@ -193,7 +193,7 @@ def test_elastic_contact_is_that_of_coils_mass_and_stem_in_time(solved):
     M, K = (each[1:, 1:].copy() for each in chain(*wire(design, rate)))
     C = np.zeros_like(M)
     # the coils are damped between fixed ends, as their modes are
-    C[:-1, :-1] = modal_damping(M[:-1, :-1], K[:-1, :-1], design.damping_ratio)
+    C[:-1, :-1] = modal_damping(M[:-1, :-1], K[:-1, :-1], design.damping)
     stem = machine.axial_stiffness
     damping = machine.damping_ratio * 2.0 * np.sqrt(machine.mass * (stem + rate))
     # relative to coils that follow the mass in proportion: their damping does not act on that
