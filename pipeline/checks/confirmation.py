@@ -241,6 +241,7 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "cam_radius": (),
         "profile_waviness": _LOADS,
         "chord_error": (),
+        "tool_gouge": (),
         "phase_tolerance": _LOADS,
         "bore_stress": (
             *_CONTACT, "cam.material.yield_strength", "cam.material.core_yield_strength",
