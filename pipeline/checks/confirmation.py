@@ -33,9 +33,15 @@ _HEAT = (
 _KEY = (
     *_LOADS,
     *("cam.key.application_factor", "cam.key.material.yield_strength", "limits.key_reversal"),
-    *("cam.material.yield_strength", "camshaft.material.yield_strength"),
+    *("cam.material.*yield_strength", "camshaft.material.*yield_strength"),
 )
-_SURGE = ("spring.design.shear_modulus", "spring.design.density", "spring.design.damping_ratio")
+_SHAFT = (*_LOADS, "camshaft.drag", "camshaft.rotor_mass", "cam.material.density")
+_SURGE = (
+    "limits.overspeed",
+    "spring.design.shear_modulus",
+    "spring.design.density",
+    "spring.design.damping_ratio",
+)
 _TRACTION = (
     *_LOADS,
     *("roller.friction", "roller.inertia", "roller.material.density"),
@@ -87,7 +93,8 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "jump_speed": (*_MOTION, "limits.overspeed"),
         "contact_at_overspeed": (*_LOADS, "limits.overspeed"),
         "elastic_contact": (
-            *_LOADS, "follower.stiffness", "follower.damping_ratio", "follower.stem_material.E",
+            *_LOADS, "follower.stiffness", "follower.damping_ratio", "roller.material.E",
+            "roller.material.nu", "roller.bearing.ring.*",
         ),
         "contact_pressure": (*_CONTACT, *_bodies("*endurance_pressure")),
         "first_yield": (*_CONTACT, *_bodies("yield_strength")),
@@ -138,12 +145,14 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "grease_life": (
             *_LOADS, "roller.bearing.C", "roller.bearing.temperature",
             "roller.bearing.grease_life", "roller.bearing.relubrication_interval",
+            "limits.target_life",
         ),
         "roller_speed": ("roller.bearing.speed_limit",),
         "roller_radial": (*_LOADS, "roller.bearing.radial_limit"),
         "roller_static_radial": (*_LOADS, "roller.bearing.static_radial_limit"),
         **_guides(
-            "guide_pressure", "guide.pressure_limit*", "guide.material.strength_at", *_HEAT,
+            "guide_pressure", "guide.pressure_limit*", "guide.material.yield_strength",
+            "guide.material.strength_at", *_HEAT,
         ),
         **_guides("guide_pv", "guide.pv_limit"),
         **_guides(
@@ -159,8 +168,8 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "anti_rotation": (),
         **_guides("guide_wear", "guide.wear_rate", "limits.target_life"),
         "guide_length": (),
-        "spring_stress": (*_SPRING, *_RATE, *_WIRE),
-        "spring_fatigue": (*_SPRING, *_RATE, *_WIRE),
+        "spring_stress": (*_SPRING, *_SURGE, *_WIRE),
+        "spring_fatigue": (*_SPRING, *_SURGE, *_WIRE),
         "spring_solid": (*_SPRING, *_RATE),
         "spring_buckling": (),
         "spring_rate": ("spring.rate", *_RATE),
@@ -168,9 +177,9 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "spring_coil_gap": (*_SPRING, *_RATE),
         "spring_solid_stress": (*_SPRING, *_RATE, *_WIRE),
         "spring_relaxation": (
-            *_SPRING, "spring.design.relaxation", "spring.design.temperature",
+            *_SPRING, *_RATE, "spring.design.relaxation", "spring.design.temperature",
         ),
-        "contact_over_speed": (*_LOADS, *_SURGE, "limits.overspeed"),
+        "contact_over_speed": (*_LOADS, *_SURGE),
         "roller_pin": (*_LOADS, "roller.pin.material.yield_strength"),
         "roller_pin_shear": (*_LOADS, "roller.pin.material.yield_strength"),
         "roller_pin_fatigue": (
@@ -190,36 +199,30 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         ),
         "roller_ring_fatigue": (
             *_LOADS, "roller.material.E", "roller.material.nu", "roller.bearing.C0",
-            "roller.bearing.ring.fatigue_bending", "roller.bearing.ring.tensile_strength",
-            "roller.bearing.ring.thickness", "roller.bearing.ring.balls",
-            "roller.bearing.ring.rows", "roller.bearing.ring.pitch_diameter",
+            "roller.bearing.ring.*",
         ),
         "key_pressure": _KEY,
         "key_pressure_shaft": _KEY,
-        "keyway_root": (*_KEY, *_CONTACT, "cam.material.fatigue_bending"),
+        "keyway_root": (
+            *_KEY, *_CONTACT, "cam.material.fatigue_bending", "cam.material.tensile_strength",
+            "limits.shaft_reliability",
+        ),
         "cam_slip": (*_KEY, "camshaft.slip_torque"),
-        "bore_pressure": _LOADS,
+        "bore_pressure": (
+            *_LOADS, "cam.material.tensile_strength", "camshaft.material.tensile_strength",
+        ),
         "key_shear": _KEY,
         "torque_reversals": _LOADS,
         "cam_unbalance": ("cam.material.density", "camshaft.rotor_mass"),
         "shaft_fatigue": (
-            *_LOADS, "camshaft.material.tensile_strength", "camshaft.material.fatigue_bending",
-            "camshaft.*notch_*", "cam.material.density", "camshaft.rotor_mass",
-            "limits.shaft_reliability",
+            *_SHAFT, "camshaft.material.tensile_strength", "camshaft.material.fatigue_bending",
+            "camshaft.*notch_*", "limits.shaft_reliability",
         ),
-        "shaft_yield": (
-            *_LOADS, "camshaft.material.yield_strength", "camshaft.*notch_*",
-            "cam.material.density", "camshaft.rotor_mass",
-        ),
-        "shaft_deflection": (*_LOADS, "camshaft.material.E", "cam.material.density"),
-        "shaft_slope": (*_LOADS, "camshaft.material.E", "cam.material.density"),
-        "shaft_bearing_static": (
-            *_LOADS, "camshaft.bearing_static_rating", "cam.material.density",
-            "camshaft.rotor_mass",
-        ),
-        "shaft_bearing_life": (
-            *_LOADS, "camshaft.bearing_rating", "cam.material.density", "camshaft.rotor_mass",
-        ),
+        "shaft_yield": (*_SHAFT, "camshaft.material.*yield_strength", "camshaft.*notch_*"),
+        "shaft_deflection": (*_SHAFT, "camshaft.material.E"),
+        "shaft_slope": (*_SHAFT, "camshaft.material.E"),
+        "shaft_bearing_static": (*_SHAFT, "camshaft.bearing_static_rating"),
+        "shaft_bearing_life": (*_SHAFT, "camshaft.bearing_rating"),
         "gear_bending": (
             *_LOADS, "camshaft.gear.bending_limit", "camshaft.gear.application_factor",
             "camshaft.drag",
@@ -239,6 +242,7 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "cam_radius": (),
         "profile_waviness": _LOADS,
         "chord_error": (),
+        "tool_gouge": (),
         "phase_tolerance": _LOADS,
         "bore_stress": (
             *_CONTACT, "cam.material.yield_strength", "cam.material.core_yield_strength",
