@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -83,8 +83,10 @@ def _solved(
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)
     final, statement = trials_of(case, torques, sink=writer, progress=watch)
+    blocking = final.binding
     final = certify_trial(final, jobs=jobs, progress=watch)
     final = _with_corners(folder, torques, final, watch)
+    statement = restated(statement, blocking, final.binding)
     writer.judge(final)
     watch.stage("fields")
     write_fields(folder.fields, final, watch.advance)
@@ -92,6 +94,20 @@ def _solved(
         watch.stage(WORKSHOP)
         write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
     return _summary(folder, torques, statement, final) | dict(also(final))
+
+
+def restated(statement: str, before: Sequence[str], after: Sequence[str]) -> str:
+    """Stopping criterion, and the binding checks of the last trial that it does not know.
+
+    Parameters
+    ----------
+    before, after : sequence   ids of binding checks, without and with certificate and corners
+    """
+    further = [name for name in after if name not in before]
+    if not further:
+        return statement
+    words = "binding by the certificate or a tolerance corner"
+    return f"{statement}; {words}: {', '.join(further)}"
 
 
 def _with_corners(
