@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -82,7 +82,9 @@ def _solved(
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)
     final, statement = trials_of(case, torques, sink=writer, progress=watch)
+    blocking = final.binding
     final = certify_trial(final, jobs=jobs, progress=watch)
+    statement = restated(statement, blocking, final.binding)
     folder.write_corners(corners_record(final.case, final.corners))
     writer.judge(final)
     watch.stage("fields")
@@ -91,6 +93,19 @@ def _solved(
         watch.stage(WORKSHOP)
         write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
     return _summary(folder, torques, statement, final) | dict(also(final))
+
+
+def restated(statement: str, before: Sequence[str], after: Sequence[str]) -> str:
+    """Stopping criterion, and the binding checks of the last trial that it does not know.
+
+    Parameters
+    ----------
+    before, after : sequence   ids of binding checks, without and with certificate
+    """
+    further = [name for name in after if name not in before]
+    if not further:
+        return statement
+    return f"{statement}; binding by the certificate: {', '.join(further)}"
 
 
 def _summary(

@@ -220,17 +220,17 @@ def _facts(material: Material) -> list[tuple[str, str]]:
 
 
 def _checks(material: Material) -> Section:
-    """Checks without data, required ones first; required checks, failed first; optional checks."""
+    """Required checks without data; required checks, failed first; optional checks likewise."""
     rows = report_tables.check_rows(material.run.final.checks)
     missing = [row for row in rows if row.status.id == "not_evaluated"]
-    missing.sort(key=lambda row: not row.must_have)
     known = [row for row in rows if row.status.id != "not_evaluated"]
     required = [row for row in known if row.must_have]
     required.sort(key=lambda row: row.status.id != "fail")
     groups = (
-        ("Missing data", missing, f"{MISSING} {_optional(missing)}".rstrip()),
+        ("Missing data", [row for row in missing if row.must_have], MISSING),
         ("Required", required, ""),
         ("Optional", [row for row in known if not row.must_have], ""),
+        ("Missing data of optional checks", [row for row in missing if not row.must_have], ""),
     )
     return Section(
         "checks", "Checks",
@@ -241,12 +241,6 @@ def _checks(material: Material) -> Section:
         "Required checks: failed first, then passed, by decreasing utilisation. The tick on each "
         "bar marks the limit; ± is the numerical uncertainty, omitted below the last digit shown.",
     )  # fmt: skip
-
-
-def _optional(rows: Sequence[CheckRow]) -> str:
-    """Titles of the optional checks among rows, in a sentence."""
-    titles = [isolated(row.title) for row in rows if not row.must_have]
-    return f"Optional: {'; '.join(titles)}." if titles else ""
 
 
 def _numbers(material: Material) -> Section:

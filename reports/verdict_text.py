@@ -64,7 +64,6 @@ class Verdict:
         lines = (
             ("Governing", self.governing),
             ("Binding", f"{'; '.join(self.binding)}." if self.binding else ""),
-            ("Stopping criterion", self.stopped[0] if self.stopped else ""),
         )
         return [line for line in lines if line[1]]
 
@@ -72,10 +71,10 @@ class Verdict:
     def lists(self) -> list[tuple[str, Sequence[str]]]:
         """(label, items) of the lists below the lines."""
         lists = (
-            ("Stopping criterion, continued", self.stopped[1:]),
             ("Missing data", self.missing),
             ("Not proven", self.unproven),
             ("Waived", self.waived),
+            ("Stopping criterion", self.stopped),
         )
         return [each for each in lists if each[1]]
 
@@ -171,8 +170,9 @@ def governing(checks: Sequence[Check]) -> str:
     row = check_rows([max(known, key=lambda c: utilisation(c) or 0.0)])[0]
     place = f", load case {isolated(row.load_case)}" if row.load_case else ""
     angle = f", cam angle {row.where}" if row.where else ""
+    corner = f", at the tolerance corner {row.corner}" if row.corner else ""
     return (
-        f"{isolated(row.title)}{place}{angle}: demand {row.demand}, limit {row.limit},"
+        f"{isolated(row.title)}{place}{angle}: demand {row.demand}{corner}, limit {row.limit},"
         f" utilisation {row.utilisation}."
     )
 

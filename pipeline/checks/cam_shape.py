@@ -289,8 +289,6 @@ def minimum_wall(solution: Solution) -> Demand:
     lift_can_help=True,
     forecast=True,
     moved_by_tolerance=False,
-    formula="s_max <= spring.travel_max; s_max: greatest lift",
-    reason="The spring and its seat are drawn for that travel.",
 )
 def spring_travel(solution: Solution) -> Demand:
     """Maximum lift, m, against the spring travel."""

@@ -83,7 +83,6 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "second_contact": (),
         "concave_radius": (),
         "curvature_rate": (),
-        "tool_gouge": (),
         "minimum_wall": (),
         "spring_travel": ("spring.travel_max",),
         "contact_force_margin": _LOADS,

@@ -264,8 +264,6 @@ def _guide_temperature(side: Side) -> Declaration:
         notes = _unknown_heat_path(machine, side)
         if card.temperature_limit is None:
             notes.append(f"no temperature limit of {card.name} is given")
-        if not machine.friction.bounded:
-            notes.append("at nominal friction: no greatest friction is given for both guides")
         return Demand(
             celsius(worst.value),
             None if card.temperature_limit is None else celsius(card.temperature_limit),

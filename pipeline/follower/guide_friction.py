@@ -27,8 +27,6 @@ NYLON_PV = {
 class FrictionRange:
     """Friction coefficients of guides A and B: nominal, minimum and maximum.
 
-    bounded: whether the upper bounds of both guides are known.
-
     Raises
     ------
     InputError
@@ -38,7 +36,6 @@ class FrictionRange:
     nominal: tuple[float, float]
     least: tuple[float, float]
     greatest: tuple[float, float]
-    bounded: bool = True
 
     def __post_init__(self) -> None:
         ranges = zip("ab", self.least, self.nominal, self.greatest, strict=True)
@@ -64,7 +61,6 @@ class FrictionRange:
             nominal=(guides.a.friction, guides.b.friction),
             least=(low[0], low[1]),
             greatest=(high[0], high[1]),
-            bounded=tolerance > 0.0 or all(g.friction_max is not None for g in both),
         )
 
     def factors(self, side: int) -> tuple[float, float]:

@@ -162,7 +162,8 @@ def remarks(records: Iterable[CheckRecord]) -> list[str]:
     unproven = [f"{r['id']}: {not_proven(r)}" for r in records if r["not_proven"]]
     verify = [r["id"] for r in records if "verify" in r["source"]]
     still_open = [
-        f"missing data: {r['id']}: {r['note'] or 'a number is missing'}"
+        f"missing data{'' if r['must_have'] else ' (optional)'}: {r['id']}: "
+        f"{r['note'] or 'a number is missing'}"
         for r in records
         if r["status"] == "not_evaluated"
     ]

@@ -91,7 +91,7 @@ def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scen
         viscous_damping=machine.viscous_damping,
         preload_factor=machine.spring.preload / case.spring.preload,
         weight=0.0 if torque is None else machine.ripple_weight,
-        friction_worst=friction.greatest if friction.bounded else None,
+        friction_worst=friction.greatest,
         correction=Correction.none(POINTS),
     )
     if not case.smoothing.corners:

@@ -122,6 +122,7 @@ def _statement(attempts: Sequence[Attempt], latest: Attempt, cause: str) -> str:
         before = first[name].utilisation if name in first else None
         history = f"{before:.3g} at trial 1, " if before is not None and len(attempts) > 1 else ""
         remark = "" if check.lift_can_help else ", independent of the smoothing"
+        remark += ", not proven" if check.not_proven else ""
         parts.append(f"{name} at {history}{check.utilisation:.3g} of its limit now{remark}")
     if unknown:
         limits = "one check" if len(unknown) == 1 else f"{len(unknown)} checks"

@@ -219,3 +219,28 @@ def test_without_typst_it_says_what_to_install(
     )
     with pytest.raises(ResultError, match=r"typst: pip install 'camwright\[pdf\]'"):
         sections.report(material.folder, sections.chosen(["pdf"]))
+
+
+def test_the_first_page_states_scope_missing_data_and_values_to_be_confirmed(
+    tmp_path: Path, undrawn: None
+) -> None:
+    """With text in the language of the typesetter, which is shown and never evaluated."""
+    source = " ".join(TYPST)
+    records = [r for r in report_fixture.checks() if r["status"] in ("pass", "waived")]
+    records[0]["to_be_confirmed"] = [f"value {source}"]
+    bare = {"id": "shaft", "title": "Shaft", "note": f"state {source}", "status": "not_evaluated"}
+    records.append(records[1] | bare | {"demand": None, "limit": None, "utilisation": None})
+    folder = report_fixture.write_run(
+        tmp_path / "run", positions=36, records=records, field=False,
+        scope={"not_covered": ["key"], "reason": f"rig {source}"},
+    )  # fmt: skip
+    made = pdf.typeset(report_content.report_content(read_material(folder)))
+    said = squeezed(pypdf.PdfReader(io.BytesIO(made)).pages[0].extract_text())
+    expected = (
+        "INCOMPLETE", "INCOMPLETE: 1 check without data, 1 waived, 1 value to be confirmed",
+        "Values to be confirmed:", f"value {source}",
+        f"Not covered by this sign-off: key: rig {source}",
+        "Missing data:", f"Shaft: state {source}", "Waived:",
+    )  # fmt: skip
+    places = [said.index(squeezed(text)) for text in expected]
+    assert places == sorted(places)

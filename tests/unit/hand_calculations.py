@@ -72,7 +72,7 @@ def modified_life() -> float:
     kappa = viscosity_ratio()
     assert 1.0 <= kappa <= 4.0
     damage = 0.0
-    for force, speed in zip(made.cycle().loads.normal_force, roller_spin(), strict=True):
+    for force, speed in zip(made.cycle().surged_force, roller_spin(), strict=True):
         clean = (0.5 * 60.0 / force) ** (1.0 / 3.0)
         left = 1.0 - (2.5671 - 1.9987 * kappa**-0.071739) ** 0.83 * clean
         turns = 1e6 * min(0.1 / left**9.3, 50.0) * (1140.0 / force) ** 3

@@ -309,7 +309,7 @@ by_limit(
 tried(
     "jam_index_friction_max",
     limited("jam_index_friction_max", limit_of("jam_index")),
-    lambda: with_guide("a", friction_max=None),
+    None,
     lambda: with_worst_friction(jam_index=NAN),
     0.4,
     "0.3 + 0.1 sin",

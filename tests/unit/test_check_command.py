@@ -127,7 +127,8 @@ def test_table_worst_first_with_margin_error_and_corner() -> None:
 def test_waivers_open_checks_and_recalled_limits_are_told() -> None:
     told = "\n".join(remarks(RECORDS))
     assert "waived: c_waived: up to 3.5 deg, A. Engineer, 2025-01-02: proven" in told
-    assert "missing data: b_open: no spring" in told
+    assert "missing data: c_must: a number is missing" in told
+    assert "missing data (optional): b_open: no spring" in told
     assert "to be verified: b_optional" in told
 
 

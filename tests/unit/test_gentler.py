@@ -8,6 +8,7 @@ from made_check import made_check
 
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.checks.check import Check, verdict
+from camwright.pipeline.run import restated
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Next, Stop, best_attempt, next_smoother
 from camwright.pipeline.smoothing.smoothing_forecast import Attempt, keeps_torque, score
@@ -150,6 +151,28 @@ def test_a_missing_number_does_not_drive_the_lift_and_does_not_pass():
         "no check of trial 1 fails, but data are missing; one check not evaluated, as an input is"
         " missing"
     )
+
+
+def test_a_demand_that_is_not_proven_is_smoothed_until_it_is():
+    def model(s):
+        angle = made_check("pressure_angle", 1.2 / s, 1.0, lift_can_help=True, error_share=0.05)
+        return torque(0.9 - 0.25 * s), angle
+
+    attempts, _, stop = drive(model)
+    assert stop.binding == ()
+    # Five percent of error bar and half a percent of the limit.
+    last = attempts[-1].smoother.strength
+    assert 1.2 * 1.05 * 0.999 < last < 1.2 * 1.05 * 1.005 * 1.03
+    _, _, stop = drive(lambda _s: (torque(0.7), made_check("mesh", 0.99, 1.0, error_share=0.02)))
+    assert stop.reason.endswith(
+        "mesh at 0.99 of its limit now, independent of the smoothing, not proven"
+    )
+
+
+def test_the_stopping_criterion_names_what_certificate_and_corners_add():
+    said = restated("trial 1 passes every must-have check", (), ("jump",))
+    assert said == ("trial 1 passes every must-have check; binding by the certificate: jump")
+    assert restated("trial 1 fails", ("jump", "film"), ("film", "jump")) == "trial 1 fails"
 
 
 def test_missing_data_of_the_torque_are_no_reason_to_smooth():

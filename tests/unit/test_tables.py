@@ -129,6 +129,9 @@ def test_the_page_lists_what_is_missing_not_proven_waived_and_to_be_confirmed():
         "D: demand 1\xa0MPa, accepted up to 2.5\xa0MPa, A. Engineer, 2025-01-02: proven",
     )
     assert [label for label, _ in said.lists] == ["Missing data", "Not proven", "Waived"]
+    assert verdict("fail", checks, (), "no room; a").lists[-1] == (
+        "Stopping criterion", ("no room", "a"),
+    )  # fmt: skip
     row = next(row for row in report_tables.check_rows(checks) if row.id == "b")
     assert row.status.words == "fail, not proven"
     assert ("not proven: 1.950 ± 0.060 against 2", True) in row.remarks
@@ -163,6 +166,10 @@ def test_the_governing_check_is_required_and_not_waived():
     ]  # fmt: skip
     assert governing(checks).startswith("Worst, load case rated, cam angle 12.5")
     assert governing([]) == ""
+    at_corner = check("c", "fail", 2.5, corner="mass high", corner_demand=5.0)
+    assert "demand 1\xa0MPa, at the tolerance corner mass high: 5\xa0MPa, limit" in governing(
+        [*checks, at_corner]
+    )
 
 
 def test_the_sheet_draws_the_load_case_that_governs():
