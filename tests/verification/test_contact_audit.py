@@ -289,6 +289,18 @@ def test_yield_is_that_of_carters_traction_by_line_forces():
     assert demand("first_yield") == pytest.approx(peak[worst] * stress, rel=5e-3)
 
 
+def test_yield_of_a_rough_face_is_that_of_the_stress_along_the_surface():
+    """Above a friction of 0.3: at the surface, xx = -p - 2 mu p0 x, zz = -p, xz = mu p."""
+    given = tables(face=True)
+    given["follower"]["face"] = FACE | {"friction": 0.5}
+    checks = checked(solved(face=True)[0], case_of(given))
+    x = np.linspace(-1.0, 1.0, 20001)
+    stress = mises_of(np.stack([-half(x) - x, -half(x), 0.5 * half(x)])).max()
+    peak = checks["contact_pressure"].demand
+    assert checks["first_yield"].demand == pytest.approx(peak * stress, rel=2e-3)
+    assert stress > 1.7 * 0.5575  # of the maximum below the surface without traction
+
+
 @pytest.mark.parametrize("friction", [0.0, 0.2, 0.35, 0.5])
 def test_shakedown_factor_by_minimising_over_the_residual_stresses(friction):
     """Melan: the best constant residual stresses at each depth, von Mises, plane strain."""
@@ -587,6 +599,13 @@ def test_a_crown_raises_the_pressure_to_that_of_its_ellipse():
     assert crowned["hardened_case"].demand > 1.3 * plain["hardened_case"].demand
 
 
+def test_a_tick_for_a_crown_is_refused_and_its_radius_suggested():
+    with pytest.raises(InputError) as found:
+        case_of(tables(crowned=True))
+    assert found.value.field == "roller.crowned"
+    assert "crown_radius" in str(found.value)
+
+
 def test_a_truncated_ellipse_is_derated_and_says_so():
     flat = solved(crown="10000 mm")[1]["edge_pressure"]
     assert flat.demand >= 1.3 * roark()[0].max() * 0.999
@@ -623,6 +642,12 @@ def test_width_and_pv_of_the_face():
     mean = load / (2.0 * width)
     assert checks["face_pv"].demand == pytest.approx((mean * OMEGA * (BASE + s)).max(), rel=1e-3)
     assert checks["contact_pressure"].demand == pytest.approx(peak.max(), rel=1e-3)
+
+
+def test_the_recalled_cap_of_dang_van_is_marked_and_does_not_decide():
+    check = solved()[1]["dang_van"]
+    assert "verify" in check.method
+    assert not check.must_have
 
 
 def test_every_check_of_the_contact_states_formula_and_reason():
