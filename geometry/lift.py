@@ -45,8 +45,8 @@ class Lift:
     theta : array (n,)     cam angle, rad, equally spaced over [0, 2 pi), n >= 12
     values : array (n,)    s, m, >= 0
     closure : float        |s(2 pi) - s(0)| of the source of the lift, m
-    spacing : float        greatest step of the table behind the values, rad; 0: the values are
-                           its own
+    spacing : float        greatest step of the table that the lift interpolates or fits, rad; 0:
+                           that of theta
 
     Raises
     ------

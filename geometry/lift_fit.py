@@ -120,7 +120,9 @@ def _least_squares(angle: Array, value: Array, parts: int) -> FittedLift:
     basis[:, :DEGREE] += open_basis[:, parts:]
     weights = np.linalg.lstsq(basis, value, rcond=None)[0]
     at_knots = BSpline(knots, weights[np.arange(parts + DEGREE) % parts], DEGREE)
-    lift = Lift(uniform_turn(parts), _not_below_zero(at_knots(uniform_turn(parts))))
+    values = _not_below_zero(at_knots(uniform_turn(parts)))
+    spacing = float(np.diff(angle, append=angle[0] + FULL_TURN).max())
+    lift = Lift(uniform_turn(parts), values, spacing=spacing)
     return FittedLift(lift, parts, value - lift(angle))
 
 

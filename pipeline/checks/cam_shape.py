@@ -44,7 +44,7 @@ def _at(extremum: Extremum) -> Extreme:
     title="Lift closure over one turn",
     formula="|s(2 pi) - s(0)| <= c; s: lift as its source gives it, c: limits.closure",
     reason="A step of the lift at the end of the turn is a step of the cam surface.",
-    unit="m",
+    unit="um",
     method="difference of the lift between the ends of the turn, before closing",
     forecast=True,
     moved_by_tolerance=False,

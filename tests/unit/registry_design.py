@@ -75,7 +75,7 @@ by_limit(
     "closure",
     "closure",
     unknown,
-    5e-10,
+    5e-4,
     "as the lift's source says",
     base=open_ended,
 )

@@ -15,6 +15,7 @@ from camwright.geometry.contour import RollerContour
 from camwright.geometry.cutter_path import tool_interference
 from camwright.geometry.errors import InputError
 from camwright.geometry.lift import Lift
+from camwright.geometry.lift_fit import fitted_lift
 from camwright.geometry.motion_laws import Motion, Segment
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case import case_file
@@ -190,6 +191,30 @@ def test_a_table_at_unequal_angles_is_judged_at_its_own_spacing():
     )
     lift = Lift.from_samples(theta, motion(theta))
     assert lift.acceleration_jump.size / lift.acceleration_jump.span > 0.8
+
+
+@pytest.mark.parametrize("rise", [40.0, 100.0, 157.3])
+def test_a_lift_by_segments_is_judged_by_its_laws(rise):
+    """The knots of a law with jumps are smoothed over a quarter of a degree."""
+    angle, dwell = np.radians(rise), np.radians(40.0)
+    for name, low, high in (
+        ("harmonic", 0.49, 0.52), ("parabolic", 0.98, 1.02), ("polynomial_345", 0.0, 0.02),
+        ("modified_trapezoid", 0.0, 0.02), ("cycloidal", 0.0, 0.02),
+    ):  # fmt: skip
+        parts = ((name, angle, 0.01), ("dwell", dwell, 0.0), (name, angle, -0.01),
+                 ("dwell", 2.0 * np.pi - 2.0 * angle - dwell, 0.0))  # fmt: skip
+        jump = Motion(tuple(Segment(*part) for part in parts)).lift().acceleration_jump
+        assert low <= jump.size / jump.span <= high, name
+
+
+def test_a_fitted_lift_of_few_parts_has_no_step():
+    """A spline of 12 parts through 720 noisy values; its knots alone resolve no law."""
+    theta = np.arange(720) * 2.0 * np.pi / 720
+    noise = 2e-6 * np.random.default_rng(1).standard_normal(720)
+    table = 0.005 * (1.0 - np.cos(theta)) + 1e-5 + noise
+    fit = fitted_lift(theta, table, 3e-6)
+    assert fit.parts < 40
+    assert fit.lift.acceleration_jump.size < 0.02 * fit.lift.acceleration_jump.span
 
 
 def test_a_table_that_resolves_no_law_does_not_pass():
