@@ -1,7 +1,4 @@
-"""Checks of service life: lubrication of the roller bearing, expansion and wear of the guides.
-
-A check without data in the case is left out.
-"""
+"""Checks of service life: lubrication of the roller bearing, expansion and wear of the guides."""
 
 from __future__ import annotations
 
