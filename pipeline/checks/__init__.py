@@ -20,7 +20,7 @@ In the order of the calculation:
 | `key_strength`          | key of the cam, keyway root, slip of seat  | p, tau, Pa; safety, -    |
 | `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s; rad   |
 | `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |
-| `wear_and_grease`       | expansion and wear of the guides           | m                        |
+| `guide_wear`            | expansion and wear of the guides           | m                        |
 | `manufacture`           | space, waviness, chord error, phase        | m                        |
 | `plane_strain_validity` | validity limits of the plane-strain model  | half-widths              |
 | `solution_verification` | residuals, meshes, certificate, benchmarks | relative                 |

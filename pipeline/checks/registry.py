@@ -26,7 +26,7 @@ from camwright.pipeline.checks import (
     spring_strength,
     surface_durability,
     torque_balance,
-    wear_and_grease,
+    guide_wear,
 )
 from camwright.pipeline.checks.check import (
     Check,
@@ -56,7 +56,7 @@ MODULES: tuple[ModuleType, ...] = (
     key_strength,
     camshaft_strength,
     flat_face_sliding,
-    wear_and_grease,
+    guide_wear,
     manufacture,
     plane_strain_validity,
     solution_verification,

@@ -397,8 +397,8 @@ def solution(**values: Any) -> Solution:
 def changed_solution(base: Solution, **values: Any) -> Solution:
     """A solution with some of its parts replaced; its cycles have its contour and its machines."""
     bare = replace(base, **values)
-    known = {machine.load_case: machine for machine in machines(bare.case)}
-    states = {each.load_case: known[each.load_case] for each in bare.cycles}
+    stated = {each.name for each in bare.case.load_cases}
+    states = {each.load_case: each for each in machines(bare.case) if each.load_case in stated}
     cycles = tuple(
         changed_cycle(each, machine=states[each.load_case], contour=bare.contour)
         for each in bare.cycles

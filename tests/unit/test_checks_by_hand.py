@@ -132,7 +132,8 @@ def test_chord_error_by_hand():
 
 
 def test_a_waiver_of_no_check_fails_a_check_of_its_own():
-    waiver = Waiver(check="jmup", name="A. Engineer", reason="proven", date=dt.date(2025, 1, 2))
+    date = dt.date(2025, 1, 2)
+    waiver = Waiver(check="jmup", up_to=1.0, name="A. Engineer", reason="proven", date=date)
     checks = {c.id: c for c in all_checks(with_case(waivers=(waiver,)))}
     assert checks["waivers_without_effect"].status == "fail"
     assert checks["waivers_without_effect"].note == "jmup"

@@ -123,7 +123,7 @@ def test_a_proud_contour_presses_the_spring(own):
 def test_tendencies_at_a_fixed_lift(demands):
     """Worse friction and a heavier follower: nearer to jamming, to more pressure, to the jump."""
     assert demands["friction high"]["jam_index"] > demands["nominal"]["jam_index"]
-    assert demands["friction high"]["contact_pressure"] > demands["nominal"]["contact_pressure"]
+    assert demands["friction high"]["guide_pv_A"] > demands["nominal"]["guide_pv_A"]
     assert demands["mass high"]["jump_speed"] < demands["nominal"]["jump_speed"]
     # w_jump goes with one over the root of the mass
     ratio = demands["mass high"]["jump_speed"] / demands["nominal"]["jump_speed"]

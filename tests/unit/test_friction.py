@@ -100,22 +100,6 @@ def test_range_is_that_of_the_guides_else_that_of_the_tolerance():
     assert found.factors(1) == pytest.approx((0.75, 1.25), rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("a", "b", "tolerance", "bounded"),
-    [
-        (0.1, 0.3, 0.0, True),
-        (0.1, None, 0.0, False),
-        (None, None, 0.0, False),
-        (None, None, 0.1, True),
-    ],
-)
-def test_range_is_bounded_where_the_greatest_friction_of_both_guides_is_known(
-    a, b, tolerance, bounded
-):
-    found = FrictionRange.of(guides({"friction_max": a}, {"friction_max": b}), tolerance)
-    assert found.bounded is bounded
-
-
 def test_scaled_friction_widens_its_bounds_where_it_leaves_them():
     found = FrictionRange(NOMINAL, (0.02, 0.1), (0.05, 0.3)).scaled(1.5, 0.25)
     assert found.nominal == pytest.approx((0.06, 0.05), rel=1e-12)

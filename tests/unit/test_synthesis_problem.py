@@ -30,9 +30,10 @@ def torques(case):
 
 
 def test_every_load_case_is_a_scenario(case, torques):
-    idle, over = problem_of(case, torques).scenarios
+    idle, over, still, most = problem_of(case, torques).scenarios
     assert (idle.name, over.name) == ("idle", "overspeed")
-    assert (idle.weight, over.weight) == (1.0, 0.0)
+    assert (still.name, most.name) == ("standstill", "over-speed")
+    assert (idle.weight, over.weight, still.weight, most.weight) == (1.0, 0.0, 0.0, 0.0)
     assert over.cam_speed == pytest.approx(3600 * np.pi / 30 / 2)
     assert abs(idle.torque.mean()) < 1e-12 and idle.torque.size == 720
 

@@ -24,7 +24,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of, read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.case.toml_text import tables_of
-from camwright.pipeline.checks import guide_strength, jump_and_jamming, wear_and_grease
+from camwright.pipeline.checks import guide_strength, guide_wear, jump_and_jamming
 from camwright.pipeline.checks.check import Check, Declaration
 from camwright.pipeline.checks.error_bars import GUIDE_EDGE_ERROR, GUIDE_ERROR, with_error_bars
 from camwright.pipeline.checks.registry import CHECKS, checks_of
@@ -521,7 +521,7 @@ DATA = {
 }  # fmt: skip
 DECLARED = {
     each.id: each
-    for module in (guide_strength, jump_and_jamming, wear_and_grease)
+    for module in (guide_strength, jump_and_jamming, guide_wear)
     for each in vars(module).values()
     if isinstance(each, Declaration)
 }

@@ -1,7 +1,4 @@
-"""Checks of service life: expansion and wear of the guides.
-
-A check without data in the case is left out.
-"""
+"""Checks of the guides over their life: expansion and wear."""
 
 from __future__ import annotations
 
