@@ -226,6 +226,15 @@ class Cycle:
                 "stem_end_deflection", "um", "Transverse deflection of the stem at the contact"
             ): guides.roller_deflection,
         }
+        if (crown := self.crown) is not None:
+            columns |= {
+                contact_column(
+                    "p0_crowned", "MPa", "Maximum contact pressure of the crowned roller, ellipse"
+                ): crown.history.p0,
+                contact_column(
+                    "half_length_crowned", "mm", "Axial half-length of the contact ellipse"
+                ): crown.half_length,
+            }
         # An engine at rest has no torque in its load case.
         if turn.torque_before is not None and turn.torque_after is not None:
             before, after = (
