@@ -14,7 +14,7 @@ In the order of the calculation:
 | `surface_durability`    | traction, oil film, fatigue, hardened case | T/F_n; lambda; sigma, Pa |
 | `roller_bearing`        | rating, life, speed of the roller bearing  | s0; L10, s; n, rad/s     |
 | `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
-| `spring_strength`       | strength, solid length, buckling, surge    | tau, Pa; f, Hz           |
+| `spring_strength`       | strength, gaps, buckling, surge, set       | tau, Pa; f, Hz           |
 | `part_strength`         | pin, outer ring, key, bore, unbalance      | sigma, Pa; e w, m/s      |
 | `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s        |
 | `flat_face_sliding`     | width and PV value of a flat face          | m; PV, Pa m/s            |
