@@ -15,7 +15,7 @@ In the order of the calculation:
 | `surface_durability`    | traction, oil film, fatigue, hardened case | T/F_n; lambda; sigma, Pa |
 | `roller_bearing`        | rating, life, speed, grease of the bearing | s0; L10, s; n, rad/s     |
 | `guide_strength`        | pressure, PV value, temperature of guides  | p, Pa; PV, Pa m/s        |
-| `spring_strength`       | strength, solid length, buckling, surge    | tau, Pa; f, Hz           |
+| `spring_strength`       | strength, gaps, buckling, surge, set       | tau, Pa; f, Hz           |
 | `part_strength`         | pin, fork, ring, mass, bore, balance       | sigma, Pa; kg; e w, m/s  |
 | `key_strength`          | key of the cam, keyway root, slip of seat  | p, tau, Pa; safety, -    |
 | `camshaft_strength`     | camshaft, its bearings and driving gear    | sigma, Pa; L10, s; rad   |

@@ -5,7 +5,7 @@ In the order of the calculation:
 | module                  | responsibility                             | symbol, unit          |
 | ----------------------- | ------------------------------------------ | --------------------- |
 | `stem_beam`             | stem as a beam of Hermite elements         | E I, N m2; m/N        |
-| `spring`                | helical spring, force, fatigue, surge      | k, N/m; P, N; tau, Pa |
+| `spring`                | helical spring, strength, buckling, surge  | k, N/m; P, N; tau, Pa |
 | `follower_forces`       | forces with guide friction                 | F_a, N; T, N m        |
 | `guide_contact`         | beam in bores with unilateral contact      | N; m                  |
 | `guide_reactions`       | reactions and pressures of two guides      | A, B, N; p, Pa        |

@@ -31,7 +31,7 @@ In the order of a run:
 | ``trial_N/3_contour.csv``  | pitch curve and contour                              |
 | ``trial_N/4_mesh.msh``     | meshes of cam and follower                           |
 | ``trial_N/5_cycle.csv``    | all quantities over the turn, by load case           |
-| ``trial_N/5_speed_sweep.csv`` | extremes over the turn from standstill to over-speed |
+| ``trial_N/5_speed_sweep.csv`` | extremes of the turn over the speed               |
 | ``trial_N/5_pressure.npz`` | contact pressure at every position                   |
 | ``trial_N/5_guides.npz``   | line load of the guides, pressure in their bores     |
 | ``trial_N/5_envelope.npz`` | maximum stresses of the turn below the contour       |

@@ -25,6 +25,7 @@ from camwright.pipeline.preview import preview_case
 SIGNED = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
 RPM = np.pi / 30.0
 ELEMENTS, STEPS, TURNS = 40, 480, 14
+SIXTH = 2e-4  # m, amplitude of the sixth harmonic
 WORST = 3440.0  # rpm: the first mode meets the sixth harmonic
 
 
@@ -37,7 +38,7 @@ def machine_case(**limits):
     return case.model_copy(update={"limits": values, "spring": spring})
 
 
-def lift_of(theta, sixth=1.5e-4):
+def lift_of(theta, sixth=SIXTH):
     """20 mm with a sixth harmonic, as a smoothed torque leaves one."""
     return 0.01 * (1.0 - np.cos(theta)) + sixth * (1.0 - np.cos(6.0 * theta))
 
@@ -106,7 +107,7 @@ def driven_coils(design, rate, cam_speed):
     M, K = chain(*wire(design, rate))
     theta, step = uniform_turn(STEPS), 2.0 * np.pi / cam_speed / STEPS
     s = lift_of(theta)
-    acceleration = cam_speed**2 * (0.01 * np.cos(theta) + 36.0 * 1.5e-4 * np.cos(6.0 * theta))
+    acceleration = cam_speed**2 * (0.01 * np.cos(theta) + 36.0 * SIXTH * np.cos(6.0 * theta))
     inside = slice(1, ELEMENTS)
     m, k = M[inside, inside], K[inside, inside]
     c = modal_damping(m, k, design.damping)
@@ -165,7 +166,7 @@ def test_the_contact_is_lost_between_the_load_cases(solved):
     for rpm in (3437.0, 3440.0):
         cam_speed = 0.5 * rpm * RPM
         moving, _ = driven_coils(machine.spring.design, machine.spring.rate, cam_speed)
-        bend = 0.01 * np.cos(theta) + 36.0 * 1.5e-4 * np.cos(6.0 * theta)
+        bend = 0.01 * np.cos(theta) + 36.0 * SIXTH * np.cos(6.0 * theta)
         push = machine.spring.preload + moving + machine.mass * cam_speed**2 * bend
         least = min(least, float((push * gain).min()))
     assert check.demand == pytest.approx(least / machine.spring.preload, abs=0.03)
@@ -209,7 +210,7 @@ def test_elastic_contact_is_that_of_coils_mass_and_stem_in_time(solved):
     for rpm in (3437.0, 3440.0):
         cam_speed = 0.5 * rpm * RPM
         s = lift_of(theta)
-        slope = cam_speed * (0.01 * np.sin(theta) + 6.0 * 1.5e-4 * np.sin(6.0 * theta))
+        slope = cam_speed * (0.01 * np.sin(theta) + 6.0 * SIXTH * np.sin(6.0 * theta))
         load = np.zeros((STEPS, ELEMENTS))
         load[:, -1] = stem * s + damping * slope - machine.spring.preload
         x, v, _ = integrated(M, C, K, load, 2.0 * np.pi / cam_speed / STEPS)
