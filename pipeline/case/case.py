@@ -142,6 +142,12 @@ class Case(Section):
         return self.roller_given
 
     @property
+    def spring_mass(self) -> float:
+        """Share of the spring's mass in that of the follower, kg; 0 without a spring design."""
+        design = self.spring.design
+        return 0.0 if design is None else self.follower.spring_share * design.mass
+
+    @property
     def facing(self) -> FollowerKind:
         """The part of the follower that touches the cam."""
         return self.roller if self.follower.face is None else self.follower.face

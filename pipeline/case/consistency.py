@@ -34,6 +34,7 @@ def check_sections(case: Case) -> None:
     _check_names(case)
     _check_film(case)
     _check_tolerances(case)
+    _check_mass(case)
     _check_values(case)
 
 
@@ -116,6 +117,14 @@ def _check_tolerances(case: Case) -> None:
         if value < least:
             limit = f">= {shown(least, unit)} without tolerances.source"
             raise InputError(field, shown(value, unit), limit)
+
+
+def _check_mass(case: Case) -> None:
+    """The mass of the follower contains a share of the spring's."""
+    mass, share = case.follower.mass, case.spring_mass
+    if not mass > share:
+        limit = f"> {shown(share, 'g')}, follower.spring_share of the spring's mass"
+        raise InputError("follower.mass", shown(mass, "g"), limit)
 
 
 def _check_film(case: Case) -> None:

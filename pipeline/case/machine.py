@@ -71,7 +71,7 @@ class Machine:
     ripple_weight : float      weight of its torque ripple; 0: no reduction is required
     cam : CamBody
     follower : FollowerKind    the part that touches the cam, roller or flat face
-    mass : float               that moves with the follower, kg
+    mass : float               that moves with the follower, kg, spring_mass of it of the spring
     viscous_damping : float    of the guides, N s/m
     stem : Stem
     overhang_at_max_lift : float    guide A to roller centre or face, m
@@ -92,6 +92,7 @@ class Machine:
     cam: CamBody
     follower: FollowerKind
     mass: float
+    spring_mass: float
     viscous_damping: float
     stem: Stem
     overhang_at_max_lift: float
@@ -216,6 +217,11 @@ class Machine:
             face_friction=self.follower.side_friction,
         )
 
+    @property
+    def mass_without_spring(self) -> float:
+        """Mass of the follower without its share of the spring, kg."""
+        return self.mass - self.spring_mass
+
     def at_corner(self, corner: Corner) -> Machine:
         """The machine at a tolerance corner; the contour is not part of it."""
         spring, shaft = self.spring, self.crankshaft
@@ -272,6 +278,7 @@ def machine(case: Case, state: LoadCase) -> Machine:
         cam=case.cam,
         follower=case.facing,
         mass=follower.mass,
+        spring_mass=case.spring_mass,
         viscous_damping=follower.viscous_damping,
         stem=stem,
         overhang_at_max_lift=follower.overhang_at_max_lift,

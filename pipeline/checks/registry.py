@@ -15,6 +15,7 @@ from camwright.pipeline.checks import (
     contact_strength,
     flat_face_sliding,
     guide_strength,
+    guide_wear,
     jump_and_jamming,
     key_strength,
     manufacture,
@@ -26,7 +27,6 @@ from camwright.pipeline.checks import (
     spring_strength,
     surface_durability,
     torque_balance,
-    guide_wear,
 )
 from camwright.pipeline.checks.check import (
     Check,

@@ -240,7 +240,7 @@ class _Resonant:
         total = machine.axial_stiffness + self.spring.rate
         damping = max(machine.damping_ratio, 1e-3)
         peak = total * self.amplitude / (2.0 * damping)
-        own = np.array([np.sqrt(total / machine.mass)])
+        own = np.array([np.sqrt(total / machine.mass_without_spring)])
         speeds.append(_about(_met(own, peak, enough, top), damping))
         return np.unique(np.clip(np.concatenate(speeds), 0.0, top))
 
@@ -274,7 +274,8 @@ class _Follower:
             resonant=_Resonant.of(machine.spring, machine.spring.design, pitch),
             theta=theta,
             spring=loads.spring_force,
-            inertia=loads.inertia_force,
+            # The coils have their own inertia in the surge.
+            inertia=loads.inertia_force * machine.mass_without_spring / machine.mass,
             viscous=loads.viscous_force,
             gain=1.0 / (share * np.cos(loads.pressure_angle)),
             arm=(loads.lift_slope + sliding) / share,
@@ -306,7 +307,8 @@ class _Follower:
     def _elastic(self, speed: Array, moving: NDArray[np.complex128]) -> Array:
         """Axial contact force (m, n) of the mass on its stem, N; the spring with its surge."""
         machine, spectrum = self.machine, self.resonant.spectrum
-        stem, mass, rate = machine.axial_stiffness, machine.mass, machine.spring.rate
+        stem, rate = machine.axial_stiffness, machine.spring.rate
+        mass = machine.mass_without_spring
         damping = 2.0 * machine.damping_ratio * np.sqrt(mass * (stem + rate))
         w = speed * self.resonant.order
         behind = rate + moving - mass * w**2
