@@ -152,10 +152,13 @@ def test_a_check_without_a_solution_at_a_corner_is_lost():
         Outcome(Corner("apart"), {"jump": np.inf}),
         Outcome(Corner("jammed"), {}, "follower.friction = 9, must be less"),
     )
-    named, robust = governed(machines(case())[0], [check], seen)
-    assert (named.corner, named.corner_demand) == ("apart", np.inf)
-    assert robust.demand == 2.0
-    assert "jammed: follower.friction" in robust.note
+    named, unsolved = governed(machines(case())[0], [check], seen)
+    assert (named.corner, named.corner_demand, named.status) == ("apart", np.inf, "fail")
+    assert (unsolved.demand, unsolved.status) == (1.0, "fail")
+    assert unsolved.blocks
+    assert unsolved.note == (
+        "jammed: follower.friction = 9, must be less; fail at a corner only: jump"
+    )
     written = corners_record(case(), seen)["corners"]
     assert [corner["demands"].get("jump") for corner in written] == [0.1, None, None]
 
@@ -168,16 +171,16 @@ def test_the_governing_corner_is_named_and_scales_the_nominal_demand():
         Outcome(Corner("b"), {"p": 45.0}),
         Outcome(Corner("c"), {}),
     )
-    named, robust = governed(machines(case())[0], [check], seen)
+    named, solved = governed(machines(case())[0], [check], seen)
     assert (named.corner, named.corner_demand) == ("a", pytest.approx(110.0))
-    assert named.status == "pass"
-    assert (robust.id, robust.demand, robust.status, robust.note) == (
-        "tolerance_corners", 1.0, "fail", "p"
+    assert named.status == "fail"
+    assert (solved.id, solved.demand, solved.status, solved.note) == (
+        "tolerance_corners", 0.0, "pass", "fail at a corner only: p"
     )  # fmt: skip
     check = made_check("p", 100.0, 80.0, sense="at_least")
     lower, fine = governed(machines(case())[0], [check], seen)
     assert (lower.corner, lower.corner_demand) == ("b", pytest.approx(90.0))
-    assert fine.status == "pass"
+    assert (lower.status, fine.status, fine.note) == ("pass", "pass", "")
 
 
 def test_record_holds_every_corner():

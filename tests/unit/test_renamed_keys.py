@@ -38,12 +38,14 @@ ROWS = {
 WAIVERS = """
 [[waivers]]
 check = "{pv}"
+up_to = 3.0
 name = "A. Engineer"
 reason = "oiled by hand"
 date = 2025-01-31
 
 [[waivers]]
 check = "shakedown"
+up_to = "900 MPa"
 name = "A. Engineer"
 reason = "tried"
 date = 2025-01-31
