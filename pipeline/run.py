@@ -83,10 +83,10 @@ def _solved(
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)
     final, statement = trials_of(case, torques, sink=writer, progress=watch)
-    blocking = final.binding
+    failing = _failing(final)
     final = certify_trial(final, jobs=jobs, progress=watch)
     final = _with_corners(folder, torques, final, watch)
-    statement = restated(statement, blocking, final.binding)
+    statement = restated(statement, failing, _failing(final))
     writer.judge(final)
     watch.stage("fields")
     write_fields(folder.fields, final, watch.advance)
@@ -97,17 +97,21 @@ def _solved(
 
 
 def restated(statement: str, before: Sequence[str], after: Sequence[str]) -> str:
-    """Stopping criterion, and the binding checks of the last trial that it does not know.
+    """Stopping criterion, and the failing checks of the last trial that it does not know.
 
     Parameters
     ----------
-    before, after : sequence   ids of binding checks, without and with certificate and corners
+    before, after : sequence   ids of failing checks, without and with certificate and corners
     """
     further = [name for name in after if name not in before]
     if not further:
         return statement
-    words = "binding by the certificate or a tolerance corner"
+    words = "failing by the certificate or at a tolerance corner"
     return f"{statement}; {words}: {', '.join(further)}"
+
+
+def _failing(trial: Trial) -> list[str]:
+    return [one.id for one in trial.checks if one.must_have and one.status == "fail"]
 
 
 def _with_corners(

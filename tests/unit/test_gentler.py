@@ -172,7 +172,7 @@ def test_a_demand_that_is_not_proven_is_smoothed_until_it_is():
 def test_the_stopping_criterion_names_what_certificate_and_corners_add():
     said = restated("trial 1 passes every must-have check", (), ("jump",))
     assert said == (
-        "trial 1 passes every must-have check; binding by the certificate or a tolerance corner:"
+        "trial 1 passes every must-have check; failing by the certificate or at a tolerance corner:"
         " jump"
     )
     assert restated("trial 1 fails", ("jump", "film"), ("film", "jump")) == "trial 1 fails"
