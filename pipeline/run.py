@@ -82,9 +82,9 @@ def _solved(
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)
     final, statement = trials_of(case, torques, sink=writer, progress=watch)
-    blocking = final.binding
+    failing = _failing(final)
     final = certify_trial(final, jobs=jobs, progress=watch)
-    statement = restated(statement, blocking, final.binding)
+    statement = restated(statement, failing, _failing(final))
     folder.write_corners(corners_record(final.case, final.corners))
     writer.judge(final)
     watch.stage("fields")
@@ -96,16 +96,20 @@ def _solved(
 
 
 def restated(statement: str, before: Sequence[str], after: Sequence[str]) -> str:
-    """Stopping criterion, and the binding checks of the last trial that it does not know.
+    """Stopping criterion, and the failing checks of the last trial that it does not know.
 
     Parameters
     ----------
-    before, after : sequence   ids of binding checks, without and with certificate
+    before, after : sequence   ids of failing checks, without and with certificate
     """
     further = [name for name in after if name not in before]
     if not further:
         return statement
-    return f"{statement}; binding by the certificate: {', '.join(further)}"
+    return f"{statement}; failing by the certificate: {', '.join(further)}"
+
+
+def _failing(trial: Trial) -> list[str]:
+    return [one.id for one in trial.checks if one.must_have and one.status == "fail"]
 
 
 def _summary(

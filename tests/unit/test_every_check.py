@@ -138,7 +138,7 @@ def test_mesh_uncertainty_of_the_reaction_by_hand(monkeypatch):
 
 @pytest.mark.parametrize("name", sorted(MUST_HAVE))
 def test_a_must_have_is_one_with_and_without_its_data(name):
-    """What a sign-off must have fails the verdict when its input is missing."""
+    """What a sign-off must have leaves the verdict incomplete when its input is missing."""
     tried = TRIED[name]
     assert check(name, tried.base()).must_have
     if tried.missing:

@@ -9,9 +9,11 @@ from made_check import made_check
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.checks.check import Check, verdict
 from camwright.pipeline.run import restated
+from camwright.pipeline.smoothing.fe_correction import SETTLED, LimitShift, settled
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Next, Stop, best_attempt, next_smoother
 from camwright.pipeline.smoothing.smoothing_forecast import Attempt, keeps_torque, score
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE
 
 Model = Callable[[float], tuple[Check, ...]]
 BOUND = 6
@@ -169,9 +171,18 @@ def test_a_demand_that_is_not_proven_is_smoothed_until_it_is():
     )
 
 
+def test_missing_data_do_not_hold_the_synthesis_to_its_reserve():
+    """A change of half a percent is settled unless a check fails that a lift can help."""
+    shift = LimitShift("pressure_angle", 0.9, 0.905)
+    assert RESERVE < shift.size < SETTLED
+    assert settled(shift, [made_check("guide_pv_B", 2.0, None, lift_can_help=True)])
+    assert settled(shift, [made_check("mesh", 2.0, 1.0), made_check("angle", 0.9, 1.0)])
+    assert not settled(shift, [check("pressure_angle", 1.001)])
+
+
 def test_the_stopping_criterion_names_what_certificate_and_corners_add():
     said = restated("trial 1 passes every must-have check", (), ("jump",))
-    assert said == ("trial 1 passes every must-have check; binding by the certificate: jump")
+    assert said == "trial 1 passes every must-have check; failing by the certificate: jump"
     assert restated("trial 1 fails", ("jump", "film"), ("film", "jump")) == "trial 1 fails"
 
 

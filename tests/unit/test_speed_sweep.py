@@ -9,7 +9,7 @@ import pytest
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case_file import read_case
-from camwright.pipeline.checks import jump_and_jamming, spring_strength
+from camwright.pipeline.checks import jump_and_jamming, part_data, spring_strength
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.elastic_response import elastic_follower
 from camwright.pipeline.cycle.solution import solution
