@@ -298,6 +298,20 @@ def test_wrong_pressures_fail_the_torque_balance():
     assert contact_work(with_solved_contact(pressure=once)).status == "fail"
 
 
+def test_the_torque_of_a_sliding_face_includes_its_friction():
+    """mu N times the height of the face over the cam axis, beside N s'."""
+    shape = made.face_contour()
+    case, lift = made.face_case(), shape.pitch.lift
+    plain = solve(case, shape, Tier.FINITE_ELEMENTS, positions=24, torques={})
+    cycle = plain.cycles[0]
+    force = cycle.loads.normal_force
+    height = made.BASE + lift(cycle.theta)
+    wanted = force * (lift(cycle.theta, 1) + plain.machine.follower.side_friction * height)
+    assert plain.machine.follower.side_friction > 0.0
+    np.testing.assert_allclose(pressure_torque(cycle), wanted, rtol=0, atol=1e-6 * wanted.max())
+    assert contact_torque(plain).status == contact_work(plain).status == "pass"
+
+
 def test_a_contour_other_than_that_of_the_loads_fails_the_torque_balance():
     """The same pressures on a cam turned by 0.1 deg, or of 1 % more lift."""
     plain = solved()
