@@ -17,6 +17,7 @@ FIGURES = {
             "contact_pressure",
             "contact_pressure_at_life",
             "edge_pressure",
+            "edge_shakedown",
             "shakedown",
             "shakedown_traction",
             "pressure_by_hardness",
@@ -25,7 +26,8 @@ FIGURES = {
         "p0",
     ),
     **dict.fromkeys(("first_yield", "hardened_case"), "von_mises"),
-    **dict.fromkeys(("held_distance",), "half_width"),
+    "case_shear": "tau_max",
+    "held_distance": "half_width",
 }
 """Certified quantity of a demand by check; a demand on several has the greatest error of all."""
 GUIDE_EDGE_ERROR = 0.06

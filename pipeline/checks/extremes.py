@@ -121,9 +121,11 @@ def _sampling_error(values: Array, sign: float) -> float:
     at a kink or a jump the lines through the two samples on either side, up to their crossing.
     Every peak counts: another than that of the greatest sample may be the greatest.
     """
-    if values.size < _LEAST or not np.isfinite(values).all():
+    known = np.isfinite(values)
+    if values.size < _LEAST or not known.any() or np.isnan(values).any():
         return 0.0
-    peaks = sign * values
+    # an infinite value, such as a ratio without load, has no peak beside it
+    peaks = np.where(known, sign * values, 0.0)
     before, after = np.roll(peaks, 1), np.roll(peaks, -1)
     bend = before - 2.0 * peaks + after
     vertex = np.divide(
@@ -138,7 +140,8 @@ def _sampling_error(values: Array, sign: float) -> float:
         sharp = np.abs(bend) + np.abs(np.roll(bend, -way))
         outer = np.abs(np.roll(bend, 2)) + np.abs(np.roll(bend, -2))
         above = np.where(sharp > _KINK * outer, np.maximum(above, line), above)
-    peaked = (peaks >= before) & (peaks >= after)
-    top = float(peaks.max())
+    beside = np.all([np.roll(known, shift) for shift in (-2, -1, 0, 1, 2)], axis=0)
+    peaked = (peaks >= before) & (peaks >= after) & beside
+    top = float(peaks[known].max())
     error = float(np.max(np.where(peaked, peaks + above, top))) - top
     return error / abs(top) if top != 0.0 else 0.0

@@ -298,6 +298,20 @@ def test_wrong_pressures_fail_the_torque_balance():
     assert contact_work(with_solved_contact(pressure=once)).status == "fail"
 
 
+def test_the_torque_of_a_sliding_face_includes_its_friction():
+    """mu N times the height of the face over the cam axis, beside N s'."""
+    shape = made.face_contour()
+    case, lift = made.face_case(), shape.pitch.lift
+    plain = solve(case, shape, Tier.FINITE_ELEMENTS, positions=24, torques={})
+    cycle = plain.cycles[0]
+    force = cycle.loads.normal_force
+    height = made.BASE + lift(cycle.theta)
+    wanted = force * (lift(cycle.theta, 1) + plain.machine.follower.side_friction * height)
+    assert plain.machine.follower.side_friction > 0.0
+    np.testing.assert_allclose(pressure_torque(cycle), wanted, rtol=0, atol=1e-6 * wanted.max())
+    assert contact_torque(plain).status == contact_work(plain).status == "pass"
+
+
 def test_a_contour_other_than_that_of_the_loads_fails_the_torque_balance():
     """The same pressures on a cam turned by 0.1 deg, or of 1 % more lift."""
     plain = solved()
@@ -383,13 +397,24 @@ PEAKS = {
 def test_the_bar_of_an_extreme_covers_the_value_between_samples(name, positions):
     function = PEAKS[name]
     cycles = previewed(positions).cycles
-    dense = np.linspace(0.0, 2.0 * np.pi, 200001)
-    for shift in np.linspace(0.0, 2.0 * np.pi / positions, 9):
+    dense = np.linspace(0.0, 2.0 * np.pi, 20001)
+    for shift in np.linspace(0.0, 2.0 * np.pi / positions, 5):
         for sign, search in ((1.0, greatest), (-1.0, least)):
             extreme = search(cycles, lambda c, s=sign, h=shift: s * function(c.theta + h))
             error = function(dense).max() - sign * extreme.value
             # the parabola leaves the fourth order of a peak beside a sample
-            assert error <= abs(extreme.value) * (extreme.error_share + 2e-6)
+            assert error <= abs(extreme.value) * (extreme.error_share + 3e-6)
+
+
+def test_the_bar_of_an_extreme_beside_infinite_values():
+    """A ratio that is infinite without load keeps the bar of its least value elsewhere."""
+    cycles = previewed(72).cycles
+
+    def ratio(cycle):
+        theta = cycle.theta + 0.07
+        return np.where(theta < 1.0, np.inf, 2.0 - np.sin(theta - 1.0))
+
+    assert least(cycles, ratio).error_share > 1e-5
 
 
 def test_a_residual_has_no_error_of_an_integral():
@@ -457,10 +482,10 @@ def test_the_gouge_of_a_wheel_by_distances_to_all_points(radius):
     x, y = shape.polygon(10800)
     across = np.stack([np.roll(y, -1) - np.roll(y, 1), np.roll(x, 1) - np.roll(x, -1)])
     centre = np.stack([x, y]) + radius * across / np.hypot(*across)
-    apart = np.hypot(x - centre[0, ::20, None], y - centre[1, ::20, None])
+    apart = np.hypot(x - centre[0, ::45, None], y - centre[1, ::45, None])
     wanted = float(np.max(radius - apart))
     gouge = max(0.0, -tool_interference(shape, radius).clearance)
-    assert gouge == pytest.approx(wanted if radius > 0.068 else 0.0, rel=0.01, abs=2e-7)
+    assert gouge == pytest.approx(wanted if radius > 0.068 else 0.0, rel=0.03, abs=2e-7)
     assert (gouge > 1e-6) == (radius > 0.07)
 
 
@@ -513,6 +538,7 @@ def test_the_bar_of_the_bore_stress_covers_a_four_times_finer_mesh():
     assert abs(fine.away_from_edges[0] / bore.away_from_edges[k] - 1.0) <= error
     assert error < 0.5
     (barred,) = with_error_bars(replace(plain, bore_error=error), [bore_check(plain)])
-    assert barred.error == pytest.approx(error * barred.demand, rel=0.2)
+    sampled = bore_check(plain).error_share
+    assert barred.error == pytest.approx((error + sampled) * barred.demand)
     (bare,) = with_error_bars(plain, [bore_check(plain)])
     assert bare.error is None

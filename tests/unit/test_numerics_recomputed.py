@@ -29,10 +29,16 @@ BY_ID = {declared.id: declared for declared in CHECKS}
 
 
 @cache
+def published():
+    """The published case at 72 angles, and its engine torques by load case."""
+    case = read_case(ROOT / "cases" / "gx120.toml").with_positions(72)
+    return case, engine_torques(case)
+
+
+@cache
 def previewed():
     """The published cam, with its engine, by closed forms at 72 angles."""
-    case = read_case(ROOT / "cases" / "gx120.toml").with_positions(72)
-    torques = engine_torques(case)
+    case, torques = published()
     contour = case.contour(cam_lift(case, torques))
     return solve(case, contour, Tier.PREVIEW, torques=torques, positions=72)
 
@@ -162,7 +168,7 @@ def test_waviness_by_a_follower_on_a_sine():
 
 def crank_torques(cycle, shift=0.0):
     """Crank torque of the engine, and with the cam, at the positions of a cycle, N m."""
-    torque = engine_torques(previewed().case)[cycle.load_case]
+    torque = published()[1][cycle.load_case]
     angles = cycle.theta * cycle.machine.gear_ratio + shift
     order = np.fft.rfft(torque.total - torque.total.mean())
     span = 2.0 * np.pi * cycle.machine.gear_ratio
