@@ -17,7 +17,7 @@ from camwright.pipeline.case.value_sources import OF_A_CHECK, confirms, source_o
 from camwright.pipeline.checks.check import Check
 
 _SPRING = ("spring.rate", "spring.preload")
-_MOTION = (*_SPRING, "follower.mass")
+_MOTION = (*_SPRING, "follower.mass", "limits.overspeed")
 _LOADS = (
     *_MOTION,
     *("guides.a.friction*", "guides.a.material.E", "guides.a.material.nu"),
@@ -36,12 +36,7 @@ _KEY = (
     *("cam.material.*yield_strength", "camshaft.material.*yield_strength"),
 )
 _SHAFT = (*_LOADS, "camshaft.drag", "camshaft.rotor_mass", "cam.material.density")
-_SURGE = (
-    "limits.overspeed",
-    "spring.design.shear_modulus",
-    "spring.design.density",
-    "spring.design.damping_ratio",
-)
+_SURGE = ("spring.design.shear_modulus", "spring.design.density", "spring.design.damping_ratio")
 _TRACTION = (
     *_LOADS,
     *("roller.friction", "roller.inertia", "roller.material.density"),
@@ -89,8 +84,8 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "jump": _MOTION,
         "jam_index": _LOADS,
         "jam_index_friction_max": _LOADS,
-        "jump_speed": (*_MOTION, "limits.overspeed"),
-        "contact_at_overspeed": (*_LOADS, "limits.overspeed"),
+        "jump_speed": _MOTION,
+        "contact_at_overspeed": _LOADS,
         "elastic_contact": (
             *_LOADS, "follower.stiffness", "follower.damping_ratio", "roller.material.E",
             "roller.material.nu", "roller.bearing.ring.*",
@@ -132,11 +127,11 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "pressure_by_gear_limits": (*_CONTACT, "cam.material.hardness*"),
         "roller_static": (*_LOADS, "roller.bearing.C0"),
         "roller_life": (
-            *_LOADS, "roller.bearing.C", "roller.bearing.fatigue_load_limit",
+            *_LOADS, *_SURGE, "roller.bearing.C", "roller.bearing.fatigue_load_limit",
             "roller.bearing.viscosity",
         ),
         "roller_modified_life": (
-            *_LOADS, "roller.bearing.C", "roller.bearing.C0",
+            *_LOADS, *_SURGE, "roller.bearing.C", "roller.bearing.C0",
             "roller.bearing.fatigue_load_limit", "roller.bearing.viscosity",
             "roller.bearing.*pitch_diameter", "limits.roller_reliability",
         ),
@@ -146,7 +141,7 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "roller.bearing.grease_life", "roller.bearing.relubrication_interval",
             "limits.target_life",
         ),
-        "roller_speed": ("roller.bearing.speed_limit",),
+        "roller_speed": ("roller.bearing.speed_limit", "limits.overspeed"),
         "roller_radial": (*_LOADS, "roller.bearing.radial_limit"),
         "roller_static_radial": (*_LOADS, "roller.bearing.static_radial_limit"),
         **_guides(
@@ -167,12 +162,12 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "anti_rotation": (),
         **_guides("guide_wear", "guide.wear_rate", "limits.target_life"),
         "guide_length": (),
-        "spring_stress": (*_SPRING, *_SURGE, *_WIRE),
-        "spring_fatigue": (*_SPRING, *_SURGE, *_WIRE),
+        "spring_stress": (*_SPRING, *_SURGE, *_WIRE, "limits.overspeed"),
+        "spring_fatigue": (*_SPRING, *_SURGE, *_WIRE, "limits.overspeed"),
         "spring_solid": (*_SPRING, *_RATE),
         "spring_buckling": (),
         "spring_rate": ("spring.rate", *_RATE),
-        "spring_surge": _SURGE,
+        "spring_surge": (*_SURGE, "limits.overspeed"),
         "spring_coil_gap": (*_SPRING, *_RATE),
         "spring_solid_stress": (*_SPRING, *_RATE, *_WIRE),
         "spring_relaxation": (
@@ -212,7 +207,9 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         ),
         "key_shear": _KEY,
         "torque_reversals": _LOADS,
-        "cam_unbalance": ("cam.material.density", "camshaft.rotor_mass"),
+        "cam_unbalance": (
+            "cam.material.density", "camshaft.rotor_mass", "limits.overspeed",
+        ),
         "shaft_fatigue": (
             *_SHAFT, "camshaft.material.tensile_strength", "camshaft.material.fatigue_bending",
             "camshaft.*notch_*", "limits.shaft_reliability",
