@@ -46,7 +46,8 @@ def data(table: dict[str, Any] = TABLES, above: tuple[str, ...] = ()) -> list[tu
     for key, value in table.items():
         if not above and key in NOT_OF_A_PART:
             continue
-        found.append((*above, key))
+        if (*above, key) != ("lubricant",):  # of the oil only the advisory film ratio is known
+            found.append((*above, key))
         if isinstance(value, dict):
             found += data(value, (*above, key))
     return found

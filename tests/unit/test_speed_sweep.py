@@ -41,7 +41,7 @@ def solved():
 
 
 def massless(machine):
-    return replace(machine, spring=replace(machine.spring, design=None))
+    return replace(machine, spring=replace(machine.spring, design=None), spring_mass=0.0)
 
 
 def test_without_mass_of_the_coils_it_is_the_turn_of_the_load_case(solved):
@@ -63,7 +63,7 @@ def test_without_mass_of_the_coils_it_is_the_turn_of_the_load_case(solved):
 
 def test_heavy_coils_of_no_stiffness_to_speak_of_weigh_a_third(solved):
     """Slow: m + m_s/3 moves with the follower."""
-    machine = solved.machine
+    machine = replace(solved.machine, spring_mass=0.0)
     rubbing = solved.cycles[0].loads.rubbing
     heavier = replace(machine, mass=machine.mass + machine.spring.design.active_mass / 3.0)
     slow = [400.0 * RPM]
