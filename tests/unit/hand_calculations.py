@@ -46,10 +46,10 @@ TORQUE = np.abs(made.cycle().loads.cam_torque)
 def fast_contact(cam_speed: float) -> float:
     """Least contact force over the preload on 5 mm (1 - cos) without friction.
 
-    A + |B| cos: B = a (m w^2 - k phi cot phi), phi = pi w/w_1 sqrt(1 - 0.02 i); m without the third
+    A + |B| cos: B = a (m w^2 - k phi cot phi), phi = pi w/w_1 sqrt(1 - 0.02 i); m without the fifth
     of the spring and its two end coils.
     """
-    mass = made.MASS - COIL_MASS * (COILS + 2.0) / COILS / 3.0
+    mass = made.MASS - 0.2 * COIL_MASS * (COILS + 2.0) / COILS
     own = np.pi * np.sqrt(made.RATE / COIL_MASS)
     phi = np.pi * cam_speed / own * np.sqrt(1.0 - 0.02j)
     swing = 0.5 * made.STROKE * (mass * cam_speed**2 - made.RATE * phi / np.tan(phi))
