@@ -83,23 +83,12 @@ def is_one_line(text: str) -> bool:
     return text.startswith("camwright: ") and text.count("\n") == 1
 
 
-@pytest.mark.parametrize(("status", "code"), [("pass", 0), ("fail", 1), ("not_evaluated", 3)])
-def test_run_exits_by_its_verdict(
-    case_file: Path, command: Command, runner: Any, status: str, code: int
-) -> None:
-    def judged(case: Any, out: Path, **_: Any) -> None:
-        write_run(out, case, status=status)
-
-    runner(judged)
-    assert command("run", case_file, "--out", "run")[0] == code
-
-
-def test_run_prints_checks_verdict_and_report(
+def test_run_completes_with_0_whatever_the_verdict(
     case_file: Path, command: Command, runner: Any
 ) -> None:
     runner(short_run)
     code, out, err = command("run", case_file, "--out", "runs/small", "--jobs", 2)
-    assert code == 1
+    assert code == 0
     assert "verdict: FAIL: 1 check beyond its limit; after 1 trial\n" in out
     assert "binding: pressure_angle\n" in out
     assert out.endswith("8_report.html\n")
@@ -115,7 +104,7 @@ def test_positions_reach_the_case(case_file: Path, command: Command, runner: Any
         short_run(case, out, **options)
 
     runner(look)
-    assert command("run", case_file, "--out", "run", "--positions", 48)[0] == 1
+    assert command("run", case_file, "--out", "run", "--positions", 48)[0] == 0
     assert seen == [(48, 48)]
 
 
@@ -132,12 +121,12 @@ def test_replace_takes_an_earlier_version_of_the_case_only(
     case_file: Path, command: Command, runner: Any
 ) -> None:
     runner(short_run)
-    assert command("run", case_file, "--out", "run")[0] == 1
+    assert command("run", case_file, "--out", "run")[0] == 0
     case_file.write_text(case_file.read_text().replace('"400 N"', '"401 N"'))
     code, _, err = command("run", case_file, "--out", "run")
     assert code == 2
     assert "holds the run of another input" in err.splitlines()[-1]
-    assert command("run", case_file, "--out", "run", "--replace")[0] == 1
+    assert command("run", case_file, "--out", "run", "--replace")[0] == 0
     case_file.write_text(case_file.read_text().replace('name = "small"', 'name = "big"'))
     assert command("run", case_file, "--out", "run", "--replace")[0] == 2
 
