@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from cam_parts import Keyway
 from scipy.integrate import cumulative_trapezoid
+from stated_loads import stated_loads
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -32,9 +33,8 @@ from camwright.pipeline.contact.elasticity.elastic_body import (
     StressRecovery,
 )
 from camwright.pipeline.contact.hertz import line_contact
-from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import camshaft_loads
-from camwright.pipeline.cycle.solution import Solution, solution
+from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import (
     Camshaft,
     CamshaftGear,
@@ -72,7 +72,7 @@ def solved() -> Solution:
     )
     theta = uniform_turn(72)
     contour = case.contour(Lift(theta, 0.005 * (1 - np.cos(theta))))
-    return solution(case, contour, Tier.PREVIEW, torques={}, positions=72)
+    return stated_loads(case, contour, 72)
 
 
 def with_case(case) -> Solution:

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.optimize import minimize
+from stated_loads import stated_loads
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -25,8 +26,6 @@ from camwright.pipeline.checks.contact_strength import shakedown_factor
 from camwright.pipeline.checks.registry import CHECKS, checks_of
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elliptic_contact import axis_stress, elliptic_contact
-from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.solution import solution
 
 CASE = Path(__file__).parents[1] / "data" / "every_part.toml"
 POSITIONS = 72
@@ -64,7 +63,7 @@ def solved(cam="case_hardened", other="induction_hardened", face=False, crown=""
         contour = FlatFaceContour(FacePath(lift, BASE))
     else:
         contour = RollerContour(PitchCurve(lift, BASE), ROLLER)
-    found = solution(case, contour, Tier.PREVIEW, torques={}, positions=POSITIONS)
+    found = stated_loads(case, contour, POSITIONS)
     return found, {check.id: check for check in checks_of(found, OWN)}
 
 
@@ -208,7 +207,7 @@ def test_a_body_without_endurance_leaves_the_check_open_and_is_named(body, name)
 
 
 def checked(found, case):
-    again = solution(case, found.contour, Tier.PREVIEW, torques={}, positions=POSITIONS)
+    again = stated_loads(case, found.contour, POSITIONS)
     return {check.id: check for check in checks_of(again, OWN)}
 
 

@@ -13,6 +13,7 @@ from scipy.integrate import quad, solve_bvp
 from skfem import Basis, BilinearForm, ElementQuad2, ElementVector, LinearForm
 from skfem.helpers import ddot, eye, sym_grad, trace
 from skfem.utils import condense, solve
+from stated_loads import stated_loads
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -28,10 +29,9 @@ from camwright.pipeline.checks import guide_strength, guide_wear, jump_and_jammi
 from camwright.pipeline.checks.check import Check, Declaration
 from camwright.pipeline.checks.error_bars import GUIDE_EDGE_ERROR, GUIDE_ERROR, with_error_bars
 from camwright.pipeline.checks.registry import CHECKS, checks_of
-from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import guide_bodies
-from camwright.pipeline.cycle.solution import Solution, solution
+from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_friction import bore_closure, guide_heat, thermal_resistance
 from camwright.pipeline.follower.guide_reactions import (
     Guide,
@@ -70,7 +70,7 @@ def solved_of(case: Case) -> Solution:
     theta = uniform_turn(72)
     lift = Lift(theta, 0.005 * (1.0 - np.cos(theta)))
     contour = RollerContour(PitchCurve(lift, case.cam.prime_radius), case.roller.radius)
-    return solution(case, contour, Tier.PREVIEW, torques={}, positions=72)
+    return stated_loads(case, contour, 72)
 
 
 @pytest.fixture(scope="module")

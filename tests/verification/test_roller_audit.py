@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from ring_beams import beam_ring_bending
+from stated_loads import stated_loads
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
@@ -22,8 +23,6 @@ from camwright.pipeline.case.cards.card_filling import known_cards
 from camwright.pipeline.case.cards.part_table import read_part
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.checks.registry import CHECKS
-from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.follower import bearing_life
 from camwright.pipeline.follower.bearing_ring import ball_stiffness
 from camwright.pipeline.follower.bearing_ring_elements import ring_bending
@@ -46,7 +45,7 @@ def solved(own):
     theta = uniform_turn(72)
     lift = Lift(theta, 0.5 * STROKE * (1.0 - np.cos(theta)))
     contour = RollerContour(PitchCurve(lift, BASE), RADIUS)
-    return solution(own, contour, Tier.PREVIEW, torques={}, positions=72)
+    return stated_loads(own, contour, 72)
 
 
 @cache

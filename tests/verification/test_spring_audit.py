@@ -11,13 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from stated_loads import stated_loads
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.checks import jump_and_jamming, spring_strength
-from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.spring import dynamic_stiffness, surge_force
 from camwright.pipeline.preview import preview_case
@@ -48,7 +47,7 @@ def solved():
     theta = uniform_turn(720)
     case = machine_case()
     contour = case.contour(Lift(theta, lift_of(theta)))
-    return solution(case, contour, Tier.PREVIEW, torques={}, positions=360, coarse=True)
+    return stated_loads(case, contour, 360, coarse=True)
 
 
 # --- the coils as a chain of elements -------------------------------------------------------
