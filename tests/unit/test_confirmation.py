@@ -1,8 +1,8 @@
 """Values on which a verdict rests and which nothing confirms."""
 
 import tomllib
-from copy import deepcopy
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import made_trial as made
@@ -116,25 +116,26 @@ def test_a_check_without_data_rests_on_nothing():
     assert missing[0].unconfirmed == ()
 
 
-def demands(case: dict[str, Any]) -> dict[str, tuple[float | None, float | None]]:
-    """Demand and limit of each check of the design."""
-    checks = preview_case(case_of(deepcopy(case))).checks
+@cache
+def demands(value: str = "", share: float = 0.0) -> dict[str, tuple[float | None, float | None]]:
+    """Demand and limit of each check of the design, one value changed by a share."""
+    changed = tables()
+    if value:
+        *parents, key = value.split(".")
+        table: Any = changed
+        written: Any = case_of(tables()).tables()
+        for part in parents:
+            table, written = table.setdefault(part, {}), written[part]
+        number, _, unit = str(written[key]).partition(" ")
+        new = float(number) * (1.0 + share)
+        table[key] = f"{new!r} {unit}" if unit else new
+    checks = preview_case(case_of(changed)).checks
     return {one.id: (one.demand, one.limit) for one in checks if not one.evidence}
 
 
-def moved(value: str, share: float = 0.01) -> set[str]:
+def moved(value: str) -> set[str]:
     """Checks whose demand or limit changes with a value."""
-    changed = tables()
-    *parents, key = value.split(".")
-    table: Any = changed
-    written: Any = case_of(tables()).tables()
-    for part in parents:
-        table = table.setdefault(part, {})
-        written = written[part]
-    entry = written[key]
-    number, _, unit = entry.partition(" ") if isinstance(entry, str) else (entry, "", "")
-    table[key] = f"{float(number) * (1 + share)!r} {unit}" if unit else float(number) * (1 + share)
-    before, after = demands(tables()), demands(changed)
+    before, after = demands(), demands(value, 0.01)
     return {
         name
         for name in before.keys() & after.keys()
@@ -144,34 +145,24 @@ def moved(value: str, share: float = 0.01) -> set[str]:
 
 
 def resting_on(value: str) -> set[str]:
-    """Checks that state that they rest on a value, or whose limit it is."""
+    """Checks that state that they rest on a value."""
     own = case_of(tables()).tables()
-    limits = {one.id for one in CHECKS if one.limit and value == f"limits.{one.limit.id}"}
-    named = (name for name, paths in RESTS_ON.items() for p in paths if value in values_at(own, p))
-    return limits | set(named)
+    return {name for name, paths in RESTS_ON.items() for p in paths if value in values_at(own, p)}
 
 
-STRENGTHS = ("materials.steel.endurance_pressure", "roller.bearing.C0")
-
-
-@pytest.mark.parametrize("value", STRENGTHS)
-def test_a_check_moves_with_a_value_only_if_it_states_so(value):
-    assert moved(value) - resting_on(value) == set()
-
-
-def data() -> list[str]:
-    """Values that any check states, whole numbers and tables left out."""
-    own = case_of(tables()).tables()
-    every = {value for paths in RESTS_ON.values() for p in paths for value in values_at(own, p)}
-    no_float = (
-        "roller.bearing.ring.balls",
-        "roller.bearing.ring.rows",
-        "materials.nylon.strength_at",
-    )
-    return sorted(every - set(no_float))
+DATA = (
+    "materials.steel.endurance_pressure", "materials.steel.yield_strength",
+    "materials.steel.fatigue_torsion", "materials.steel.tensile_strength",
+    "materials.nylon.E", "materials.nylon.conductivity", "materials.nylon.yield_strength",
+    "roller.bearing.C", "roller.bearing.C0", "roller.bearing.ring.thickness",
+    "spring.design.density", "spring.design.strength_at_1mm", "camshaft.bearing_rating",
+    "guides.a.friction", "follower.mass",
+)  # fmt: skip
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("value", data())
+@pytest.mark.parametrize("value", DATA)
 def test_every_check_that_moves_with_a_value_states_so(value):
-    assert moved(value) - resting_on(value) == set()
+    """By one per cent more of it; a check that moves rests on it, whatever its formula."""
+    assert moved(value)
+    assert moved(value) <= resting_on(value)
