@@ -193,10 +193,11 @@ def test_a_replaced_part_brings_its_own_sources_and_no_confirmation_of_the_old_o
     name = "maker_1_625_2Z"
     confirmed = [
         {"value": "roller.bearing.speed_limit", "source": "test bench"},
+        {"value": "roller.inertia", "source": "weighed"},
         {"value": "cam.width", "source": "drawing"},
     ]
     tables = tomllib.loads(template("cards"))
-    tables["roller"]["bearing"] = {"card": "maker_1_625_2RS"}
+    tables["roller"] |= {"bearing": {"card": "maker_1_625_2RS"}, "inertia": "1 g cm^2"}
     case = case_of(tables | {"confirmed": confirmed})
     assert not confirms(case.sources["roller.bearing.speed_limit"])
     card = catalogue_of(None).rollers[name]
