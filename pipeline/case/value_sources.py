@@ -106,11 +106,13 @@ def put_sources(case: Tables, field: str, table: TomlValue, words: Mapping[str, 
 
 
 def forget_sources(tables: Tables, part: str) -> None:
-    """Remove sources and confirmations of the values of a part that is replaced."""
+    """Remove sources and confirmations of a value, or of the values of a part, that is replaced."""
+
+    def kept(value: TomlValue) -> bool:
+        return not f"{value}.".startswith(f"{part}.")
+
     sources, confirmed = tables.get("sources"), tables.get("confirmed")
     if isinstance(sources, dict):
-        tables["sources"] = {k: v for k, v in sources.items() if not k.startswith(f"{part}.")}
+        tables["sources"] = {value: text for value, text in sources.items() if kept(value)}
     if isinstance(confirmed, list):
-        tables["confirmed"] = [
-            each for each in confirmed if not str(_entry(each, "value")).startswith(f"{part}.")
-        ]
+        tables["confirmed"] = [each for each in confirmed if kept(_entry(each, "value"))]

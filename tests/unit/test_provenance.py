@@ -8,6 +8,7 @@ import pytest
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.cards.card_filling import FOLDER, KINDS, known_cards
+from camwright.pipeline.case.cards.catalogue import catalogue_of
 from camwright.pipeline.case.cards.provenance import (
     PROVENANCE,
     numbers_of,
@@ -15,7 +16,8 @@ from camwright.pipeline.case.cards.provenance import (
     source_words,
     titles,
 )
-from camwright.pipeline.case.case_file import parse_case
+from camwright.pipeline.case.cards.substitution import with_roller
+from camwright.pipeline.case.case_file import case_of, parse_case
 from camwright.pipeline.case.requirements_section import Confirmation
 from camwright.pipeline.case.template import template
 from camwright.pipeline.case.value_sources import confirms, source_of, values_at, values_in
@@ -185,3 +187,30 @@ def test_a_confirmation_is_a_source_or_a_name_with_a_date():
 
 def test_source_words_of_a_card_without_provenance_are_its_source():
     assert source_words({"E": "200 GPa", "source": "mill"}, "E", "x") == "mill"
+
+
+def test_a_replaced_part_brings_its_own_sources_and_no_confirmation_of_the_old_one():
+    name = "maker_1_625_2Z"
+    confirmed = [
+        {"value": "roller.bearing.speed_limit", "source": "test bench"},
+        {"value": "roller.inertia", "source": "weighed"},
+        {"value": "cam.width", "source": "drawing"},
+    ]
+    tables = tomllib.loads(template("cards"))
+    tables["roller"] |= {"bearing": {"card": "maker_1_625_2RS"}, "inertia": "1 g cm^2"}
+    case = case_of(tables | {"confirmed": confirmed})
+    assert not confirms(case.sources["roller.bearing.speed_limit"])
+    card = catalogue_of(None).rollers[name]
+    other = with_roller(case, name, card, None)
+    assert confirms(other.sources["roller.bearing.speed_limit"])
+    assert "E2.625-2Z" in other.sources["roller.bearing.C"]
+    assert [each.value for each in other.confirmed] == ["cam.width"]
+
+
+def test_the_lightest_spring_of_a_catalogue_has_the_sources_of_its_wire():
+    tables = tomllib.loads(template("cards"))
+    tables["spring"] |= {"catalogue": "shipped", "travel_max": "30 mm"}
+    tables["spring"].pop("design", None)
+    case = case_of(tables)
+    assert "table 10-4" in case.sources["spring.design.strength_at_1mm"]
+    assert confirms(case.sources["spring.design.coils"])

@@ -134,7 +134,8 @@ def with_roller(case: Case, name: str, card: BearingCard, folder: Path | None) -
 def _put_roller(data: Tables, case: Case, card: BearingCard, name: str) -> None:
     old, radius = case.roller, 0.5 * card.outer_diameter
     roller = table_in(data, "roller")
-    forget_sources(data, "roller.bearing")
+    for replaced in ("roller.bearing", "roller.inertia"):
+        forget_sources(data, replaced)
     inside = card.bore if card.pitch_diameter is None else card.pitch_diameter
     chamfer = min(old.chamfer, _CHAMFER_MOST * card.width)
     roller |= {
