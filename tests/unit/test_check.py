@@ -3,11 +3,24 @@
 import json
 import math
 
+import made_trial
 import numpy as np
 import pytest
 from made_check import made_check
+from pydantic import ValidationError
 
-from camwright.pipeline.checks.check import ROUNDING, Check, Waived, binding, in_order, verdict
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.scope_section import Scope
+from camwright.pipeline.checks.check import (
+    ROUNDING,
+    Check,
+    Demand,
+    Waived,
+    binding,
+    in_order,
+    verdict,
+)
+from camwright.pipeline.checks.check import check as declare
 
 
 def at_most(demand, limit=2.0, **more) -> Check:
@@ -52,6 +65,40 @@ def test_a_missing_number_never_passes(sense, demand, limit):
     assert verdict([check, at_most(1.0)]) == "incomplete"
     assert verdict([check, at_most(3.0)]) == "fail"
     assert binding([check]) == ("x",)
+
+
+def test_a_part_is_judged_missing_or_left_out_by_the_scope():
+    """The key of the cam: described, not described, not described and not covered."""
+
+    @declare(title="pressure on {follower} key", method="none: made up", part="key")
+    def key(_):
+        return Demand(1.0, 2.0)
+
+    bare = made_trial.changed(made_trial.case().cam, keyway=None)
+    scope = Scope(not_covered=("key", "gear"), reason="press fit")
+    described, missing, left_out = (
+        key(made_trial.solution(case=case))
+        for case in (
+            made_trial.case(),
+            made_trial.case(cam=bare),
+            made_trial.case(cam=bare, scope=scope),
+        )
+    )
+    assert described is not None and missing is not None
+    assert described.status == "pass"
+    assert (missing.status, missing.must_have) == ("not_evaluated", True)
+    assert missing.note == "no key is described; describe it or leave it out in [scope]"
+    assert verdict([described, missing]) == "incomplete"
+    assert left_out is None
+
+
+def test_a_scope_needs_its_reason_and_knows_its_parts():
+    assert Scope().statement == ""
+    said = "Not covered by this sign-off: key, driving gear: as drawn"
+    assert Scope(not_covered=("gear", "key"), reason=" as\n drawn ").statement == said
+    for wrong in ({"not_covered": ("key",)}, {"not_covered": ("cam",), "reason": "x"}):
+        with pytest.raises((InputError, ValidationError), match=r"reason|not_covered"):
+            Scope(**wrong)
 
 
 def test_numpy_numbers_are_numbers():
