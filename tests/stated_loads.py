@@ -1,17 +1,29 @@
-"""A preview in the load cases of a case file alone, without standstill and over-speed.
+"""A solution in the load cases of a case file alone, without standstill and over-speed.
 
 For recomputations of one load case by hand; that the other two are judged has tests of its own.
 """
+
+from collections.abc import Mapping
+from types import MappingProxyType
 
 from camwright.geometry.contour import Contour
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solved_turns, turns_of
+from camwright.pipeline.engine.torque import Torque
 
 
-def stated_loads(case: Case, contour: Contour, positions: int, *, coarse: bool = False) -> Solution:
-    """Preview of a cam in the load cases that its case states, without an engine torque."""
+def stated_loads(
+    case: Case,
+    contour: Contour,
+    positions: int,
+    *,
+    tier: Tier = Tier.PREVIEW,
+    torques: Mapping[str, Torque] = MappingProxyType({}),
+    coarse: bool = False,
+) -> Solution:
+    """Solution of a cam in the load cases that its case states; no engine torque by default."""
     states = machines(case)[: len(case.load_cases)]
-    turns = turns_of(states, contour, case, {}, positions, coarse=coarse)
-    return solved_turns(case, contour, turns, Tier.PREVIEW, {}, coarse=coarse)
+    turns = turns_of(states, contour, case, torques, positions, coarse=coarse)
+    return solved_turns(case, contour, turns, tier, torques, coarse=coarse)

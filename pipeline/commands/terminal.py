@@ -80,8 +80,9 @@ def show(document: dict[str, Any], folder: Path | None) -> None:
         stdout.print(f"verdict: {line}; after {trials}", markup=False)
         if document["statement"]:
             stdout.print(document["statement"], markup=False)
-    for name in document["to_be_confirmed"]:
-        stdout.print(f"to be confirmed: {name}", markup=False)
+    if document["to_be_confirmed"]:
+        values = "; ".join(document["to_be_confirmed"])
+        stdout.print(f"values to be confirmed: {values}", markup=False)
     if document["scope"]["statement"]:
         stdout.print(document["scope"]["statement"], markup=False)
     for line in binding_lines(document["checks"], document["binding"]):

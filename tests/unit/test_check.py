@@ -3,18 +3,25 @@
 import json
 import math
 
+import made_trial
 import numpy as np
 import pytest
 from made_check import made_check
+from pydantic import ValidationError
 
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.scope_section import Scope
 from camwright.pipeline.checks.check import (
     ROUNDING,
     Check,
+    Demand,
     Waived,
     binding,
     in_order,
     verdict,
 )
+from camwright.pipeline.checks.check import check as declare
+from camwright.pipeline.checks.part_data import data_key
 from camwright.pipeline.results.run_reader import verdict_line
 
 
@@ -60,6 +67,37 @@ def test_a_missing_number_never_passes(sense, demand, limit):
     assert verdict([check, at_most(1.0)]) == "incomplete"
     assert verdict([check, at_most(3.0)]) == "fail"
     assert binding([check]) == ("x",)
+
+
+def test_a_part_is_judged_missing_or_left_out_by_the_scope():
+    """The key of the cam: described, not described, not described and not covered."""
+
+    @declare(title="pressure on {follower} key", method="none: made up", part="key")
+    def key(_):
+        return Demand(1.0, 2.0)
+
+    bare = made_trial.changed(made_trial.case().cam, keyway=None)
+    scope = Scope(not_covered=("key", "gear"), reason="press fit")
+    described = key(made_trial.solution())
+    assert described is not None
+    assert described.status == "pass"
+    for without in (made_trial.case(cam=bare), made_trial.case(cam=bare, scope=scope)):
+        assert key(made_trial.solution(case=without)) is None
+    missing = data_key(made_trial.solution(case=made_trial.case(cam=bare)))
+    assert missing is not None
+    assert (missing.status, missing.must_have) == ("not_evaluated", True)
+    assert missing.note == "no key is described; describe it or leave it out in [scope]"
+    assert verdict([described, missing]) == "incomplete"
+    assert data_key(made_trial.solution(case=made_trial.case(cam=bare, scope=scope))) is None
+
+
+def test_a_scope_needs_its_reason_and_knows_its_parts():
+    assert Scope().statement == ""
+    said = "Not covered by this sign-off: key, driving gear: as drawn"
+    assert Scope(not_covered=("gear", "key"), reason=" as\n drawn ").statement == said
+    for wrong in ({"not_covered": ("key",)}, {"not_covered": ("cam",), "reason": "x"}):
+        with pytest.raises((InputError, ValidationError), match=r"reason|not_covered"):
+            Scope(**wrong)
 
 
 def test_numpy_numbers_are_numbers():

@@ -259,7 +259,7 @@ def test_the_scope_is_stated_in_every_record(tmp_path: Path, command: Command) -
     assert code == 0
     assert f"\n{STATED}\n" in text
     assert "verdict: PASS, 2 values to be confirmed; after 1 trial\n" in text
-    assert "to be confirmed: [bold]PV[/bold]\n" in text
+    assert "\nvalues to be confirmed: [bold]PV[/bold]; C0\n" in text
     document = json.loads(command("check", out, "--json")[1])
     signed = json.loads((out / "signoff.json").read_text())
     for record in (document, signed):

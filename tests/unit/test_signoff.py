@@ -36,7 +36,13 @@ def test_the_record_is_whole(tmp_path: Path) -> None:
     assert record["case_sha256"] == small_case().sha256
     assert record["verdict"] == "fail"
     assert record["binding"] == ["pressure_angle"]
-    assert record["waivers"][0]["waiver"] == "A. Engineer, 2025-01-02: proven"
+    assert record["waivers"] == [{
+        "check": "x", "waiver": "A. Engineer, 2025-01-02: proven", "up_to": 3.5, "unit": "deg",
+        "status": "waived",
+    }]  # fmt: skip
+    assert record["verdict_line"] == "FAIL: 1 check beyond its limit, 1 waived"
+    assert record["scope"] == {"not_covered": [], "reason": "", "statement": ""}
+    assert record["not_proven"] == record["to_be_confirmed"] == []
     assert [f["error"] for f in record["figures"] if f["id"] == "x"] == [0.01]
     assert record["environment"]["versions"]["numpy"]
     assert record["limitations"] and record["singularities"]

@@ -23,7 +23,7 @@ from camwright.meshes.element_size import Sizing
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.machine import machines
 from camwright.pipeline.checks import camshaft_strength as shaft_checks
-from camwright.pipeline.checks import key_strength, part_strength
+from camwright.pipeline.checks import key_strength, part_data, part_strength
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.contact.cam_body import Key
 from camwright.pipeline.contact.cam_body import Keyway as CamKeyway
@@ -559,7 +559,7 @@ DATA = [
 def test_a_missing_datum_is_a_row_unless_its_default_is_documented(field, has_default):
     """A shaft without gear is a row of the gear: it is described or left out in the scope."""
     bare = lacking(field)
-    modules = (shaft_checks, key_strength, part_strength)
+    modules = (shaft_checks, key_strength, part_strength, part_data)
     declared = [one for module in modules for one in vars(module).values()]
     made = [one(bare) for one in declared if isinstance(one, Declaration)]
     opened = {one.id for one in made if one is not None and one.status == "not_evaluated"}

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from stated_loads import stated_loads
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import Contour, RollerContour
@@ -25,9 +26,10 @@ from camwright.pipeline.case.template import template
 from camwright.pipeline.checks.check import Check, verdict
 from camwright.pipeline.checks.registry import all_checks
 from camwright.pipeline.contact.closed_form import closed_form_history
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.solution import Solution, solution
+from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.turn import turn
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.required_lift import cam_lift
@@ -119,7 +121,10 @@ def hardened_case() -> Case:
 def published(hardened: bool) -> dict[str, Check]:
     """The first trial of the published machine, its cam of plate or case-hardened."""
     case = hardened_case() if hardened else parse_case(plate_text())
-    return {check.id: check for check in preview_case(case.with_positions(180)).checks}
+    torques = engine_torques(case)
+    contour = case.contour(cam_lift(case, torques))
+    idle = stated_loads(case, contour, 180, torques=torques)
+    return {check.id: check for check in all_checks(idle)}
 
 
 def demand(check: Check) -> float:
@@ -156,16 +161,16 @@ def by_elements() -> Solution:
     case = parse_case(plate_text())
     torques = engine_torques(case)
     contour = case.contour(cam_lift(case, torques))
-    return solution(case, contour, torques=torques, positions=72)
+    return stated_loads(case, contour, 72, tier=Tier.FINITE_ELEMENTS, torques=torques)
 
 
 def of_another_steel(solved: Solution, case: Case) -> Solution:
     """The same turns and contact of a case whose cam is as elastic and bears otherwise."""
+    idle = machines(case)[0]
     cycles = tuple(
-        replace(cycle, turn=replace(cycle.turn, machine=machine))
-        for cycle, machine in zip(solved.cycles, machines(case), strict=True)
+        replace(cycle, turn=replace(cycle.turn, machine=idle)) for cycle in solved.cycles
     )
-    return replace(solved, case=case, machines=machines(case), cycles=cycles)
+    return replace(solved, case=case, machines=(idle,), cycles=cycles)
 
 
 @pytest.mark.parametrize("hardened", [False, True])

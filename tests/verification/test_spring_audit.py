@@ -166,7 +166,7 @@ def test_the_contact_is_lost_between_the_load_cases(solved):
         cam_speed = 0.5 * rpm * RPM
         moving, _ = driven_coils(machine.spring.design, machine.spring.rate, cam_speed)
         bend = 0.01 * np.cos(theta) + 36.0 * SIXTH * np.cos(6.0 * theta)
-        push = machine.spring.preload + moving + machine.mass * cam_speed**2 * bend
+        push = machine.spring.preload + moving + machine.mass_without_spring * cam_speed**2 * bend
         least = min(least, float((push * gain).min()))
     assert check.demand == pytest.approx(least / machine.spring.preload, abs=0.03)
 
@@ -195,13 +195,13 @@ def test_elastic_contact_is_that_of_coils_mass_and_stem_in_time(solved):
     # the coils are damped between fixed ends, as their modes are
     C[:-1, :-1] = modal_damping(M[:-1, :-1], K[:-1, :-1], design.damping)
     stem = machine.axial_stiffness
-    damping = machine.damping_ratio * 2.0 * np.sqrt(machine.mass * (stem + rate))
+    damping = machine.damping_ratio * 2.0 * np.sqrt(machine.mass_without_spring * (stem + rate))
     # relative to coils that follow the mass in proportion: their damping does not act on that
     follow = np.linspace(0.0, 1.0, ELEMENTS + 1)[1:]
     turn = np.eye(ELEMENTS)
     turn[:, -1] = follow
     M, K = (turn.T @ each @ turn for each in (M, K))
-    M[-1, -1] += machine.mass
+    M[-1, -1] += machine.mass_without_spring
     K[-1, -1] += stem
     C[-1, -1] += damping
     theta = uniform_turn(STEPS)
