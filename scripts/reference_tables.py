@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -20,7 +21,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.section import Section, section_of
 from camwright.pipeline.checks.check import Declaration
-from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.checks.registry import CHECKS, MODULES
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_records import column_table
@@ -52,24 +53,33 @@ def limits() -> str:
 
 
 def checks() -> str:
-    """A paragraph for each check: formula, limit, source, load cases, and why it decides."""
-    return "\n\n".join(map(_check, CHECKS))
+    """Each check with formula, limit, source, load cases, and why it decides, by module."""
+    parts = []
+    for module in MODULES:
+        words = (ast.get_docstring(ast.parse(inspect.getsource(module))) or "").splitlines()[0]
+        parts.append(f"### {words.rstrip('.').removeprefix('Checks of the ').capitalize()}")
+        parts += [_check(each) for each in CHECKS if each in vars(module).values()]
+    return "\n\n".join(parts)
 
 
 def _check(one: Declaration) -> str:
     title = one.title.format(follower="follower")
-    of = f", of a {one.needs} alone" if one.needs else ""
-    part = f", part `{one.part}`" if one.part else ""
-    lines = [
-        f"### `{one.id}`: {title}",
-        f"{one.formula}. Unit: {one.unit}{of}{part}.",
-        f"- Calculation: {one.method}.",
-        f"- Limit: {_limit(one)}.",
-        f"- Load cases: {one.load_cases}.",
-        f"- {'Decides the verdict' if one.must_have else 'Does not decide the verdict'}: "
-        f"{one.reason}.",
-    ]
-    return "\n".join([*lines[:2], "", *lines[2:]])
+    needs = f"; a {one.needs} only" if one.needs else ""
+    part = f"; part `{one.part}`" if one.part else ""
+    decides = "Decides the verdict" if one.must_have else "Does not decide the verdict"
+    lines = (
+        f"#### `{one.id}`: {title}",
+        f"{_sentence(one.formula)} Unit: {one.unit}{needs}{part}.",
+        f"- Calculation: {one.method.rstrip('.')}.\n- Limit: {_limit(one)}.\n"
+        f"- Load cases: {one.load_cases}.\n- {decides}. {_sentence(one.reason)}",
+    )
+    return "\n\n".join(lines)
+
+
+def _sentence(text: str) -> str:
+    """Text with a full stop; a word at its start, unlike a symbol, with a capital letter."""
+    start = text[:1].upper() if text[1:2].islower() and text[:3].isalpha() else text[:1]
+    return f"{start}{text[1:].rstrip('.')}."
 
 
 def _limit(one: Declaration) -> str:
@@ -134,7 +144,11 @@ def keys() -> str:
     parts = []
     for title, section in sections(Case, ""):
         rows = [
-            (f"`{field.alias or name}`", accepted(field), default(field))
+            (
+                f"`{field.alias or name}`",
+                accepted(field),
+                default(field) or section.defaults.get(name, ""),
+            )
             for name, field in section.model_fields.items()
             if not any(nested(field))
         ]

@@ -137,7 +137,9 @@ def _section_made_of(part: type[Part]) -> type[Section]:
             continue
         default = ... if field.default is MISSING else field.default
         described[field.name] = (_in_section(hints[field.name]), default)
-    return create_model(part.__name__, __base__=Section, __doc__=part.__doc__, **described)
+    made = create_model(part.__name__, __base__=Section, __doc__=part.__doc__, **described)
+    made.defaults = part.defaults
+    return made
 
 
 def _in_section(hint: Any) -> Any:

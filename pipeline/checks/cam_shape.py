@@ -21,7 +21,7 @@ from camwright.pipeline.case.limits import (
     TOOL_RADIUS,
     UNDERCUT_FACTOR,
 )
-from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.cycle.solution import Solution
 
@@ -48,6 +48,7 @@ def _at(extremum: Extremum) -> Extreme:
     method="difference of the lift between the ends of the turn, before closing",
     forecast=True,
     moved_by_tolerance=False,
+    load_cases=NONE,
 )
 def closure(solution: Solution) -> Demand:
     """Difference of the lift between the ends of the turn, m."""
@@ -67,6 +68,7 @@ def closure(solution: Solution) -> Demand:
     " lift by the cam angle on either side of theta, c: limits.acceleration_step",
     reason="A jump of the acceleration is a jump of the contact force and excites the follower at"
     " every frequency.",
+    load_cases=NONE,
 )
 def acceleration_step(solution: Solution) -> Demand:
     """Greatest discontinuity of the acceleration over its range."""
@@ -92,6 +94,7 @@ def acceleration_step(solution: Solution) -> Demand:
     lift_can_help=True,
     forecast=True,
     needs="roller",
+    load_cases=NONE,
 )
 def pressure_angle(solution: Solution) -> Demand:
     """Greatest angle between contact normal and follower axis, rad."""
@@ -110,6 +113,7 @@ def pressure_angle(solution: Solution) -> Demand:
     lift_can_help=True,
     forecast=True,
     needs="roller",
+    load_cases=NONE,
 )
 def curvature_ratio(solution: Solution) -> Demand:
     """Least convex radius of the pitch curve over the roller radius."""
@@ -129,6 +133,7 @@ def curvature_ratio(solution: Solution) -> Demand:
     method="least 1 - roller radius x pitch curvature, refined between samples",
     lift_can_help=True,
     forecast=True,
+    load_cases=NONE,
 )
 def undercut(solution: Solution) -> Demand:
     """Undercut factor: 1 - r kappa, of a face (r + s + s'')/(r + s)."""
@@ -152,6 +157,7 @@ def undercut(solution: Solution) -> Demand:
     method="number of crossings of the contour with itself, between samples too",
     lift_can_help=True,
     moved_by_tolerance=False,
+    load_cases=NONE,
 )
 def self_intersection(solution: Solution) -> Demand:
     """Number of crossings of the contour with itself."""
@@ -169,6 +175,7 @@ def self_intersection(solution: Solution) -> Demand:
     method="greatest penetration of the follower into the contour outside the contact",
     lift_can_help=True,
     moved_by_tolerance=False,
+    load_cases=NONE,
 )
 def second_contact(solution: Solution) -> Demand:
     """Penetration of the follower into the contour outside the contact, m."""
@@ -189,6 +196,7 @@ def second_contact(solution: Solution) -> Demand:
     lift_can_help=True,
     forecast=True,
     needs="roller",
+    load_cases=NONE,
 )
 def concave_radius(solution: Solution) -> Demand | None:
     """Least concave radius of the contour, m; None for a convex cam."""
@@ -215,6 +223,7 @@ def concave_radius(solution: Solution) -> Demand | None:
     formula="max(R - |Q - P - R n|) <= d; P, n: point and outward normal of the contour, Q: any"
     " other point of it, R: radius of cutter or grinding wheel, d: limits.second_contact_depth",
     reason="A wheel that fits the concave radius can still cut a flank across it.",
+    load_cases=NONE,
 )
 def tool_gouge(solution: Solution) -> Demand:
     """Depth to which the tool cuts the contour outside its contact, m; 0 for a convex cam."""
@@ -245,6 +254,7 @@ def least_concave_radius(case: Case) -> float | None:
     formula="max |d kappa/ds| <= c; kappa: curvature of the contour, s: length along it, c:"
     " limits.curvature_rate",
     reason="Decides where the case sets the limit: its value depends on the grinding machine.",
+    load_cases=NONE,
 )
 def curvature_rate(solution: Solution) -> Demand:
     """Greatest change of the contour's curvature per length, 1/m^2."""
@@ -268,6 +278,7 @@ def curvature_rate(solution: Solution) -> Demand:
     reason="A thinner ring bursts at the keyway or opens on the shaft.",
     method="least contour radius over bore radius plus keyway depth",
     forecast=True,
+    load_cases=NONE,
 )
 def minimum_wall(solution: Solution) -> Demand:
     """Least contour radius over the radius of bore and keyway.
@@ -289,6 +300,7 @@ def minimum_wall(solution: Solution) -> Demand:
     lift_can_help=True,
     forecast=True,
     moved_by_tolerance=False,
+    load_cases=NONE,
 )
 def spring_travel(solution: Solution) -> Demand:
     """Maximum lift, m, against the spring travel."""

@@ -115,7 +115,7 @@ def _place(section: ShaftSection) -> str:
     " and torsion K_fs (T + drag) of the turning fibre, S_e = k_a k_b k_e S_e': endurance with"
     " factors of surface, size and reliability, S: limits.shaft_safety. Least over cam, gear, both"
     " bearings and camshaft.sections, and over all load cases",
-    reason=f"must-have: {BREAKS}",
+    reason=f"{BREAKS}",
 )
 def shaft_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the sections of the camshaft in bending and torsion."""
@@ -174,7 +174,7 @@ def shaft_fatigue(solution: Solution) -> Demand:
     formula="sqrt((K_f M/W)^2 + 3 (K_fs (T + drag)/(2 W))^2) <= R_p / S; M, T: bending moment and"
     " torque at one angle, W = pi d^3/32, R_p: yield strength of the core, S:"
     " limits.shaft_yield_safety. Greatest over all sections, angles and load cases",
-    reason=f"must-have: a bent camshaft turns out of true; {BREAKS}",
+    reason=f"a bent camshaft turns out of true; {BREAKS}",
 )
 def shaft_yield(solution: Solution) -> Demand:
     """Greatest von Mises stress of the sections of the camshaft, Pa."""
@@ -212,7 +212,7 @@ def shaft_yield(solution: Solution) -> Demand:
     part="camshaft",
     formula="f/l <= limits.shaft_deflection; f: greatest deflection at the cam by the unit-load"
     " method, l: bearing spacing",
-    reason="must-have: the deflection is an error of the lift and tilts the contact line",
+    reason="the deflection is an error of the lift and tilts the contact line",
 )
 def shaft_deflection(solution: Solution) -> Demand:
     """Greatest deflection of the camshaft at the cam over the bearing spacing."""
@@ -237,7 +237,7 @@ def shaft_deflection(solution: Solution) -> Demand:
     part="camshaft",
     formula="phi <= limits.shaft_slope; phi: greatest slope at either bearing by the unit-load"
     " method",
-    reason="must-have: beyond their slope the balls run on the edge of the groove, and the rating"
+    reason="beyond their slope the balls run on the edge of the groove, and the rating"
     " life does not hold",
 )
 def shaft_slope(solution: Solution) -> Demand:
@@ -263,7 +263,7 @@ def shaft_slope(solution: Solution) -> Demand:
     part="camshaft_bearings",
     formula="C0/P0 >= limits.shaft_bearing_static_safety; C0: camshaft.bearing_static_rating, P0:"
     " greatest radial load of either bearing over all load cases and angles",
-    reason="must-have: dents of the raceway under the greatest load are permanent",
+    reason="dents of the raceway under the greatest load are permanent",
 )
 def shaft_bearing_static(solution: Solution) -> Demand:
     """Static safety factor s0 of the camshaft bearing with the greater load."""
@@ -294,7 +294,7 @@ def shaft_bearing_static(solution: Solution) -> Demand:
     formula="L10 >= limits.shaft_bearing_life; L10 = (C/P_m)^3 10^6 turns, C:"
     " camshaft.bearing_rating, P_m: cube mean of the radial load over the turn, P <= C/2"
     " throughout. Least over both bearings and all load cases",
-    reason=f"must-have: {BREAKS}",
+    reason=f"{BREAKS}",
 )
 def shaft_bearing_life(solution: Solution) -> Demand:
     """Rating life of the camshaft bearing with the greater load, s."""
@@ -333,7 +333,7 @@ def shaft_bearing_life(solution: Solution) -> Demand:
     part="gear",
     formula="F K_A/(b m pi y) <= 0.7 s_F / S; F = |T + drag|/r, y = 0.154 - 0.912/z: Lewis, s_F:"
     " camshaft.gear.bending_limit, 0.7: reversed torque, S: limits.gear_bending_safety",
-    reason="must-have: a broken tooth stops the camshaft",
+    reason="a broken tooth stops the camshaft",
 )
 def gear_bending(solution: Solution) -> Demand:
     """Tooth root bending stress of the gear on the camshaft, Pa."""
@@ -352,7 +352,7 @@ def gear_bending(solution: Solution) -> Demand:
     part="gear",
     formula="as gear_bending, with the teeth of the pinion and camshaft.gear.pinion_bending_limit;"
     " fewer teeth are thinner at the root",
-    reason="must-have: a broken tooth stops the camshaft, and the pinion has the weaker tooth",
+    reason="a broken tooth stops the camshaft, and the pinion has the weaker tooth",
 )
 def pinion_bending(solution: Solution) -> Demand:
     """Tooth root bending stress of the pinion on the crankshaft, Pa."""
@@ -394,7 +394,7 @@ def _bending_of(
     formula="Z_H Z_E sqrt(F K_A (u + 1)/(b d u)) <= s_H / S; d, u: pitch diameter of the smaller"
     " wheel and ratio of teeth, s_H: lower contact limit of gear and pinion, S:"
     " limits.gear_contact_safety",
-    reason="must-have: pitted flanks break",
+    reason="pitted flanks break",
 )
 def gear_contact(solution: Solution) -> Demand:
     """Contact pressure on the tooth flanks of the driving gear, Pa."""

@@ -25,7 +25,7 @@ from camwright.pipeline.case.limits import (
     YIELD_SAFETY,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.rolling_envelope import smallest_sphere
@@ -297,7 +297,7 @@ def contact_pressure(solution: Solution) -> Demand:
     error="contact",
     formula="sigma_v <= Y / S; sigma_v: greatest von Mises stress with traction, stresses along the"
     " surface included, Y: least yield strength of cam and follower, S: limits.yield_safety",
-    reason="advisory: a contact above first yield may shake down, see shakedown_traction",
+    reason="a contact above first yield may shake down, see shakedown_traction",
 )
 def first_yield(solution: Solution) -> Demand:
     """Maximum von Mises stress with traction, Pa; shakedown permits values above first yield."""
@@ -463,6 +463,7 @@ def shakedown_traction(solution: Solution) -> Demand:
     " roller without chamfers",
     reason="decides: beyond it the roller overhangs, and carries the force on less width than"
     " calculated",
+    load_cases=NONE,
 )
 def roller_overlap(solution: Solution) -> Demand | None:
     """Axial offset of the roller from the middle of the cam, m; None under a flat face."""

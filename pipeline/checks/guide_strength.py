@@ -13,7 +13,7 @@ from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import Declaration, Demand, check
+from camwright.pipeline.checks.check import NONE, Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import PartLoads
@@ -95,7 +95,7 @@ def _guide_pressure(side: Side) -> Declaration:
         " line load, l: loaded length of that side, d: diameter of the bore, of the side and angle"
         " with the greatest quotient; p: guides.*.pressure_limit, R: yield strength of the bush at"
         " its temperature T and at T_p, guides.*.pressure_limit_temperature.",
-        reason="Must-have: a bush above the pressure of its maker creeps and wears; opposite pushes"
+        reason="a bush above the pressure of its maker creeps and wears; opposite pushes"
         " at both ends of a guide load it although they cancel in the reaction.",
     )
     def pressure(solution: Solution) -> Demand:
@@ -161,7 +161,7 @@ def _guide_pv(side: Side) -> Declaration:
         formula="mean(|R v|) / (d L) <= PV; R: sum of the pushes on both sides of the bore, v:"
         " sliding speed, mean over the turn, d, L: diameter and length of the guide; PV:"
         " guides.*.pv_limit, or the limit of nylon by guides.*.lubrication.",
-        reason="Must-have: the heat that a bush can carry off and its wear rate are stated by its"
+        reason="the heat that a bush can carry off and its wear rate are stated by its"
         " maker as a PV value.",
     )
     def pv(solution: Solution) -> Demand:
@@ -224,7 +224,7 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         part="guides",
         formula="p <= R(T); p: greatest pressure between stem and bore, where the line load along"
         " the guide is greatest, R: yield strength of the bush at its temperature T.",
-        reason="Must-have: an edge above the yield strength is pressed out, and the guide loses its"
+        reason="an edge above the yield strength is pressed out, and the guide loses its"
         " length and its clearance.",
     )
     def edge(solution: Solution) -> Demand:
@@ -255,7 +255,7 @@ def _guide_temperature(side: Side) -> Declaration:
         " the greatest friction, R_wall: ln(1 + 2 t/d) / (2 pi lambda L) of a wall t, R_housing:"
         " guides.*.housing_resistance; guides.*.thermal_resistance in place of both; T_amb:"
         " guides.ambient_temperature; T_max: temperature limit of the bush.",
-        reason="Must-have: strength, clearance and wear of a bush depend on its temperature.",
+        reason="strength, clearance and wear of a bush depend on its temperature.",
     )
     def temperature(solution: Solution) -> Demand:
         """Steady temperature of a guide, degC."""
@@ -301,7 +301,7 @@ def _guide_speed(side: Side) -> Declaration:
         moved_by_tolerance=False,
         part="guides",
         formula="max |v| <= v_max; v: speed of the stem in the bush, v_max: guides.*.speed_limit.",
-        reason="Must-have: a PV limit holds up to the greatest speed of the bush; above it the"
+        reason="a PV limit holds up to the greatest speed of the bush; above it the"
         " rubbing surface overheats at any load.",
     )
     def speed(solution: Solution) -> Demand:
@@ -331,8 +331,9 @@ guide_speed_a, guide_speed_b = _guide_speed("A"), _guide_speed("B")
     part="guides",
     formula="(b + (L_A + L_B) / 2) / a >= n; b: spacing of guides, L: their lengths, a: overhang"
     " of the roller centre or face at minimum lift, n: limits.guide_length.",
-    reason="Optional: a rule of proportion; the reactions, jam index and pressures that it"
+    reason="a rule of proportion; the reactions, jam index and pressures that it"
     " guards on the drawing board are computed, and are must-have.",
+    load_cases=NONE,
 )
 def guide_length(solution: Solution) -> Demand:
     """Distance of the outer ends of the guides over the maximum overhang."""
@@ -353,8 +354,8 @@ def guide_length(solution: Solution) -> Demand:
     part="guides",
     formula="n <= 0; n: rotations of the stem about its axis that nothing prevents, by"
     ' follower.anti_rotation; "not_needed" holds for a flat face alone.',
-    reason="Must-have: a roller that turns about the stem runs on its edge, and no other check sees"
-    " it.",
+    reason="a roller that turns about the stem runs on its edge, and no other check sees it.",
+    load_cases=NONE,
 )
 def anti_rotation(solution: Solution) -> Demand:
     """Number of free rotations of the stem about its axis."""

@@ -29,7 +29,7 @@ def _guide_expansion(side: Side) -> Declaration:
         " k = (1 + 2 t/d)^2: Lame's closure of the bore of a wall t held axially, the greater of"
         " the bounds, d: bore, a_b, a_s: thermal expansion of bush and stem, T: temperature of the"
         " guide, C: guides.*.clearance.",
-        reason="Must-have: a stem that binds in a hot or wet bush jams, whatever its loads.",
+        reason="a stem that binds in a hot or wet bush jams, whatever its loads.",
     )
     def expansion(solution: Solution) -> Demand:
         """Expansion of guide and stem, m, against the clearance between them."""
@@ -78,7 +78,7 @@ def _guide_wear(side: Side) -> Declaration:
         part="guides",
         formula="K PV t <= h; K: guides.*.wear_rate, volume per load and distance, PV: mean PV"
         " value of the guide, t: limits.target_life, h: limits.wear_depth.",
-        reason="Must-have: wear opens the clearance that jamming and edge pressure are computed"
+        reason="wear opens the clearance that jamming and edge pressure are computed"
         " with, and no other check limits it over the life.",
     )
     def wear(solution: Solution) -> Demand:

@@ -18,7 +18,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.check import SPEED_RANGE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, least
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
@@ -75,7 +75,7 @@ def jump(solution: Solution) -> Demand:
     part="guides",
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise; R: sum of the pushes on both sides"
     " of a guide, mu: its nominal friction, F_a: axial force of the cam, j: limits.jam_index.",
-    reason="Must-have: at 1 the follower locks on the rise and the cam or the stem breaks.",
+    reason="at 1 the follower locks on the rise and the cam or the stem breaks.",
 )
 def jam_index(solution: Solution) -> Demand:
     """Friction of the guides over the axial cam force on the rise."""
@@ -103,7 +103,7 @@ def jam_index(solution: Solution) -> Demand:
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise, at guides.*.friction_max or the"
     " tolerance of friction; R: sum of the pushes on both sides of a guide, F_a: axial force of the"
     " cam, j: limits.jam_index.",
-    reason="Must-have: friction of bushes scatters by a factor, and it is the greatest that locks"
+    reason="friction of bushes scatters by a factor, and it is the greatest that locks"
     " the follower.",
 )
 def jam_index_friction_max(solution: Solution) -> Demand:
@@ -122,6 +122,7 @@ def jam_index_friction_max(solution: Solution) -> Demand:
     " speed, F_s: spring force, m: moving mass, s'': second derivative of the lift",
     reason="An engine exceeds its governed speed, and damping and tolerances are not known"
     " closely.",
+    load_cases=SPEED_RANGE,
 )
 def jump_speed(solution: Solution) -> Demand:
     """Minimum crank speed of follower jump, rad/s."""
@@ -142,6 +143,7 @@ def jump_speed(solution: Solution) -> Demand:
     " spring force, m: moving mass, s'': second derivative of the lift, P: preload",
     reason="The synthesis keeps the contact by this closed form; the sweep adds friction"
     " and surge.",
+    load_cases=SPEED_RANGE,
 )
 def contact_at_overspeed(solution: Solution) -> Demand:
     """Minimum contact force at the overspeed over the preload."""
@@ -175,6 +177,7 @@ def contact_at_overspeed(solution: Solution) -> Demand:
     " 0.002",
     reason="Between the load cases a harmonic of the lift may meet a natural frequency of"
     " the spring and lift the follower off the cam.",
+    load_cases=SPEED_RANGE,
 )
 def contact_over_speed(solution: Solution) -> Demand:
     """Minimum contact force over the preload, surge included, from standstill to over-speed."""
@@ -197,6 +200,7 @@ def contact_over_speed(solution: Solution) -> Demand:
     " the stiffness between cam and mass, on the spring with its surge",
     reason="The resonance of the follower on its own stiffness unloads the contact more"
     " than the rigid follower shows.",
+    load_cases=SPEED_RANGE,
 )
 def elastic_contact(solution: Solution) -> Demand:
     """Minimum contact force with an elastic stem over the preload."""

@@ -112,7 +112,7 @@ def key_shear(solution: Solution) -> Demand:
     formula="T_slip/(K_A T) >= limits.cam_slip; T_slip: camshaft.slip_torque of the press or"
     " clamped seat without its key, 0 for a sliding fit, T: greatest cam torque, K_A: application"
     " factor of the key, or 1 without one",
-    reason="must-have: where the torque reverses, a seat that slips within the clearance of its key"
+    reason="where the torque reverses, a seat that slips within the clearance of its key"
     " frets, and fretting starts fatigue cracks",
 )
 def cam_slip(solution: Solution) -> Demand | None:
@@ -145,7 +145,7 @@ def cam_slip(solution: Solution) -> Demand | None:
     " least wall beyond the keyway, from 0.75 and counted up to 4 times the radius of its floor,"
     " t2, r: depth and root radius of the keyway, S_e = k_a k_e S_e':"
     " endurance of the cam's material with factors of surface and limits.shaft_reliability",
-    reason="must-have: a crack from the root of the keyway splits the cam",
+    reason="a crack from the root of the keyway splits the cam",
 )
 def keyway_root(solution: Solution) -> Demand:
     """Fatigue safety factor of the keyway's root in the cam."""

@@ -14,7 +14,7 @@ from camwright.pipeline.case.limits import (
     WAVINESS,
 )
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.check import NONE, RIPPLE, Demand, check
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
 from camwright.pipeline.checks.torque_balance import cycles_of_ripple
 from camwright.pipeline.cycle.cycle import Cycle
@@ -30,6 +30,7 @@ from camwright.pipeline.cycle.solution import Solution
     reason="Cam or roller would strike the guide.",
     method="end of guide A less maximum contour radius, and less the follower, at maximum lift",
     lift_can_help=True,
+    load_cases=NONE,
 )
 def guide_gap(solution: Solution) -> Demand:
     """Gap between guide A and the nearest part of cam and follower, m."""
@@ -50,6 +51,7 @@ def guide_gap(solution: Solution) -> Demand:
     reason="The cam must fit into its space.",
     method="greatest radius of the contour, refined between samples",
     lift_can_help=True,
+    load_cases=NONE,
 )
 def cam_radius(solution: Solution) -> Demand:
     """Maximum radius of the cam, m, against the installation space."""
@@ -109,6 +111,7 @@ _NO_BAND = "no profile tolerance is given"
     unit="um",
     method="greatest step^2/(8 rho) between the points of workshop/contour.csv",
     moved_by_tolerance=False,
+    load_cases=NONE,
 )
 def chord_error(solution: Solution) -> Demand:
     """Distance of the chords of the contour table from the contour, m."""
@@ -138,6 +141,7 @@ def chord_error(solution: Solution) -> Demand:
     method="engine torque shifted by plus and minus the phase tolerance; the lesser",
     must_have=False,
     moved_by_tolerance=False,
+    load_cases=RIPPLE,
 )
 def phase_tolerance(solution: Solution) -> Demand | None:
     """Ripple reduction at the ends of the phase tolerance of key and gear."""

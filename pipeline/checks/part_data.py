@@ -9,7 +9,7 @@ from camwright.pipeline.base.quantities import Part
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.parts_section import Follower
 from camwright.pipeline.case.scope_section import PART_WORDS, PartName
-from camwright.pipeline.checks.check import Declaration, Demand, check
+from camwright.pipeline.checks.check import NONE, Declaration, Demand, check
 from camwright.pipeline.cycle.solution import Solution
 
 Tables = Mapping[str, Part | Follower | None]
@@ -37,6 +37,7 @@ def _data(
         formula=f"n = 0; n: data of the {words} that the case lacks",
         reason="without them the part is not judged whole",
         moved_by_tolerance=False,
+        load_cases=NONE,
         needs=needs,
     )
     def data(solution: Solution) -> Demand | None:

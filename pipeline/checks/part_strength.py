@@ -19,7 +19,7 @@ from camwright.pipeline.case.limits import (
     UNBALANCE,
     LimitValues,
 )
-from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
 from camwright.pipeline.cycle.cycle import Cycle
@@ -249,6 +249,7 @@ def cheek_pressure(solution: Solution) -> Demand:
     " follower.spring_share of the spring, of the parts that the scope covers, m: follower.mass,"
     " x: limits.follower_mass_ratio.",
     reason="every force of inertia and the jump speed rest on a mass that the parts exceed",
+    load_cases=NONE,
 )
 def follower_mass(solution: Solution) -> Demand:
     """Mass of the parts that move with the follower, kg, against the stated mass."""
@@ -359,7 +360,7 @@ def _ring_amplitude(parts: PartLoads, tensile_strength: float | None) -> Array:
     lift_can_help=True,
     formula="F_n/(d b) <= limits.bore_share R_m; F_n: greatest normal force over all load cases and"
     " angles, d: bore diameter, b: cam width, R_m: lower tensile strength of cam and camshaft",
-    reason="must-have: a widened bore loosens the cam on its shaft",
+    reason="a widened bore loosens the cam on its shaft",
 )
 def bore_pressure(solution: Solution) -> Demand:
     """Mean pressure of the bore on the shaft, Pa."""
@@ -414,7 +415,7 @@ def torque_reversals(solution: Solution) -> Demand:
     moved_by_tolerance=False,
     formula="e w <= limits.unbalance; e = U/m, U: unbalance of cam and counterweight, m:"
     " camshaft.rotor_mass, or the mass of the cam alone, w: greatest cam speed of all load cases",
-    reason="must-have: the force m e w^2 loads shaft, bearings and frame at every speed",
+    reason="the force m e w^2 loads shaft, bearings and frame at every speed",
 )
 def cam_unbalance(solution: Solution) -> Demand:
     """Eccentricity times speed of the rotor, m/s, and the counter-hole for it."""

@@ -7,7 +7,7 @@ import numpy as np
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import BORE_SAFETY, EDGE_FACTOR
-from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.contact_strength import truncated
 from camwright.pipeline.checks.extremes import greatest, least
 from camwright.pipeline.contact.bore_stress import BoreStress
@@ -33,6 +33,7 @@ SUBSURFACE = 0.3  # half-widths: a shallower maximum is a singularity or an elem
     formula="limits.edge_factor >= 1.3 for straight ends; 1 for a crowned roller whose contact ends"
     " within its width",
     reason="decides: the plane solution has no ends, and a smaller factor would hide them",
+    load_cases=NONE,
 )
 def edge_factor(solution: Solution) -> Demand:
     """Factor on the plane-strain pressure for the ends of the contact."""
@@ -78,6 +79,7 @@ def held_distance(solution: Solution) -> Demand:
     method="1.5 element lengths at the keyway; the stress within is stated separately",
     evidence=True,
     tier=Tier.FINITE_ELEMENTS,
+    load_cases=NONE,
 )
 def excluded_zone(solution: Solution) -> Demand | None:
     """Radius of the excluded zones at the keyway edges, m; None without a keyway."""

@@ -79,7 +79,7 @@ WAIVERS_WITHOUT_EFFECT = check(
     method="check ids of the waivers of the case against the ids of its checks",
     must_have=False,
     formula="n <= 0; n: waivers that name no check of the design",
-    reason="Optional: a waiver without effect improves no check.",
+    reason="a waiver without effect improves no check.",
 )(made_from_others)
 TOLERANCE_CORNERS = check(
     id="tolerance_corners",
@@ -99,7 +99,7 @@ UNSIGNED = check(
     source="a sign-off needs a certified solution by finite elements",
     method="none: the solution is not certified",
     formula="1 >= 1 for a certified solution; without one it has no demand",
-    reason="Required: a preview by closed forms is no sign-off.",
+    reason="a preview by closed forms is no sign-off.",
 )(made_from_others)
 
 

@@ -23,7 +23,7 @@ from camwright.pipeline.case.limits import (
     VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import Declaration, Demand, check
+from camwright.pipeline.checks.check import NONE, Declaration, Demand, check
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
@@ -360,6 +360,7 @@ def _mean_speed(cycle: Cycle) -> float:
     " temperature in degC, L: limits.target_life of a bearing greased for life, else"
     " roller.bearing.relubrication_interval. Oil has no such life.",
     reason="a bearing greased for life ends with its grease",
+    load_cases=NONE,
 )
 def grease_life(solution: Solution) -> Demand | None:
     """Life of the grease, s; None with oil."""

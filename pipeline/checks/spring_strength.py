@@ -11,7 +11,7 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit, Sense
-from camwright.pipeline.checks.check import Declaration, Demand, check
+from camwright.pipeline.checks.check import NONE, SPEED_RANGE, Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpringSweep, highest_speed
@@ -97,6 +97,7 @@ def _slow(
         part="spring",
         formula=formula,
         reason=reason,
+        load_cases=NONE,
     )
     def demand(solution: Solution) -> Demand:
         design = _design(solution)
@@ -151,6 +152,7 @@ def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> Over
     " included, K_w: Wahl factor, R_m: tensile strength of the wire",
     reason="A spring beyond its yield strength sets and loses the preload that keeps the"
     " follower on the cam.",
+    load_cases=SPEED_RANGE,
 )
 def spring_stress(solution: Solution) -> Demand:
     """Greatest shear stress of the wire with surge over the static strength."""
@@ -181,6 +183,7 @@ def spring_stress(solution: Solution) -> Demand:
     " mean at the end of the spring with the greater range, over all speeds from standstill to"
     " over-speed, S_su = 0.67 R_m, S_e: endurance by Zimmerli's point",
     reason="A broken spring releases the follower.",
+    load_cases=SPEED_RANGE,
 )
 def spring_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the wire with surge over the speed range."""
@@ -262,6 +265,7 @@ spring_buckling = _slow(
     part="spring",
     formula="|G d^4 / (8 D^3 n) / k - 1| <= tolerance of the rate; k: spring.rate",
     reason="All loads are those of spring.rate, all stresses those of the design.",
+    load_cases=NONE,
 )
 def spring_rate(solution: Solution) -> Demand:
     """Deviation of the rate of the spring design from that of the case, relative."""
@@ -281,6 +285,7 @@ def spring_rate(solution: Solution) -> Demand:
     " active coils, f_cam: turns of the cam at over-speed, at least at the fastest load case",
     reason="Below it strong harmonics of the lift drive the coils, and the force on the"
     " cam depends on a damping that is hardly known.",
+    load_cases=SPEED_RANGE,
 )
 def spring_surge(solution: Solution) -> Demand:
     """First natural frequency of the spring over the highest cam frequency."""
@@ -313,6 +318,7 @@ def spring_surge(solution: Solution) -> Demand:
     formula="R F_max / P <= tolerance of the preload; R: spring.design.relaxation, share of the"
     " force lost in 48 h at spring.design.temperature, F_max: force at maximum lift, P: preload",
     reason="A relaxed spring no longer has the preload on which every force is based.",
+    load_cases=NONE,
 )
 def spring_relaxation(solution: Solution) -> Demand:
     """Loss of preload by relaxation at temperature, relative."""

@@ -19,7 +19,7 @@ from camwright.pipeline.case.limits import (
     TRACTION_SHARE,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.contact_strength import endurance_of, peak_pressure
 from camwright.pipeline.checks.extremes import greatest, least, worst_case
 from camwright.pipeline.contact.rolling_envelope import Envelope
@@ -57,7 +57,7 @@ def traction_demand(solution: Solution) -> Demand:
     lift_can_help=True,
     needs="roller",
     formula="T/N <= c mu; c: limits.traction_share, others as of traction_demand",
-    reason="advisory: a reserve against a friction coefficient lower than stated; grip itself is"
+    reason="a reserve against a friction coefficient lower than stated; grip itself is"
     " traction_demand",
 )
 def traction_reserve(solution: Solution) -> Demand:
@@ -83,7 +83,7 @@ def _traction_demand(solution: Solution, share: float) -> Demand:
     must_have=False,
     formula="lambda = h_min / sqrt(Rq1^2 + Rq2^2) >= limits.film_ratio; h_min: film of smooth"
     " surfaces in line contact, Rq: rms roughness of cam and follower",
-    reason="advisory: the endurance rows hold for lubricated cams in mixed lubrication too, and at"
+    reason="the endurance rows hold for lubricated cams in mixed lubrication too, and at"
     " reversals of the motion no film of steady rolling exists",
 )
 def film_ratio(solution: Solution) -> Demand:
@@ -137,7 +137,7 @@ def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) ->
     error="contact",
     formula="sqrt(J2a) + a_C max(sigma_h, 0) <= t / S; a_C = 3 t/f - sqrt(3); t, f: fully reversed"
     " fatigue limits of the cam in torsion and bending, S: limits.fatigue_safety",
-    reason="advisory: the endurance pressure is measured, this criterion is transferred from"
+    reason="the endurance pressure is measured, this criterion is transferred from"
     " torsion and bending",
 )
 def surface_fatigue(solution: Solution) -> Demand:
@@ -157,7 +157,7 @@ def surface_fatigue(solution: Solution) -> Demand:
     error="contact",
     formula="tau_a + a_DV max(sigma_h, 0) <= t / S; a_DV = 3 (t/f - 1/2); t, f, S as of"
     " surface_fatigue",
-    reason="advisory: without credit for compression the criterion is on the safe side, but the"
+    reason="without credit for compression the criterion is on the safe side, but the"
     " published form of the cap is recalled, not read",
 )
 def dang_van(solution: Solution) -> Demand:
@@ -316,8 +316,7 @@ def case_depth(solution: Solution) -> Demand | None:
     lift_can_help=True,
     error="contact",
     formula="p0 <= 2.76 HB - 70 MPa; HB: hardness_brinell, at most 400",
-    reason="advisory: an estimate from the hardness alone; contact_pressure has the endurance of"
-    " the card",
+    reason="an estimate from the hardness alone; contact_pressure has the endurance of the card",
 )
 def pressure_by_hardness(solution: Solution) -> Demand | None:
     """Maximum contact pressure, Pa, against the Buckingham estimate of the softer bodies.
@@ -348,7 +347,7 @@ def pressure_by_hardness(solution: Solution) -> Demand | None:
     error="contact",
     formula="p0 <= sigma_Hlim; carburised 1500 MPa, induction hardened 0.541 HV + 882 MPa,"
     " through-hardened 1.313 HV + 373 MPa; HV: hardness_vickers",
-    reason="advisory: allowable stress of gear flanks, for comparison",
+    reason="allowable stress of gear flanks, for comparison",
 )
 def pressure_by_gear_limits(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the allowable stress of gear flanks."""
@@ -397,8 +396,9 @@ def _estimate(
     moved_by_tolerance=False,
     formula="max p_i / min p_i <= 1.5; p_i: endurance pressure of the card in this contact, 2.76 HB"
     " - 70 MPa, ISO 6336-5, where they apply",
-    reason="advisory: rules for different tests may differ; a greater ratio shows that one of them"
+    reason="rules for different tests may differ; a greater ratio shows that one of them"
     " does not hold for this card",
+    load_cases=NONE,
 )
 def endurance_rules(solution: Solution) -> Demand:
     """Greatest ratio of the endurance rules for the material of cam or follower."""

@@ -13,7 +13,7 @@ from camwright.pipeline.case.limits import (
     TORQUE_REDUCTION,
 )
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import Demand, check
+from camwright.pipeline.checks.check import RIPPLE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
@@ -33,6 +33,7 @@ _CHORD = 1e-5
     method="1 - std of the crank torque with the cam, friction and inertia included, over that"
     " without it",
     forecast=True,
+    load_cases=RIPPLE,
 )
 def torque_reduction(solution: Solution) -> Demand | None:
     """Reduction of the torque ripple by the cam; None without an engine."""
@@ -66,6 +67,7 @@ def cycles_of_ripple(solution: Solution) -> tuple[Cycle, ...]:
     reason="Decides where the case requires it.",
     method="1 - std of the crank speed with the cam over that of the engine alone,"
     " inertia of crank and follower included",
+    load_cases=RIPPLE,
 )
 def speed_reduction(solution: Solution) -> Demand | None:
     """Reduction of the crank speed ripple by the cam; None without a crankshaft."""
