@@ -57,7 +57,8 @@ def checks() -> str:
     parts = []
     for module in MODULES:
         words = (ast.get_docstring(ast.parse(inspect.getsource(module))) or "").splitlines()[0]
-        parts.append(f"### {words.rstrip('.').removeprefix('Checks of the ').capitalize()}")
+        title = re.sub("^Checks (of the |of |that )", "", words.rstrip("."))
+        parts.append(f"### {title[:1].upper()}{title[1:]}")
         parts += [_check(each) for each in CHECKS if each in vars(module).values()]
     return "\n\n".join(parts)
 

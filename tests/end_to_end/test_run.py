@@ -109,9 +109,9 @@ def test_run_folder_holds_what_was_promised(
     assert not [entry.name for entry in out.iterdir() if entry.name.startswith(".")]
     found = run_reader.read_run(out)
     cycle = found.final.cycle
-    assert len(cycle) == POSITIONS
+    assert len(cycle) == 2 * POSITIONS
     assert {"torque_after_Nm", "shear_range_MPa", "bore_stress_MPa"} <= set(cycle.columns)
-    assert cycle.load_cases == ("idle",)
+    assert cycle.load_cases == ("idle", "standstill")
 
 
 def test_case_file_in_the_folder_repeats_the_run(
@@ -142,16 +142,16 @@ def test_published_design_fails_where_it_must(
 
 def test_columns_agree_with_one_another(finished: tuple[Case, Path, dict[str, Any]]) -> None:
     case, out, summary = finished
-    cycle = run_reader.read_run(out).final.cycle
+    cycle = run_reader.read_run(out).final.cycle.of_load_case("idle")
     # Hertz from the columns themselves: E* of steel on steel, 1/R = 1/r_r + 1/r_c.
     modulus = 210e3 / (2 * (1 - 0.3**2))
     radius = 1 / (1 / 8.0 + 1 / cycle["contour_radius_of_curvature_mm"])
     p0 = np.sqrt(cycle["line_load_N_per_mm"] * modulus / (np.pi * radius))
     np.testing.assert_allclose(cycle["p0_hertz_MPa"], p0, rtol=1e-9)
     # The finite elements are their own. The bearing's outer ring yields on its balls, and so is
-    # pressed less than the solid roller of the next test, by at most a quarter of a per cent.
+    # pressed less than the solid roller of the next test, by at most 0.35 per cent on this cam.
     share = cycle["p0_fe_MPa"] / p0
-    assert (share > 1 - 2.5e-3).all()
+    assert (share > 1 - 3.5e-3).all()
     assert (share < 1).all()
     after = cycle["torque_before_Nm"] - cycle["cam_torque_Nm"] / case.mechanism.gear_ratio
     np.testing.assert_allclose(cycle["torque_after_Nm"], after, atol=1e-9)
@@ -193,16 +193,18 @@ def test_map_of_the_turn_agrees_with_the_angles(
     _, out, _ = finished
     trial = run_reader.read_run(out).final
     worst = json.loads((trial.path / "trial.json").read_text())["rolling"]
-    (name,) = worst
+    name = "idle"
+    assert set(worst) == {name, "standstill"}
     with np.load(trial.path / "5_envelope.npz") as stored:
         for column, key in (("von_mises_MPa", "von_mises"), ("shear_range_MPa", "shear_range")):
             map_ = stored[f"{name}.{column}"]
-            assert map_.max() == pytest.approx(trial.cycle[column].max(), rel=1e-2)
+            along = trial.cycle.of_load_case(name)[column]
+            assert map_.max() == pytest.approx(along.max(), rel=1e-2)
             assert worst[name][key]["value_MPa"] == pytest.approx(map_.max())
         assert stored[f"{name}.depth_mm"].shape == map_.shape
     # The load is swept: the map may find more than the angles, never much less.
     assert worst[name]["bore"]["von_mises_MPa"] == pytest.approx(
-        trial.cycle["bore_stress_MPa"].max()
+        trial.cycle.of_load_case(name)["bore_stress_MPa"].max()
     )
 
 
