@@ -156,19 +156,17 @@ def table(records: Iterable[CheckRecord]) -> Table:
 
 
 def remarks(records: Iterable[CheckRecord]) -> list[str]:
-    """Lines below the table: missing data, not proven checks, waivers, limits to be verified."""
+    """Lines below the table: missing data, not proven checks, waivers."""
     records = sorted(records, key=rank)
     waived = [f"{_waived(r)}: {r['id']}: {waiver_words(r)}" for r in records if r["waiver"]]
     unproven = [f"{r['id']}: {not_proven(r)}" for r in records if r["not_proven"]]
-    verify = [r["id"] for r in records if "verify" in r["source"]]
     still_open = [
         f"missing data{'' if r['must_have'] else ' (optional)'}: {r['id']}: "
         f"{r['note'] or 'a number is missing'}"
         for r in records
         if r["status"] == "not_evaluated"
     ]
-    recalled = [f"recalled limits, to be verified: {', '.join(verify)}"] if verify else []
-    return [*still_open, *unproven, *waived, *recalled]
+    return [*still_open, *unproven, *waived]
 
 
 def _waived(record: CheckRecord) -> str:
