@@ -261,11 +261,11 @@ class Contour(ABC):
 
     def radius_max(self) -> Extremum:
         """Maximum distance of the contour from the cam axis, m, and its cam angle."""
-        return greatest(self.radius, self.lift.search_count)
+        return self._radius_max
 
     def radius_min(self) -> Extremum:
         """Minimum distance of the contour from the cam axis, m, and its cam angle."""
-        return least(self.radius, self.lift.search_count)
+        return self._radius_min
 
     def polygon(self, count: int) -> Array:
         """`count` contour points at equal steps of the cam angle, (2, count), m."""
@@ -286,6 +286,14 @@ class Contour(ABC):
     def perimeter(self) -> float:
         """Length of the contour, m."""
         return float(np.sum(np.hypot(*self._ring_step)))
+
+    @cached_property
+    def _radius_max(self) -> Extremum:
+        return greatest(self.radius, self.lift.search_count)
+
+    @cached_property
+    def _radius_min(self) -> Extremum:
+        return least(self.radius, self.lift.search_count)
 
     @cached_property
     def _ring(self) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -98,20 +99,32 @@ class FollowerPath(ABC):
 
     def pressure_angle_max(self) -> Extremum:
         """Maximum magnitude of the pressure angle, rad, and its cam angle."""
-        return greatest(lambda theta: np.abs(self.pressure_angle(theta)), self.lift.search_count)
+        return self._pressure_angle_max
 
     def curvature_max(self) -> Extremum:
         """Maximum signed curvature, 1/m, and its cam angle."""
-        return greatest(self.curvature, self.lift.search_count)
+        return self._curvature_max
 
     def curvature_min(self) -> Extremum:
         """Minimum signed curvature, 1/m, and its cam angle: negative on a concave flank."""
-        return least(self.curvature, self.lift.search_count)
+        return self._curvature_min
 
     def least_convex_radius(self) -> Extremum:
         """Minimum convex radius of curvature, m, and its cam angle."""
         curvature, theta = self.curvature_max()
         return Extremum(1.0 / curvature, theta)
+
+    @cached_property
+    def _pressure_angle_max(self) -> Extremum:
+        return greatest(lambda theta: np.abs(self.pressure_angle(theta)), self.lift.search_count)
+
+    @cached_property
+    def _curvature_max(self) -> Extremum:
+        return greatest(self.curvature, self.lift.search_count)
+
+    @cached_property
+    def _curvature_min(self) -> Extremum:
+        return least(self.curvature, self.lift.search_count)
 
 
 def require_offset(offset: float, name: str, radius: float) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,7 +50,8 @@ class PeriodicPolynomial:
         part = FULL_TURN / count
         angle = np.mod(np.asarray(theta, dtype=float), FULL_TURN)
         # NaN belongs to no part: part 0 propagates it
-        index = np.minimum(np.nan_to_num(angle / part).astype(np.intp), count - 1)
+        known = np.where(np.isnan(angle), 0.0, angle)
+        index = np.minimum((known / part).astype(np.intp), count - 1)
         step = angle - index * part
         local = self.coefficients.take(index, axis=1)
         values = np.empty((last - first + 1, *angle.shape))
@@ -107,6 +109,7 @@ def periodic_quintic(values: ArrayLike) -> PeriodicPolynomial:
     return PeriodicPolynomial(inside)
 
 
+@cache
 def _falling(power: int, order: int) -> float:
     """power (power - 1) ..., `order` factors: from differentiating a power."""
     return float(np.prod(np.arange(power - order + 1, power + 1)))

@@ -95,7 +95,8 @@ def _limit(one: Declaration) -> str:
 def columns() -> str:
     known: dict[tuple[str, str], str] = {}
     for name in SHOWN_CASES:
-        trial = preview_case(read_case(ROOT / "cases" / name).with_positions(36))
+        case = read_case(ROOT / "cases" / name).with_positions(36)
+        trial = preview_case(case, corners=False)
         for file, listed in column_table(trial).items():
             if file != "2_limits.csv":  # a column for each limit of the case
                 known |= {(file, column.header): column.meaning for column in listed}

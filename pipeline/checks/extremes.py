@@ -107,9 +107,9 @@ def _extreme(
         if extreme.load_case and not (np.isnan(value) or sign * value > sign * extreme.value):
             continue
         theta = float(cycle.theta[worst]) if error is None else None
-        share = _sampling_error(values, sign) if error is None else 0.0
+        share = _sampling_error(values, sign) if error is None and cycle.error_bars else 0.0
         extreme, at = Extreme(value, cycle.load_case, theta, share), cycle
-    if error is None or at is None:
+    if error is None or at is None or not at.error_bars:
         return extreme
     return extreme._replace(error_share=error(at, extreme.value))
 

@@ -24,10 +24,11 @@ from camwright.pipeline.checks.check import Check, Demand
 from camwright.pipeline.checks.registry import TOLERANCE_CORNERS, TOLERANCED, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import solved_turns
-from camwright.pipeline.cycle.turn import Turn, turn
+from camwright.pipeline.cycle.turn import Turn, TurnInput, turns
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.guide_friction import FrictionRange
 
+NOMINAL = Corner("nominal")
 POSITIONS = 90
 """Cam angles per turn, enough for the ratio of two demands."""
 
@@ -62,9 +63,16 @@ def corners_of(case: Case) -> tuple[Corner, ...]:
 
 def outcomes(case: Case, torques: Mapping[str, Torque], contour: Contour) -> tuple[Outcome, ...]:
     """Outcomes at the nominal, then at each corner."""
+    corners = NOMINAL, *corners_of(case)
+    try:
+        tried = [_Tried.at(case, torques, contour, each) for each in corners]
+        every = turns([given for each in tried for given in each.inputs], POSITIONS, coarse=True)
+    except CamError:  # of one corner at least: each on its own
+        return tuple(_alone(case, torques, contour, each) for each in corners)
+    count = len(tried[0].inputs)
     return tuple(
-        _outcome(case, torques, contour, corner)
-        for corner in (Corner("nominal"), *corners_of(case))
+        _outcome(case, torques, each, every[k * count : (k + 1) * count])
+        for k, each in enumerate(tried)
     )
 
 
@@ -142,32 +150,58 @@ def _ranges(case: Case) -> dict[str, dict[str, tuple[float, float]]]:
     }
 
 
-def _outcome(
-    case: Case, torques: Mapping[str, Torque], contour: Contour, corner: Corner
-) -> Outcome:
-    try:
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """A corner with its contour and its machines in every load case."""
+
+    corner: Corner
+    shape: Contour
+    inputs: tuple[TurnInput, ...]
+
+    @classmethod
+    def at(
+        cls, case: Case, torques: Mapping[str, Torque], contour: Contour, corner: Corner
+    ) -> _Tried:
         shape = _shape(contour, corner)
-        turns = tuple(
-            _phased(_turn(state, shape, torques, corner), corner) for state in machines(case)
+        return cls(
+            corner,
+            shape,
+            tuple(
+                TurnInput(state.at_corner(corner), shape, torques.get(state.load_case))
+                for state in machines(case)
+            ),
         )
-        advance = corner.phase / case.mechanism.gear_ratio
-        solved = solved_turns(
-            case, shape, turns, Tier.PREVIEW, torques, body=True,
-            speed_contour=_early(shape, advance), advance=advance,
+
+
+def _alone(case: Case, torques: Mapping[str, Torque], contour: Contour, corner: Corner) -> Outcome:
+    try:
+        tried = _Tried.at(case, torques, contour, corner)
+        solved = turns(tried.inputs, POSITIONS, coarse=True)
+    except CamError as error:
+        return Outcome(corner, {}, str(error))
+    return _outcome(case, torques, tried, solved)
+
+
+def _outcome(
+    case: Case, torques: Mapping[str, Torque], tried: _Tried, solved: Sequence[Turn]
+) -> Outcome:
+    corner, shape = tried.corner, tried.shape
+    advance = corner.phase / case.mechanism.gear_ratio
+    try:
+        solution = solved_turns(
+            case, shape, tuple(_phased(each, corner) for each in solved), Tier.PREVIEW, torques,
+            body=True, speed_contour=_early(shape, advance), advance=advance, error_bars=False,
         )  # fmt: skip
-        checks = checks_of(solved, TOLERANCED)
+        checks = checks_of(solution, TOLERANCED)
     except CamError as error:
         return Outcome(corner, {}, str(error))
     known = {one.id: float(one.demand) for one in checks if one.demand is not None}
     return Outcome(corner, {name: value for name, value in known.items() if not np.isnan(value)})
 
 
-def _turn(state: Machine, shape: Contour, torques: Mapping[str, Torque], corner: Corner) -> Turn:
-    at, torque = state.at_corner(corner), torques.get(state.load_case)
-    return turn(at, shape, torque, POSITIONS, coarse=True)
-
-
 def _shape(contour: Contour, corner: Corner) -> Contour:
+    if corner.profile == 0.0:
+        return contour
     return replace(contour, pitch=contour.pitch.enlarged(corner.profile))
 
 

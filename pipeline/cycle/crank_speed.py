@@ -119,10 +119,10 @@ def speed_study(
         If the engine stalls.
     """
     count = torque.size
-    follower = follower_inertia(pitch, system.mass, gear_ratio, count)
     before = crank_motion(torque, inertia, mean_speed, load=load)
     mounted = inertia.plus(mechanism_inertia)
     alone = crank_motion(torque, mounted, mean_speed, load=load)
+    follower = follower_inertia(pitch, system.mass, gear_ratio, count)
     after = crank_motion(
         torque,
         mounted.plus(0.0, follower),

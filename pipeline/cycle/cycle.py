@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TypeVar
@@ -23,6 +23,7 @@ from camwright.pipeline.cycle.part_loads import PartLoads, part_loads, spring_su
 from camwright.pipeline.cycle.rolling_history import RollingHistory, rolling_history
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.follower_forces import Loads, share_left
+from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions
 
 LIFT = Column("lift", "mm", "Lift")
@@ -37,7 +38,8 @@ class Cycle:
 
     bodies are the meshed bodies of the contact; None in a preview, where the contact is that of
     half-planes, and for a contour that encloses no body, where it is unknown. None inside rolling
-    and part loads means that the machine has no such part.
+    and part loads means that the machine has no such part. error_bars: demands have those of their
+    sampling; without where ratios of demands alone count.
     """
 
     turn: Turn
@@ -45,6 +47,7 @@ class Cycle:
     pair: ContactPair
     bodies: CycleBodies | None
     contact: ContactHistory
+    error_bars: bool = field(default=True, kw_only=True)
 
     @property
     def machine(self) -> Machine:
@@ -120,6 +123,20 @@ class Cycle:
         """
         flights = self.contact.tier is not Tier.PREVIEW
         return part_loads(self.turn, self.contour, self.pair.width, flights=flights)
+
+    @property
+    def shares(self) -> GuideShares:
+        """Changes of reaction and contact force by length and clearance of the guides."""
+        turn, machine = self.turn, self.machine
+        return guide_shares(
+            self.contour.pitch,
+            machine.system,
+            machine.stem,
+            machine.guides,
+            machine.cam_speed,
+            turn.loads,
+            turn.guides,
+        )
 
     @cached_property
     def thinned(self) -> Mapping[int, Cycle]:
@@ -253,7 +270,7 @@ class Cycle:
             columns[shear] = contact.tau_any_plane
         if contact.tier is not None:
             columns |= self.rolling.columns()
-        return columns | self.parts.columns()
+        return columns | self.parts.columns() | self.shares.columns()
 
 
 @dataclass(frozen=True, eq=False)
@@ -283,13 +300,13 @@ def _at_every(result: Result, count: int, step: int) -> Result:
     if isinstance(result, Machine) or not is_dataclass(result) or isinstance(result, type):
         return result
     changed: dict[str, object] = {}
-    for field in fields(result):
-        value: object = getattr(result, field.name)
+    for each in fields(result):
+        value: object = getattr(result, each.name)
         if isinstance(value, np.ndarray):
             if value.shape[:1] == (count,):
-                changed[field.name] = value[::step]
+                changed[each.name] = value[::step]
             elif value.shape[-1:] == (count,):
-                changed[field.name] = value[..., ::step]
+                changed[each.name] = value[..., ::step]
         elif (part := _at_every(value, count, step)) is not value:
-            changed[field.name] = part
+            changed[each.name] = part
     return replace(result, **changed) if changed else result

@@ -21,13 +21,10 @@ from camwright.pipeline.follower.camshaft_loads import (
     key_stress,
     torque_reversals,
 )
-from camwright.pipeline.follower.follower_forces import FollowerSystem, Loads
-from camwright.pipeline.follower.friction_coupling import guided_loads
-from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
+from camwright.pipeline.follower.follower_forces import Loads
 from camwright.pipeline.follower.guide_friction import (
     FrictionBounds,
     GuideHeat,
-    friction_bounds,
     guide_heat,
     thermal_resistance,
 )
@@ -42,7 +39,6 @@ class PartLoads:
 
     guide_edge_pressure_* are the pressures of the stem in the bore where its line load is greatest;
     heat_max_* is the heat at the greatest friction of both guides.
-    shares are the changes of reaction and contact force by length and clearance of the guides.
     ring_amplitude and ring_mean are of the stress in the groove of the bearing's outer ring, which
     rotates under the load; ring_correction is the relative change of the maximum contact pressure
     from a contact over a ball, as solved, to one between two balls.
@@ -56,7 +52,6 @@ class PartLoads:
     heat_max_b: GuideHeat
     friction: FrictionBounds
     viscous_force: Array
-    shares: GuideShares
     elastic: ElasticHistory
     reversals: tuple[Reversal, ...]
     bore_pressure: Array
@@ -133,8 +128,7 @@ class PartLoads:
                 unknown=True,
             ): self.ring_correction,
         }
-        known = {column: values for column, values in columns.items() if values is not None}
-        return known | self.shares.columns()
+        return {column: values for column, values in columns.items() if values is not None}
 
 
 def part_loads(
@@ -148,7 +142,7 @@ def part_loads(
     flights : bool          compute the flights of an elastic follower that leaves the cam
     """
     machine, loads, guides = turn.machine, turn.loads, turn.guides
-    friction, shares = _friction_bounds(turn, contour)
+    friction = turn.friction
     spring, shaft = machine.spring.design, _shaft(machine, contour, loads)
     amplitude, mean, correction = _ring(machine, contour, loads, contact_width)
     motion, pair = _roller_motion(machine, contour, loads), machine.guides
@@ -163,7 +157,6 @@ def part_loads(
         heat_max_b=_heat(machine, pair.b, friction.greatest.friction_force_b, friction.greatest),
         friction=friction,
         viscous_force=loads.viscous_force,
-        shares=shares,
         elastic=elastic_history(
             machine, contour.pitch.lift, loads.lift, turn.cam_speed, flights=flights
         ),
@@ -216,23 +209,6 @@ def _edge_pressure(machine: Machine, guide: Guide, line_pressure: Array) -> Arra
 def _heat(machine: Machine, guide: Guide, friction_force: Array, loads: Loads) -> GuideHeat:
     ambient = machine.guides.ambient_temperature
     return guide_heat(friction_force, loads.velocity, thermal_resistance(guide), ambient)
-
-
-def _friction_bounds(turn: Turn, contour: Contour) -> tuple[FrictionBounds, GuideShares]:
-    """The turn at the bounds of friction, and the changes against point supports."""
-    machine, pitch, speed = turn.machine, contour.pitch, turn.machine.cam_speed
-    system, stem, pair = machine.system, machine.stem, machine.guides
-    knots = turn.guides.knots_a.size
-
-    def solved(rubbing: FollowerSystem) -> Loads:
-        if rubbing == system:
-            return turn.loads
-        return guided_loads(pitch, rubbing, stem, pair, speed, turn.theta, knots).loads
-
-    return (
-        friction_bounds(solved, system, machine.friction),
-        guide_shares(pitch, system, stem, pair, speed, turn.loads, turn.guides),
-    )
 
 
 def _key_pressure(machine: Machine, loads: Loads) -> Array | None:

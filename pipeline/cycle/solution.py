@@ -37,7 +37,7 @@ from camwright.pipeline.cycle.speed_sweep import (
     speed_sweep,
     spring_sweep,
 )
-from camwright.pipeline.cycle.turn import Turn, turn
+from camwright.pipeline.cycle.turn import Turn, TurnInput, turns
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.spring import LEAST_DAMPING
 
@@ -217,9 +217,8 @@ def turns_of(
     """Loads of the machine in every load case, before the contact is solved."""
     known = engine_torques(case) if torques is None else torques
     count = case.solver.positions if positions is None else positions
-    return tuple(
-        turn(each, contour, known.get(each.load_case), count, coarse=coarse) for each in states
-    )
+    inputs = [TurnInput(each, contour, known.get(each.load_case)) for each in states]
+    return turns(inputs, count, coarse=coarse)
 
 
 def solved_turns(
@@ -235,6 +234,7 @@ def solved_turns(
     speed_contour: Contour | None = None,
     advance: float = 0.0,
     body: bool | None = None,
+    error_bars: bool = True,
 ) -> Solution:
     """Contact and crank speed of turns whose loads are known.
 
@@ -244,6 +244,7 @@ def solved_turns(
     speed_contour : Contour   cam of the crank speed, if its phase on the shaft differs
     advance : float           cam angle by which that cam leads, rad
     body : bool               whether the contour encloses a body; None: to be determined
+    error_bars : bool         compute the errors by sampling and by every second crank angle
     """
     known = engine_torques(case) if torques is None else torques
     states = tuple(each.machine for each in turns)
@@ -258,7 +259,14 @@ def solved_turns(
         # One pair of meshes, factored once, serves every load case.
         bodies = CycleBodies.meshed(pair)
     cycles = tuple(
-        Cycle(each, contour, pair, bodies, _contact(pair, bodies, each, body, store, progress))
+        Cycle(
+            each,
+            contour,
+            pair,
+            bodies,
+            _contact(pair, bodies, each, body, store, progress),
+            error_bars=error_bars,
+        )
         for each in turns
     )
     rubbing = {c.load_case: c.loads.rubbing for c in cycles}
@@ -267,12 +275,11 @@ def solved_turns(
     solved = Solution(case, contour, states, tier, mesh, cycles, coarse=coarse)
     if coarse:
         return solved
+    solved = replace(solved, crank_speed=speed_ripple(states, known, pitch, rubbing))
+    if not error_bars:
+        return solved
     halved = {name: each.resampled(each.theta_crank.size // 2) for name, each in known.items()}
-    return replace(
-        solved,
-        crank_speed=speed_ripple(states, known, pitch, rubbing),
-        crank_speed_halved=speed_ripple(states, halved, pitch, rubbing),
-    )
+    return replace(solved, crank_speed_halved=speed_ripple(states, halved, pitch, rubbing))
 
 
 def certified_solution(

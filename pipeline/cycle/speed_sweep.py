@@ -16,6 +16,7 @@ from camwright.pipeline.case.limits import OVERSPEED
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.follower.follower_forces import Rubbing, follower_loads, share_left
 from camwright.pipeline.follower.spring import (
+    DynamicStiffness,
     HelicalSpring,
     Spring,
     dynamic_stiffness,
@@ -206,12 +207,11 @@ class _Resonant:
             return np.inf
         return 2.0 * np.pi * natural_frequency(self.spring.rate, self.design.active_mass)
 
-    def stiffness(self, cam_speed: Array) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    def stiffness(self, cam_speed: Array) -> DynamicStiffness:
         """Dynamic stiffness less the rate (m, harmonics) at moving and fixed end, N/m."""
         drive = cam_speed[:, None] * self.order
         if self.design is None:
-            zero = np.zeros(drive.shape, dtype=complex)
-            return zero, zero
+            return DynamicStiffness(self.spring.rate, np.zeros(drive.shape, dtype=complex))
         frequency = self.first / (2.0 * np.pi)
         return dynamic_stiffness(drive, self.spring.rate, frequency, self.design.damping)
 
@@ -221,9 +221,10 @@ class _Resonant:
     def end_forces(self, cam_speed: Array) -> tuple[Array, Array]:
         """Least and greatest force (2, m) over the turn at moving and fixed end, N."""
         static = self.spring.force(self.lift)
-        ends = [static + self.back(each * self.spectrum) for each in self.stiffness(cam_speed)]
+        ends = self.stiffness(cam_speed)
+        forces = [static + self.back(each * self.spectrum) for each in (ends.moving, ends.fixed)]
         least, greatest = (
-            np.stack([extreme(end, axis=1) for end in ends]) for extreme in (np.min, np.max)
+            np.stack([extreme(end, axis=1) for end in forces]) for extreme in (np.min, np.max)
         )
         return least, greatest
 
@@ -283,7 +284,7 @@ class _Follower:
 
     def extremes(self, cam_speed: Array) -> dict[str, Array]:
         """Arrays (m,) of `SpeedSweep` by name at cam speeds (m,), rad/s."""
-        moving, _ = self.resonant.stiffness(cam_speed)
+        moving = self.resonant.stiffness(cam_speed).moving
         surge = self.resonant.back(moving * self.resonant.spectrum)
         speed = cam_speed[:, None]
         push = self.spring + speed**2 * self.inertia + speed * self.viscous + surge

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,6 +38,18 @@ _CLIMB = 40  # rounds without bisection at positions that have no upper bound ye
 
 # Values of a fixed-point map at positions, numbered by the second argument.
 FixedPointMap = Callable[[Array, NDArray[np.intp]], Array]
+
+
+class Stroke(NamedTuple):
+    """A follower and its motion over cam angles (n,), rad, at a cam speed, rad/s.
+
+    The system is without its `rubbing`.
+    """
+
+    pitch: FollowerPath
+    system: FollowerSystem
+    cam_speed: ArrayLike
+    theta: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,27 +112,79 @@ def guided_loads(
     ContactError
         If the residual of an axial equilibrium exceeds 1e-10 of the axial force.
     """
-    theta = finite("theta", theta)
-    points = follower_loads(pitch, replace(system, rubbing=None), cam_speed, theta)
-    free = follower_loads(
-        pitch, replace(system, friction_a=0.0, friction_b=0.0, rubbing=None), cam_speed, theta
-    )
-    require_fit(stem, guides, points.overhang, knots)
-    way, slope = Push.of(pitch, system, theta), points.lift_slope
+    stroke = Stroke(pitch, system, cam_speed, finite("theta", theta))
+    (guided,) = guided_strokes([stroke], stem, guides, knots)
+    return guided
+
+
+def guided_strokes(
+    strokes: Sequence[Stroke], stem: Stem, guides: GuidePair, knots: int = KNOTS
+) -> tuple[Guided, ...]:
+    """As `guided_loads` of each stroke in the same guides, all positions solved at once."""
+    points = [
+        follower_loads(s.pitch, replace(s.system, rubbing=None), s.cam_speed, s.theta)
+        for s in strokes
+    ]
+    free = [
+        follower_loads(
+            s.pitch,
+            replace(s.system, friction_a=0.0, friction_b=0.0, rubbing=None),
+            s.cam_speed,
+            s.theta,
+        )
+        for s in strokes
+    ]
+    for each in points:
+        require_fit(stem, guides, each.overhang, knots)
+    way = _joined([Push.of(s.pitch, s.system, s.theta) for s in strokes])
+    slope = np.concatenate([each.lift_slope for each in points])
+    force = np.concatenate([each.axial_force for each in free])
+    sizes = [s.theta.size for s in strokes]
+    friction_a = np.repeat([s.system.friction_a for s in strokes], sizes)
+    friction_b = np.repeat([s.system.friction_b for s in strokes], sizes)
     bores = _Bores(stem, guides, knots, points, way)
 
     def mapping(push: Array, at: NDArray[np.intp]) -> Array:
         a, b = bores.factors(push, at)
-        jam = (system.friction_a * a + system.friction_b * b) * way.side_factor[at]
-        return np.asarray(free.axial_force[at] / share_left(slope[at], jam))
+        jam = (friction_a[at] * a + friction_b[at] * b) * way.side_factor[at]
+        return np.asarray(force[at] / share_left(slope[at], jam))
 
-    force, outward = free.axial_force, slope > 0.0
+    outward = slope > 0.0
     high = np.where(outward, force / JAM_FLOOR, force)
-    low, start = np.where(outward, force, 0.0), np.where(outward, force, points.axial_force)
+    on_points = np.concatenate([each.axial_force for each in points])
+    low, start = np.where(outward, force, 0.0), np.where(outward, force, on_points)
     push, rounds = balanced(mapping, low, high, start)
-    everywhere = np.arange(theta.size)
-    a, b = bores.factors(push, everywhere)
-    loads = follower_loads(pitch, replace(system, rubbing=Rubbing(theta, a, b)), cam_speed, theta)
+    a, b = bores.factors(push, np.arange(push.size))
+    ends = np.cumsum([0, *sizes])
+    return tuple(
+        _guided(
+            stroke,
+            unloaded,
+            (a[first:end], b[first:end]),
+            stem,
+            guides,
+            knots,
+            bores.solution(first, end),
+            rounds,
+        )
+        for stroke, unloaded, first, end in zip(strokes, free, ends[:-1], ends[1:], strict=True)
+    )
+
+
+def _guided(
+    stroke: Stroke,
+    free: Loads,
+    factors: tuple[Array, Array],
+    stem: Stem,
+    guides: GuidePair,
+    knots: int,
+    start: tuple[Array, Array],
+    rounds: int,
+) -> Guided:
+    """Loads and reactions of a stroke from its rubbing factors; its residual is checked."""
+    pitch, system, cam_speed, theta = stroke
+    rubbing = Rubbing(theta, *factors)
+    loads = follower_loads(pitch, replace(system, rubbing=rubbing), cam_speed, theta)
     reactions = guide_reactions(
         loads.tangential_force,
         loads.overhang,
@@ -127,7 +192,7 @@ def guided_loads(
         guides,
         loads.end_moment,
         knots=knots,
-        start=bores.state,
+        start=start,
     )
     residual = _residual(system, free, loads, reactions)
     if not residual.max(initial=0.0) <= RESIDUAL:
@@ -135,6 +200,12 @@ def guided_loads(
             f"friction: residual = {residual.max():.3g}, must be <= {RESIDUAL:g} of the axial force"
         )
     return Guided(loads, reactions, residual, rounds + 2)
+
+
+def _joined(ways: Sequence[Push]) -> Push:
+    side = np.concatenate([way.side for way in ways])
+    arm = np.concatenate([np.broadcast_to(way.arm, way.side.shape) for way in ways])
+    return Push(side, arm, ways[0].spacing)
 
 
 def balanced(mapping: FixedPointMap, low: Array, high: Array, start: Array) -> tuple[Array, int]:
@@ -189,27 +260,33 @@ def balanced(mapping: FixedPointMap, low: Array, high: Array, start: Array) -> t
 class _Bores:
     """Guides at fixed positions, each solution started from the previous one."""
 
-    def __init__(self, stem: Stem, guides: GuidePair, knots: int, points: Loads, way: Push) -> None:
+    def __init__(
+        self, stem: Stem, guides: GuidePair, knots: int, points: Sequence[Loads], way: Push
+    ) -> None:
         self.line, _, half_a = bearing_line(stem, guides, knots)
-        self.reach, self.knots = points.overhang - half_a, knots
-        self.points, self.way = points, way
-        self.state: tuple[Array, Array] | None = None
+        self.reach = np.concatenate([each.overhang for each in points]) - half_a
+        self.rubbing_a = np.concatenate([each.rubbing_a for each in points])
+        self.rubbing_b = np.concatenate([each.rubbing_b for each in points])
+        self.knots, self.way = knots, way
+        count, size = self.reach.size, self.line.positions.size
+        self.pushes, self.rigid = np.zeros((size, count)), np.zeros((2, count))
+        self.started = False
+
+    def solution(self, first: int, end: int) -> tuple[Array, Array]:
+        """Last solution at positions in a row, to start another."""
+        return self.pushes[:, first:end], self.rigid[:, first:end]
 
     def factors(self, push: Array, at: NDArray[np.intp]) -> tuple[Array, Array]:
         """Rubbing load over axial force and side-load factor (k,); unloaded: of point supports."""
-        start = None
-        if self.state is not None:
-            start = self.state[0][:, at], self.state[1][:, at]
+        start = (self.pushes[:, at], self.rigid[:, at]) if self.started else None
         side, moment = push * self.way.side[at], push * self.way.arm[at]
         pushes, rigid = settle(self.line, side, moment - side * self.reach[at], start)
-        if self.state is None:
-            count = self.reach.size
-            self.state = np.zeros((len(pushes), count)), np.zeros((2, count))
-        self.state[0][:, at], self.state[1][:, at] = pushes, rigid
+        self.pushes[:, at], self.rigid[:, at] = pushes, rigid
+        self.started = True
         rubbed = np.abs(pushes[: self.knots]).sum(axis=0), np.abs(pushes[self.knots :]).sum(axis=0)
         size, on_points = (
             push * self.way.side_factor[at],
-            (self.points.rubbing_a[at], self.points.rubbing_b[at]),
+            (self.rubbing_a[at], self.rubbing_b[at]),
         )
         a, b = (
             np.divide(load, size, out=share.copy(), where=size > 0.0)

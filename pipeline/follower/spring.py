@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from types import MappingProxyType
-from typing import Annotated, ClassVar, Literal, NamedTuple
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -331,11 +332,38 @@ def natural_frequency(rate: float, active_mass: float) -> float:
     return 0.5 * float(np.sqrt(rate / active_mass))
 
 
-class DynamicStiffness(NamedTuple):
-    """Force per displacement of the moving end, less the rate, at moving and fixed end, N/m."""
+@dataclass(frozen=True, eq=False)
+class DynamicStiffness:
+    """Force per displacement of the moving end, less the rate, at moving and fixed end, N/m.
 
-    moving: NDArray[np.complex128]
-    fixed: NDArray[np.complex128]
+    phase (...): phi of the waves along the coils; 0 at rest.
+    """
+
+    rate: float
+    phase: NDArray[np.complex128]
+
+    @cached_property
+    def _decay(self) -> NDArray[np.complex128]:
+        return np.exp(-1.0j * self._moved)  # at most 1 in size
+
+    @cached_property
+    def _moved(self) -> NDArray[np.complex128]:
+        return np.where(self.phase == 0.0, 1.0, self.phase)
+
+    @property
+    def moving(self) -> NDArray[np.complex128]:
+        """Of the moving end."""
+        square = self._decay**2
+        return self._known(1.0j * self._moved * (1.0 + square) / (1.0 - square))
+
+    @property
+    def fixed(self) -> NDArray[np.complex128]:
+        """Of the fixed end."""
+        decay = self._decay
+        return self._known(2.0j * self._moved * decay / (1.0 - decay**2))
+
+    def _known(self, over_rate: NDArray[np.complex128]) -> NDArray[np.complex128]:
+        return np.where(self.phase == 0.0, 0.0, self.rate * (over_rate - 1.0))
 
 
 def dynamic_stiffness(
@@ -362,13 +390,7 @@ def dynamic_stiffness(
     """
     w = finite("drive", drive)
     phi = 0.5 * w / frequency * np.sqrt(1.0 - 2.0j * damping)
-    still = phi == 0.0
-    phi = np.where(still, 1.0, phi)
-    decay = np.exp(-1.0j * phi)  # at most 1 in size
-    whole = 1.0 - decay**2
-    moving = rate * (1.0j * phi * (1.0 + decay**2) / whole - 1.0)
-    fixed = rate * (2.0j * phi * decay / whole - 1.0)
-    return DynamicStiffness(np.where(still, 0.0, moving), np.where(still, 0.0, fixed))
+    return DynamicStiffness(rate, phi)
 
 
 def surge_force(

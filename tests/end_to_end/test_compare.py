@@ -5,16 +5,30 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.results.run_reader import VERDICTS
 from camwright.reports import smoother_page
 
-CASES = Path(__file__).parents[2] / "cases"
+CASE = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
 
 
-def test_compare_tabulates_and_draws(tmp_path):
+def one_at_a_time(folder):
+    """The case without the sample of all tolerances at once."""
+    text, header = CASE.read_text(encoding="utf-8"), "\n[tolerances]\n"
+    assert text.count(header) == 1 and "samples" not in text
+    path = folder / "case.toml"
+    path.write_text(text.replace(header, f"{header}samples = 0\n"), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    "case", [one_at_a_time, pytest.param(lambda _: CASE, marks=pytest.mark.slow, id="whole")]
+)
+def test_compare_tabulates_and_draws(tmp_path, case):
     done = subprocess.run(
-        [sys.executable, "-m", "camwright", "compare", str(CASES / "gx120-signed.toml"),
+        [sys.executable, "-m", "camwright", "compare", str(case(tmp_path)),
          "--out", str(tmp_path)],
         capture_output=True, text=True, check=False,
     )  # fmt: skip

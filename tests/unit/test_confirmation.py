@@ -129,7 +129,7 @@ def demands(value: str = "", share: float = 0.0) -> dict[str, tuple[float | None
         number, _, unit = str(written[key]).partition(" ")
         new = float(number) * (1.0 + share)
         table[key] = f"{new!r} {unit}" if unit else new
-    checks = preview_case(case_of(changed)).checks
+    checks = preview_case(case_of(changed), corners=False).checks
     return {one.id: (one.demand, one.limit) for one in checks if not one.evidence}
 
 

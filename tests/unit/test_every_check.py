@@ -167,6 +167,6 @@ def test_every_check_is_tried():
 def test_a_signed_case_raises_no_check_that_is_not_tried():
     """The redesigned machine, as a case file describes it, in a preview."""
     signed = read_case(SIGNED_CASE).with_positions(72)
-    names = {check.id for check in preview_case(signed).checks}
+    names = {check.id for check in preview_case(signed, corners=False).checks}
     assert names <= set(TRIED) | MADE_LATER | DATA
     assert len(names) > 50

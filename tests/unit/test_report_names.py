@@ -72,7 +72,7 @@ def keys_of(record: Any) -> Iterator[str]:
 
 
 def previewed(case: Any, contour: Any) -> Trial:
-    return solve(case, contour, tier=Tier.PREVIEW, positions=36)
+    return solve(case, contour, tier=Tier.PREVIEW, positions=36, corners=False)
 
 
 @pytest.fixture(scope="module")

@@ -37,7 +37,9 @@ def record(given):
 def solved(given):
     """A trial of few positions."""
     case = parse_case(given)
-    return solve(case, case.contour(given_lift(case)), tier=Tier.PREVIEW, positions=72)
+    return solve(
+        case, case.contour(given_lift(case)), tier=Tier.PREVIEW, positions=72, corners=False
+    )
 
 
 def value(found, name):
