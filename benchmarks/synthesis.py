@@ -52,7 +52,7 @@ def dense_solution() -> float:
 
 def main() -> int:
     positions = int(sys.argv[1]) if len(sys.argv) > 1 else POSITIONS
-    case = read_case(ROOT / "cases" / "gx120-signed.toml")
+    case = read_case(ROOT / "cases" / "gx120-redesign.toml")
     problem = problem_of(case, engine_torques(case))
     alone = replace(problem, scenarios=problem.scenarios[:1])
     unit, start = dense_solution(), cpu()

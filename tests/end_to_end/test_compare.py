@@ -14,7 +14,7 @@ CASES = Path(__file__).parents[2] / "cases"
 
 def test_compare_tabulates_and_draws(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "camwright", "compare", str(CASES / "gx120-signed.toml"),
+        [sys.executable, "-m", "camwright", "compare", str(CASES / "gx120-redesign.toml"),
          "--out", str(tmp_path)],
         capture_output=True, text=True, check=False,
     )  # fmt: skip

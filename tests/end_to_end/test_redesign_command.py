@@ -67,7 +67,7 @@ def small():
 @pytest.fixture(scope="module")
 def case_file(tmp_path_factory):
     """The redesigned GX120's parts under a moving average, at idle, on a coarser turn."""
-    text = (CASES / "gx120-signed.toml").read_text(encoding="utf-8")
+    text = (CASES / "gx120-redesign.toml").read_text(encoding="utf-8")
     text = text[: text.index('[[load_case]]\nname = "overspeed"')]
     text = text.replace('kind = "constrained"', 'kind = "moving_average"\ncoefficients = 36')
     path = tmp_path_factory.mktemp("case") / "small.toml"

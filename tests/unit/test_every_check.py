@@ -68,7 +68,7 @@ MUST_HAVE = {
     *("mesh_jacobian", "mesh_edges", "mesh_p0", "mesh_half_width", "mesh_von_mises"),
     *("benchmark_nafems", "benchmark_hertz", "edge_factor", "held_distance", "excluded_zone"),
 }
-SIGNED_CASE = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
+SIGNED_CASE = Path(__file__).parents[2] / "cases" / "gx120-redesign.toml"
 
 
 @pytest.mark.parametrize("name", TRIED)

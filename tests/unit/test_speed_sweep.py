@@ -16,7 +16,7 @@ from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.cycle.speed_sweep import highest_speed, speed_sweep
 from camwright.pipeline.follower.elastic_follower import harmonic_response
 
-SIGNED = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
+SIGNED = Path(__file__).parents[2] / "cases" / "gx120-redesign.toml"
 RPM = np.pi / 30.0
 THETA = uniform_turn(720)
 LIFT = Lift(THETA, 0.01 * (1.0 - np.cos(THETA)) + 1.5e-4 * (1.0 - np.cos(6.0 * THETA)))

@@ -21,7 +21,7 @@ def section(given, **changes):
 
 @pytest.fixture(scope="module")
 def case():
-    return read_case(CASES / "gx120-signed.toml")
+    return read_case(CASES / "gx120-redesign.toml")
 
 
 @pytest.fixture(scope="module")

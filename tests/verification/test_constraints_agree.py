@@ -54,7 +54,7 @@ UNDER_TRACTION = ("shakedown_traction", "edge_shakedown")
 @pytest.fixture(scope="module")
 def case():
     """The redesigned case with every limit a synthesis knows."""
-    signed = read_case(CASES / "gx120-signed.toml")
+    signed = read_case(CASES / "gx120-redesign.toml")
     cam, roller, guides = signed.cam, signed.roller, signed.guides
     limits = {
         "tool_radius": 0.04, "cam_radius": 0.1, "curvature_rate": 9e3, "target_life": 3.6e6,

@@ -21,7 +21,7 @@ from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.spring import dynamic_stiffness, surge_force
 from camwright.pipeline.preview import preview_case
 
-SIGNED = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
+SIGNED = Path(__file__).parents[2] / "cases" / "gx120-redesign.toml"
 RPM = np.pi / 30.0
 ELEMENTS, STEPS, TURNS = 40, 480, 14
 SIXTH = 2e-4  # m, amplitude of the sixth harmonic

@@ -114,7 +114,7 @@ def test_no_smoother_within_the_limits_leaves_less(seed):
 
 @pytest.fixture(scope="module")
 def signed():
-    case = read_case(CASES / "gx120-signed.toml")
+    case = read_case(CASES / "gx120-redesign.toml")
     return coarsened(problem_of(case, engine_torques(case)))
 
 
@@ -206,7 +206,7 @@ def test_random_starts_agree():
 @pytest.mark.slow
 def test_twenty_random_starts_agree_on_the_redesigned_case(monkeypatch):
     monkeypatch.setattr(multistart, "_SEED", 7)  # other starts than a run's
-    case = read_case(CASES / "gx120-signed.toml")
+    case = read_case(CASES / "gx120-redesign.toml")
     _, starts = explored(problem_of(case, engine_torques(case)), 20)
     assert len(starts.ripples) == 20
     assert starts.agree, starts.sentence

@@ -15,7 +15,7 @@ CASES = Path(__file__).parents[2] / "cases"
 
 @pytest.mark.slow
 def test_signed_case_passes(tmp_path):
-    case = read_case(CASES / "gx120-signed.toml")
+    case = read_case(CASES / "gx120-redesign.toml")
     assert {state.name for state in case.load_cases} == {"idle", "overspeed"}
     summary = run_case(case, tmp_path / "run", positions=180, progress=Silent()).summary
     assert summary["verdict"] == "pass", summary["binding"]
