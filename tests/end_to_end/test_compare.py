@@ -9,12 +9,12 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.results.run_reader import VERDICTS
 from camwright.reports import smoother_page
 
-CASES = Path(__file__).parents[2] / "cases"
+DATA = Path(__file__).parents[1] / "data"
 
 
 def test_compare_tabulates_and_draws(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "camwright", "compare", str(CASES / "gx120-redesign.toml"),
+        [sys.executable, "-m", "camwright", "compare", str(DATA / "soft_spring.toml"),
          "--out", str(tmp_path)],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
