@@ -3,7 +3,7 @@
 python benchmarks/synthesis.py [positions]; 0 positions leave the loop out.
 
 The synthesis has 96 coefficients, 720 points and one load case; the loop is the whole run of the
-redesigned GX120: starts, trials, certificate, fields, report. Both budgets are told in solutions
+GX120 on a soft spring: starts, trials, certificate, fields, report. Both budgets are told in solutions
 of 1000 dense equations on the same core, so that they hold on another machine: 2 s and 90 s where
 one takes 20 ms. Beyond a budget the exit code is 1.
 """
@@ -52,7 +52,7 @@ def dense_solution() -> float:
 
 def main() -> int:
     positions = int(sys.argv[1]) if len(sys.argv) > 1 else POSITIONS
-    case = read_case(ROOT / "cases" / "gx120-signed.toml")
+    case = read_case(ROOT / "tests" / "data" / "soft_spring.toml")
     problem = problem_of(case, engine_torques(case))
     alone = replace(problem, scenarios=problem.scenarios[:1])
     unit, start = dense_solution(), cpu()

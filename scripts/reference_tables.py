@@ -28,7 +28,7 @@ from camwright.pipeline.results.run_records import column_table
 
 ROOT = Path(__file__).resolve().parents[1]
 BLOCK = re.compile(r"<!-- table: (\w+) -->\n.*?<!-- end -->", re.DOTALL)
-SHOWN_CASES = ("gx120-signed.toml", "papers/petrescu_c.toml")
+SHOWN_CASES = ("gx120-redesign.toml", "papers/petrescu_c.toml")
 """A roller and a flat face; together they have every column."""
 
 

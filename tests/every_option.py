@@ -59,6 +59,7 @@ OPTIONS = {
 
 def full_case() -> Case:
     tables = tomllib.loads(GX120.read_text(encoding="utf-8"))
+    del tables["scope"]  # the options describe what the papers leave out
     for section, values in OPTIONS.items():
         tables[section] = tables.get(section, {}) | values
     for card in tables["materials"].values():

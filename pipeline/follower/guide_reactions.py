@@ -370,6 +370,7 @@ def guide_reactions(
         If equilibrium or the contact law is not met to 1e-9.
     """
     force = finite("tangential_force", tangential_force)
+    force = np.where(np.abs(force) < _NO_LOAD, 0.0, force)
     reach = np.broadcast_to(finite("overhang", overhang), force.shape)
     moment = np.broadcast_to(finite("end_moment", end_moment), force.shape)
     require_fit(stem, guides, reach, knots)

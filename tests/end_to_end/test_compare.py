@@ -11,7 +11,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.results.run_reader import VERDICTS
 from camwright.reports import smoother_page
 
-CASE = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
+CASE = Path(__file__).parents[1] / "data" / "soft_spring.toml"
 
 
 def one_at_a_time(folder):

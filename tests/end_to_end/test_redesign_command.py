@@ -23,6 +23,7 @@ from camwright.pipeline.studies.redesign import part_search, redesign_study
 from camwright.reports import redesign_page as page
 
 CASES = Path(__file__).parents[2] / "cases"
+DATA = Path(__file__).parents[1] / "data"
 ROLLER = "track_roller_35x16"
 
 
@@ -66,8 +67,8 @@ def small():
 
 @pytest.fixture(scope="module")
 def case_file(tmp_path_factory):
-    """The redesigned GX120's parts under a moving average, at idle, on a coarser turn."""
-    text = (CASES / "gx120-signed.toml").read_text(encoding="utf-8")
+    """The parts of the soft spring under a moving average, at idle, on a coarser turn."""
+    text = (DATA / "soft_spring.toml").read_text(encoding="utf-8")
     text = text[: text.index('[[load_case]]\nname = "overspeed"')]
     text = text.replace('kind = "constrained"', 'kind = "moving_average"\ncoefficients = 36')
     path = tmp_path_factory.mktemp("case") / "small.toml"

@@ -68,7 +68,7 @@ MUST_HAVE = {
     *("mesh_jacobian", "mesh_edges", "mesh_p0", "mesh_half_width", "mesh_von_mises"),
     *("benchmark_nafems", "benchmark_hertz", "edge_factor", "held_distance", "excluded_zone"),
 }
-SIGNED_CASE = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
+REDESIGN = Path(__file__).parents[2] / "cases" / "gx120-redesign.toml"
 
 
 @pytest.mark.parametrize("name", TRIED)
@@ -164,9 +164,9 @@ def test_every_check_is_tried():
     } == MADE_LATER
 
 
-def test_a_signed_case_raises_no_check_that_is_not_tried():
+def test_the_redesigned_case_raises_no_check_that_is_not_tried():
     """The redesigned machine, as a case file describes it, in a preview."""
-    signed = read_case(SIGNED_CASE).with_positions(72)
-    names = {check.id for check in preview_case(signed, corners=False).checks}
+    redesign = read_case(REDESIGN).with_positions(72)
+    names = {check.id for check in preview_case(redesign, corners=False).checks}
     assert names <= set(TRIED) | MADE_LATER | DATA
     assert len(names) > 50

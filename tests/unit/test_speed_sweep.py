@@ -16,14 +16,14 @@ from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.cycle.speed_sweep import highest_speed, speed_sweep
 from camwright.pipeline.follower.elastic_follower import harmonic_response
 
-SIGNED = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
+SOFT_SPRING = Path(__file__).parents[1] / "data" / "soft_spring.toml"
 RPM = np.pi / 30.0
 THETA = uniform_turn(720)
 LIFT = Lift(THETA, 0.01 * (1.0 - np.cos(THETA)) + 1.5e-4 * (1.0 - np.cos(6.0 * THETA)))
 
 
 def solved_case(overspeed=3600.0 * RPM, rate_tolerance=1e-12, lift=LIFT, **design):
-    case = read_case(SIGNED)
+    case = read_case(SOFT_SPRING)
     spring = replace(
         case.spring,
         design=replace(case.spring.design, **design),

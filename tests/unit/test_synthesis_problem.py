@@ -11,7 +11,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.problem_setup import problem_of
 
-CASES = Path(__file__).parents[2] / "cases"
+DATA = Path(__file__).parents[1] / "data"
 
 
 def section(given, **changes):
@@ -21,7 +21,7 @@ def section(given, **changes):
 
 @pytest.fixture(scope="module")
 def case():
-    return read_case(CASES / "gx120-signed.toml")
+    return read_case(DATA / "soft_spring.toml")
 
 
 @pytest.fixture(scope="module")

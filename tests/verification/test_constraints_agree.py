@@ -36,7 +36,7 @@ from camwright.pipeline.smoothing.sampled_problem import INITIAL_ENERGY, LEAST_E
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
-CASES = Path(__file__).parents[2] / "cases"
+DATA = Path(__file__).parents[1] / "data"
 POSITIONS = 120
 SHAPE = ("spring_travel", "pressure_angle", "curvature_ratio", "undercut", "concave_radius",
          "curvature_rate", "cam_radius")  # fmt: skip
@@ -53,9 +53,9 @@ UNDER_TRACTION = ("shakedown_traction", "edge_shakedown")
 
 @pytest.fixture(scope="module")
 def case():
-    """The redesigned case with every limit a synthesis knows."""
-    signed = read_case(CASES / "gx120-signed.toml")
-    cam, roller, guides = signed.cam, signed.roller, signed.guides
+    """The case of the soft spring with every limit a synthesis knows."""
+    soft = read_case(DATA / "soft_spring.toml")
+    cam, roller, guides = soft.cam, soft.roller, soft.guides
     limits = {
         "tool_radius": 0.04, "cam_radius": 0.1, "curvature_rate": 9e3, "target_life": 3.6e6,
         "overspeed": 420.0,
@@ -64,7 +64,7 @@ def case():
     steel = replace(cam.material, **line)
     strong = replace(roller.pin.material, tensile_strength=600e6)
     parts = {
-        "limits": signed.limits.model_copy(update=limits),
+        "limits": soft.limits.model_copy(update=limits),
         "cam": replace(cam, material=steel),
         "roller_given": replace(
             roller,
@@ -78,7 +78,7 @@ def case():
             guides, a=replace(guides.a, friction_max=0.12), b=replace(guides.b, friction_max=0.1)
         ),
     }
-    return signed.model_copy(update=parts)
+    return soft.model_copy(update=parts)
 
 
 @pytest.fixture(scope="module", params=range(2))

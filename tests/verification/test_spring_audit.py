@@ -21,7 +21,7 @@ from camwright.pipeline.cycle.speed_sweep import speed_sweep
 from camwright.pipeline.follower.spring import dynamic_stiffness, surge_force
 from camwright.pipeline.preview import preview_case
 
-SIGNED = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
+SOFT_SPRING = Path(__file__).parents[1] / "data" / "soft_spring.toml"
 RPM = np.pi / 30.0
 ELEMENTS, STEPS, TURNS = 40, 480, 14
 SIXTH = 2e-4  # m, amplitude of the sixth harmonic
@@ -29,8 +29,8 @@ WORST = 3440.0  # rpm: the first mode meets the sixth harmonic
 
 
 def machine_case(**limits):
-    """The signed machine with an over-speed of 3600 rpm; its temperature and relaxation assumed."""
-    case = read_case(SIGNED)
+    """The machine of the soft spring with an over-speed of 3600 rpm; its temperature and relaxation assumed."""
+    case = read_case(SOFT_SPRING)
     design = replace(case.spring.design, temperature=350.0, relaxation=0.01)
     spring = replace(case.spring, design=design, rate_tolerance=0.05, preload_tolerance=0.05)
     values = case.limits.model_copy(update={"overspeed": 3600.0 * RPM} | limits)
@@ -419,9 +419,9 @@ def test_no_over_speed_is_made_of_the_fastest_load_case(solved):
 
 
 @pytest.mark.slow
-def test_the_roller_of_the_signed_case_leaves_the_cam_below_over_speed():
+def test_the_roller_leaves_the_cam_below_over_speed():
     """Its sixth harmonic meets the first mode of the spring at 3440 rpm, with 1 % of damping."""
-    trial = preview_case(read_case(SIGNED).with_positions(72))
+    trial = preview_case(read_case(SOFT_SPRING).with_positions(72))
     checks = {check.id: check for check in trial.checks}
     assert checks["contact_force_margin"].status == "pass"
     assert checks["contact_over_speed"].demand < 0.0

@@ -24,7 +24,7 @@ from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.smoothers import KINDS, Smoother, smoothed
 from camwright.pipeline.smoothing.synthesis_problem import Problem, coarsened
 
-CASES = Path(__file__).parents[2] / "cases"
+DATA = Path(__file__).parents[1] / "data"
 RATE, PRELOAD, BASE = 24.2e3, 242.0, 0.05
 POINTS, COUNT = 90, 24
 LIMITS = rated(
@@ -113,17 +113,17 @@ def test_no_smoother_within_the_limits_leaves_less(seed):
 
 
 @pytest.fixture(scope="module")
-def signed():
-    case = read_case(CASES / "gx120-signed.toml")
+def soft():
+    case = read_case(DATA / "soft_spring.toml")
     return coarsened(problem_of(case, engine_torques(case)))
 
 
-def test_every_limit_holds_between_the_points(signed):
-    design = synthesise(signed)
+def test_every_limit_holds_between_the_points(soft):
+    design = synthesise(soft)
     assert design.feasible
-    search = Search(signed)
-    random = np.random.default_rng(1).uniform(0.0, 2 * np.pi, 10 * signed.points)
-    for theta in (uniform_turn(10 * signed.points), np.sort(random)):
+    search = Search(soft)
+    random = np.random.default_rng(1).uniform(0.0, 2 * np.pi, 10 * soft.points)
+    for theta in (uniform_turn(10 * soft.points), np.sort(random)):
         grid = Grid.at(theta, design.coefficients.size)
         found = search.utilisations(design.coefficients, design.variables, grid)
         assert len(found) >= 18
@@ -204,9 +204,9 @@ def test_random_starts_agree():
 
 
 @pytest.mark.slow
-def test_twenty_random_starts_agree_on_the_redesigned_case(monkeypatch):
+def test_twenty_random_starts_agree_on_the_soft_spring(monkeypatch):
     monkeypatch.setattr(multistart, "_SEED", 7)  # other starts than a run's
-    case = read_case(CASES / "gx120-signed.toml")
+    case = read_case(DATA / "soft_spring.toml")
     _, starts = explored(problem_of(case, engine_torques(case)), 20)
     assert len(starts.ripples) == 20
     assert starts.agree, starts.sentence
