@@ -256,17 +256,36 @@ def _between(at: Array, theta: Array, finite_elements: Array, closed_form: Array
 
 def _with_body(unit: RollingPass, p0: Array, extra: Array, poisson: float) -> tuple[Array, Array]:
     """Maximum von Mises stress and in-plane shear (n, k) of the pass plus body stress."""
-    mises, shear = np.empty((2, p0.size, unit.depth.size))
     if not extra.any():
         return p0[:, None] * unit.von_mises, p0[:, None] * unit.tau_max
     close = np.abs(np.arange(unit.stress.shape[2]) - unit.stress.shape[2] // 2) <= 160
-    field = unit.stress[:, None, :, close]
+    field, nu = unit.stress[:, :, close], poisson
+    differences = np.array([[1.0, -1.0, 0.0], [1.0 - nu, -nu, 0.0], [-nu, 1.0 - nu, 0.0]])
+    along = np.diag([0.0, 0.0, 1.0])
+    mises = 0.5 * differences.T @ differences + 3.0 * along
+    shear = 0.25 * np.outer(differences[0], differences[0]) + along
+    return _greatest_root(mises, p0, field, extra), _greatest_root(shear, p0, field, extra)
+
+
+def _greatest_root(form: Array, p0: Array, field: Array, extra: Array) -> Array:
+    """Greatest root (n, k) over x of a quadratic form of the stress p0 field + extra.
+
+    Parameters
+    ----------
+    form : array (3, 3)      symmetric, of the components xx, yy, xy
+    field : array (3, k, x)  of a unit pressure
+    extra : array (3, n)     Pa
+    """
+    bent = np.tensordot(form, field, axes=1)
+    plain, own = (field * bent).sum(axis=0), (extra * (form @ extra)).sum(axis=0)
+    squares = np.empty((p0.size, field.shape[1]))
     for start in range(0, p0.size, _BLOCK):
         part = slice(start, start + _BLOCK)
-        total = p0[part, None, None] * field + extra[:, part, None, None]
-        mises[part] = stress.von_mises(total, poisson).max(axis=2)
-        shear[part] = stress.shear_in_plane(total).max(axis=2)
-    return mises, shear
+        varying = p0[part, None, None] * plain
+        for component in np.flatnonzero(extra.any(axis=1)):
+            varying += (2.0 * extra[component, part, None, None]) * bent[component]
+        squares[part] = p0[part, None] * varying.max(axis=2) + own[part, None]
+    return np.sqrt(np.maximum(squares, 0.0))
 
 
 def _crossland(

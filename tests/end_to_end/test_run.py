@@ -73,9 +73,9 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, Path, dict
 
 @pytest.fixture(scope="module")
 def straight(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same run without interruption."""
+    """The same run without interruption and without its page."""
     folder = tmp_path_factory.mktemp("straight")
-    run_case(small(folder), folder / "out", jobs=1, progress=Silent(), present=report)
+    run_case(small(folder), folder / "out", jobs=1, progress=Silent())
     return folder / "out"
 
 
@@ -261,7 +261,7 @@ def test_a_run_may_begin_at_the_lift(tmp_path: Path) -> None:
     text = text.replace(engine.group(), '[lift]\nfile = "lift.csv"\n\n[mechanism]')
     (tmp_path / "case.toml").write_text(text)
     case = read_case(tmp_path / "case.toml")
-    run = run_case(case, tmp_path / "out", jobs=1, progress=Silent(), present=report)
+    run = run_case(case, tmp_path / "out", jobs=1, progress=Silent())
     summary = run.summary
     assert not (tmp_path / "out" / "1_torque.csv").exists()
     assert summary["headline"]["torque_std_before_Nm"] is None

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from made_check import made_check
 
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import ContactError, InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case_file import parse_case
 from camwright.pipeline.case.machine import Corner, machines
 from camwright.pipeline.case.template import template
+from camwright.pipeline.checks import tolerance_corners
 from camwright.pipeline.checks.tolerance_corners import (
     Outcome,
     corners_of,
@@ -17,6 +18,7 @@ from camwright.pipeline.checks.tolerance_corners import (
     outcomes,
     unsolved,
 )
+from camwright.pipeline.cycle.turn import turns
 from camwright.pipeline.engine.torque import Torque, uniform_cycle
 
 TOLERANCES = """
@@ -200,6 +202,24 @@ def test_the_governing_corner_is_named_scales_the_nominal_demand_and_is_judged()
     assert (lower.corner, lower.corner_demand) == ("b", pytest.approx(90.0))
     assert lower.status == "pass"
     assert unsolved(machines(case())[0], seen).status == "pass"
+
+
+def test_a_corner_without_a_solution_is_refused_alone(monkeypatch, demands):
+    """The others have the demands that they have where every corner is solved."""
+    heaviest = 1.05 * machines(case())[0].mass
+
+    def refusing(inputs, positions, *, coarse):
+        if any(given.machine.mass > heaviest for given in inputs):
+            raise ContactError("guides: too heavy")
+        return turns(inputs, positions, coarse=coarse)
+
+    monkeypatch.setattr(tolerance_corners, "turns", refusing)
+    seen = {one.corner.name: one for one in outcomes(case(), {}, cam())}
+    assert seen["mass high"].refused == "guides: too heavy"
+    assert seen["mass high"].demands == {}
+    for name in ("nominal", "mass low", "friction high"):
+        assert not seen[name].refused
+        assert seen[name].demands == pytest.approx(demands[name], rel=1e-9)
 
 
 def test_a_demand_unknown_at_a_corner_is_missing():

@@ -16,7 +16,10 @@ from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.contact_patch import contact_patch
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
-from camwright.pipeline.contact.elasticity.plane_stress_measures import von_mises
+from camwright.pipeline.contact.elasticity.plane_stress_measures import (
+    shear_in_plane,
+    von_mises,
+)
 from camwright.pipeline.contact.follower_body import RollerBody
 from camwright.pipeline.contact.rolling_envelope import (
     STATIONS,
@@ -45,6 +48,25 @@ def pair_of(stroke, keyway=None):
 def circular():
     pair = pair_of(0.0)
     return pair, CycleBodies.meshed(pair)
+
+
+def test_stresses_with_those_of_the_body_are_of_their_sum():
+    """Pass and body stress added at each point, within two half-widths; to round-off."""
+    pair, theta = pair_of(0.0), uniform_turn(90)
+    contact = closed_form_history(pair, theta, force(theta))
+    load = force(theta) / WIDTH
+    body = 1e7 * np.stack([np.sin(theta), np.cos(2 * theta), np.sin(3 * theta)])
+    found = swept(pair, theta, contact, theta, load, body_stress=body)
+    field = rolling_pass(0.3).stress
+    middle = field.shape[2] // 2
+    near = field[:, :, middle - 160 : middle + 161]
+    for k in (0, 20, 55):
+        total = contact.p0[k] * near + body[:, k, None, None]
+        for values, measured in (
+            (found.von_mises, von_mises(total, 0.3)),
+            (found.tau_max, shear_in_plane(total)),
+        ):
+            np.testing.assert_allclose(values[k], measured.max(axis=1), rtol=1e-9)
 
 
 def force(theta):

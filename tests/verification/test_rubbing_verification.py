@@ -17,7 +17,12 @@ from camwright.pipeline.follower.follower_forces import (
     follower_loads,
     turn_integral,
 )
-from camwright.pipeline.follower.friction_coupling import balanced, guided_loads
+from camwright.pipeline.follower.friction_coupling import (
+    Stroke,
+    balanced,
+    guided_loads,
+    guided_strokes,
+)
 from camwright.pipeline.follower.guide_effects import guide_shares
 from camwright.pipeline.follower.guide_reactions import Guide, GuidePair, guide_reactions
 from camwright.pipeline.follower.spring import Spring
@@ -56,6 +61,24 @@ def guided(system, pair=PAIR, pitch=PITCH, theta=THETA):
 
 def solved_anew(loads, pair=PAIR):
     return guide_reactions(loads.tangential_force, loads.overhang, STEM, pair)
+
+
+def test_strokes_solved_at_once_are_those_solved_alone():
+    """Of other friction, offset, speed and number of positions; 1e-10 is the axial balance."""
+    strokes = [
+        Stroke(PITCH, SYSTEM, SPEED, THETA),
+        Stroke(PitchCurve(PITCH.lift, 0.05, 0.012), ROUGH, 0.0, uniform_turn(36)),
+        Stroke(PITCH, replace(ROUGH, mass=0.3), 2.0 * SPEED, THETA),
+    ]
+    for stroke, found in zip(strokes, guided_strokes(strokes, STEM, PAIR), strict=True):
+        pitch, system, speed, theta = stroke
+        alone = guided_loads(pitch, system, STEM, PAIR, speed, theta)
+        np.testing.assert_array_equal(found.loads.theta, theta)
+        for name in ("normal_force", "friction_force_a", "friction_force_b"):
+            wanted = getattr(alone.loads, name)
+            np.testing.assert_allclose(
+                getattr(found.loads, name), wanted, rtol=1e-10, atol=1e-10 * wanted.max()
+            )
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.012, -0.012])
