@@ -85,6 +85,7 @@ def _guide_pressure(side: Side) -> Declaration:
         id=f"guide_pressure_{side}",
         title=f"Mean bearing pressure in guide {side}",
         unit="MPa",
+        source="limit of the bush's maker, source of the guide",
         method="greatest push on one side of the bore over diameter x loaded length; at most"
         " the limit at the temperature of the guide",
         lift_can_help=True,
@@ -152,6 +153,7 @@ def _guide_pv(side: Side) -> Declaration:
         id=f"guide_pv_{side}",
         title=f"PV value in guide {side}",
         unit="MPa m/s",
+        source="limit of the bush's maker; of nylon by its lubrication, Mott, table 16-1: verify",
         method="mean |R v| over the turn over diameter x length; R: sum of the loads on both sides"
         " of the bore",
         lift_can_help=True,
@@ -216,6 +218,7 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         id=f"guide_edge_pressure_{side}",
         title=f"Guide edge pressure in guide {side} vs. yield strength",
         unit="MPa",
+        source="yield strength of the bush at its temperature, source of the material",
         method="pin in a bore with clearance, bush in a rigid housing, at the greatest line load of"
         " the beam; modulus at 20 degC, an upper bound; yield strength at the temperature of the"
         " guide",
@@ -247,6 +250,7 @@ def _guide_temperature(side: Side) -> Declaration:
         id=f"guide_temperature_{side}",
         title=f"Temperature of guide {side}",
         unit="degC",
+        source="temperature limit of the bush, source of the material",
         method="ambient plus mean friction power at the greatest friction times the thermal"
         " resistance of wall and housing, steady state",
         lift_can_help=True,
@@ -296,6 +300,7 @@ def _guide_speed(side: Side) -> Declaration:
         id=f"guide_speed_{side}",
         title=f"Maximum sliding speed in guide {side}",
         unit="m/s",
+        source="limit of the bush's maker, source of the guide",
         method="greatest speed of the follower over the turn",
         lift_can_help=True,
         moved_by_tolerance=False,
