@@ -157,9 +157,14 @@ def test_every_check_is_tried():
     } == MADE_LATER
 
 
-def test_a_signed_case_raises_no_check_that_is_not_tried():
-    """The redesigned machine, as a case file describes it, in a preview."""
+@pytest.mark.parametrize(
+    "kind", ["moving_average", pytest.param("constrained", marks=pytest.mark.slow)]
+)
+def test_a_signed_case_raises_no_check_that_is_not_tried(kind):
+    """The redesigned machine of a case file in a preview, synthesised or smoothed."""
     signed = read_case(SIGNED_CASE).with_positions(72)
+    smoothing = signed.smoothing.model_copy(update={"kind": kind})
+    signed = signed.model_copy(update={"smoothing": smoothing})
     names = {check.id for check in preview_case(signed, corners=False).checks}
     assert names <= set(TRIED) | MADE_LATER | DATA
     assert len(names) > 50
