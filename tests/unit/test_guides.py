@@ -53,7 +53,9 @@ def test_side_force_too_small_to_have_digits_is_none():
 
 def test_side_force_too_small_to_have_digits_is_solved_in_stiff_bores():
     """Scaled up to dent a stiff bore, a force of 1e-315 N would overflow."""
-    stiff = GuidePair(spacing=0.08, a=guide(0.02, 3e-5, 9e12, 0.05), b=guide(0.02, 3e-5, 9e12, 0.05))
+    stiff = GuidePair(
+        spacing=0.08, a=guide(0.02, 3e-5, 9e12, 0.05), b=guide(0.02, 3e-5, 9e12, 0.05)
+    )
     solved = guide_reactions([-2.8e-315, 1e-300, 100.0], 0.04, STEM, stiff)
     assert (solved.reaction_a[:2] == 0.0).all() and solved.reaction_a[2] > 100.0
 
