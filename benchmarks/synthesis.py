@@ -3,8 +3,8 @@
 python benchmarks/synthesis.py [positions]; 0 positions leave the loop out.
 
 The synthesis has 96 coefficients, 720 points and one load case; the loop is the whole run of the
-GX120 on a soft spring: starts, trials, certificate, fields, report. Both budgets are solutions of
-1000 dense equations on the same core, so that they hold on another machine: 2 s and 90 s where
+soft spring's case: starts, trials, certificate, fields, report. Both budgets are told in solutions
+of 1000 dense equations on the same core, so that they hold on another machine: 2 s and 90 s where
 one takes 20 ms. Beyond a budget the exit code is 1.
 """
 

