@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
+    JAM_INDEX,
     JUMP_SPEED,
     PRESSURE_ANGLE,
     ROLLER_LIFE,
@@ -49,18 +50,20 @@ def ratings_of(case: Case) -> Ratings:
     states, roller = machines(case), case.roller
     machine, bearing = states[0], roller.bearing
     limits, guides, life = machine.limits, machine.guides, machine.limits[ROLLER_LIFE]
-    cubed = None
-    if bearing.C is not None and life is not None:
+    covers, cubed = case.scope.covers, None
+    if bearing.C is not None and life is not None and covers("roller_bearing"):
         cubed = bearing.C**3 * MILLION_TURNS / life
     pressure, pressure_by = _least(pressure_allowables(machine, greatest_cycles(case)))
     normal_force, normal_force_by = _least(force_limits(case))
     by_rating = normal_force_by == "roller_static"
     # Without a stated over-speed the contact is kept at the fastest load case.
     over = highest_speed(states) / machine.gear_ratio
+    kept = [row for row in ROWS if row is not JAM_INDEX or covers("guides")]
+    pressures = (guides.a.pressure_limit, guides.b.pressure_limit)
     return Ratings(
         roller_radius=roller.radius,
         offset=machine.cam.offset,
-        limits={row: value for row in ROWS if (value := limits[row]) is not None},
+        limits={row: value for row in kept if (value := limits[row]) is not None},
         travel=_least(travel_limits(case))[0],
         hollow_radius=least_concave_radius(case),
         pressure=pressure,
@@ -75,9 +78,9 @@ def ratings_of(case: Case) -> Ratings:
         force_safety=limits[ROLLER_STATIC_SAFETY] if by_rating else 1.0,
         dynamic_rating=bearing.C,
         life_force_cubed=cubed,
-        roller_spin=allowed_spin(machine),
-        guide_pressure=(guides.a.pressure_limit, guides.b.pressure_limit),
-        guide_pv=(pv_limit(guides.a), pv_limit(guides.b)),
+        roller_spin=allowed_spin(machine) if covers("roller_bearing") else None,
+        guide_pressure=pressures if covers("guides") else (None, None),
+        guide_pv=((pv_limit(guides.a), pv_limit(guides.b)) if covers("guides") else (None, None)),
         guide_area=(guides.a.projected_area, guides.b.projected_area),
     )
 
@@ -107,7 +110,7 @@ def travel_limits(case: Case) -> dict[str, float]:
     allowed = {}
     if spring.travel_max is not None:
         allowed["spring_travel"] = spring.travel_max
-    design = spring.design
+    design = spring.design if case.scope.covers("spring") else None
     if design is None or {"spring_rate", "preload"} & set(case.smoothing.free):
         return allowed
     preload = max(machine.spring.preload for machine in machines(case))
@@ -141,26 +144,27 @@ def travel_limits(case: Case) -> dict[str, float]:
 
 
 def force_limits(case: Case) -> dict[str, float]:
-    """Greatest normal force allowed by each check, N, by its id."""
-    roller, limits = case.roller, case.limits
-    bearing, pin = roller.bearing, roller.pin
+    """Greatest normal force allowed by each check that the scope covers, N, by its id."""
+    roller, limits, covers = case.roller, case.limits, case.scope.covers
+    bearing, pin = roller.bearing, roller.pin if covers("pin") else None
+    fork = roller.fork if covers("fork") else None
+    rated = {
+        "roller_static": None if bearing.C0 is None else bearing.C0 / limits[ROLLER_STATIC_SAFETY],
+        "roller_radial": bearing.radial_limit,
+        "roller_static_radial": bearing.static_radial_limit,
+        "roller_load_share": None if bearing.C is None else bearing.C * limits[ROLLER_LOAD_SHARE],
+    }
     allowed = {}
-    if bearing.C0 is not None:
-        allowed["roller_static"] = bearing.C0 / limits[ROLLER_STATIC_SAFETY]
-    if bearing.radial_limit is not None:
-        allowed["roller_radial"] = bearing.radial_limit
-    if bearing.static_radial_limit is not None:
-        allowed["roller_static_radial"] = bearing.static_radial_limit
-    if bearing.C is not None:
-        allowed["roller_load_share"] = bearing.C * limits[ROLLER_LOAD_SHARE]
+    if covers("roller_bearing"):
+        allowed = {name: force for name, force in rated.items() if force is not None}
     if pin is not None and roller.pin_stress_per_newton is not None:
         allowed["roller_pin"] = allowed_pin_stress(pin, limits) / roller.pin_stress_per_newton
     stresses = {}
     if pin is not None:
         stresses["roller_pin_shear"] = pin_shear(pin, limits)
         stresses["roller_pin_pressure"] = seat_pressure(roller, pin, limits)
-    if pin is not None and roller.fork is not None:
-        stresses["cheek_pressure"] = fork_pressure(roller.fork, pin, limits)
+    if pin is not None and fork is not None:
+        stresses["cheek_pressure"] = fork_pressure(fork, pin, limits)
     for name, stress in stresses.items():
         if stress.allowed is not None:
             allowed[name] = stress.allowed / stress.per_newton
