@@ -22,9 +22,12 @@ reason = "a comparison of lifts: bushes and spring of this case do not bear any 
 
 
 def whole(folder):
-    """The case without its bushes and its spring, which no lift satisfies."""
+    """The case at idle without its bushes and its spring, which no lift satisfies."""
+    text, over = CASE.read_text(encoding="utf-8"), 'overspeed = "3960 rpm"'
+    idle = text[: text.index('[[load_case]]\nname = "overspeed"')]
+    assert idle.count(over) == 1
     path = folder / "case.toml"
-    path.write_text(CASE.read_text(encoding="utf-8") + SCOPE, encoding="utf-8")
+    path.write_text(idle.replace(over, 'unbalance = "9999 mm/s"') + SCOPE, encoding="utf-8")
     return path
 
 
