@@ -276,7 +276,7 @@ def _shakedown_uses(friction: float, poisson: float) -> tuple[Array, Array]:
     formula="p0 <= p_E / S; p0: greatest contact pressure over all load cases and angles, p_E:"
     " least endurance pressure of cam and follower, of rolling for a roller and of rolling with"
     " sliding for a flat face, S: limits.contact_safety",
-    reason="decides: above the endurance pressure the track pits",
+    reason="above the endurance pressure the track pits",
 )
 def contact_pressure(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the least endurance of cam and follower."""
@@ -328,7 +328,7 @@ def _stress_with_traction(cycle: Cycle) -> Array:
     error="contact",
     formula="p0 <= 4 k / S; k = Y/sqrt(3): least shear yield strength of cam and follower, S:"
     " limits.shakedown_safety",
-    reason="decides: above the limit every passage adds plastic strain",
+    reason="above the limit every passage adds plastic strain",
 )
 def shakedown(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against elastic shakedown of free rolling."""
@@ -351,7 +351,7 @@ def shakedown(solution: Solution) -> Demand:
     formula="p0 <= sqrt(K E*/pi) / S; log10 K = (B - log10 n)/A with K in psi, n: load cycles of"
     " the body in limits.target_life; a body without A and B keeps its endurance pressure up to its"
     " endurance_cycles",
-    reason="decides: the target life may need more load cycles than the endurance pressure",
+    reason="the target life may need more load cycles than the endurance pressure",
 )
 def contact_pressure_at_life(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the endurance at the target life."""
@@ -390,7 +390,7 @@ def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: flo
     error="contact",
     formula="f p0 <= p_E / S; f: limits.edge_factor for straight ends, 1 for a crown whose ellipse"
     " lies within the width",
-    reason="decides: a straight contact fails at its ends first; the flat factor is a derating"
+    reason="a straight contact fails at its ends first; the flat factor is a derating"
     " until the ends are solved in three dimensions",
 )
 def edge_pressure(solution: Solution) -> Demand:
@@ -411,7 +411,7 @@ def edge_pressure(solution: Solution) -> Demand:
     error="contact",
     formula="f p_eq <= 4 k / S; f: edge factor as of edge_pressure, p_eq: equivalent pressure as of"
     " shakedown_traction",
-    reason="decides: the edges yield first, and an edge that does not shake down is rolled out",
+    reason="the edges yield first, and an edge that does not shake down is rolled out",
 )
 def edge_shakedown(solution: Solution) -> Demand:
     """Equivalent contact pressure at the ends, Pa, against shakedown."""
@@ -441,7 +441,7 @@ def _edge_method(solution: Solution) -> str:
     error="contact",
     formula="p_eq = 4 p0 / lambda(t) <= 4 k / S; t: traction coefficient, lambda = p0/k at"
     " shakedown: 1/max|tau_xz| below the surface, von Mises at the surface above about 0.3",
-    reason="decides: traction brings the plastic strain to the surface and lowers the limit",
+    reason="traction brings the plastic strain to the surface and lowers the limit",
 )
 def shakedown_traction(solution: Solution) -> Demand:
     """Maximum equivalent contact pressure with traction, Pa, against shakedown."""
@@ -461,8 +461,7 @@ def shakedown_traction(solution: Solution) -> Demand:
     needs="roller",
     formula="e <= |w_c - w_r| / 2; e: roller.axial_offset, w_c: width of the cam, w_r: of the"
     " roller without chamfers",
-    reason="decides: beyond it the roller overhangs, and carries the force on less width than"
-    " calculated",
+    reason="beyond it the roller overhangs, and carries the force on less width than calculated",
     load_cases=NONE,
 )
 def roller_overlap(solution: Solution) -> Demand | None:

@@ -20,7 +20,7 @@ from camwright.pipeline.cycle.solution import Solution
     needs="face",
     formula="2 (|s' - e| + a) <= w; s': slope of the lift, e: cam.offset, a: half-width of the"
     " contact, w: follower.face.width",
-    reason="decides: beyond the face the contact runs on its edge",
+    reason="beyond the face the contact runs on its edge",
 )
 def face_width(solution: Solution) -> Demand | None:
     """Required width of the face, contact half-width included, m."""
@@ -45,7 +45,7 @@ def face_width(solution: Solution) -> Demand | None:
     needs="face",
     formula="pi/4 p0 omega (r + s) <= PV; p0: contact pressure, omega: speed of the cam, r: base"
     " radius, s: lift, PV: follower.face.pv_limit",
-    reason="decides: a face slides at all angles, and beyond its PV limit it seizes or melts",
+    reason="a face slides at all angles, and beyond its PV limit it seizes or melts",
 )
 def face_pv(solution: Solution) -> Demand | None:
     """Mean contact pressure times sliding speed, Pa m/s."""

@@ -32,7 +32,7 @@ SUBSURFACE = 0.3  # half-widths: a shallower maximum is a singularity or an elem
     tier=Tier.FINITE_ELEMENTS,
     formula="limits.edge_factor >= 1.3 for straight ends; 1 for a crowned roller whose contact ends"
     " within its width",
-    reason="decides: the plane solution has no ends, and a smaller factor would hide them",
+    reason="the plane solution has no ends, and a smaller factor would hide them",
     load_cases=NONE,
 )
 def edge_factor(solution: Solution) -> Demand:

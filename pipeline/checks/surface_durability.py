@@ -41,7 +41,7 @@ RULE_RATIO = 1.5
     needs="roller",
     formula="T/N <= mu; T: tangential force of rolling without slip, from the inertia of the roller"
     " and the drag of its bearing, N: normal force, mu: roller.friction",
-    reason="decides: a roller that slips wears the track, and its endurance is that of sliding",
+    reason="a roller that slips wears the track, and its endurance is that of sliding",
 )
 def traction_demand(solution: Solution) -> Demand:
     """Maximum tangential over normal force of rolling without slip."""
@@ -175,7 +175,7 @@ def dang_van(solution: Solution) -> Demand:
     error="contact",
     formula="max sigma_v(z)/Y(z) <= 1 / S; Y(z): yield strength, linear from surface to core over"
     " the case depth, S: limits.case_safety",
-    reason="decides for a hardened surface: a core that yields lets the case break in",
+    reason="of a hardened surface: a core that yields lets the case break in",
 )
 def hardened_case(solution: Solution) -> Demand | None:
     """Maximum von Mises stress over the yield strength at its depth; None if not hardened."""
@@ -203,7 +203,7 @@ def hardened_case(solution: Solution) -> Demand | None:
     formula="max (range of tau_xz(z) / 2)/t(z) <= 1 / S; t(z): fully reversed fatigue limit in"
     " torsion, linear from fatigue_torsion to core_fatigue_torsion over the case depth, S:"
     " limits.fatigue_safety",
-    reason="decides for a hardened surface: cracks start below the case, where the strength has"
+    reason="of a hardened surface: cracks start below the case, where the strength has"
     " fallen and the shear has not",
 )
 def case_shear(solution: Solution) -> Demand | None:
@@ -283,7 +283,7 @@ def _rank(value: float) -> float:
     lift_can_help=True,
     formula="d / z >= limits.case_depth_ratio; d: case_depth, z: greatest depth of the maximum"
     " shear stress over all load cases",
-    reason="decides for a hardened surface: the maximum shear stress must lie within the case",
+    reason="of a hardened surface: the maximum shear stress must lie within the case",
 )
 def case_depth(solution: Solution) -> Demand | None:
     """Effective case depth over the greatest depth of maximum shear; None if not hardened."""

@@ -183,8 +183,9 @@ def _figures_of(cycle: Table) -> Mapping[str, float | None]:
     for name, (header, measure) in measures.items():
         value = float(measure(np.asarray(cycle[header], dtype=float)))
         figures[name] = value if math.isfinite(value) else None
-    if "torque_after_Nm" in cycle:
-        figures["torque_after_std_Nm"] = float(np.std(cycle["torque_after_Nm"]))
+    if "torque_after_Nm" in cycle:  # standstill and over-speed have no engine torque
+        design = cycle.of_load_case(cycle.load_cases[0]) if cycle.load_cases else cycle
+        figures["torque_after_std_Nm"] = float(np.std(design["torque_after_Nm"]))
     return figures
 
 

@@ -68,7 +68,7 @@ MUST_HAVE = {
     *("mesh_jacobian", "mesh_edges", "mesh_p0", "mesh_half_width", "mesh_von_mises"),
     *("benchmark_nafems", "benchmark_hertz", "edge_factor", "held_distance", "excluded_zone"),
 }
-SIGNED_CASE = Path(__file__).parents[2] / "cases" / "gx120-signed.toml"
+REDESIGN = Path(__file__).parents[2] / "cases" / "gx120-redesign.toml"
 
 
 @pytest.mark.parametrize("name", TRIED)
@@ -167,11 +167,11 @@ def test_every_check_is_tried():
 @pytest.mark.parametrize(
     "kind", ["moving_average", pytest.param("constrained", marks=pytest.mark.slow)]
 )
-def test_a_signed_case_raises_no_check_that_is_not_tried(kind):
+def test_the_redesigned_case_raises_no_check_that_is_not_tried(kind):
     """The redesigned machine of a case file in a preview, synthesised or smoothed."""
-    signed = read_case(SIGNED_CASE).with_positions(72)
-    smoothing = signed.smoothing.model_copy(update={"kind": kind})
-    signed = signed.model_copy(update={"smoothing": smoothing})
-    names = {check.id for check in preview_case(signed, corners=False).checks}
+    redesign = read_case(REDESIGN).with_positions(72)
+    smoothing = redesign.smoothing.model_copy(update={"kind": kind})
+    redesign = redesign.model_copy(update={"smoothing": smoothing})
+    names = {check.id for check in preview_case(redesign, corners=False).checks}
     assert names <= set(TRIED) | MADE_LATER | DATA
     assert len(names) > 50

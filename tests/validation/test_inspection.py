@@ -172,14 +172,15 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     table = tmp_path / "measured.csv"
     rows = "".join(f"{a!r},{b!r}\n" for a, b in zip(x.tolist(), y.tolist(), strict=True))
     table.write_text("x_mm,y_mm\n" + rows, encoding="utf-8")
-    code = app(args=["inspect", str(folder), str(table), "--jobs", "1"], standalone_mode=False)
+    given = ["inspect", str(folder), str(table), "--jobs", "1", "--tolerance", "20 um"]
+    code = app(args=given, standalone_mode=False)
     record = json.loads((folder / FOLDER / "inspection.json").read_text(encoding="utf-8"))
     assert code == EXIT_CODE[record["verdict"]]
     assert record["phase_deg"] == pytest.approx(3.0, rel=0.015)
     assert record["waves_um"]["12"] == pytest.approx(20.0, rel=1e-5)
     assert not record["within_tolerance"]
     assert (folder / FOLDER / "deviation.png").read_bytes()[:4] == b"\x89PNG"
-    cycle = read_table(folder / FOLDER / "cycle.csv")
+    cycle = read_table(folder / FOLDER / "cycle.csv").of_load_case("idle")
     # twelve crests a turn press harder than the drawing: Hertz and the finite elements agree on it
     np.testing.assert_allclose(cycle["p0_fe_MPa"], cycle["p0_hertz_MPa"], rtol=0.02)
     theta = np.radians(cycle["cam_angle_deg"])

@@ -493,15 +493,12 @@ def of_guides() -> list[Declaration]:
     return [each for each in CHECKS if each.part == "guides"]
 
 
-def test_each_check_of_the_guides_states_formula_and_reason() -> None:
+def test_both_guides_have_every_check() -> None:
     names = {each.id for each in of_guides()}
     expected = {"guide_length", "anti_rotation", *JAM}
     for name in ("pressure", "pv", "edge_pressure", "temperature", "speed", "expansion", "wear"):
         expected |= {f"guide_{name}_A", f"guide_{name}_B"}
     assert expected <= names
-    for each in of_guides():
-        assert each.formula and each.reason, each.id
-        assert each.reason.startswith("Must-have" if each.must_have else "Optional"), each.id
 
 
 DATA = {
