@@ -27,7 +27,7 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.reports.sections import report
 
 ROOT = Path(__file__).resolve().parents[2]
-POSITIONS = 180  # two pieces of the contact per trial
+POSITIONS = 108  # two pieces of the contact per trial
 
 
 class Recorder(Silent):
