@@ -26,6 +26,8 @@ def whole(folder):
     text, over = CASE.read_text(encoding="utf-8"), 'overspeed = "3960 rpm"'
     idle = text[: text.index('[[load_case]]\nname = "overspeed"')]
     assert idle.count(over) == 1
+    assert idle.count("positions = 720") == 1
+    idle = idle.replace("positions = 720", "positions = 180")
     path = folder / "case.toml"
     path.write_text(idle.replace(over, 'unbalance = "9999 mm/s"') + SCOPE, encoding="utf-8")
     return path

@@ -254,7 +254,7 @@ def test_a_run_may_begin_at_the_lift(tmp_path: Path) -> None:
     lift = along + np.sqrt(radius**2 - across**2) - base
     rows = "\n".join(f"{a},{1e3 * s!r}" for a, s in zip(angle, lift.tolist(), strict=True))
     (tmp_path / "lift.csv").write_text(f"cam_angle_deg,lift_mm\n{rows}\n")
-    case = small(tmp_path, prime_radius='"30 mm"')
+    case = small(tmp_path, prime_radius='"30 mm"', positions="36")
     text = (tmp_path / "case.toml").read_text()
     engine = re.search(r"(?ms)^\[engine\]\n.*?^\[mechanism\]", text)
     assert engine is not None
