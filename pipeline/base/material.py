@@ -70,6 +70,9 @@ class Material(Part):
     table: ClassVar[str] = "material"
     labels: ClassVar[tuple[str, ...]] = ("name",)
     defaults: ClassVar[Mapping[str, str]] = {
+        "endurance_pressure": "that of rolling with sliding, which is lower",
+        "sliding_endurance_pressure": "needed by a flat face, or without endurance_pressure",
+        "treatment": "hardened where case_depth is stated, else missing",
         "swelling": "0 of a metal (Young's modulus of at least 40 GPa), else missing",
         "strength_at": "the yield strength holds to 100 degC of a metal, to 30 degC of a plastic",
         "hardness_brinell": "unknown: no Buckingham estimate, which is advisory",

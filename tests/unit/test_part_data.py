@@ -10,7 +10,7 @@ from check_tools import BY_ID
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import CamError, InputError
 from camwright.pipeline.base.quantities import Part
 from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.case.parts_section import Follower
@@ -46,7 +46,8 @@ def data(table: dict[str, Any] = TABLES, above: tuple[str, ...] = ()) -> list[tu
     for key, value in table.items():
         if not above and key in NOT_OF_A_PART:
             continue
-        if (*above, key) != ("lubricant",):  # of the oil only the advisory film ratio is known
+        # Of the oil only the advisory film ratio is known; no part is made of the bronze.
+        if (*above, key) not in (("lubricant",), ("materials", "bronze")):
             found.append((*above, key))
         if isinstance(value, dict):
             found += data(value, (*above, key))
@@ -62,15 +63,15 @@ WORDS = {name for part in [*Part.__subclasses__(), Follower] for name in part.de
 
 
 def outcome(keys: tuple[str, ...]) -> tuple[str, bool]:
-    """Verdict without a key, "error" if the schema needs it; whether it has a default."""
+    """Verdict without a key, "error" if it cannot be read or solved; whether it has a default."""
     try:
-        case = case_of(without(*keys))
-    except InputError:
+        case, found = case_of(without(*keys)), verdict(judged(without(*keys)))
+    except CamError:
         return "error", False
     table: Any = case.tables()
     for key in keys:
         table = table.get(key) if isinstance(table, dict) else None
-    return verdict(judged(without(*keys))), table is not None or keys[-1] in WORDS
+    return found, table is not None or keys[-1] in WORDS
 
 
 @settings(max_examples=12, deadline=None, derandomize=True)
