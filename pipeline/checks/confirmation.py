@@ -236,7 +236,7 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "bearing_lubrication": ("roller.bearing.viscosity", "roller.bearing.*pitch_diameter"),
         "guide_gap": (),
         "cam_radius": (),
-        "profile_waviness": _LOADS,
+        "profile_waviness": (*_LOADS, "cam.waviness_length", "cam.profile_tolerance"),
         "chord_error": (),
         "tool_gouge": (),
         "phase_tolerance": _LOADS,

@@ -44,7 +44,9 @@ PUBLISHED = (
     ('not_covered = ["pin",', 'not_covered = ["spring", "guides", "pin",'),
     ('overspeed = "3960 rpm" ', 'unbalance = "9999 mm/s"\nwaviness = 1.0 '),
     ('overspeed = "manufacturer', 'unbalance = "manufacturer'),
+    ('material = "s355"', 'profile_tolerance = "8 um"\nmaterial = "hardened"'),
 )
+HARDENED = '\n[materials.hardened]\ncard = "case_hardened"\n'
 
 
 class Inline:
@@ -59,12 +61,12 @@ class Inline:
 # Stands before the tests of `small`, which cuts the catalogue of the whole module.
 @pytest.mark.slow
 def test_whole_catalogue_for_the_published_engine(tmp_path):
-    """At idle, and but for guides and spring: with them no choice of the catalogues passes."""
+    """Ground and hardened, at idle, but for guides and spring: with them no choice passes."""
     text = (CASES / "gx120.toml").read_text(encoding="utf-8")
     for old, new in PUBLISHED:
         assert text.count(old) == 1
         text = text.replace(old, new)
-    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "case.toml").write_text(text + HARDENED, encoding="utf-8")
     document = redesign_study.redesign(
         tmp_path / "case.toml", tmp_path / "out", "size", 2, Silent()
     )
