@@ -115,7 +115,7 @@ def _place(section: ShaftSection) -> str:
     " and torsion K_fs (T + drag) of the turning fibre, S_e = k_a k_b k_e S_e': endurance with"
     " factors of surface, size and reliability, S: limits.shaft_safety. Least over cam, gear, both"
     " bearings and camshaft.sections, and over all load cases",
-    reason=f"{BREAKS}",
+    reason=BREAKS,
 )
 def shaft_fatigue(solution: Solution) -> Demand:
     """Least fatigue safety of the sections of the camshaft in bending and torsion."""
@@ -294,7 +294,7 @@ def shaft_bearing_static(solution: Solution) -> Demand:
     formula="L10 >= limits.shaft_bearing_life; L10 = (C/P_m)^3 10^6 turns, C:"
     " camshaft.bearing_rating, P_m: cube mean of the radial load over the turn, P <= C/2"
     " throughout. Least over both bearings and all load cases",
-    reason=f"{BREAKS}",
+    reason=BREAKS,
 )
 def shaft_bearing_life(solution: Solution) -> Demand:
     """Rating life of the camshaft bearing with the greater load, s."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -203,6 +203,11 @@ def check(
         )
 
     return declared
+
+
+def not_given(values: Mapping[str, float | str | None]) -> list[str]:
+    """Notes on the data that are None, by their words."""
+    return [f"no {words} is given" for words, value in values.items() if value is None]
 
 
 def made_from_others(_: Solution) -> None:

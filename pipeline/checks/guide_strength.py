@@ -13,7 +13,7 @@ from camwright.pipeline.base.units import celsius, shown
 from camwright.pipeline.case.limits import GUIDE_LENGTH
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
-from camwright.pipeline.checks.check import NONE, Declaration, Demand, check
+from camwright.pipeline.checks.check import NONE, Declaration, Demand, check, not_given
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import PartLoads
@@ -282,17 +282,14 @@ def _guide_temperature(side: Side) -> Declaration:
 def _unknown_heat_path(machine: Machine, side: Side) -> list[str]:
     """Data that the temperature of a guide lacks."""
     guide, guides = guide_of(machine, side), machine.guides
-    ambient = [] if guides.ambient_temperature is not None else ["guides.ambient_temperature"]
-    if guide.thermal_resistance is not None:
-        path = []
-    else:
-        values = {
+    values = {"guides.ambient_temperature": guides.ambient_temperature}
+    if guide.thermal_resistance is None:
+        values |= {
             f"conductivity of {guide.material.name}": guide.material.conductivity,
             f"guides.{side.lower()}.wall": guide.wall,
             f"guides.{side.lower()}.housing_resistance": guide.housing_resistance,
         }
-        path = [name for name, value in values.items() if value is None]
-    return [f"no {name} is given" for name in (*ambient, *path)]
+    return not_given(values)
 
 
 def _guide_speed(side: Side) -> Declaration:

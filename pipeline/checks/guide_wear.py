@@ -7,7 +7,7 @@ import numpy as np
 from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
-from camwright.pipeline.checks.check import Declaration, Demand, check
+from camwright.pipeline.checks.check import Declaration, Demand, check, not_given
 from camwright.pipeline.checks.extremes import worst_case
 from camwright.pipeline.checks.guide_strength import Side, guide_of, hottest, mean_pv
 from camwright.pipeline.cycle.solution import Solution
@@ -43,12 +43,15 @@ def _guide_expansion(side: Side) -> Declaration:
             f"expansion of {stem.name}": growth_of_stem,
             f"swelling of {bush.name}": moisture,
         }
-        missing = [f"no {name} is given" for name, value in values.items() if value is None]
+        missing = not_given(values)
         if np.isnan(hot.value):
             missing.append("the temperature of the guide is not known")
-        if guide.wall is None or bush.expansion is None or growth_of_stem is None:
-            return Demand(None, guide.clearance, note="; ".join(missing))
-        if moisture is None:
+        if (
+            guide.wall is None
+            or bush.expansion is None
+            or growth_of_stem is None
+            or moisture is None
+        ):
             return Demand(None, guide.clearance, note="; ".join(missing))
         warmer = hot.value - ROOM
         swelling = guide.diameter * (bush.expansion * warmer + moisture)
@@ -87,7 +90,7 @@ def _guide_wear(side: Side) -> Declaration:
         rate, life = guide.wear_rate, limits[TARGET_LIFE]
         worst = worst_case(solution.cycles, lambda cycle: mean_pv(cycle, side))
         values = {f"guides.{side.lower()}.wear_rate": rate, "limits.target_life": life}
-        missing = [f"no {name} is given" for name, value in values.items() if value is None]
+        missing = not_given(values)
         return Demand(
             None if life is None or rate is None else rate * worst.value * life,
             limits[WEAR_DEPTH],

@@ -23,7 +23,7 @@ from camwright.pipeline.case.limits import (
     VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import NONE, Declaration, Demand, check
+from camwright.pipeline.checks.check import NONE, Declaration, Demand, check, not_given
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
@@ -75,13 +75,6 @@ def _card(bearing: Bearing) -> tuple[str]:
 
 def _known(force: Array) -> bool:
     return bool(np.isfinite(force).all())
-
-
-def _without(**values: object) -> list[str]:
-    """Notes on the values that are None, by their words with underscores."""
-    return [
-        f"no {name.replace('_', ' ')} is given" for name, each in values.items() if each is None
-    ]
 
 
 @check(
@@ -192,12 +185,14 @@ def roller_modified_life(solution: Solution) -> Demand:
     bearing, limits = bearing_of(solution), solution.machine.limits
     rating, endured, circle = bearing.C, bearing.fatigue_load_limit, bearing.ball_circle
     cleanliness, viscosity = bearing.contamination, bearing.viscosity
-    missing = _without(
-        dynamic_rating=rating,
-        fatigue_load_limit=endured,
-        contamination=cleanliness,
-        viscosity=viscosity,
-        pitch_diameter=circle,
+    missing = not_given(
+        {
+            "dynamic rating": rating,
+            "fatigue load limit": endured,
+            "contamination": cleanliness,
+            "viscosity": viscosity,
+            "pitch diameter": circle,
+        }
     )
     missing += ["no life is required"] if limits[ROLLER_LIFE] is None else []
     worst = NOWHERE
@@ -319,7 +314,9 @@ def bearing_lubrication(solution: Solution) -> Demand:
     worst = worst_case(
         solution.cycles, lambda cycle: _viscosity_ratio(cycle, bearing), at_least=True
     )
-    missing = _without(viscosity=bearing.viscosity, pitch_diameter_of_the_balls=bearing.ball_circle)
+    missing = not_given(
+        {"viscosity": bearing.viscosity, "pitch diameter of the balls": bearing.ball_circle}
+    )
     return Demand(
         worst.value,
         solution.machine.limits[VISCOSITY_RATIO],
@@ -371,11 +368,11 @@ def grease_life(solution: Solution) -> Demand | None:
         return Demand(None, None, note="no lubrication of the roller bearing is given")
     for_life = bearing.lubrication == "grease_for_life"
     target = solution.machine.limits[TARGET_LIFE] if for_life else bearing.relubrication_interval
-    missing = _without(**{"target_life" if for_life else "relubrication_interval": target})
+    missing = not_given({"target life" if for_life else "relubrication interval": target})
     if bearing.grease_life is not None:
         stated = Extreme(bearing.grease_life)
         return Demand(stated.value, target, stated, "; ".join(missing), _card(bearing))
-    missing += _without(dynamic_rating=bearing.C, temperature=bearing.temperature)
+    missing += not_given({"dynamic rating": bearing.C, "temperature": bearing.temperature})
     worst = worst_case(solution.cycles, lambda cycle: _grease_life(cycle, solution), at_least=True)
     if np.isnan(worst.value) and not missing:
         missing.append("outside the range of the estimate: give roller.bearing.grease_life")
