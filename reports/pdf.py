@@ -75,14 +75,13 @@ def typeset(report: Report) -> bytes:
         folder = Path(shutil.copy(_TEMPLATE, name)).parent
         record = {**_fields(report, folder), "colours": COLOURS}
         words = json.dumps(record, ensure_ascii=False, allow_nan=False)
-        try:
-            return compiled(words, folder)
-        except typst.TypstError:  # PDF/A excludes private-use characters
-            pass
-        try:
-            return compiled(_drawable(words), folder)
-        except typst.TypstError as error:
-            raise ResultError(f"typst: {error}") from None
+        reason = ""
+        for text in (words, _drawable(words)):  # PDF/A excludes private-use characters
+            try:
+                return compiled(text, folder)
+            except typst.TypstError as error:
+                reason = str(error)
+        raise ResultError(f"typst: {reason}")
 
 
 def _fields(value: DataclassInstance, folder: Path) -> Mapping[str, Json]:
