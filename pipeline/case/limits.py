@@ -307,7 +307,7 @@ VISCOSITY_RATIO = Limit(
 WEAR_DEPTH = Limit(
     "wear_depth", "wear depth", _LENGTH, 5e-5, "0.05 mm, shop practice: verify; Archard (1953)",
 )  # fmt: skip
-ACCELERATION_STEP = Limit(  # of the range: less is not told from the rounding of a table to 1 um
+ACCELERATION_STEP = Limit(  # of the range: less may be rounding of a table to 1 um
     "acceleration_step", "acceleration step", _SHARE, 0.2,
     "finite jerk, fundamental law of cam design, Norton (2009) ch. 2; resolution of a table",
 )  # fmt: skip

@@ -250,8 +250,8 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
     }
 )  # fmt: skip
 """Values besides its own limit on which a check of the design rests, by its id: dotted names in a
-case, with wildcards in the last word, a material by the part made of it. A length that the design
-chooses is none of them, as it is drawn and not known from a source."""
+case, with wildcards in the last word, a material by the part made of it. A length that the
+designer chooses is not listed: the drawing fixes it, not a source."""
 
 
 def with_values_to_confirm(checks: Iterable[Check], case: Case) -> tuple[Check, ...]:

@@ -248,7 +248,7 @@ STATED = (
 
 
 def test_the_scope_is_stated_in_every_record(tmp_path: Path, command: Command) -> None:
-    """Text that means harm in its reason comes out as it is, on one line."""
+    """Hostile text in its reason is printed unchanged, on one line."""
     case = case_of(tomllib.loads(template("small")) | {"scope": SCOPE})
     out = tmp_path / "run"
     with RunFolder(out, case) as folder:
