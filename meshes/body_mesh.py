@@ -281,6 +281,10 @@ def _rectangle(width: float, depth: float, back: list[Piece], sizing: Sizing) ->
         zone = _zone(sizing, half - x)
     a, b, c, d = np.array([[-half, -depth], [half, -depth], [half, 0.0], [-half, 0.0]])
     size = sizing.field().capped(0.5 * min(width, depth))
+    for piece in back:  # a shoulder shorter than the elements beside it would make slivers
+        middle = piece.at(np.array([0.5 * piece.length]))
+        if piece.length < float(size(middle)[0]):
+            size = size.with_spot(middle[:, 0], piece.length, piece.length)
     loop = [*back, line("right", b, c), line("top", c, d, zone), line("left", d, a)]
     return _body(triangulate(_discretised([loop], size), size))
 

@@ -137,6 +137,8 @@ def cam_size(
     floor = sizing.contact_size or sizing.far_size / 200.0
     kappa = np.maximum(np.abs(path.contour.curvature(path.theta)), 1e-12)
     limits = np.maximum(FULL_TURN / EDGES_PER_TURN / kappa, floor)
+    # An element longer than its wall is a sliver, wherever along the contour the wall is thin.
+    limits = np.minimum(limits, wall_at(path.points, bore_radius, keyway))
     return size.below(path.points, limits)
 
 
@@ -173,22 +175,10 @@ def least_wall(path: Trace, bore_radius: float, keyway: KeywayLike | None) -> tu
     """
     from scipy.optimize import minimize_scalar
 
-    def outside(points: Array) -> Array:
-        wall = np.hypot(*points) - bore_radius
-        if keyway is not None:
-            local = rotation(keyway.angle).T @ points
-            beyond = np.array(
-                [local[0] - bore_radius - keyway.depth, np.abs(local[1]) - 0.5 * keyway.width]
-            )
-            beyond[0] = np.where(local[0] > 0, beyond[0], -local[0])
-            distance = np.hypot(*np.maximum(beyond, 0.0)) + np.minimum(beyond.max(axis=0), 0.0)
-            wall = np.minimum(wall, distance)
-        return wall
-
-    worst = int(np.argmin(outside(path.points)))
+    worst = int(np.argmin(wall_at(path.points, bore_radius, keyway)))
     step = FULL_TURN / _SAMPLES
     nearest = minimize_scalar(
-        lambda theta: outside(path.contour.points(np.array([theta])))[0],
+        lambda theta: wall_at(path.contour.points(np.array([theta])), bore_radius, keyway)[0],
         bounds=(path.theta[worst] - step, path.theta[worst] + step),
         method="bounded",
         options={"xatol": 1e-12},
@@ -197,6 +187,20 @@ def least_wall(path: Trace, bore_radius: float, keyway: KeywayLike | None) -> tu
     if not _winds_around_origin(path.points):
         wall = -bore_radius
     return wall, path.contour.points(np.array([nearest.x]))[:, 0]
+
+
+def wall_at(points: Array, bore_radius: float, keyway: KeywayLike | None) -> Array:
+    """Distances (n,) from bore and keyway to points (2, n), m; negative inside them."""
+    wall = np.hypot(*points) - bore_radius
+    if keyway is None:
+        return np.asarray(wall)
+    local = rotation(keyway.angle).T @ points
+    beyond = np.array(
+        [local[0] - bore_radius - keyway.depth, np.abs(local[1]) - 0.5 * keyway.width]
+    )
+    beyond[0] = np.where(local[0] > 0, beyond[0], -local[0])
+    distance = np.hypot(*np.maximum(beyond, 0.0)) + np.minimum(beyond.max(axis=0), 0.0)
+    return np.asarray(np.minimum(wall, distance))
 
 
 def _winds_around_origin(points: Array) -> bool:
