@@ -22,6 +22,7 @@ from camwright.meshes import body_mesh, element_size, gmsh_mesher, outline
 from camwright.meshes.body_mesh import half_disc_mesh
 from camwright.meshes.element_size import Sizing
 from camwright.pipeline.base import disk_cache
+from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity import (
     active_set,
     elastic_body,
@@ -77,10 +78,23 @@ class ContactPatch:
         names = ("knots", "compliance", "points", "stress")
         freeze(self, **{name: getattr(self, name) for name in names})
 
-    @property
+    @cached_property
     def shapes(self) -> PressureShapes:
         """Linear pressure shapes on the knots."""
         return PressureShapes(self.knots)
+
+    @cached_property
+    def body_stress(self) -> Array:
+        """Stress (3, m, 4) at the points of what a real body adds to the half-plane.
+
+        Unit stress along the surface, along the surface and into the depth per half-width of
+        depth, and `hertz.curved_surface_stress`.
+        """
+        depth = self.points[1]
+        added = np.zeros((3, depth.size, 4))
+        added[0, :, 0], added[0, :, 1], added[1, :, 2] = 1.0, depth, depth
+        added[:, :, 3] = hertz.curved_surface_stress(*self.points)
+        return readonly(added)
 
     @cached_property
     def peaks(self) -> PeakFinder:
@@ -190,8 +204,8 @@ def solve_patches(
     """
     shapes = patches[0].shapes
     compliance = shares[0] * patches[0].compliance + shares[1] * patches[1].compliance
-    xi, weights = shapes.quadrature()
-    weighted_gap = (np.asarray(gap) * weights) @ shapes.values(xi).T
+    _, weights, values = shapes.sampled
+    weighted_gap = (np.asarray(gap) * weights) @ values.T
     count = weighted_gap.shape[0]
     solution = active_set.solve(
         compliance,

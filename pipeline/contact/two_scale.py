@@ -15,11 +15,14 @@ from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair, elastic_body
 from camwright.pipeline.contact.contact_patch import contact_patch, solve_patches
 from camwright.pipeline.contact.elasticity import plane_stress_measures
+from camwright.pipeline.contact.elasticity.plane_stress_measures import Index
 from camwright.pipeline.contact.follower_body import EDGES_ACROSS_WALL
 from camwright.pipeline.contact.tiers import Tier
 
 # Half-width over relative radius beyond which the error of the flat patch exceeds 0.5 %.
 FLAT_LIMIT = 0.1
+# Nodes of the gap along a patch, and the share of its last coefficients below which they suffice.
+_GAP_NODES, _GAP_REST = 15, 1e-9
 # Elements along the contour; more change the maximum shear by less than 1e-4.
 _GRID_OF_CYCLE_MESH = 120
 
@@ -119,20 +122,22 @@ def _loaded_positions(
     cam = bodies.cam.correction(pair.contour.points(theta), pair.contour.normal(theta))
     other = bodies.follower.correction(*pair.follower.contacts(pair.contour, theta))
 
-    unit_xi, _ = patches[0].shapes.quadrature()
-    xi = half_width[:, None] * unit_xi
     bend = load * (other.bend + cam.bend)
+    unit_xi, _, _ = patches[0].shapes.sampled
+    gap = patch_gap(pair, theta, half_width, unit_xi)
     # The outward curvature of the corrections reduces the gap beside the centre.
-    gap = pair.gap(theta, xi) - 0.5 * bend[:, None] * xi**2
+    gap -= 0.5 * bend[:, None] * (half_width[:, None] * unit_xi) ** 2
     contacts = solve_patches(
         patches, (shares[0], shares[1]), gap * (2 * radius / half_width**2)[:, None]
     )
 
-    patch = patches[0]
-    total = stress_on_patch(pair, cam, theta, load, half_width, p0, contacts.pressure * p0[:, None])
-    shear, shear_at = patch.peaks(plane_stress_measures.shear_in_plane(total))
-    mises, mises_at = patch.peaks(plane_stress_measures.von_mises(total, pair.cam.poisson))
-    any_plane, _ = patch.peaks(plane_stress_measures.shear_any_plane(total, pair.cam.poisson))
+    pressure = contacts.pressure * p0[:, None]
+
+    def measured(points: Index) -> tuple[Array, ...]:
+        stress = stress_on_patch(pair, cam, theta, load, half_width, p0, pressure, points)
+        return plane_stress_measures.all_measures(stress, pair.cam.poisson)
+
+    (shear, shear_at), (any_plane, _), (mises, mises_at) = patches[0].peaks.where_likely(measured)
     return {
         "p0": contacts.p0 * p0,
         "half_width": contacts.half_width * half_width,
@@ -143,8 +148,26 @@ def _loaded_positions(
         "von_mises_depth": mises_at[1] * half_width,
         "residual_equilibrium": contacts.residual_equilibrium,
         "residual_complementarity": contacts.residual_complementarity,
-        "pressure": contacts.pressure * p0[:, None],
+        "pressure": pressure,
     }
+
+
+def patch_gap(pair: ContactPair, theta: Array, half_width: Array, unit_xi: Array) -> Array:
+    """Gap (n, q), m, at `unit_xi` (q,) half-widths beside the contacts; symmetric about 0.
+
+    Interpolated between Chebyshev nodes where the last coefficients are below `_GAP_REST`.
+    """
+    count, reach = _GAP_NODES, float(np.abs(unit_xi).max())
+    unit = np.polynomial.chebyshev.chebpts1(count)
+    inverse = np.polynomial.chebyshev.chebvander(unit, count - 1).T * (2.0 / count)
+    inverse[0] *= 0.5
+    coefficients = pair.gap(theta, half_width[:, None] * (reach * unit)) @ inverse.T
+    gap: Array = coefficients @ np.polynomial.chebyshev.chebvander(unit_xi / reach, count - 1).T
+    rest = np.abs(coefficients[:, -3:]).max(axis=1)
+    rough = ~(rest <= _GAP_REST * np.abs(coefficients).max(axis=1))
+    if rough.any():
+        gap[rough] = pair.gap(theta[rough], half_width[rough, None] * unit_xi)
+    return gap
 
 
 def stress_on_patch(
@@ -155,18 +178,28 @@ def stress_on_patch(
     half_width: Array,
     p0: Array,
     pressure: Array,
+    points: Index | None = None,
 ) -> Array:
-    """Stress (3, m, n), Pa, in the cam at the m points of the patch at n positions.
+    """Stress (3, m, n), Pa, in the cam at the points of the patch at n positions.
+
+    At all m points of the patch, or at those numbered `points` (m,).
 
     Components along the tangent of the contact frame and into the depth; points in Hertz
     half-widths of the position. From the pressures (n, k), Pa, at the knots and the correction of
     the real body.
     """
     patch = contact_patch(pair.cam.poisson)
-    total = np.tensordot(patch.stress, pressure, axes=(2, 1))
+    unit, added = patch.stress, patch.body_stress
+    if points is not None:
+        unit, added = unit[:, points], added[:, points]
     # First-order change of the stress with the depth below a free curved surface.
-    curvature, depth = pair.contour.curvature(theta), patch.points[1][:, None] * half_width
-    total[0] += load * (cam.along + depth * (cam.along_by_depth + 2 * curvature * cam.along))
-    total[1] -= load * depth * curvature * cam.along
-    total += hertz.curved_surface_stress(*patch.points)[:, :, None] * (p0 * half_width * curvature)
-    return total
+    curvature = pair.contour.curvature(theta)
+    of_added = np.stack(
+        [
+            load * cam.along,
+            load * half_width * (cam.along_by_depth + 2 * curvature * cam.along),
+            -load * half_width * curvature * cam.along,
+            p0 * half_width * curvature,
+        ]
+    )
+    return np.asarray(unit @ pressure.T + added @ of_added)

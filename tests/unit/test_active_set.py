@@ -56,12 +56,13 @@ def test_guess_does_not_change_the_answer(seed):
 
 
 def test_problems_solved_together_are_those_solved_alone():
-    parts = [problem(seed) for seed in range(8)]
-    compliance, gap, integrals = (np.stack(values) for values in zip(*parts, strict=True))
+    compliance, _, integrals = problem(0)
+    gap = np.stack([problem(seed)[1] for seed in range(8)])
     force = np.geomspace(1e-6, 1e3, 8)
     together = active_set.solve(compliance, gap, integrals, force).pressure
+    assert len({tuple(row) for row in together > 0}) > 1  # several active sets
     for k in range(8):
-        alone = active_set.solve(compliance[k], gap[k], integrals[k], force[k : k + 1])
+        alone = active_set.solve(compliance, gap[k], integrals, force[k : k + 1])
         np.testing.assert_allclose(together[k], alone.pressure[0], atol=1e-11 * together[k].max())
 
 

@@ -2,8 +2,11 @@
 
 import numpy as np
 
+from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.elasticity.plane_stress_measures import (
     PeakFinder,
+    all_measures,
+    shear_any_plane,
     shear_in_plane,
     von_mises,
 )
@@ -67,3 +70,42 @@ def test_peak_of_a_falling_field_stays_at_the_surface():
 def test_nothing_gives_nothing():
     top, _ = PeakFinder(scattered())(np.zeros((500, 3)))
     assert (top == 0).all()
+
+
+def half_disc(spacing=0.05):
+    x, z = np.meshgrid(np.arange(-1.6, 1.6, spacing), np.arange(0.0, 1.6, spacing))
+    points = np.stack([x.ravel(), z.ravel()])
+    return points[:, np.hypot(*points) < 1.6]
+
+
+def test_measures_of_one_stress_are_those_of_each_alone():
+    stress = np.random.default_rng(3).normal(size=(3, 40))
+    alone = shear_in_plane(stress), shear_any_plane(stress, 0.2), von_mises(stress, 0.2)
+    np.testing.assert_array_equal(all_measures(stress, 0.2), alone)
+
+
+def test_peaks_where_they_are_likely_are_those_over_all_points():
+    """Under Hertz pressures, one and two apart, of different sizes."""
+    points = half_disc()
+    stress = np.stack(
+        [
+            hertz.subsurface_stress((points[0] - x) / a, points[1] / a)
+            + share * hertz.subsurface_stress((points[0] + 0.6) / 0.3, points[1] / 0.3)
+            for x, a, share in ((0.0, 1.0, 0.0), (0.02, 1.1, 0.2), (0.6, 0.3, 0.995))
+        ],
+        axis=2,
+    )
+    evaluated = set()
+
+    def measured(nodes):
+        evaluated.update(nodes.tolist())
+        return all_measures(stress[:, nodes], 0.3)
+
+    find = PeakFinder(points)
+    for (top, where), field in zip(
+        find.where_likely(measured), all_measures(stress, 0.3), strict=True
+    ):
+        expected, place = find(field)
+        np.testing.assert_array_equal(top, expected)
+        np.testing.assert_array_equal(where, place)
+    assert len(evaluated) < 0.8 * points.shape[1]

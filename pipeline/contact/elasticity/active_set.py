@@ -6,7 +6,8 @@ Pressures p and approach d satisfy
 
 where C is the pressure compliance (symmetric, positive definite on pressures of zero
 resultant), g the weighted initial gap and m the integrals of the pressure shapes. No penalty
-parameter enters. Problems of one size are solved together.
+parameter enters. Problems that differ in gap and force alone are solved together: those with the
+same active set share one factorisation.
 """
 
 from __future__ import annotations
@@ -56,9 +57,9 @@ def solve(
 
     Parameters
     ----------
-    compliance : array (count, n, n) or (n, n)
+    compliance : array (n, n)
     gap : array (count, n)              weighted initial gap
-    shape_integrals : array (count, n) or (n,)
+    shape_integrals : array (n,)
     force : array (count,)              > 0
     guess : array (n,) of bool          initial active set; the solution does not depend on
                                         it
@@ -75,20 +76,18 @@ def solve(
     """
     g = np.atleast_2d(np.asarray(gap, dtype=float))
     count, size = g.shape
-    C = np.broadcast_to(np.asarray(compliance, dtype=float), (count, size, size))
-    m = np.broadcast_to(np.asarray(shape_integrals, dtype=float), (count, size))
+    C, m = np.asarray(compliance, dtype=float), np.asarray(shape_integrals, dtype=float)
     F = np.broadcast_to(np.asarray(force, dtype=float), (count,))
     # Each problem is scaled to pressures and gaps of order 1.
-    pressure_scale = F / m.sum(axis=1)
-    gap_scale = np.abs(np.einsum("kii->ki", C)).max(axis=1) * pressure_scale
-    C = C * (pressure_scale / gap_scale)[:, None, None]
-    g = g / gap_scale[:, None]
-    weight = m / m.sum(axis=1, keepdims=True)
+    pressure_scale = F / m.sum()
+    softness = np.abs(np.diagonal(C)).max()
+    gap_scale = softness * pressure_scale
+    C, g, weight = C / softness, g / gap_scale[:, None], m / m.sum()
 
     start = np.ones(size, dtype=bool) if guess is None else np.asarray(guess, dtype=bool)
-    p, d = _batched(C, g, weight, start)
-    settlement = np.einsum("kij,kj->ki", C, p)
-    residual_gap = settlement + g - d[:, None] * weight
+    p, d = _together(C, g, weight, start)
+    settlement = p @ C.T
+    residual_gap = settlement + g - np.outer(d, weight)
     largest = np.maximum(p.max(axis=1), 1e-300)
     # With all knots in contact the gap is the round-off of the terms that cancel in it.
     gap_largest = np.maximum(np.abs(residual_gap), 1e-3 * np.abs(settlement)).max(axis=1)
@@ -108,68 +107,66 @@ def solve(
     return Complementarity(
         pressure=p * pressure_scale[:, None],
         gap=residual_gap * gap_scale[:, None],
-        approach=d * gap_scale / m.sum(axis=1),
-        equilibrium=np.abs(np.einsum("ki,ki->k", weight, p) - 1),
+        approach=d * gap_scale / m.sum(),
+        equilibrium=np.abs(p @ weight - 1),
         complementarity=violation,
     )
 
 
-def _batched(C: Array, g: Array, m: Array, start: NDArray[np.bool_]) -> tuple[Array, Array]:
+def _together(C: Array, g: Array, m: Array, start: NDArray[np.bool_]) -> tuple[Array, Array]:
     """Active-set sweeps over all problems at once; those that do not settle by `_primal`."""
     count, size = g.shape
     pressures, approaches = np.zeros((count, size)), np.zeros(count)
-    open_cases = np.arange(count)
+    unsettled = np.arange(count)
     active = np.tile(start if start.any() else np.ones_like(start), (count, 1))
     seen: list[set[bytes]] = [set() for _ in range(count)]
     stragglers: list[int] = []
     for _ in range(_SWEEPS):
-        if open_cases.size == 0:
+        if unsettled.size == 0:
             break
-        p, d = _equality_solution(C[open_cases], g[open_cases], m[open_cases], active[open_cases])
-        gaps = (
-            np.einsum("kij,kj->ki", C[open_cases], p) + g[open_cases] - d[:, None] * m[open_cases]
-        )
+        current = active[unsettled]
+        p, d = _equality_solutions(C, g[unsettled], m, current)
+        gaps = p @ C.T + g[unsettled] - np.outer(d, m)
         tolerance_p = _ROUND_OFF * np.abs(p).max(axis=1, keepdims=True)
         tolerance_g = _ROUND_OFF * np.abs(gaps).max(axis=1, keepdims=True)
-        current = active[open_cases]
         updated = (current & (p > -tolerance_p)) | (~current & (gaps < -tolerance_g))
-        settled = (updated == current).all(axis=1)
-        pressures[open_cases], approaches[open_cases] = p, d
-        active[open_cases] = updated
+        changed = (updated != current).any(axis=1)
+        pressures[unsettled], approaches[unsettled] = p, d
+        active[unsettled] = updated
         remaining = []
-        for row, case in enumerate(open_cases.tolist()):
-            if settled[row]:
-                continue
-            key = np.packbits(updated[row]).tobytes()
+        for row in np.flatnonzero(changed):
+            case, key = int(unsettled[row]), np.packbits(updated[row]).tobytes()
             if key in seen[case] or not updated[row].any():
-                stragglers.append(int(case))
+                stragglers.append(case)
             else:
                 seen[case].add(key)
-                remaining.append(int(case))
-        open_cases = np.array(remaining, dtype=int)
-    for case in [*stragglers, *open_cases.tolist()]:
-        pressures[case], approaches[case] = _primal(C[case], g[case], m[case])
+                remaining.append(case)
+        unsettled = np.array(remaining, dtype=int)
+    for case in [*stragglers, *unsettled.tolist()]:
+        pressures[case], approaches[case] = _primal(C, g[case], m)
     return np.maximum(pressures, 0), approaches
 
 
-def _equality_solution(
+def _equality_solutions(
     C: Array, g: Array, m: Array, active: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
-    """Zero gap on the active pressures, zero pressure elsewhere, unit force (all batched)."""
-    count, size = g.shape
-    system = np.zeros((count, size + 1, size + 1))
-    both = active[:, :, None] & active[:, None, :]
-    system[:, :size, :size] = np.where(both, C, 0.0)
-    diagonal = np.arange(size)
-    system[:, diagonal, diagonal] += np.where(active, 0.0, 1.0)
-    system[:, :size, size] = -np.where(active, m, 0.0)
-    system[:, size, :size] = np.where(active, m, 0.0)
-    right = np.concatenate([np.where(active, -g, 0.0), np.ones((count, 1))], axis=1)
-    try:
-        solution = np.linalg.solve(system, right[:, :, None])[:, :, 0]
-    except np.linalg.LinAlgError as error:
-        raise ContactError("the pressure compliance is singular") from error
-    return solution[:, :size], solution[:, size]
+    """Zero gap on the active pressures, zero pressure elsewhere, unit force, of each problem."""
+    pressures, approaches = np.zeros_like(g), np.zeros(g.shape[0])
+    patterns, of = np.unique(np.packbits(active, axis=1), axis=0, return_inverse=True)
+    for number in range(patterns.shape[0]):
+        rows = np.flatnonzero(of.ravel() == number)
+        knots = np.flatnonzero(active[rows[0]])
+        system = np.zeros((knots.size + 1, knots.size + 1))
+        system[:-1, :-1] = C[np.ix_(knots, knots)]
+        system[:-1, -1], system[-1, :-1] = -m[knots], m[knots]
+        right = np.ones((knots.size + 1, rows.size))
+        right[:-1] = -g[np.ix_(rows, knots)].T
+        try:
+            solution = np.linalg.solve(system, right)
+        except np.linalg.LinAlgError as error:
+            raise ContactError("the pressure compliance is singular") from error
+        pressures[np.ix_(rows, knots)], approaches[rows] = solution[:-1].T, solution[-1]
+    return pressures, approaches
 
 
 def _primal(C: Array, g: Array, m: Array) -> tuple[Array, float]:
@@ -177,7 +174,7 @@ def _primal(C: Array, g: Array, m: Array) -> tuple[Array, float]:
     p = np.full(g.size, 1 / m.sum())
     active = np.ones(g.size, dtype=bool)
     for _ in range(20 * g.size):
-        target, d = (v[0] for v in _equality_solution(C[None], g[None], m[None], active[None]))
+        target, d = (v[0] for v in _equality_solutions(C, g[None], m, active[None]))
         falling = active & (target < 0)
         if falling.any():
             steps = np.where(falling, p / np.where(falling, p - target, 1), np.inf)

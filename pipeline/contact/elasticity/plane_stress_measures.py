@@ -2,39 +2,61 @@
 
 from __future__ import annotations
 
-from math import perm
+from collections.abc import Callable
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import cKDTree
 
 from camwright.geometry.arrays import Array
+
+Index = NDArray[np.int64]
 
 
 def shear_in_plane(stress: ArrayLike) -> Array:
     """Maximum in-plane shear stress (...), of plane-strain stress xx, yy, xy (3, ...)."""
-    xx, yy, xy = np.asarray(stress, dtype=float)
-    return np.asarray(np.hypot((xx - yy) / 2, xy))
+    return _circle(stress)[1]
 
 
 def shear_any_plane(field: ArrayLike, poisson: float) -> Array:
     """Maximum shear stress on any plane (...), of plane-strain stress (3, ...)."""
-    xx, yy, xy = np.asarray(field, dtype=float)
-    middle, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
-    out = poisson * (xx + yy)
-    high, low = np.maximum(middle + radius, out), np.minimum(middle - radius, out)
-    return np.asarray((high - low) / 2)
+    return _shear_any_plane(*_circle(field), poisson)
 
 
 def von_mises(stress: ArrayLike, poisson: float) -> Array:
     """Von Mises stress (...), with ``sigma_zz = nu (sigma_xx + sigma_yy)``."""
+    return _von_mises(*_circle(stress), poisson)
+
+
+def all_measures(stress: ArrayLike, poisson: float) -> tuple[Array, Array, Array]:
+    """In-plane shear, shear on any plane and von Mises stress (...) of one stress (3, ...)."""
+    middle, radius = _circle(stress)
+    return (
+        radius,
+        _shear_any_plane(middle, radius, poisson),
+        _von_mises(middle, radius, poisson),
+    )
+
+
+def _circle(stress: ArrayLike) -> tuple[Array, Array]:
+    """Middle and radius (...) of Mohr's circle in the plane."""
     xx, yy, xy = np.asarray(stress, dtype=float)
-    zz = poisson * (xx + yy)
-    squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    return np.asarray(np.sqrt(squares / 2 + 3 * xy**2))
+    return (xx + yy) / 2, np.sqrt(((xx - yy) / 2) ** 2 + xy**2)
+
+
+def _shear_any_plane(middle: Array, radius: Array, poisson: float) -> Array:
+    out = 2 * poisson * middle
+    return np.asarray((np.maximum(middle + radius, out) - np.minimum(middle - radius, out)) / 2)
+
+
+def _von_mises(middle: Array, radius: Array, poisson: float) -> Array:
+    return np.asarray(np.sqrt(3 * radius**2 + ((1 - 2 * poisson) * middle) ** 2))
 
 
 _POWERS = np.array([(i, j) for i in range(5) for j in range(5 - i)])
+# Spacing of the coarse points, in half-widths, and the share of the largest value on them above
+# which the maximum may lie nearby.
+_COARSE, _LIKELY = 0.125, 0.85
 
 
 class PeakFinder:
@@ -53,57 +75,125 @@ class PeakFinder:
     def __init__(self, points: ArrayLike, reach: float = 0.45) -> None:
         self._reach = reach
         self._points = np.asarray(points, dtype=float)
-        self._tree = cKDTree(self._points.T)
+        self._near: dict[int, Index] = {}
+        self._inverse: dict[int, Array] = {}
 
     def __call__(self, values: ArrayLike) -> tuple[Array, Array]:
         """Maxima (k,) and their places (2, k) of fields (m, k)."""
         fields = np.asarray(values, dtype=float)
-        nodes = fields.argmax(axis=0)
-        top, place = fields.max(axis=0), self._points[:, nodes]
-        for node in np.unique(nodes):
-            centre = self._points[:, node]
-            near = self._tree.query_ball_point(centre, self._reach)
-            if len(near) < 2 * len(_POWERS):
+        return self._fitted(fields, np.arange(fields.shape[0]), fields.argmax(axis=0))
+
+    def where_likely(
+        self, values_at: Callable[[Index], tuple[Array, ...]]
+    ) -> tuple[tuple[Array, Array], ...]:
+        """As `__call__` of several fields, evaluated where their maxima may lie alone.
+
+        First on a twentieth of the points, then about the largest of those values.
+
+        Parameters
+        ----------
+        values_at : function   of point numbers (p,); the fields there, each (p, k)
+        """
+        coarse, nearest = self._coarse
+        likely, chosen = np.zeros(coarse.size, dtype=bool), np.zeros(nearest.size, dtype=bool)
+        for field in values_at(coarse):
+            likely |= (field >= _LIKELY * field.max(axis=0)).any(axis=1)
+            for node in np.unique(coarse[field.argmax(axis=0)]):
+                chosen[self._within(self._points[:, node], self._reach + _COARSE)] = True
+        chosen |= likely[nearest]
+        while True:
+            nodes = np.flatnonzero(chosen)
+            fields = values_at(nodes)
+            tops = [nodes[field.argmax(axis=0)] for field in fields]
+            for top in np.unique(np.concatenate(tops)):
+                chosen[self._neighbours(int(top))] = True
+            if np.count_nonzero(chosen) == nodes.size:
+                pairs = zip(fields, tops, strict=True)
+                return tuple(self._fitted(field, nodes, top) for field, top in pairs)
+
+    @cached_property
+    def _coarse(self) -> tuple[Index, Index]:
+        """Numbers of the coarse points (c,), and of the nearest of them to each point (m,)."""
+        from scipy.spatial import cKDTree
+
+        cells = np.floor(self._points / _COARSE)
+        _, first = np.unique(cells, axis=1, return_index=True)
+        coarse = np.sort(first)
+        _, nearest = cKDTree(self._points[:, coarse].T).query(self._points.T)
+        return coarse, np.asarray(nearest, dtype=np.int64)
+
+    def _within(self, centre: Array, radius: float) -> Index:
+        """Numbers of the points within a radius."""
+        square = ((self._points - centre[:, None]) ** 2).sum(axis=0)
+        return np.flatnonzero(square <= radius**2)
+
+    def _neighbours(self, node: int) -> Index:
+        """Numbers of the points of the fit about a point."""
+        if node not in self._near:
+            self._near[node] = self._within(self._points[:, node], self._reach)
+        return self._near[node]
+
+    def _fit(self, node: int) -> Array:
+        """Coefficients (15, p) of the polynomial per value at the neighbours."""
+        if node not in self._inverse:
+            arms = self._points[:, self._neighbours(node)] - self._points[:, [node]]
+            self._inverse[node] = np.asarray(
+                np.linalg.pinv(_terms(arms / self._reach).T), dtype=float
+            )
+        return self._inverse[node]
+
+    def _fitted(self, fields: Array, nodes: Index, tops: Index) -> tuple[Array, Array]:
+        """Maxima (k,) and places (2, k) of fields (p, k) at points (p,), largest at `tops` (k,)."""
+        columns = np.arange(tops.size)
+        top, place = fields[np.searchsorted(nodes, tops), columns], self._points[:, tops]
+        fits, fitted = np.empty((len(_POWERS), tops.size)), np.zeros(tops.size, dtype=bool)
+        for node in np.unique(tops):
+            near = self._neighbours(int(node))
+            if near.size < 2 * len(_POWERS):
                 continue
-            columns = np.flatnonzero(nodes == node)
-            arms = (self._points[:, near] - centre[:, None]) / self._reach
-            fit = np.linalg.pinv(_terms(arms).T) @ fields[np.ix_(near, columns)]
-            height, step, trusted = _summit(fit)
-            summit = centre[:, None] + self._reach * step
-            trusted &= summit[1] >= 0
-            top[columns[trusted]] = height[trusted]
-            place[:, columns[trusted]] = summit[:, trusted]
+            here = columns[tops == node]
+            rows = np.searchsorted(nodes, near)
+            fits[:, here] = self._fit(int(node)) @ fields[np.ix_(rows, here)]
+            fitted[here] = True
+        height, step, trusted = _summit(fits[:, fitted])
+        summit = place[:, fitted] + self._reach * step
+        trusted &= summit[1] >= 0
+        chosen = np.flatnonzero(fitted)[trusted]
+        top[chosen], place[:, chosen] = height[trusted], summit[:, trusted]
         return top, place
 
 
-def _terms(at: Array, by_x: int = 0, by_y: int = 0) -> Array:
-    """Terms (15, ...) of the polynomial, differentiated, at places (2, ...)."""
-    rows = []
-    for i, j in _POWERS:
-        if i < by_x or j < by_y:
-            rows.append(np.zeros_like(at[0]))
-            continue
-        factor = perm(int(i), by_x) * perm(int(j), by_y)
-        rows.append(factor * at[0] ** (i - by_x) * at[1] ** (j - by_y))
-    return np.stack(rows)
+def _terms(at: Array) -> Array:
+    """Terms (15, ...) of the polynomial at places (2, ...)."""
+    x, y = (one ** np.arange(5).reshape(-1, *(1,) * one.ndim) for one in at)
+    return np.asarray(x[_POWERS[:, 0]] * y[_POWERS[:, 1]])
+
+
+@lru_cache(maxsize=1)
+def _derivatives() -> Array:
+    """Coefficients (5, 15, 15) of the derivatives x, y, xx, xy, yy of a polynomial."""
+    row = {(int(i), int(j)): k for k, (i, j) in enumerate(_POWERS)}
+    by_x, by_y = np.zeros((2, len(_POWERS), len(_POWERS)))
+    for (i, j), k in row.items():
+        if i > 0:
+            by_x[row[i - 1, j], k] = i
+        if j > 0:
+            by_y[row[i, j - 1], k] = j
+    return np.stack([by_x, by_y, by_x @ by_x, by_x @ by_y, by_y @ by_y])
 
 
 def _summit(fit: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Value (k,), place (2, k) and existence (k,) of the maxima of polynomials (15, k)."""
-
-    def of(by_x: int, by_y: int) -> Array:
-        return np.asarray((fit * _terms(at, by_x, by_y)).sum(axis=0))
-
+    slopes = _derivatives() @ fit
     at = np.zeros((2, fit.shape[1]))
     trusted = np.ones(fit.shape[1], dtype=bool)
     for _ in range(8):
-        xx, xy, yy = of(2, 0), of(1, 1), of(0, 2)
+        x, y, xx, xy, yy = np.einsum("dtk,tk->dk", slopes, _terms(at))
         determinant = xx * yy - xy**2
         trusted &= (determinant > 0) & (xx < 0)
         safe = np.where(trusted, determinant, 1.0)
-        x, y = of(1, 0), of(0, 1)
         step = np.stack([yy * x - xy * y, xx * y - xy * x]) / safe
         at = at - np.where(trusted, step, 0.0)
         trusted &= (np.abs(at) < 0.5).all(axis=0)
         at = np.where(trusted, at, 0.0)
-    return of(0, 0), at, trusted
+    return np.asarray((fit * _terms(at)).sum(axis=0)), at, trusted

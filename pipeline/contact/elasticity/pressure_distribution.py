@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -55,6 +56,12 @@ class PressureShapes:
     def integrated(self, function_values: Array, xi: Array, weights: Array) -> Array:
         """Integral (n,) of each shape times a function with values at quadrature points."""
         return self.values(xi) @ (weights * function_values)
+
+    @cached_property
+    def sampled(self) -> tuple[Array, Array, Array]:
+        """Quadrature points and weights (q,), m, and the shapes (n, q) at the points."""
+        xi, weights = self.quadrature()
+        return readonly(xi), readonly(weights), readonly(self.values(xi))
 
     def quadrature(self, breaks: ArrayLike = ()) -> tuple[Array, Array]:
         """Gauss points and weights (q,), m, exact on each piece between knots and `breaks`."""
@@ -110,6 +117,12 @@ class EllipticShapes:
         """Integral (n,) of each shape times a function with values at quadrature points."""
         return self.values(xi) @ (weights * function_values)
 
+    @cached_property
+    def sampled(self) -> tuple[Array, Array, Array]:
+        """Quadrature points and weights (q,), m, and the shapes (n, q) at the points."""
+        xi, weights = self.quadrature()
+        return readonly(xi), readonly(weights), readonly(self.values(xi))
+
     def quadrature(self, breaks: ArrayLike = ()) -> tuple[Array, Array]:
         """Points and weights (q,), m, of Gauss quadrature in the angle of the ellipse."""
         middle, half_width = self._ellipse
@@ -154,14 +167,15 @@ def fitted_ellipses(shapes: PressureShapes | EllipticShapes, pressure: Array) ->
     carrying = (pressure > 0).sum(axis=1)
     if (carrying < 4).any():
         raise ContactError(f"{int(carrying.min())} pressure knots in contact, must be >= 4")
-    xi, weights = shapes.quadrature()
-    weighted = (pressure @ shapes.values(xi)) * weights
+    xi, weights, values = shapes.sampled
+    weighted = (pressure @ values) * weights
     force = weighted.sum(axis=1)
     centre = weighted @ xi / force
     arm = xi - centre[:, None]
-    half_width = 2 * np.sqrt((weighted * arm**2).sum(axis=1) / force)
-    y = arm / half_width[:, None]
-    bell = np.where(np.abs(y) < _MIDDLE, (1 - (y / _MIDDLE) ** 2) ** 2, 0.0)
-    ellipse = np.sqrt(np.maximum(1 - y**2, 0.0))
-    p0 = (bell * weighted).sum(axis=1) / (bell * ellipse * weights).sum(axis=1)
+    square = arm**2
+    half_width = 2 * np.sqrt(np.einsum("kq,kq->k", weighted, square) / force)
+    y2 = square / half_width[:, None] ** 2
+    bell = np.maximum(1 - y2 / _MIDDLE**2, 0.0) ** 2
+    ellipse = np.sqrt(np.maximum(1 - y2, 0.0))
+    p0 = np.einsum("kq,kq->k", bell, weighted) / ((bell * ellipse) @ weights)
     return Ellipses(p0, centre, half_width)
