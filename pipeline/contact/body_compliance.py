@@ -11,8 +11,10 @@ from __future__ import annotations
 
 import hashlib
 import sys
+from collections.abc import Callable, Hashable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,16 +107,28 @@ class LoadedBody:
 
         Cached on disk by mesh, supports, material and contacts.
         """
-        kept = disk_cache.kept(
-            "body",
-            self._key(contacts, normals),
-            lambda: self._displacement_slopes(contacts, normals),
-            RECIPE,
+        kept = self.kept(
+            "body", contacts, normals, lambda: self._displacement_slopes(contacts, normals), RECIPE
         )
         modulus, bend = self._plane_strain_modulus, kept["bend"]
         return Correction(along=modulus * kept["slope"], bend=bend, along_by_depth=modulus * bend)
 
-    def _key(self, contacts: Array, normals: Array) -> tuple[object, ...]:
+    def kept(
+        self,
+        kind: str,
+        contacts: Array,
+        normals: Array,
+        compute: Callable[[], disk_cache.Arrays],
+        modules: tuple[ModuleType, ...],
+        *more: Hashable,
+    ) -> disk_cache.Arrays:
+        """Arrays of the body under unit loads at contacts, from the disk cache or computed.
+
+        See `disk_cache.kept`; `more` are further inputs that decide the arrays.
+        """
+        return disk_cache.kept(kind, (*self._key(contacts, normals), *more), compute, modules)
+
+    def _key(self, contacts: Array, normals: Array) -> tuple[Hashable, ...]:
         """Inputs of a correction for the cache key; the mesh holds contour, bore, keyway, hub."""
         body = self.body
         free = np.ascontiguousarray(self._free_facets, dtype="<i8")
@@ -139,26 +153,43 @@ class LoadedBody:
 
     def _displacement_slopes(self, contacts: Array, normals: Array) -> dict[str, Array]:
         """Slope of the tangential and bend of the outward displacement (count,) by name."""
-        parts = []
-        for start in range(0, contacts.shape[1], _BATCH):
-            at, up = contacts[:, start : start + _BATCH], normals[:, start : start + _BATCH]
-            loads, held = self._cancelling_loads(at, up)
-            if contacts.shape[1] <= _FEW:
-                displaced = self.body.displacement(loads, held)[:, self._condensed_nodes]
-            else:
-                displaced = self._condensed.displacement(loads[:, self._condensed_nodes], held)
-            parts.append(self._at_contacts(displaced, at, up))
+        parts = [
+            self._at_contacts(displaced, contacts[:, part], normals[:, part])
+            for part, displaced in self.displacements(contacts, normals)
+        ]
         slope, bend = np.concatenate(parts, axis=1)
         return {"slope": slope, "bend": bend}
 
+    def displacements(self, contacts: Array, normals: Array) -> Iterator[tuple[slice, Array]]:
+        """Contacts in parts, and the displacement (2, m, part) of the correction, m per N/m.
+
+        At the nodes of `condensed_nodes` (m,).
+        """
+        for start in range(0, contacts.shape[1], _BATCH):
+            part = slice(start, start + _BATCH)
+            loads, held = self._cancelling_loads(contacts[:, part], normals[:, part])
+            if contacts.shape[1] <= _FEW:
+                yield part, self.body.displacement(loads, held)[:, self.condensed_nodes]
+            else:
+                loads = loads[:, self.condensed_nodes]
+                yield part, self._condensed.displacement(loads, held)
+
     @cached_property
-    def _condensed_nodes(self) -> NDArray[np.int64]:
-        """Nodes with loads of the correction, next to supports, or on the surface."""
-        return np.union1d(np.unique(self._free_facets), self.body.beside_held)
+    def condensed_nodes(self) -> NDArray[np.int64]:
+        """Nodes with loads of the correction, and those of the elements at holes and supports."""
+        mesh = self.body.mesh
+        at = np.zeros(mesh.points.shape[1], dtype=bool)
+        at[self.body.held_nodes] = True
+        for name in self.also_free:
+            at[mesh.boundary_nodes(name)] = True
+        beside = mesh.triangles[:, at[mesh.triangles].any(axis=0)]
+        return np.unique(
+            np.concatenate([self._free_facets.ravel(), beside.ravel(), self.body.beside_held])
+        )
 
     @cached_property
     def _condensed(self) -> CondensedBody:
-        return self.body.condensed(self._condensed_nodes)
+        return self.body.condensed(self.condensed_nodes)
 
     @property
     def _plane_strain_modulus(self) -> float:
@@ -241,8 +272,8 @@ class LoadedBody:
         contact passes a node.
         """
         mesh = self.body.mesh
-        surface = np.searchsorted(self._condensed_nodes, mesh.boundary_nodes(self.surface))
-        points = mesh.points[:, self._condensed_nodes[surface]]
+        surface = np.searchsorted(self.condensed_nodes, mesh.boundary_nodes(self.surface))
+        points = mesh.points[:, self.condensed_nodes[surface]]
         distance = np.hypot(*(points[:, :, None] - contacts[:, None, :]))
         nearest = np.argpartition(distance, _NEIGHBOURS, axis=0)[: _NEIGHBOURS + 1]
         distance = np.take_along_axis(distance, nearest, axis=0)

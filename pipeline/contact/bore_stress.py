@@ -7,18 +7,17 @@ refinement. These places are included and marked.
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, freeze
-from camwright.pipeline.contact.body_compliance import LoadedBody
+from camwright.pipeline.contact.body_compliance import RECIPE, LoadedBody
 from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.elasticity.elastic_body import StressRecovery
 from camwright.pipeline.contact.elasticity.halfplane import point_force_stress
-
-_BATCH = 90
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,27 +54,50 @@ def bore_stress(
     line_load (n,) N/m acts as a line force: the bore lies many half-widths below the contact. The
     radius excluded at the keyway edges, m, is by default 1.5 elements.
     """
-    nodes, by_edge, recovery, excluded = _holes(cam, excluded)
-    rows = _rows(recovery, nodes)
-    points = cam.body.mesh.points[:, nodes]
-    measured = np.empty((nodes.size, contacts.shape[1]))
-    for start in range(0, contacts.shape[1], _BATCH):
-        part = slice(start, start + _BATCH)
-        own = recovery(cam.correction_displacement(contacts[:, part], normals[:, part]))[:, rows]
-        far = _half_plane(points, contacts[:, part], normals[:, part])
-        measured[:, part] = plane_stress_measures.von_mises(
-            (own + far) * line_load[part], cam.body.poisson
-        )
-    worst = measured.argmax(axis=0)
-    regular = measured[~by_edge].max(axis=0)
+    kept = cam.kept(
+        "bore",
+        contacts,
+        normals,
+        lambda: _under_unit_load(cam, contacts, normals, excluded),
+        (sys.modules[__name__], plane_stress_measures, *RECIPE),
+        excluded,
+    )
+    points = cam.body.mesh.points
+    # Without load every place is the first one.
+    worst = kept["node"][np.where(line_load > 0, kept["worst"], 0)]
     return BoreStress(
-        von_mises=measured.max(axis=0),
+        von_mises=line_load * kept["von_mises"],
         x=points[0, worst],
         y=points[1, worst],
-        at_edge=by_edge[worst].astype(float),
-        away_from_edges=regular,
-        excluded=excluded,
+        at_edge=np.isin(worst, kept["node"][kept["by_edge"]]).astype(float),
+        away_from_edges=line_load * kept["away_from_edges"],
+        excluded=float(kept["excluded"]),
     )
+
+
+def _under_unit_load(
+    cam: LoadedBody, contacts: Array, normals: Array, excluded: float | None
+) -> dict[str, Array]:
+    """Values of `BoreStress` per unit line load, with the nodes (m,) and which are at an edge."""
+    nodes, by_edge, recovery, excluded = _holes(cam, excluded)
+    stress = recovery.operator(nodes).reshape(3 * nodes.size, -1)
+    seen = np.searchsorted(cam.condensed_nodes, recovery.nodes)
+    points, count = cam.body.mesh.points[:, nodes], contacts.shape[1]
+    highest, regular, worst = np.empty(count), np.empty(count), np.empty(count, dtype=int)
+    for part, displaced in cam.displacements(contacts, normals):
+        own = stress @ displaced[:, seen].reshape(stress.shape[1], -1)
+        far = _half_plane(points, contacts[:, part], normals[:, part])
+        mises = plane_stress_measures.von_mises(own.reshape(far.shape) + far, cam.body.poisson)
+        worst[part], highest[part] = mises.argmax(axis=0), mises.max(axis=0)
+        regular[part] = mises[~by_edge].max(axis=0)
+    return {
+        "von_mises": highest,
+        "away_from_edges": regular,
+        "worst": worst,
+        "node": nodes,
+        "by_edge": by_edge,
+        "excluded": np.array(excluded),
+    }
 
 
 def _holes(
@@ -117,8 +139,3 @@ def _half_plane(points: Array, contacts: Array, normals: Array) -> Array:
             along * t[0] * t[1] + into * n[0] * n[1] - shear * (t[0] * n[1] + t[1] * n[0]),
         ]
     )
-
-
-def _rows(recovery: StressRecovery, nodes: NDArray[np.int64]) -> NDArray[np.intp]:
-    order = np.argsort(recovery.nodes)
-    return order[np.searchsorted(recovery.nodes, nodes, sorter=order)]

@@ -42,7 +42,7 @@ from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.spring import LEAST_DAMPING
 
 # Positions solved and stored together; an interruption loses at most one such piece.
-CHUNK = 90
+CHUNK = 180
 MESHING, CONTACT = "mesh", "cycle"
 CERTIFICATE, BENCHMARKS = "certificate", "benchmarks"
 

@@ -306,6 +306,17 @@ class StressRecovery:
             [self._solve(self._weighted_shapes @ (part @ flat)) for part in self._stress_at_points]
         )
 
+    def operator(self, nodes: ArrayLike) -> Array:
+        """Stress (3, m, 2, n) at some of `nodes` under unit displacements of each of `nodes`."""
+        order = np.argsort(self.nodes)
+        rows = order[np.searchsorted(self.nodes, np.asarray(nodes, dtype=int), sorter=order)]
+        columns = self._dofs[:, self.nodes].ravel()
+        parts = [
+            self._solve((self._weighted_shapes @ part[:, columns]).toarray())[rows]
+            for part in self._stress_at_points
+        ]
+        return np.stack(parts).reshape(3, rows.size, 2, self.nodes.size)
+
 
 def _stacked(
     values: list[Array], dofs: NDArray[np.int64], shape: tuple[int, int]
