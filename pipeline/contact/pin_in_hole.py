@@ -10,17 +10,19 @@ where w_n is the radial compliance of both bodies to the n-th harmonic of the pr
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import brentq
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import ContactError, InputError
+from camwright.pipeline.base import disk_cache
 from camwright.pipeline.base.units import shown
+from camwright.pipeline.contact.elasticity import active_set, radial_compliance
 from camwright.pipeline.contact.elasticity.active_set import solve
 from camwright.pipeline.contact.elasticity.radial_compliance import (
     Bush,
@@ -29,12 +31,17 @@ from camwright.pipeline.contact.elasticity.radial_compliance import (
     pin_compliance,
 )
 
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
+
 KNOTS = 96  # of the pressure on half the contact
 WINDOW_MAX = np.radians(120.0)
 _HARMONICS = 10  # per knot: the remainder decreases with the fifth power of the number
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
 _LEAST_ANGLE = np.radians(2.0)  # below, two cylinders of Hertz to 1e-3
 _FILLED = (0.6, 0.9)  # share of the window in contact
+# Modules whose source enters the cache key.
+RECIPE = (sys.modules[__name__], active_set, radial_compliance)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +104,8 @@ def persson_contact_angle(clearance_number: float) -> float:
     InputError
         If the number is negative (press fit), NaN or infinite.
     """
+    from scipy.optimize import brentq
+
     if not 0.0 <= clearance_number < np.inf:
         raise InputError("clearance", clearance_number, ">= 0: a press fit cannot slide")
 
@@ -236,15 +245,29 @@ def _peak(angle: Array, pressure: Array) -> float:
 
 @lru_cache(maxsize=16)
 def _peak_table(pin: Pin, bush: Bush) -> tuple[PchipInterpolator, PchipInterpolator, float]:
-    """Peak p R/Q and contact angle over log(1 + clearance number); largest clearance number."""
+    """Peak p R/Q and contact angle over log(1 + clearance number); largest clearance number.
+
+    The solutions are cached on disk.
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    table = disk_cache.kept("pin", (pin, bush), lambda: _solved_table(pin, bush), RECIPE)
+    at = np.log1p(table["number"])
+    peaks = PchipInterpolator(at, np.log(table["peak"]))
+    return peaks, PchipInterpolator(at, np.log(table["angle"])), float(table["number"][-1])
+
+
+def _solved_table(pin: Pin, bush: Bush) -> dict[str, Array]:
+    """Clearance numbers, peak p R/Q and contact angle (n,), rad, by complementarity."""
     largest = float(persson_clearance(_LEAST_ANGLE)) / 2.0
     numbers = np.r_[0.0, np.geomspace(1e-2, largest, 28)]
     mean_compliance = _mean_compliance(pin, bush)
     contacts = [pin_in_hole(1.0, 1.0, c * mean_compliance, pin, bush, knots=48) for c in numbers]
-    at = np.log1p(numbers)
-    peaks = PchipInterpolator(at, np.log([f.peak_pressure for f in contacts]))
-    angles = PchipInterpolator(at, np.log([f.contact_angle for f in contacts]))
-    return peaks, angles, largest
+    return {
+        "number": numbers,
+        "peak": np.array([one.peak_pressure for one in contacts]),
+        "angle": np.array([one.contact_angle for one in contacts]),
+    }
 
 
 def peak_pressure(

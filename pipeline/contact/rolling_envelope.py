@@ -8,6 +8,7 @@ are independent of the positions at which the contact was solved.
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -16,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base import disk_cache
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_history import ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
@@ -24,7 +26,6 @@ from camwright.pipeline.contact.elasticity import plane_stress_measures as stres
 _DEPTH_MAX = 3.0
 _DEPTHS = 61
 _SPHERE_STEPS = 2000
-_BLOCK = 120
 STATIONS = 1440
 """Stations of the map along the contour, 0.25 deg apart."""
 
@@ -97,13 +98,20 @@ class RollingPass:
 
 @lru_cache(maxsize=8)
 def rolling_pass(poisson: float, friction: float = 0.0) -> RollingPass:
-    """Pass of a Hertz pressure with a traction of `friction` times pressure.
+    """Pass of a Hertz pressure with a traction of `friction` times pressure; cached on disk.
 
     References
     ----------
     Johnson, Contact Mechanics (1985), secs. 4.2 and 9.2, for the stresses; Dang Van,
     Griveau, Message (1989) for the smallest sphere.
     """
+    inputs = float(poisson), float(friction)
+    modules = sys.modules[__name__], hertz, stress
+    return RollingPass(**disk_cache.kept("pass", inputs, lambda: _pass(*inputs), modules))
+
+
+def _pass(poisson: float, friction: float) -> dict[str, Array]:
+    """The arrays of a pass by their names in `RollingPass`."""
     depth = np.linspace(0.0, _DEPTH_MAX, _DEPTHS)
     near = np.linspace(-2.0, 2.0, 321)
     far = np.geomspace(2.0, 200.0, 60)[1:]
@@ -119,17 +127,17 @@ def rolling_pass(poisson: float, friction: float = 0.0) -> RollingPass:
     in_plane, out = np.hypot(a, b), c / np.sqrt(0.75)
     high = np.maximum(in_plane - out / 2, out)
     low = np.minimum(-in_plane - out / 2, out)
-    return RollingPass(
-        depth=depth,
-        von_mises=stress.von_mises(field, poisson).max(axis=1),
-        tau_max=stress.shear_in_plane(field).max(axis=1),
-        shear_range=np.ptp(xz, axis=1),
-        shear_amplitude=radius,
-        hydrostatic_max=np.maximum(hydrostatic.max(axis=1), 0.0),
-        shear=(high - low) / 2,
-        hydrostatic=hydrostatic,
-        stress=field,
-    )
+    return {
+        "depth": depth,
+        "von_mises": stress.von_mises(field, poisson).max(axis=1),
+        "tau_max": stress.shear_in_plane(field).max(axis=1),
+        "shear_range": np.ptp(xz, axis=1),
+        "shear_amplitude": radius,
+        "hydrostatic_max": np.maximum(hydrostatic.max(axis=1), 0.0),
+        "shear": (high - low) / 2,
+        "hydrostatic": hydrostatic,
+        "stress": field,
+    }
 
 
 def smallest_sphere(path: Array) -> tuple[Array, Array]:
@@ -207,7 +215,7 @@ def swept(
     line_load : array (n,)          at the stations, N/m
     friction : float                traction over pressure
     limits : FatigueLimits          of the criteria of Crossland and Dang Van
-    body_stress : array (3, m)      correction of the half-plane at theta, Pa
+    body_stress : array (m,)        stress along the contour that the real body adds, at theta, Pa
 
     Raises
     ------
@@ -220,13 +228,12 @@ def swept(
     half_width = half_width * _between(at, turn, contact.half_width, contact.half_width_hertz)
     p0 = p0 * _between(at, turn, contact.p0, contact.p0_hertz)
     unit = rolling_pass(pair.cam.poisson, friction)
-    extra = np.zeros((3, at.size))
+    along = np.zeros(at.size)
     if body_stress is not None:
-        added = np.asarray(body_stress, dtype=float)
-        extra = np.stack([np.interp(at, turn, part, period=FULL_TURN) for part in added])
-    mises, shear = _with_body(unit, p0, extra, pair.cam.poisson)
+        along = np.interp(at, turn, np.asarray(body_stress, dtype=float), period=FULL_TURN)
+    mises, shear = _with_body(unit, p0, along, pair.cam.poisson)
     scale = p0[:, None]
-    body_hydrostatic = (1 + pair.cam.poisson) / 3 * (extra[0] + extra[1])
+    body_hydrostatic = (1 + pair.cam.poisson) / 3 * along
     return Envelope(
         theta=at,
         arc=arc_length(pair, at),
@@ -254,38 +261,63 @@ def _between(at: Array, theta: Array, finite_elements: Array, closed_form: Array
     return np.interp(at, theta, ratio, period=FULL_TURN)
 
 
-def _with_body(unit: RollingPass, p0: Array, extra: Array, poisson: float) -> tuple[Array, Array]:
-    """Maximum von Mises stress and in-plane shear (n, k) of the pass plus body stress."""
-    if not extra.any():
+def _with_body(unit: RollingPass, p0: Array, along: Array, poisson: float) -> tuple[Array, Array]:
+    """Maximum von Mises stress and in-plane shear (n, k) of the pass plus stress along (n,), Pa."""
+    if not along.any():
         return p0[:, None] * unit.von_mises, p0[:, None] * unit.tau_max
     close = np.abs(np.arange(unit.stress.shape[2]) - unit.stress.shape[2] // 2) <= 160
     field, nu = unit.stress[:, :, close], poisson
     differences = np.array([[1.0, -1.0, 0.0], [1.0 - nu, -nu, 0.0], [-nu, 1.0 - nu, 0.0]])
-    along = np.diag([0.0, 0.0, 1.0])
-    mises = 0.5 * differences.T @ differences + 3.0 * along
-    shear = 0.25 * np.outer(differences[0], differences[0]) + along
-    return _greatest_root(mises, p0, field, extra), _greatest_root(shear, p0, field, extra)
+    sideways = np.diag([0.0, 0.0, 1.0])
+    mises = 0.5 * differences.T @ differences + 3.0 * sideways
+    shear = 0.25 * np.outer(differences[0], differences[0]) + sideways
+    return _greatest_root(mises, p0, field, along), _greatest_root(shear, p0, field, along)
 
 
-def _greatest_root(form: Array, p0: Array, field: Array, extra: Array) -> Array:
-    """Greatest root (n, k) over x of a quadratic form of the stress p0 field + extra.
+def _greatest_root(form: Array, p0: Array, field: Array, along: Array) -> Array:
+    """Greatest root (n, k) over x of a quadratic form of the stress p0 field + along.
+
+    The form over the square of p0 is linear in along over p0, but for a term without x.
 
     Parameters
     ----------
     form : array (3, 3)      symmetric, of the components xx, yy, xy
     field : array (3, k, x)  of a unit pressure
-    extra : array (3, n)     Pa
+    along : array (n,)       xx, Pa
     """
     bent = np.tensordot(form, field, axes=1)
-    plain, own = (field * bent).sum(axis=0), (extra * (form @ extra)).sum(axis=0)
-    squares = np.empty((p0.size, field.shape[1]))
-    for start in range(0, p0.size, _BLOCK):
-        part = slice(start, start + _BLOCK)
-        varying = p0[part, None, None] * plain
-        for component in np.flatnonzero(extra.any(axis=1)):
-            varying += (2.0 * extra[component, part, None, None]) * bent[component]
-        squares[part] = p0[part, None] * varying.max(axis=2) + own[part, None]
+    loaded = (p0 > 0) & np.isfinite(along)
+    ratio = np.where(loaded, along, 0.0) / np.where(loaded, p0, 1.0)
+    varying = greatest_line((field * bent).sum(axis=0), 2.0 * bent[0], ratio)
+    squares = p0[:, None] ** 2 * varying + (form[0, 0] * along**2)[:, None]
     return np.sqrt(np.maximum(squares, 0.0))
+
+
+def greatest_line(height: Array, slope: Array, at: Array) -> Array:
+    """Greatest value (n, k) of k sets of lines, height + slope times `at`, at places (n,).
+
+    Walks along the upper envelope of each set, which is convex: at each corner to the line that
+    is the first to cross, until no line of any set crosses before the last place.
+
+    Parameters
+    ----------
+    height, slope : array (k, x)
+    at : array (n,)
+    """
+    rows, last = np.arange(len(height)), at.max()
+    line = (height + slope * at.min()).argmax(axis=1)
+    greatest = np.full((at.size, rows.size), -np.inf)
+    while True:
+        level, rise = height[rows, line], slope[rows, line]
+        np.maximum(greatest, level + at[:, None] * rise, out=greatest)
+        steeper = slope - rise[:, None]
+        crossing = np.full(slope.shape, np.inf)
+        np.divide(level[:, None] - height, steeper, out=crossing, where=steeper > 0)
+        line = crossing.argmin(axis=1)
+        ahead = crossing[rows, line] <= last
+        if not ahead.any():
+            return greatest
+        line = np.where(ahead, line, slope.argmax(axis=1))
 
 
 def _crossland(
@@ -302,12 +334,10 @@ def _dang_van(
     unit: RollingPass, p0: Array, body_hydrostatic: Array, limits: FatigueLimits
 ) -> Array:
     """Dang Van stress (n, k) likewise; compression counts as zero."""
-    if not body_hydrostatic.any():
-        return p0[:, None] * unit.dang_van(limits)
-    values = np.empty((p0.size, unit.depth.size))
-    for start in range(0, p0.size, _BLOCK):
-        part = slice(start, start + _BLOCK)
-        scale = p0[part, None, None]
-        tension = np.maximum(scale * unit.hydrostatic + body_hydrostatic[part, None, None], 0.0)
-        values[part] = (scale * unit.shear + limits.dang_van * tension).max(axis=2)
-    return values
+    pulled = (unit.shear + limits.dang_van * unit.hydrostatic).max(axis=1)
+    return np.asarray(
+        np.maximum(
+            p0[:, None] * unit.shear.max(axis=1),
+            p0[:, None] * pulled + limits.dang_van * body_hydrostatic[:, None],
+        )
+    )

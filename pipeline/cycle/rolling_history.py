@@ -177,14 +177,13 @@ def _envelope(
 
 
 def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load: Array) -> Array:
-    """Stress (3, n) along the contour, Pa, that the real cam adds under loads (n,) N/m.
+    """Stress (n,) along the contour, Pa, that the real cam adds under loads (n,) N/m.
 
     Solved at every few angles and interpolated: the effect of a wall is smooth.
     """
     few = theta[::_THINNED]
     unit = bodies.cam.correction(pair.contour.points(few), pair.contour.normal(few)).along
-    along = line_load * np.interp(theta, few, unit, period=FULL_TURN)
-    return np.stack([along, np.zeros_like(along), np.zeros_like(along)])
+    return line_load * np.interp(theta, few, unit, period=FULL_TURN)
 
 
 def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:
