@@ -52,8 +52,9 @@ ELEMENTS_PER_HALF_WIDTH = 16
 # Piecewise-linear functions times the ellipse across a contact; more of them would overshoot.
 _ELLIPTIC = 17
 # Modules whose source enters the cache key.
+MESH_RECIPE = (body_mesh, gmsh_mesher, element_size, outline)
 RECIPE = (
-    *(sys.modules[__name__], body_mesh, gmsh_mesher, element_size, outline),
+    *(sys.modules[__name__], *MESH_RECIPE),
     *(elastic_body, sparse_factor, halfplane, pressure_distribution, surface_integrals),
 )
 

@@ -6,6 +6,7 @@ body, by its correction of the half-plane field, in plane strain.
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -16,6 +17,8 @@ from camwright.geometry.contour import Contour
 from camwright.geometry.errors import InputError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.element_size import Sizing
+from camwright.pipeline.base import disk_cache
+from camwright.pipeline.contact import body_compliance, contact_patch, follower_body
 from camwright.pipeline.contact.body_compliance import LoadedBody
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic, ElasticBody, Springs
 from camwright.pipeline.contact.follower_body import EDGES_ACROSS_WALL, RollerBody
@@ -24,6 +27,11 @@ from camwright.pipeline.contact.follower_body import EDGES_ACROSS_WALL, RollerBo
 _HOLD = 1e-6
 # Quadrature points over the footprint of a ball, under an elliptic pressure.
 _POINTS = 32
+# Modules whose source enters the cache key.
+RECIPE = (
+    *(sys.modules[__name__], follower_body),
+    *(*body_compliance.RECIPE, *contact_patch.MESH_RECIPE),
+)
 
 
 @dataclass(frozen=True)
@@ -104,15 +112,19 @@ class RingBody:
 def unit_bend(body: RingBody) -> float:
     """Change of the outer curvature of the ring at its contact per line load, 1/m per N/m.
 
-    Positive where the ring flattens; by the mesh of the cycle.
+    Positive where the ring flattens; by the mesh of the cycle. Cached on disk.
     """
+    return float(disk_cache.kept("bend", body, lambda: {"bend": _bend(body)}, RECIPE)["bend"])
+
+
+def _bend(body: RingBody) -> Array:
     mesh = body.coarse_mesh()
     material = body.material
     elastic = ElasticBody(
         mesh, material.modulus, material.poisson, {}, body.springs(mesh, None, 0.0)
     )
     contact, normal = np.array([[0.0], [body.radius]]), np.array([[0.0], [1.0]])
-    return float(LoadedBody(elastic, body.surface, body.free).correction(contact, normal).bend[0])
+    return LoadedBody(elastic, body.surface, body.free).correction(contact, normal).bend[0]
 
 
 def ball_springs(

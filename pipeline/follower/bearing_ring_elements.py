@@ -6,6 +6,7 @@ solution is proportional to the force.
 
 from __future__ import annotations
 
+import sys
 from functools import lru_cache
 
 import numpy as np
@@ -17,6 +18,8 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import ContactError
+from camwright.pipeline.base import disk_cache
+from camwright.pipeline.follower import bearing_ring
 from camwright.pipeline.follower.bearing_ring import Ring, RingBending
 
 _PER_GAP = 24  # elements between two balls, at least
@@ -99,6 +102,8 @@ def _row(dofs: NDArray[np.intp], values: Array, size: int) -> coo_array:
 def ring_bending(ring: Ring, phases: int = 5, poisson: float = 0.3) -> RingBending:
     """Ring under a unit contact force at ball positions from below it to midway between balls.
 
+    Cached on disk.
+
     Raises
     ------
     ContactError
@@ -109,11 +114,20 @@ def ring_bending(ring: Ring, phases: int = 5, poisson: float = 0.3) -> RingBendi
     Harris and Kotzalas, Advanced Concepts of Bearing Technology (2007): flexibly supported
     outer rings.
     """
+    inputs = ring, int(phases), float(poisson)
+    modules = sys.modules[__name__], bearing_ring
+    return RingBending(**disk_cache.kept("ring", inputs, lambda: _bent(*inputs), modules))
+
+
+def _bent(ring: Ring, phases: int, poisson: float) -> dict[str, Array]:
+    """The arrays of a bending by their names in `RingBending`."""
     count = 2 * (phases - 1) * -(-_PER_GAP // (2 * (phases - 1)))
     body = RingElements(ring, ring.balls * count, poisson)
     results = [_pushed(body, ring, count, k * count // (2 * (phases - 1))) for k in range(phases)]
     phase = np.linspace(0.0, 0.5 * FULL_TURN / ring.balls, phases)
-    return RingBending(phase, *(np.array(part) for part in zip(*results, strict=True)))
+    names = ("ball_load", "moment_max", "moment_min", "stress_max", "stress_min", "compliance")
+    columns = (np.array(part) for part in zip(*results, strict=True))
+    return {"phase": phase, **dict(zip(names, columns, strict=True))}
 
 
 def _pushed(

@@ -152,11 +152,15 @@ def settle(
         now, at, on = push[:, unsettled], rigid[:, unsettled], load[:, unsettled]
         next_push, next_rigid = _linear_step(line, now, at, on)
         settled = line.settled(next_push, next_rigid)
-        length = _best_length(line, now, at, next_push - now, next_rigid - at, on)
-        length[settled] = 1.0
-        push[:, unsettled] = now + length * (next_push - now)
-        rigid[:, unsettled] = at + length * (next_rigid - at)
-        unsettled = unsettled[~settled]
+        push[:, unsettled[settled]] = next_push[:, settled]
+        rigid[:, unsettled[settled]] = next_rigid[:, settled]
+        rest = np.flatnonzero(~settled)
+        unsettled = unsettled[rest]
+        now, at, on = now[:, rest], at[:, rest], on[:, rest]
+        push_step, rigid_step = next_push[:, rest] - now, next_rigid[:, rest] - at
+        length = _best_length(line, now, at, push_step, rigid_step, on)
+        push[:, unsettled] = now + length * push_step
+        rigid[:, unsettled] = at + length * rigid_step
     raise ContactError(f"guides: {len(unsettled)} positions not converged in {MAX_STEPS} steps")
 
 
