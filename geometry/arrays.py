@@ -72,3 +72,13 @@ def freeze(instance: DataclassInstance, **arrays: ArrayLike) -> None:
     """Set read-only array fields of a frozen dataclass from its ``__post_init__``."""
     for name, values in arrays.items():
         object.__setattr__(instance, name, readonly(values))
+
+
+def alike(marks: ArrayLike) -> list[NDArray[np.intp]]:
+    """Numbers of the columns of bool (k, n) that are equal, one array a pattern, ascending."""
+    packed = np.ascontiguousarray(np.packbits(np.asarray(marks, dtype=bool), axis=0).T)
+    if not packed.size:
+        return [np.arange(packed.shape[0])] if packed.shape[0] else []
+    _, pattern = np.unique(packed.view(f"V{packed.shape[1]}").ravel(), return_inverse=True)
+    order = np.argsort(pattern, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(pattern[order])) + 1)

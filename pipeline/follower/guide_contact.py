@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.arrays import Array, alike, freeze
 from camwright.geometry.errors import ContactError
 
 MAX_STEPS = 60
@@ -174,10 +174,7 @@ def _linear_step(line: BearingLine, push: Array, rigid: Array, load: Array) -> t
     touch = np.abs(deflection) >= line.play[:, None]
     offset = np.sign(deflection) * line.play[:, None] - line.rigid_modes @ rigid
     push, rigid = np.zeros_like(push), rigid.copy()
-    alike: dict[bytes, list[int]] = {}
-    for place, pattern in enumerate(np.packbits(touch, axis=0).T):
-        alike.setdefault(pattern.tobytes(), []).append(place)
-    for here in map(np.array, alike.values()):
+    for here in alike(touch):
         knots = np.flatnonzero(touch[:, here[0]])
         solution = _bound(line, knots, offset[np.ix_(knots, here)], load[:, here])
         push[np.ix_(knots, here)] = solution[:-2]

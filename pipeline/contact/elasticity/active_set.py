@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from camwright.geometry.arrays import Array, freeze
+from camwright.geometry.arrays import Array, alike, freeze
 from camwright.geometry.errors import ContactError
 
 _SWEEPS = 60
@@ -152,9 +152,7 @@ def _equality_solutions(
 ) -> tuple[Array, Array]:
     """Zero gap on the active pressures, zero pressure elsewhere, unit force, of each problem."""
     pressures, approaches = np.zeros_like(g), np.zeros(g.shape[0])
-    patterns, of = np.unique(np.packbits(active, axis=1), axis=0, return_inverse=True)
-    for number in range(patterns.shape[0]):
-        rows = np.flatnonzero(of.ravel() == number)
+    for rows in alike(active.T):
         knots = np.flatnonzero(active[rows[0]])
         system = np.zeros((knots.size + 1, knots.size + 1))
         system[:-1, :-1] = C[np.ix_(knots, knots)]

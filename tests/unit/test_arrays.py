@@ -1,0 +1,22 @@
+"""Groups of equal patterns."""
+
+import numpy as np
+import pytest
+
+from camwright.geometry.arrays import alike
+
+
+@pytest.mark.parametrize("rows", [1, 8, 53])
+def test_columns_alike_are_those_of_the_same_bytes(rows):
+    marks = np.random.default_rng(rows).random((rows, 60)) > 0.97
+    groups = alike(marks)
+    assert sorted(np.concatenate(groups).tolist()) == list(range(60))
+    by_bytes = {marks[:, k].tobytes(): [] for k in range(60)}
+    for k in range(60):
+        by_bytes[marks[:, k].tobytes()].append(k)
+    assert sorted(map(list, groups)) == sorted(by_bytes.values())
+
+
+def test_columns_without_rows_are_alike_and_no_columns_have_no_group():
+    assert [list(group) for group in alike(np.zeros((0, 3), dtype=bool))] == [[0, 1, 2]]
+    assert alike(np.zeros((4, 0), dtype=bool)) == []
