@@ -3,6 +3,9 @@
 Numbers are converted in decimal arithmetic and rounded once, so that "42 mm" is exactly 0.042
 and a value that was written out is read back bit for bit. The plane angle counts as a dimension
 of its own here: otherwise "25 Hz" would pass for 25 rad/s.
+
+The common units stand in a table, `_COMMON`; pint, whose start takes longer than a preview, reads
+all others.
 """
 
 from __future__ import annotations
@@ -11,7 +14,7 @@ import re
 from decimal import Decimal, InvalidOperation
 from functools import lru_cache
 from math import degrees, isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from camwright.geometry.errors import InputError
 
@@ -31,9 +34,83 @@ _ANGLES = (  # endings, since prefixes go before them
 _LONGEST = 80
 
 
+class _Common(NamedTuple):
+    """Coherent SI value of one unit and its powers of kg, m, s, K and rad."""
+
+    size: Decimal
+    powers: tuple[int, int, int, int, int]
+
+
+def _common(size: str, *powers: int) -> _Common:
+    kg, m, s, kelvin, rad = (*powers, *(0,) * (5 - len(powers)))
+    return _Common(Decimal(size), (kg, m, s, kelvin, rad))
+
+
+_TURN = 2 * Decimal("3.14159265358979323846264338327950288")
+_COMMON = {
+    "kg": _common("1", 1),
+    "g": _common("1e-3", 1),
+    "mg": _common("1e-6", 1),
+    "m": _common("1", 0, 1),
+    "cm": _common("1e-2", 0, 1),
+    "mm": _common("1e-3", 0, 1),
+    "um": _common("1e-6", 0, 1),
+    "s": _common("1", 0, 0, 1),
+    "ms": _common("1e-3", 0, 0, 1),
+    "min": _common("60", 0, 0, 1),
+    "h": _common("3600", 0, 0, 1),
+    "Hz": _common("1", 0, 0, -1),
+    "K": _common("1", 0, 0, 0, 1),
+    "rad": _common("1", 0, 0, 0, 0, 1),
+    "mrad": _common("1e-3", 0, 0, 0, 0, 1),
+    "deg": _Common(_TURN / 360, (0, 0, 0, 0, 1)),
+    "rpm": _Common(_TURN / 60, (0, 0, -1, 0, 1)),
+    "N": _common("1", 1, 1, -2),
+    "kN": _common("1e3", 1, 1, -2),
+    "Pa": _common("1", 1, -1, -2),
+    "kPa": _common("1e3", 1, -1, -2),
+    "MPa": _common("1e6", 1, -1, -2),
+    "GPa": _common("1e9", 1, -1, -2),
+    "mPa": _common("1e-3", 1, -1, -2),
+    "bar": _common("1e5", 1, -1, -2),
+    "J": _common("1", 1, 2, -2),
+    "kJ": _common("1e3", 1, 2, -2),
+    "MJ": _common("1e6", 1, 2, -2),
+    "W": _common("1", 1, 2, -3),
+    "kW": _common("1e3", 1, 2, -3),
+}
+"""Units read without pint. Reciprocals, products and powers of them are, too."""
+_COMMON_TERM = re.compile(r"([A-Za-z]+)(?:(?:\^|\*\*)?(-?[1-9]))?")
+_BETWEEN = re.compile(r"\s*(?<!\*)([*/])(?!\*)\s*|\s+")
+
+
+@lru_cache(maxsize=512)
+def _from_table(text: str) -> _Common | None:
+    """Unit composed of those of the table, from left to right as pint does; None otherwise."""
+    if text and (len(text) > _LONGEST or not _UNIT.fullmatch(text)):
+        return None
+    size, powers, sign = Decimal(1), [0] * 5, 1
+    if text.startswith("1"):
+        sign, text = -1, text.partition("/")[2].lstrip()
+    for word in filter(None, _BETWEEN.split(text)):
+        if word in ("*", "/"):
+            sign = 1 if word == "*" else -1
+            continue
+        term = _COMMON_TERM.fullmatch(word)
+        unit = _COMMON.get(term.group(1)) if term else None
+        if term is None or unit is None:
+            return None
+        power = sign * int(term.group(2) or 1)
+        size *= unit.size**power
+        powers = [sum_ + power * each for sum_, each in zip(powers, unit.powers, strict=True)]
+        sign = 1
+    kg, m, s, kelvin, rad = powers
+    return _Common(size, (kg, m, s, kelvin, rad))
+
+
 @lru_cache(maxsize=1)
 def _registry() -> UnitRegistry[Decimal]:
-    import pint  # half a second, and only a case file with unit strings needs it
+    import pint  # half a second, and only a case file with uncommon units needs it
 
     return pint.UnitRegistry(non_int_type=Decimal)
 
@@ -60,12 +137,26 @@ def _si_unit(text: str) -> PlainUnit:
 
 
 def _to_si(number: Decimal, unit: str, wanted: str) -> Decimal:
+    known = _from_table(unit)
+    if known is not None:
+        return number * known.size
     converted: Decimal = _registry().Quantity(number, _unit(unit)).to(_si_unit(wanted)).magnitude
+    return converted
+
+
+def _from_si(number: Decimal, unit: str) -> Decimal:
+    known = _from_table(unit)
+    if known is not None:
+        return number / known.size
+    converted: Decimal = _registry().Quantity(number, _si_unit(unit)).to(_unit(unit)).magnitude
     return converted
 
 
 def same_dimension(unit: str, other: str) -> bool:
     """Whether a value in `unit` can be read as one in `other`."""
+    first, second = _from_table(unit), _from_table(other)
+    if first is not None and second is not None:
+        return first.powers == second.powers
     one, two = _unit(unit), _unit(other)
     return bool(one.dimensionality == two.dimensionality and _angle(one) == _angle(two))
 
@@ -129,7 +220,7 @@ def format(value: float, unit: str) -> str:  # noqa: A001 - reads as units.forma
     """The shortest unit string that `parse` turns back into exactly `value` (SI)."""
     if not isfinite(value):
         raise InputError("value", value, "finite")
-    exact = _registry().Quantity(Decimal(value), _si_unit(unit)).to(_unit(unit)).magnitude
+    exact = _from_si(Decimal(value), unit)
     # 18 digits hold any float.
     numbers = (Decimal(f"{exact:.{digits}g}") for digits in range(1, 19))
     shortest = next(n for n in numbers if float(_to_si(n, unit, unit)) == value)

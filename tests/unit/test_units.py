@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from decimal import Decimal
 
 import pytest
 from hypothesis import given, settings
@@ -108,3 +109,36 @@ def test_factor() -> None:
     assert units.factor("mm") == 0.001
     assert units.factor("N m") == 1.0
     assert units.factor("percent") == 0.01
+
+
+def _pint_powers(text: str) -> tuple[float, ...]:
+    """Powers of kg, m, s, K and rad of a unit by pint."""
+    unit = units._unit(text)
+    names = ("[mass]", "[length]", "[time]", "[temperature]")
+    return (*(float(unit.dimensionality.get(name, 0)) for name in names), units._angle(unit))
+
+
+@pytest.mark.parametrize(
+    "form",
+    ["{0}", "1/{0}", "{0} {1}", "{0}*{1}", "{0}/{1}", "{0}^2/{1}", "{1}**2 {0}-1", "{1}/{0}/{1}3"],
+)
+def test_table_of_units_agrees_with_pint(form: str) -> None:
+    # 28 digits of decimal arithmetic, a few operations
+    names = list(units._COMMON)
+    pairs = zip(names, names[7:] + names[:7], strict=True)
+    for text in (form.format(*pair) for pair in pairs):
+        table = units._from_table(text)
+        assert table is not None
+        assert table.powers == _pint_powers(text), text
+        registry = units._registry()
+        size = registry.Quantity(Decimal(1), units._unit(text)).to_base_units().magnitude
+        assert abs(size / table.size - 1) < Decimal("1e-25"), text
+
+
+@pytest.mark.parametrize(
+    "text", ["m//s", "m /", "/m", "m*", "m*/s", "1//m", "m**", "m^2^2", " m", "1", "1 m", "m*1/s"]
+)
+def test_table_of_units_takes_nothing_that_pint_refuses(text: str) -> None:
+    assert units._from_table(text) is None
+    with pytest.raises(ValueError, match=r".*"):
+        units._unit(text)
