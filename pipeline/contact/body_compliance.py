@@ -17,8 +17,8 @@ from functools import cached_property
 from types import ModuleType
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import sparse
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.pipeline.base import disk_cache
@@ -75,7 +75,7 @@ class LoadedBody:
         return np.hstack([mesh.facet_triples(n) for n in (self.surface, *self.also_free)])
 
     @cached_property
-    def _quadrature(self) -> tuple[Array, Array, sparse.csr_array]:
+    def _quadrature(self) -> tuple[Array, Array, scipy.sparse.csr_array]:
         """Points (2, q), outward normals times weights (2, q), shape values (nodes, q)."""
         triples = self._free_facets
         corners = self.body.mesh.points[:, triples]
@@ -93,7 +93,7 @@ class LoadedBody:
         columns = np.broadcast_to(columns, rows.shape)
         entries = (values.ravel(), (rows.ravel(), columns.ravel()))
         shape = (self.body.mesh.points.shape[1], facets * per_facet)
-        operator = sparse.coo_array(entries, shape=shape).tocsr()
+        operator = scipy.sparse.coo_array(entries, shape=shape).tocsr()
         return points.reshape(2, -1), outward.reshape(2, -1), operator
 
     @cached_property

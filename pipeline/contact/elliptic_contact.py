@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import ellipe, ellipeinc, ellipkinc, ellipkm1
 
 from camwright.geometry.arrays import Array, finite, freeze, positive
 from camwright.geometry.errors import InputError
@@ -103,7 +103,11 @@ def pressure_cubed_per_force(curvature: ArrayLike, crown_radius: float, modulus:
 def _integrals(ratio: Array) -> tuple[Array, Array, Array]:
     """Parameter m, and complete elliptic integrals K(m), E(m), of an axis ratio (...)."""
     parameter = 1.0 - ratio**2
-    return parameter, np.asarray(ellipkm1(ratio**2)), np.asarray(ellipe(parameter))
+    return (
+        parameter,
+        np.asarray(scipy.special.ellipkm1(ratio**2)),
+        np.asarray(scipy.special.ellipe(parameter)),
+    )
 
 
 def _radii(ratio: Array) -> Array:
@@ -132,7 +136,10 @@ def axis_stress(ratio: float, depth: ArrayLike, poisson: float) -> Array:
     parameter, square = 1.0 - ratio**2, 1.0 / ratio**2
     t = np.sqrt((ratio**2 + z**2) / (1.0 + z**2))
     angle = np.arctan2(1.0, z)
-    first, second = ellipkinc(angle, parameter), ellipeinc(angle, parameter)
+    first, second = (
+        scipy.special.ellipkinc(angle, parameter),
+        scipy.special.ellipeinc(angle, parameter),
+    )
     inner, outer = z * (first - second), z * (square * second - first)
     along = -0.5 * (1.0 - t) + inner + poisson * (1.0 - square * t + outer)
     across = 0.5 + 0.5 / t - square * t + outer + poisson * (t - 1.0 + inner)

@@ -9,8 +9,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize_scalar
 
 from camwright.geometry.arrays import Array, Values, finite, positive
 from camwright.geometry.errors import InputError
@@ -134,7 +134,9 @@ def von_mises_peak(poisson: float) -> tuple[float, float]:
     def falling(depth: float) -> float:
         return -float(von_mises(subsurface_stress(0.0, depth), poisson))
 
-    lowest = minimize_scalar(falling, bounds=(0.3, 2.0), method="bounded", options={"xatol": 1e-10})
+    lowest = scipy.optimize.minimize_scalar(
+        falling, bounds=(0.3, 2.0), method="bounded", options={"xatol": 1e-10}
+    )
     # Two local maxima: one below the surface, one at it, the larger for small nu.
     if falling(0.0) <= lowest.fun:
         return -falling(0.0), 0.0

@@ -13,9 +13,9 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze
@@ -30,9 +30,6 @@ from camwright.pipeline.contact.elasticity.radial_compliance import (
     bush_compliance,
     pin_compliance,
 )
-
-if TYPE_CHECKING:
-    from scipy.interpolate import PchipInterpolator
 
 KNOTS = 96  # of the pressure on half the contact
 WINDOW_MAX = np.radians(120.0)
@@ -104,8 +101,6 @@ def persson_contact_angle(clearance_number: float) -> float:
     InputError
         If the number is negative (press fit), NaN or infinite.
     """
-    from scipy.optimize import brentq
-
     if not 0.0 <= clearance_number < np.inf:
         raise InputError("clearance", clearance_number, ">= 0: a press fit cannot slide")
 
@@ -115,7 +110,7 @@ def persson_contact_angle(clearance_number: float) -> float:
     low = 1e-3
     while miss(low) < 0.0:
         low *= 0.1
-    return float(brentq(miss, low, np.pi / 2.0, xtol=1e-14, rtol=1e-13))
+    return float(scipy.optimize.brentq(miss, low, np.pi / 2.0, xtol=1e-14, rtol=1e-13))
 
 
 def pin_in_hole(
@@ -244,17 +239,18 @@ def _peak(angle: Array, pressure: Array) -> float:
 
 
 @lru_cache(maxsize=16)
-def _peak_table(pin: Pin, bush: Bush) -> tuple[PchipInterpolator, PchipInterpolator, float]:
+def _peak_table(
+    pin: Pin, bush: Bush
+) -> tuple[scipy.interpolate.PchipInterpolator, scipy.interpolate.PchipInterpolator, float]:
     """Peak p R/Q and contact angle over log(1 + clearance number); largest clearance number.
 
     The solutions are cached on disk.
     """
-    from scipy.interpolate import PchipInterpolator
-
     table = disk_cache.kept("pin", (pin, bush), lambda: _solved_table(pin, bush), RECIPE)
     at = np.log1p(table["number"])
-    peaks = PchipInterpolator(at, np.log(table["peak"]))
-    return peaks, PchipInterpolator(at, np.log(table["angle"])), float(table["number"][-1])
+    peaks = scipy.interpolate.PchipInterpolator(at, np.log(table["peak"]))
+    angles = scipy.interpolate.PchipInterpolator(at, np.log(table["angle"]))
+    return peaks, angles, float(table["number"][-1])
 
 
 def _solved_table(pin: Pin, bush: Bush) -> dict[str, Array]:

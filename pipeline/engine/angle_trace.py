@@ -8,8 +8,8 @@ from math import radians
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.interpolate import Akima1DInterpolator
 
 from camwright.geometry.arrays import Array, finite, freeze, readonly
 from camwright.geometry.errors import InputError
@@ -63,13 +63,13 @@ class Trace:
         return np.diff(np.append(self.angle, self.angle[0] + self.period))
 
     @property
-    def _curve(self) -> Akima1DInterpolator:
+    def _curve(self) -> scipy.interpolate.Akima1DInterpolator:
         """Interpolant over the period and some samples on either side of it."""
         pad = min(self.angle.size, 6)
         ahead, behind = self.angle[:pad] + self.period, self.angle[-pad:] - self.period
         angle = np.concatenate([behind, self.angle, ahead])
         values = np.concatenate([self.values[-pad:], self.values, self.values[:pad]])
-        return Akima1DInterpolator(angle, values, method="makima")
+        return scipy.interpolate.Akima1DInterpolator(angle, values, method="makima")
 
     def __call__(self, angle: ArrayLike) -> Array:
         """Value at crank angles (rad, any shape), periodic, through every sample.

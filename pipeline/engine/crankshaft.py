@@ -8,8 +8,8 @@ from math import pi
 from typing import Annotated, ClassVar
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from camwright.geometry.arrays import Array, finite, freeze, positive, readonly
 from camwright.geometry.errors import CamError, InputError
@@ -269,7 +269,7 @@ def equivalent_inertia(engine_torque: ArrayLike, mean_speed: float, speed_std: f
     low = guess
     while excess(low) < 0.0:
         low *= 0.9
-    return float(brentq(excess, low, 2.0 * guess, xtol=1e-14 * guess, rtol=1e-12))
+    return float(scipy.optimize.brentq(excess, low, 2.0 * guess, xtol=1e-14 * guess, rtol=1e-12))
 
 
 def energy_swing(torque: ArrayLike) -> Array:
@@ -314,7 +314,7 @@ def _speed(energy: Array, inertia: Array, mean_speed: float) -> Array:
         stored = 0.5 * float(inertia.mean()) * mean_speed**2
         raise CamError(f"{text} of the {stored:.3g} J that turn at {mean_speed:.4g} rad/s")
     high = low + float(inertia.max()) * mean_speed**2 + float(np.ptp(energy))
-    floor = brentq(
+    floor = scipy.optimize.brentq(
         lambda level: _time_mean(speed(level)) - mean_speed, low, high, xtol=1e-300, rtol=1e-15
     )
     return speed(float(floor))

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated, ClassVar, Literal, get_args
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
@@ -300,7 +300,7 @@ def dead_centre_offset(
         return -float(pressure(np.array([axis]))[0])
 
     cost = skew if method == "symmetry" else below
-    optimum = minimize_scalar(
+    optimum = scipy.optimize.minimize_scalar(
         cost, bounds=(start - step, start + step), method="bounded", options={"xatol": 1e-7}
     )
     axis = float(optimum.x) + (loss_angle if method == "loss_angle" else 0.0)

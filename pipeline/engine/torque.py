@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import ClassVar, Literal
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import InputError
@@ -116,7 +116,7 @@ def uniform_cycle(count: int) -> Array:
 def _periodic(values: Array, theta: Array) -> Array:
     """Values on a uniform cycle at other crank angles (rad)."""
     knots = np.arange(values.size + 1) * (CYCLE_ANGLE / values.size)
-    spline = CubicSpline(knots, np.append(values, values[0]), bc_type="periodic")
+    spline = scipy.interpolate.CubicSpline(knots, np.append(values, values[0]), bc_type="periodic")
     return np.asarray(spline(np.mod(theta, CYCLE_ANGLE)))
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, LiftPoint
@@ -38,7 +38,9 @@ class Valve:
         is_open = past < duration
         if self.table:
             angle = np.array([point.angle for point in self.table])
-            curve = PchipInterpolator(angle - self.opens, [point.lift for point in self.table])
+            curve = scipy.interpolate.PchipInterpolator(
+                angle - self.opens, [point.lift for point in self.table]
+            )
             return np.where(is_open, curve(np.minimum(past, duration), nu=derivative), 0.0)
         phase = 2.0 * pi * past / duration
         if derivative == 0:

@@ -4,7 +4,7 @@ In the order of the calculation:
 
 | module                  | responsibility                             | symbol, unit          |
 | ----------------------- | ------------------------------------------ | --------------------- |
-| `stem_beam`             | stem as a beam of Hermite elements         | E I, N m2; m/N        |
+| `stem_beam`             | stem as a chain of beam elements           | E I, N m2; m/N        |
 | `spring`                | helical spring, strength, buckling, surge  | k, N/m; P, N; tau, Pa |
 | `follower_forces`       | forces with guide friction                 | F_a, N; T, N m        |
 | `guide_contact`         | beam in bores with unilateral contact      | N; m                  |

@@ -8,19 +8,20 @@ from __future__ import annotations
 
 import sys
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csc_array, csc_matrix, csr_array, vstack
-from scipy.sparse.linalg import splu
-from skfem import Basis, ElementQuad2, ElementVector, MeshQuad, MeshQuad2
-from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import ContactError
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.follower import bearing_ring
 from camwright.pipeline.follower.bearing_ring import Ring, RingBending
+
+if TYPE_CHECKING:
+    from skfem import Basis, MeshQuad2
 
 _PER_GAP = 24  # elements between two balls, at least
 _LAYERS = 2
@@ -49,12 +50,15 @@ class RingElements:
     """
 
     def __init__(self, ring: Ring, sections: int, poisson: float = 0.3) -> None:
+        from skfem import Basis, ElementQuad2, ElementVector
+        from skfem.models.elasticity import lame_parameters, linear_elasticity
+
         mesh = annulus(ring.radius, ring.thickness, sections)
         element = ElementVector(ElementQuad2())
         first, shear = lame_parameters(ring.modulus, poisson)
         form = linear_elasticity(2.0 * first * shear / (first + 2.0 * shear), shear)
         whole = Basis(mesh, element, intorder=4)
-        self.stiffness = csc_array(ring.width * form.assemble(whole))
+        self.stiffness = scipy.sparse.csc_array(ring.width * form.assemble(whole))
         local = ring.width * form.elemental(whole).tolocal()
         angle = np.arctan2(*whole.doflocs[::-1]) / FULL_TURN * sections
         height = np.hypot(*whole.doflocs) - ring.radius
@@ -75,7 +79,8 @@ class RingElements:
             moment.append(turned @ sector)
             hoop.append(-drawn @ sector)
         self.radial, self.along, self.moment, self.hoop = (
-            csr_array(vstack(rows)) for rows in (radial, along, moment, hoop)
+            scipy.sparse.csr_array(scipy.sparse.vstack(rows))
+            for rows in (radial, along, moment, hoop)
         )
 
 
@@ -86,16 +91,18 @@ def _second(basis: Basis) -> Array:
     return way
 
 
-def _assembled(local: Array, dofs: NDArray[np.intp], size: int) -> csr_array:
+def _assembled(local: Array, dofs: NDArray[np.intp], size: int) -> scipy.sparse.csr_array:
     """Matrix (size, size) assembled from element matrices (m, d, d) with dofs (m, d)."""
     rows = np.broadcast_to(dofs[:, :, None], local.shape).ravel()
     columns = np.broadcast_to(dofs[:, None, :], local.shape).ravel()
-    return coo_array((local.ravel(), (rows, columns)), (size, size)).tocsr()
+    return scipy.sparse.coo_array((local.ravel(), (rows, columns)), (size, size)).tocsr()
 
 
-def _row(dofs: NDArray[np.intp], values: Array, size: int) -> coo_array:
+def _row(dofs: NDArray[np.intp], values: Array, size: int) -> scipy.sparse.coo_array:
     """Row vector (1, size) of values at dofs."""
-    return coo_array((values.ravel(), (np.zeros(dofs.size, int), dofs.ravel())), (1, size))
+    return scipy.sparse.coo_array(
+        (values.ravel(), (np.zeros(dofs.size, int), dofs.ravel())), (1, size)
+    )
 
 
 @lru_cache(maxsize=16)
@@ -143,7 +150,9 @@ def _pushed(
         seen.add(carrying.tobytes())
         balls = body.radial[at[carrying]]
         system = body.stiffness + ring.ball_stiffness * (balls.T @ balls + _HOLD * (held.T @ held))
-        motion = splu(csc_matrix(system)).solve(-body.radial[[0]].toarray()[0])
+        motion = scipy.sparse.linalg.splu(scipy.sparse.csc_matrix(system)).solve(
+            -body.radial[[0]].toarray()[0]
+        )
         way = body.radial @ motion
         squeezed = way[at] < 0.0
         if (squeezed == carrying).all():
@@ -158,6 +167,8 @@ def _pushed(
 
 def annulus(radius: float, thickness: float, sections: int) -> MeshQuad2:
     """Closed ring of curved quadratic quadrilaterals, two over the thickness."""
+    from skfem import MeshQuad, MeshQuad2
+
     angle = FULL_TURN / sections * np.arange(sections)
     depth = radius + thickness * np.linspace(-0.5, 0.5, _LAYERS + 1)
     points = np.stack(

@@ -8,8 +8,8 @@ from math import pi
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.contour import Contour
@@ -414,7 +414,7 @@ def counter_hole(
     if not fits:
         raise GeometryError("no counter-hole fits between bore and contour")
     # spare() decreases to zero beyond the outermost feasible place
-    outermost = float(brentq(spare, fits[-1], places[-1]))
+    outermost = float(scipy.optimize.brentq(spare, fits[-1], places[-1]))
     radius = float(np.sqrt(need / (np.pi * outermost)))
     if outermost - radius - wall < bore_radius + keyway_depth:
         raise GeometryError("no counter-hole fits between bore and contour")
@@ -451,7 +451,9 @@ def greatest_hole(
     places = np.linspace(bore_radius, _reach(unbalance, ring), 400)
     best = int(np.argmax([taken(place) for place in places]))
     around = (places[max(best - 1, 0)], places[min(best + 1, places.size - 1)])
-    place = float(minimize_scalar(lambda x: -taken(x), bounds=around, method="bounded").x)
+    place = float(
+        scipy.optimize.minimize_scalar(lambda x: -taken(x), bounds=around, method="bounded").x
+    )
     if not radius(place) > 0.0:
         raise GeometryError("no hole fits between bore and contour")
     return CounterHole(place * direction, radius(place))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy
 
 from camwright.geometry.arrays import FULL_TURN, Array, freeze
 from camwright.geometry.errors import ContactError, InputError
@@ -168,7 +168,7 @@ class _Motion:
             return [pace * y[1], pace * acceleration, pace * push * u, pace * lost, pace]
 
         stem = np.sqrt(f.stiffness / f.mass)
-        solution = solve_ivp(
+        solution = scipy.integrate.solve_ivp(
             rates,
             (angle, end),
             state,

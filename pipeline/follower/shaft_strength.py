@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import ndtri
 
 from camwright.geometry.arrays import Array, finite, uniform_turn
 from camwright.geometry.errors import InputError
@@ -147,7 +147,7 @@ def reliability_factor(reliability: float) -> float:
     ----------
     Shigley's Mechanical Engineering Design, 10th ed., eq. 6-29: standard deviation of 8 %.
     """
-    return float(1.0 - 0.08 * ndtri(reliability))
+    return float(1.0 - 0.08 * scipy.special.ndtri(reliability))
 
 
 def fatigue_safety(theta: ArrayLike, moment: Array, torque: ArrayLike, section: Section) -> float:

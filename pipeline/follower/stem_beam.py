@@ -1,18 +1,13 @@
-"""Stem of the follower as a beam of Hermite finite elements."""
+"""Stem of the follower as a chain of beam elements."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
-from skfem import Basis, BilinearForm, ElementLineHermite, MeshLine
-from skfem.assembly.form.form import FormExtraParams
-from skfem.element import DiscreteField
-from skfem.helpers import dd, ddot
 
-from camwright.geometry.arrays import Array, readonly
+from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 
 
@@ -73,28 +68,14 @@ class Stem:
         return float(1.0 / (kappa * modulus * area))
 
 
-def _bending_work(u: DiscreteField, v: DiscreteField, _: FormExtraParams) -> Array:
-    return np.asarray(ddot(dd(u), dd(v)))
-
-
-bending = BilinearForm(_bending_work)
-"""Virtual work of unit bending stiffness, the integral of u'' v''."""
-
-
-@lru_cache(maxsize=1)
-def _unit_flexibility() -> Array:
-    """Deflection and slope (2, 2) of a cantilever of unit length and stiffness at unit loads."""
-    basis = Basis(MeshLine(np.array([0.0, 1.0])), ElementLineHermite())
-    end = [int(dofs[1]) for dofs in basis.nodal_dofs]
-    stiffness = bending.assemble(basis).toarray()[np.ix_(end, end)]
-    return readonly(np.linalg.inv(stiffness))
+# Deflection and slope of a cantilever of unit length and stiffness under unit end force and moment.
+_UNIT_FLEXIBILITY = np.array([[1.0 / 3.0, 0.5], [0.5, 1.0]])
 
 
 def end_flexibility(length: ArrayLike, stem: Stem) -> Array:
     """Deflection and slope at the free end of a cantilever under unit end force and moment.
 
-    One Hermite element is exact for end loads. It is formed at unit length and scaled: its power
-    basis loses digits on an element short against its coordinates.
+    By the closed form of the beam, with the shear of a Timoshenko beam.
 
     Parameters
     ----------
@@ -106,7 +87,7 @@ def end_flexibility(length: ArrayLike, stem: Stem) -> Array:
     """
     length = np.asarray(length, dtype=float)[..., None, None]
     powers = np.array([[3.0, 2.0], [2.0, 1.0]])
-    flexibility = _unit_flexibility() * length**powers / stem.bending_stiffness
+    flexibility = _UNIT_FLEXIBILITY * length**powers / stem.bending_stiffness
     shear = np.array([[1.0, 0.0], [0.0, 0.0]]) * stem.shear_flexibility
     return np.asarray(flexibility + shear * length)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from camwright.geometry.arrays import FULL_TURN
 from camwright.pipeline.case.case import Case
@@ -139,7 +139,9 @@ def travel_limits(case: Case) -> dict[str, float]:
             return excess(hardest_work(spring, design, preload, travel))
 
         if at(_TRAVEL_LEAST) < 0.0 < at(_TRAVEL_MOST):
-            allowed[name] = float(brentq(at, _TRAVEL_LEAST, _TRAVEL_MOST, xtol=1e-12))
+            allowed[name] = float(
+                scipy.optimize.brentq(at, _TRAVEL_LEAST, _TRAVEL_MOST, xtol=1e-12)
+            )
     return allowed
 
 

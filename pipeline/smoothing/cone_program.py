@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import clarabel
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.sparse import csc_array, csr_array, eye_array, vstack
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
@@ -22,7 +22,7 @@ class Rows:
 
     name: str
     level: Array
-    slopes: csr_array
+    slopes: scipy.sparse.csr_array
     elastic: bool = True
 
 
@@ -67,13 +67,13 @@ class Cones:
         self.size = size
         self.cost = np.zeros(size)
         self._quadratic = np.zeros((size, size))
-        self._linear: list[tuple[csr_array, Array]] = []
-        self._cones: list[tuple[csr_array, Array, int]] = []
+        self._linear: list[tuple[scipy.sparse.csr_array, Array]] = []
+        self._cones: list[tuple[scipy.sparse.csr_array, Array, int]] = []
 
-    def columns(self, matrix: csr_array, start: int) -> csr_array:
+    def columns(self, matrix: scipy.sparse.csr_array, start: int) -> scipy.sparse.csr_array:
         """Matrix (m, size) of all unknowns from one (m, w) of those from `start` on."""
         parts = (matrix.data, matrix.indices + start, matrix.indptr)
-        return csr_array(parts, shape=(matrix.shape[0], self.size))
+        return scipy.sparse.csr_array(parts, shape=(matrix.shape[0], self.size))
 
     def charge(self, slopes: ArrayLike, start: int = 0) -> None:
         """Add slopes (w,) @ x to the cost."""
@@ -85,7 +85,7 @@ class Cones:
         width = len(curvature)
         self._quadratic[:width, :width] += curvature
 
-    def at_most(self, matrix: csr_array, bound: ArrayLike) -> None:
+    def at_most(self, matrix: scipy.sparse.csr_array, bound: ArrayLike) -> None:
         """matrix (m, size) @ x <= bound (m,)."""
         self._linear.append((matrix, np.broadcast_to(bound, matrix.shape[:1])))
 
@@ -98,12 +98,14 @@ class Cones:
             block[0, variable] = -1.0
         block[1:, : slopes.shape[1]] = -slopes
         side = np.concatenate([[ceiling], level])
-        self._cones.append((csr_array(block), side, side.size))
+        self._cones.append((scipy.sparse.csr_array(block), side, side.size))
 
-    def square_at_most(self, matrix: csr_array, room: csr_array, level: float) -> None:
+    def square_at_most(
+        self, matrix: scipy.sparse.csr_array, room: scipy.sparse.csr_array, level: float
+    ) -> None:
         """(matrix @ x)^2 <= level + room @ x, row by row, each (m, size)."""
         rows = matrix.shape[0]
-        stacked = vstack([-room, -room, -2.0 * matrix], format="csr")
+        stacked = scipy.sparse.vstack([-room, -room, -2.0 * matrix], format="csr")
         side = np.concatenate([np.full(rows, level + 1.0), np.full(rows, level - 1.0),
                                np.zeros(rows)])  # fmt: skip
         order = np.arange(3 * rows).reshape(3, rows).T.ravel()
@@ -120,10 +122,11 @@ class Cones:
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_threads = 1
-        matrix = csc_array(vstack(blocks, format="csc"))
+        matrix = scipy.sparse.csc_array(scipy.sparse.vstack(blocks, format="csc"))
         matrix.sum_duplicates()
         result = clarabel.DefaultSolver(
-            csc_array(np.triu(self._quadratic)), self.cost, matrix, np.concatenate(sides),
+            scipy.sparse.csc_array(np.triu(self._quadratic)), self.cost, matrix,
+            np.concatenate(sides),
             cones, settings,
         ).solve()  # fmt: skip
         if str(result.status) not in _ACCEPTED:
@@ -170,10 +173,10 @@ def solved(
     for row in rows:
         matrix = program.columns(row.slopes, 0)
         if row.elastic:
-            relief = csr_array(np.ones((row.level.size, 1)))
+            relief = scipy.sparse.csr_array(np.ones((row.level.size, 1)))
             matrix = matrix - program.columns(relief, size + 1 + names.index(row.name))
         program.at_most(matrix, -row.level)
-    identity = eye_array(program.size, format="csr")
+    identity = scipy.sparse.eye_array(program.size, format="csr")
     program.at_most(identity[:size], box[1])
     program.at_most(-identity[:size], -box[0])
     program.at_most(-identity[size + 1 :], 0.0)

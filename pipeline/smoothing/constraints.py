@@ -18,7 +18,7 @@ from math import inf
 from typing import Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import curvature_slope, magnitude, speed_and_curvature
@@ -316,12 +316,14 @@ def _limit_curvature(relief: Array, ratings: Ratings) -> Array:
 
 
 @lru_cache(maxsize=8)
-def _curvature_table(crown_radius: float, modulus: float) -> PchipInterpolator:
+def _curvature_table(crown_radius: float, modulus: float) -> scipy.interpolate.PchipInterpolator:
     """ln(1/R) by ln(p0^3/N) of an elliptic contact, both rising."""
     curvature = np.geomspace(*_CURVATURES, _CURVATURE_STEPS)
     steepness = np.log(pressure_cubed_per_force(curvature, crown_radius, modulus))
     rising = np.diff(steepness, prepend=-inf) > 0
-    return PchipInterpolator(steepness[rising], np.log(curvature[rising]), extrapolate=True)
+    return scipy.interpolate.PchipInterpolator(
+        steepness[rising], np.log(curvature[rising]), extrapolate=True
+    )
 
 
 def _inertia(at: Loads, cam_speed: float) -> Array:

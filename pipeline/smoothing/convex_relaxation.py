@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import csr_array
+import scipy
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE
@@ -92,7 +92,7 @@ def _program(search: Search) -> Cones:
         program.at_most(energy, variables.preload * top + 0.5 * variables.rate * top**2)
     # q / P^2 = 1 + growth, and sigma / P is the unknown
     growth = (2.0 * variables.rate / variables.preload**2) * energy
-    sigma = program.columns(csr_array(np.eye(points)), count + 1)
+    sigma = program.columns(scipy.sparse.csr_array(np.eye(points)), count + 1)
     steepest = ratings.limits.get(PRESSURE_ANGLE)
     if steepest is not None:
         steep = np.tan(steepest * (1.0 - RESERVE)) * variables.preload

@@ -6,11 +6,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import BSpline, PPoly
-from scipy.optimize import brentq
-from scipy.sparse import csr_array
-from scipy.sparse.linalg import spsolve
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, positive, readonly, uniform_turn
 from camwright.geometry.energy import MEAN_TOLERANCE, stored_energy
@@ -25,13 +22,13 @@ ORDERS = 4  # E, E', E'', E'''
 @lru_cache(maxsize=1)
 def _pieces() -> Array:
     """Powers of the cardinal quintic B-spline on its six parts, (part, rising power)."""
-    spline = BSpline.basis_element(np.arange(DEGREE + 2), extrapolate=False)
-    powers = PPoly.from_spline((spline.t, spline.c, spline.k)).c[::-1]
+    spline = scipy.interpolate.BSpline.basis_element(np.arange(DEGREE + 2), extrapolate=False)
+    powers = scipy.interpolate.PPoly.from_spline((spline.t, spline.c, spline.k)).c[::-1]
     inside = powers[:, DEGREE:-DEGREE] if powers.shape[1] > DEGREE + 1 else powers
     return readonly(inside.T)
 
 
-def basis_matrix(theta: ArrayLike, count: int, derivative: int = 0) -> csr_array:
+def basis_matrix(theta: ArrayLike, count: int, derivative: int = 0) -> scipy.sparse.csr_array:
     """Periodic quintic B-splines or their derivatives at cam angles, (n, count), six a row.
 
     Parameters
@@ -51,7 +48,9 @@ def basis_matrix(theta: ArrayLike, count: int, derivative: int = 0) -> csr_array
     """
     values, columns = basis_rows(theta, count, derivative)
     rows = np.repeat(np.arange(len(columns)), DEGREE + 1)
-    return csr_array((values.ravel(), (rows, columns.ravel())), shape=(len(columns), count))
+    return scipy.sparse.csr_array(
+        (values.ravel(), (rows, columns.ravel())), shape=(len(columns), count)
+    )
 
 
 def basis_rows(theta: ArrayLike, count: int, derivative: int = 0) -> tuple[Array, NDArray[np.intp]]:
@@ -120,7 +119,9 @@ def fitted_energy(cam_torque: ArrayLike, count: int) -> Array:
     # the slope leaves the constant undetermined: a small weight on the energy fixes it
     weight = 1e-6
     normal = (slope.T @ slope + weight * (level.T @ level)).tocsc()
-    coefficients = spsolve(normal, slope.T @ torque + weight * (level.T @ energy))
+    coefficients = scipy.sparse.linalg.spsolve(
+        normal, slope.T @ torque + weight * (level.T @ energy)
+    )
     return readonly(coefficients - lowest(coefficients))
 
 
@@ -195,5 +196,5 @@ def exact_start(
         top = max(highest, 1e-9)
         while excess(top) > 0:
             top *= 2.0
-        rise = float(brentq(excess, 0.0, top, xtol=1e-12))
+        rise = float(scipy.optimize.brentq(excess, 0.0, top, xtol=1e-12))
     return readonly(coefficients + min(rise, energy_max - highest))

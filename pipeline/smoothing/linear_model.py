@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.smoothing.cone_program import Norm, Rows
@@ -49,11 +49,13 @@ class Linear:
         """Greatest value for steps of at most `reach` in each unknown, (m,)."""
         return np.asarray(self.level + np.sum(np.abs(self.entries) * reach[self.columns], axis=1))
 
-    def matrix(self, chosen: NDArray[np.bool_], size: int) -> csr_array:
+    def matrix(self, chosen: NDArray[np.bool_], size: int) -> scipy.sparse.csr_array:
         """Chosen rows as a sparse matrix, (rows, size)."""
         entries, columns = self.entries[chosen], self.columns[chosen]
         starts = np.arange(len(entries) + 1) * self.entries.shape[1]
-        return csr_array((entries.ravel(), columns.ravel(), starts), shape=(len(entries), size))
+        return scipy.sparse.csr_array(
+            (entries.ravel(), columns.ravel(), starts), shape=(len(entries), size)
+        )
 
     def rows(self, chosen: NDArray[np.bool_], size: int) -> Rows:
         """Chosen rows as constraints of a program."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TypedDict
 
 import numpy as np
-from scipy.sparse.linalg import spsolve
+import scipy
 
 from camwright.geometry.arrays import Array, readonly, uniform_turn
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
@@ -138,4 +138,4 @@ def refined(coefficients: Array, count: int) -> Array:
     theta = uniform_turn(8 * count)
     level = basis_matrix(theta, count)
     energy = basis_matrix(theta, coefficients.size) @ coefficients
-    return readonly(spsolve((level.T @ level).tocsc(), level.T @ energy))
+    return readonly(scipy.sparse.linalg.spsolve((level.T @ level).tocsc(), level.T @ energy))

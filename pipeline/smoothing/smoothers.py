@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import eval_legendre, spherical_jn
 
 from camwright.geometry.arrays import Array, finite, readonly
 from camwright.geometry.errors import InputError
@@ -181,8 +181,8 @@ def _savitzky_golay(smoother: Smoother, order: Array) -> Array:
     argument = 0.5 * smoother.points * smoother.spacing * order * (2.0 * np.pi / CYCLE)
     factor = np.zeros_like(order)
     for even in range(0, smoother.degree + 1, 2):
-        middle = float(eval_legendre(even, 0.0)) * (-1.0) ** (even // 2)
-        factor += (2 * even + 1) * middle * spherical_jn(even, argument)
+        middle = float(scipy.special.eval_legendre(even, 0.0)) * (-1.0) ** (even // 2)
+        factor += (2 * even + 1) * middle * scipy.special.spherical_jn(even, argument)
     return factor
 
 

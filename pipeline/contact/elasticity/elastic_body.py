@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy import sparse
-from skfem import Basis, ElementTriP2, ElementVector
 
 from camwright.geometry.arrays import Array, freeze
 from camwright.geometry.errors import InputError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.pipeline.contact.elasticity.sparse_factor import Condensed, factorised
+
+if TYPE_CHECKING:
+    from skfem import Basis
 
 
 def lame_parameters(modulus: float, poisson: float) -> tuple[float, float]:
@@ -77,6 +80,8 @@ class ElasticBody:
 
     @cached_property
     def basis(self) -> Basis:
+        from skfem import Basis, ElementTriP2, ElementVector
+
         return Basis(self.mesh.to_skfem(), ElementVector(ElementTriP2()), intorder=4)
 
     @cached_property
@@ -85,8 +90,10 @@ class ElasticBody:
         return self.mesh.dof_map(self.basis)
 
     @cached_property
-    def stiffness(self) -> sparse.csc_matrix:
+    def stiffness(self) -> scipy.sparse.csc_matrix:
         """Stiffness matrix of linear elasticity, N/m2; faster than the assembly of skfem."""
+        from skfem import ElementTriP2
+
         scalar = self.basis.with_element(ElementTriP2())
         slopes = np.stack([shape[0].grad for shape in scalar.basis])  # (6, 2, elements, points)
         count = slopes.shape[2]
@@ -102,15 +109,15 @@ class ElasticBody:
         rows = np.broadcast_to(dofs[:, :, None], (count, 12, 12))
         columns = np.broadcast_to(dofs[:, None, :], rows.shape)
         entries = (local.ravel(), (rows.ravel(), columns.ravel()))
-        own = sparse.coo_matrix(entries, shape=(self.basis.N, self.basis.N)).tocsc()
+        own = scipy.sparse.coo_matrix(entries, shape=(self.basis.N, self.basis.N)).tocsc()
         return own if self.springs is None else own + self._stiffness_of(self.springs)
 
-    def _stiffness_of(self, springs: Springs) -> sparse.csc_array:
+    def _stiffness_of(self, springs: Springs) -> scipy.sparse.csc_array:
         """Stiffness matrix of the springs."""
         spring, component, node = np.nonzero(springs.ways)
         entries = (springs.ways[spring, component, node], (spring, self.dofs[component, node]))
-        ways = sparse.csc_matrix(entries, shape=(springs.stiffness.size, self.basis.N))
-        return (ways.T @ sparse.diags_array(springs.stiffness) @ ways).tocsc()
+        ways = scipy.sparse.csc_matrix(entries, shape=(springs.stiffness.size, self.basis.N))
+        return (ways.T @ scipy.sparse.diags_array(springs.stiffness) @ ways).tocsc()
 
     @cached_property
     def held_dofs(self) -> NDArray[np.int64]:
@@ -150,7 +157,7 @@ class ElasticBody:
         return np.flatnonzero(felt[self.dofs].any(axis=0))
 
     @cached_property
-    def _solver(self) -> tuple[Callable[[Array], Array], sparse.csc_matrix]:
+    def _solver(self) -> tuple[Callable[[Array], Array], scipy.sparse.csc_matrix]:
         rows = self.stiffness[self.free_dofs]
         return factorised(rows[:, self.free_dofs]), rows[:, self.held_dofs]
 
@@ -261,6 +268,8 @@ class StressRecovery:
     """
 
     def __init__(self, body: ElasticBody, elements: ArrayLike) -> None:
+        from skfem import Basis, ElementTriP2, ElementVector
+
         ix = np.asarray(elements, dtype=int)
         vector = Basis(body.basis.mesh, ElementVector(ElementTriP2()), elements=ix, intorder=4)
         scalar = vector.with_element(ElementTriP2())
@@ -287,7 +296,7 @@ class StressRecovery:
             trace + 2 * shear * strain[1],
             shear * (strain[2] + strain[3]),
         )
-        self._weighted_shapes = shapes.T @ sparse.diags_array(weights)
+        self._weighted_shapes = shapes.T @ scipy.sparse.diags_array(weights)
         self._solve = factorised(self._weighted_shapes @ shapes)
         node_of_dof = np.full(vector.N, -1)
         node_of_dof[body.dofs[0]] = np.arange(body.dofs.shape[1])
@@ -320,12 +329,12 @@ class StressRecovery:
 
 def _stacked(
     values: list[Array], dofs: NDArray[np.int64], shape: tuple[int, int]
-) -> sparse.csr_array:
+) -> scipy.sparse.csr_array:
     """Sparse matrix (quadrature points, degrees of freedom) of the values per local shape."""
     elements, quadrature = values[0].shape
     rows = np.arange(elements * quadrature)
     parts = [
-        sparse.csr_array((v.ravel(), (rows, np.repeat(d, quadrature))), shape=shape)
+        scipy.sparse.csr_array((v.ravel(), (rows, np.repeat(d, quadrature))), shape=shape)
         for v, d in zip(values, dofs, strict=True)
     ]
     total = parts[0]

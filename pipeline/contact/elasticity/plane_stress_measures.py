@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import cached_property, lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array
@@ -114,12 +115,10 @@ class PeakFinder:
     @cached_property
     def _coarse(self) -> tuple[Index, Index]:
         """Numbers of the coarse points (c,), and of the nearest of them to each point (m,)."""
-        from scipy.spatial import cKDTree
-
         cells = np.floor(self._points / _COARSE)
         _, first = np.unique(cells, axis=1, return_index=True)
         coarse = np.sort(first)
-        _, nearest = cKDTree(self._points[:, coarse].T).query(self._points.T)
+        _, nearest = scipy.spatial.cKDTree(self._points[:, coarse].T).query(self._points.T)
         return coarse, np.asarray(nearest, dtype=np.int64)
 
     def _within(self, centre: Array, radius: float) -> Index:

@@ -12,10 +12,8 @@ from collections.abc import Callable
 from contextlib import suppress
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy import sparse
-from scipy.linalg import solve_triangular
-from scipy.sparse.linalg import SuperLU, splu
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ContactError
@@ -35,35 +33,35 @@ def back_end() -> str:
     return "scipy"
 
 
-def factorised(matrix: sparse.sparray) -> Callable[[Array], Array]:
+def factorised(matrix: scipy.sparse.sparray) -> Callable[[Array], Array]:
     """Solver of a sparse symmetric positive definite matrix for right-hand sides (n, k)."""
     chosen = back_end()
     if chosen == "cholmod":
-        return _by_cholmod(sparse.csc_array(matrix))
+        return _by_cholmod(scipy.sparse.csc_array(matrix))
     if chosen == "pardiso":
         return _by_pardiso(matrix)
     solve: Callable[[Array], Array] = _symmetric_lu(matrix, "MMD_AT_PLUS_A").solve
     return solve
 
 
-def _symmetric_lu(matrix: sparse.sparray, ordering: str) -> SuperLU:
+def _symmetric_lu(matrix: scipy.sparse.sparray, ordering: str) -> scipy.sparse.linalg.SuperLU:
     """Factors of a symmetric positive definite matrix.
 
     Diagonal pivots are safe for such a matrix and several times faster than pivoting with COLAMD.
     """
-    return splu(
-        sparse.csc_matrix(matrix),
+    return scipy.sparse.linalg.splu(
+        scipy.sparse.csc_matrix(matrix),
         permc_spec=ordering,
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
 
 
-def _by_cholmod(matrix: sparse.csc_array) -> Callable[[Array], Array]:
+def _by_cholmod(matrix: scipy.sparse.csc_array) -> Callable[[Array], Array]:
     from cvxopt import cholmod, spmatrix
     from cvxopt import matrix as dense
 
-    lower = sparse.coo_array(sparse.tril(matrix))
+    lower = scipy.sparse.coo_array(scipy.sparse.tril(matrix))
     rows, columns = lower.coords
     held = spmatrix(
         dense(lower.data), dense(rows.astype(np.int64)), dense(columns.astype(np.int64))
@@ -79,11 +77,11 @@ def _by_cholmod(matrix: sparse.csc_array) -> Callable[[Array], Array]:
     return solve
 
 
-def _by_pardiso(matrix: sparse.sparray) -> Callable[[Array], Array]:
+def _by_pardiso(matrix: scipy.sparse.sparray) -> Callable[[Array], Array]:
     from pypardiso import PyPardisoSolver
 
     solver = PyPardisoSolver(mtype=_POSITIVE_DEFINITE)
-    upper = sparse.csr_matrix(sparse.triu(matrix, format="csr"))
+    upper = scipy.sparse.csr_matrix(scipy.sparse.triu(matrix, format="csr"))
     upper.sort_indices()
     solver.factorize(upper)
 
@@ -106,10 +104,10 @@ class Condensed:
     last : array (k,)        the chosen unknowns
     """
 
-    def __init__(self, matrix: sparse.sparray, pairs: ArrayLike, last: ArrayLike) -> None:
+    def __init__(self, matrix: scipy.sparse.sparray, pairs: ArrayLike, last: ArrayLike) -> None:
         self._last = np.asarray(last, dtype=int)
         order = _elimination_order(matrix, np.asarray(pairs, dtype=int), self._last)
-        permuted = sparse.csc_matrix(matrix)[order][:, order].tocsc()
+        permuted = scipy.sparse.csc_matrix(matrix)[order][:, order].tocsc()
         factor = _symmetric_lu(permuted, "NATURAL")
         if not np.array_equal(factor.perm_r, factor.perm_c):
             raise ContactError("stiffness matrix: not positive definite")
@@ -126,9 +124,9 @@ class Condensed:
     def solve_last(self, right: ArrayLike) -> Array:
         """Values (k, m) of the chosen unknowns under loads (k, m) on them."""
         loads = np.asarray(right, dtype=float)[self._shuffle]
-        half = solve_triangular(self._lower, loads, lower=True, unit_diagonal=True)
+        half = scipy.linalg.solve_triangular(self._lower, loads, lower=True, unit_diagonal=True)
         solution = np.empty_like(loads)
-        solution[self._shuffle] = solve_triangular(self._upper, half)
+        solution[self._shuffle] = scipy.linalg.solve_triangular(self._upper, half)
         return solution
 
     def solve(self, right: ArrayLike) -> Array:
@@ -139,7 +137,7 @@ class Condensed:
         return solution
 
 
-def _elimination_order(matrix: sparse.sparray, pairs: Index, last: Index) -> Index:
+def _elimination_order(matrix: scipy.sparse.sparray, pairs: Index, last: Index) -> Index:
     """Elimination order (n,): minimum degree on the nodes, the chosen unknowns last."""
     size = matrix.shape[0]
     chosen = np.zeros(size, dtype=bool)
@@ -148,7 +146,7 @@ def _elimination_order(matrix: sparse.sparray, pairs: Index, last: Index) -> Ind
     rest = np.ones(size, dtype=bool)
     rest[inner] = False
     rest[last] = False
-    block = sparse.csc_matrix(matrix)[inner[0]][:, inner[0]].tocsc()
+    block = scipy.sparse.csc_matrix(matrix)[inner[0]][:, inner[0]].tocsc()
     # perm_c[j] is the place of column j.
     sequence = np.argsort(_symmetric_lu(block, "MMD_AT_PLUS_A").perm_c)
     return np.concatenate([inner[:, sequence].T.ravel(), np.flatnonzero(rest), last])
