@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from math import comb, factorial
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, freeze, readonly
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
@@ -19,6 +21,10 @@ DEGREE = 5
 
 LEAST_SAMPLES = 12
 """Minimum samples per turn: a spacing of 30 degrees."""
+
+
+_KEPT_FROM, _KEPT_TO = 64, 1500  # angles: fewer are quick to compute, more are used once
+_KEPT = 12  # sets of angles per function
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +48,24 @@ class PeriodicPolynomial:
         return value
 
     def derivatives(self, theta: ArrayLike, order: int) -> Array:
-        """Value and derivatives up to `order`, (order + 1, ...), by one look-up."""
-        return self._evaluate(theta, 0, order)
+        """Value and derivatives up to `order`, (order + 1, ...), by one look-up; read-only.
+
+        Those at the same angles as in one of the last calls are kept: loads, contact and checks
+        evaluate one lift at the same equal angles.
+        """
+        angles = np.asarray(theta, dtype=float)
+        if not _KEPT_FROM <= angles.size <= _KEPT_TO:
+            return self._evaluate(angles, 0, order)
+        kept = _kept.setdefault(self, {})
+        key = angles.shape, angles.tobytes()
+        rows = kept.pop(key, None)
+        if rows is None or len(rows) <= order:
+            rows = self._evaluate(angles, 0, order)
+            rows.setflags(write=False)
+        kept[key] = rows  # the last in the order of use
+        if len(kept) > _KEPT:
+            kept.pop(next(iter(kept)))
+        return rows[: order + 1]
 
     def _evaluate(self, theta: ArrayLike, first: int, last: int) -> Array:
         degree, count = self.coefficients.shape[0] - 1, self.coefficients.shape[1]
@@ -75,6 +97,12 @@ class PeriodicPolynomial:
         return PeriodicPolynomial(np.vstack([sums[:-1], raised])), float(sums[-1])
 
 
+# Beside the functions, so that those sent to another process stay small.
+_kept: WeakKeyDictionary[PeriodicPolynomial, dict[tuple[tuple[int, ...], bytes], Array]] = (
+    WeakKeyDictionary()
+)
+
+
 def interpolant(knots: Array, values: Array) -> BSpline:
     """Periodic quintic B-spline through samples at any angles of one turn.
 
@@ -100,13 +128,34 @@ def periodic_quintic(values: ArrayLike) -> PeriodicPolynomial:
     ----------
     values : array (n,)    any unit, n >= 12
     """
-    from scipy.interpolate import PPoly
-
     samples = np.asarray(values, dtype=float)
-    spline = interpolant(np.linspace(0.0, FULL_TURN, len(samples) + 1), samples)
-    # the spline has DEGREE more knots on either side of the turn
-    inside = PPoly.from_spline((spline.t, spline.c, spline.k)).c[::-1, DEGREE:-DEGREE]
-    return PeriodicPolynomial(inside)
+    count = samples.size
+    # The splines of equal knots are shifts of one another: a cyclic convolution, solved by FFT.
+    at_knots = np.zeros(count)
+    at_knots[[-2, -1, 0, 1, 2]] = _pieces()[1:, 0]
+    weights = np.fft.irfft(np.fft.rfft(samples) / np.fft.rfft(at_knots), count)
+    shifted = np.stack([np.roll(weights, piece - 3) for piece in range(DEGREE + 1)])
+    powers = (count / FULL_TURN) ** np.arange(DEGREE + 1.0)
+    return PeriodicPolynomial(powers[:, None] * (_pieces().T @ shifted))
+
+
+@cache
+def _pieces() -> Array:
+    """Quintic B-spline of unit knots: piece m (6, 6) in rising powers of x - m.
+
+    References
+    ----------
+    de Boor, A Practical Guide to Splines (1978), ch. IX: truncated powers.
+    """
+    pieces = np.zeros((DEGREE + 1, DEGREE + 1))
+    for piece in range(DEGREE + 1):
+        for power in range(DEGREE + 1):
+            truncated = sum(
+                (-1) ** k * comb(DEGREE + 1, k) * (piece - k) ** (DEGREE - power)
+                for k in range(piece + 1)
+            )
+            pieces[piece, power] = comb(DEGREE, power) * truncated / factorial(DEGREE)
+    return readonly(pieces)
 
 
 @cache

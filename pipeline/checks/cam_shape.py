@@ -7,7 +7,6 @@ import numpy as np
 from camwright.geometry.arrays import FULL_TURN
 from camwright.geometry.cutter_path import tool_interference
 from camwright.geometry.extrema import Extremum
-from camwright.geometry.extrema import greatest as greatest_of
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
@@ -258,9 +257,8 @@ def least_concave_radius(case: Case) -> float | None:
 )
 def curvature_rate(solution: Solution) -> Demand:
     """Greatest change of the contour's curvature per length, 1/m^2."""
-    allowed, contour = solution.machine.limits[CURVATURE_RATE], solution.contour
-    count = contour.pitch.lift.search_count
-    worst = greatest_of(lambda theta: np.abs(contour.curvature_rate(theta)), count)
+    allowed = solution.machine.limits[CURVATURE_RATE]
+    worst = solution.contour.curvature_rate_max
     return Demand(
         float(worst.value),
         allowed,

@@ -112,10 +112,12 @@ def film_ratio(solution: Solution) -> Demand:
 
 def _torsion_demand(solution: Solution, measure: Callable[[Envelope], float]) -> Demand:
     """Equivalent fatigue stress against the fatigue limit in torsion of the cam, Pa."""
-    worst = worst_case(solution.cycles, lambda cycle: measure(cycle.rolling.envelope))
     card = solution.machine.cam.material
     torsion, safety = card.fatigue_torsion, solution.machine.limits[FATIGUE_SAFETY]
     known = torsion is not None and card.fatigue_bending is not None
+    worst = worst_case(
+        solution.cycles, lambda cycle: measure(cycle.rolling.envelope) if known else math.nan
+    )
     return Demand(
         worst.value,
         torsion / safety if known and torsion else None,

@@ -30,7 +30,12 @@ from camwright.pipeline.engine.torque_consistency import (
     ratio_finding,
     work_finding,
 )
-from camwright.pipeline.follower.follower_forces import FollowerSystem, Rubbing, follower_loads
+from camwright.pipeline.follower.follower_forces import (
+    FollowerSystem,
+    Rubbing,
+    follower_loads,
+    torque_on_cam,
+)
 
 POSITIONS = 720
 
@@ -84,11 +89,10 @@ def mechanism_torque(
 
     Friction depends on the contact force, and thus on speed and acceleration of the crank.
     """
-    theta = uniform_turn(count)
+    on_cam = torque_on_cam(pitch, system, uniform_turn(count))
 
     def torque(speed: Array, acceleration: Array) -> Array:
-        loads = follower_loads(pitch, system, speed / gear_ratio, theta, acceleration / gear_ratio)
-        return np.asarray((loads.inertia_force * loads.lift_slope - loads.cam_torque) / gear_ratio)
+        return on_cam(speed / gear_ratio, acceleration / gear_ratio) / gear_ratio
 
     return torque
 
@@ -118,21 +122,33 @@ def speed_study(
     CamError
         If the engine stalls.
     """
-    count = torque.size
     before = crank_motion(torque, inertia, mean_speed, load=load)
     mounted = inertia.plus(mechanism_inertia)
     alone = crank_motion(torque, mounted, mean_speed, load=load)
-    follower = follower_inertia(pitch, system.mass, gear_ratio, count)
-    after = crank_motion(
+    after = _motion_with_cam(torque, mounted, mean_speed, pitch, system, gear_ratio, load)
+    std = after.statistics.std
+    needed = equivalent_inertia(before.net_torque, mean_speed, std) if std > 0 else np.inf
+    return SpeedStudy(before, alone, after, needed - inertia.mean)
+
+
+def _motion_with_cam(
+    torque: Array,
+    mounted: Inertia,
+    mean_speed: float,
+    pitch: FollowerPath,
+    system: FollowerSystem,
+    gear_ratio: float,
+    load: Load,
+) -> CrankMotion:
+    """Motion of the crank with the cam; `mounted` includes the rotating parts of the mechanism."""
+    follower = follower_inertia(pitch, system.mass, gear_ratio, torque.size)
+    return crank_motion(
         torque,
         mounted.plus(0.0, follower),
         mean_speed,
         load=load,
-        mechanism=mechanism_torque(pitch, system, gear_ratio, count),
+        mechanism=mechanism_torque(pitch, system, gear_ratio, torque.size),
     )
-    std = after.statistics.std
-    needed = equivalent_inertia(before.net_torque, mean_speed, std) if std > 0 else np.inf
-    return SpeedStudy(before, alone, after, needed - inertia.mean)
 
 
 def study_of(
@@ -146,13 +162,10 @@ def study_of(
     shaft = machine.crankshaft
     if shaft is None:
         return None
-    values, varying = torque.total, np.zeros(torque.theta_crank.size)
-    if torque.varying_inertia is not None:
-        values = values - torque.components["inertia"]
-        varying = torque.varying_inertia
+    values, inertia = _driving(torque, shaft.inertia)
     return speed_study(
         values,
-        Inertia(shaft.inertia, varying),
+        inertia,
         machine.speed,
         pitch,
         replace(machine.system, rubbing=rubbing),
@@ -160,6 +173,14 @@ def study_of(
         mechanism_inertia=shaft.mechanism_inertia,
         load=Load(shaft.load_exponent),
     )
+
+
+def _driving(torque: Torque, constant: float) -> tuple[Array, Inertia]:
+    """Engine torque (n,), N m, without that of the inertia, and the inertia of the engine."""
+    if torque.varying_inertia is None:
+        return torque.total, Inertia(constant, np.zeros(torque.theta_crank.size))
+    without = torque.total - torque.components["inertia"]
+    return without, Inertia(constant, torque.varying_inertia)
 
 
 def driven_cam_speed(
@@ -198,14 +219,28 @@ def speed_ripple(
         if machine.crankshaft is None or name not in torques or not machine.speed > 0:
             continue
         try:
-            study = study_of(machine, torques[name], pitch, rubbing.get(name))
+            ripple[name] = _ripple(machine, torques[name], pitch, rubbing.get(name))
         except CamError:
-            study = None
-        if study is None:
             ripple[name] = (np.nan, np.nan)
-        else:
-            ripple[name] = (study.before.statistics.std, study.after.statistics.std)
     return ripple
+
+
+def _ripple(
+    machine: Machine, torque: Torque, pitch: FollowerPath, rubbing: Rubbing | None
+) -> tuple[float, float]:
+    """Standard deviation of the crank speed of one load case, as of `study_of`."""
+    shaft = machine.crankshaft
+    if shaft is None:
+        return np.nan, np.nan
+    values, inertia = _driving(torque, shaft.inertia)
+    speed, load = machine.speed, Load(shaft.load_exponent)
+    before = crank_motion(values, inertia, speed, load=load)
+    if not np.ptp(before.net_torque) > 0.0:  # a torque without ripple
+        return np.nan, np.nan
+    mounted = inertia.plus(shaft.mechanism_inertia)
+    system = replace(machine.system, rubbing=rubbing)
+    after = _motion_with_cam(values, mounted, speed, pitch, system, machine.gear_ratio, load)
+    return before.statistics.std, after.statistics.std
 
 
 def consistency(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -34,11 +35,28 @@ _MM, _MPA = 1e3, 1e-6
 MAPS = ("von_mises", "tau_max", "shear_range", "crossland", "dang_van")
 
 
+class SweptStress:
+    """Map of the maximum stresses of a turn, computed on first use.
+
+    Parameters
+    ----------
+    compute : function   () -> map
+    """
+
+    def __init__(self, compute: Callable[[], Envelope]) -> None:
+        self._compute = compute
+
+    @cached_property
+    def envelope(self) -> Envelope:
+        """The map."""
+        return self._compute()
+
+
 @dataclass(frozen=True, eq=False)
 class RollingHistory:
     """One turn; arrays (n,) SI. None where the case lacks the data.
 
-    shear_range, Pa, of the orthogonal shear stress in the cam; bore, None in a preview; envelope,
+    shear_range, Pa, of the orthogonal shear stress in the cam; bore, None in a preview; swept,
     map of the maximum stresses; traction_demand, tangential over normal force of rolling without
     slip, NaN where the contact is open, None under a flat face; sliding of a flat face; contact,
     creep and slip of a roller; tau_max and von_mises, Pa, in the cam with traction; film.
@@ -46,7 +64,7 @@ class RollingHistory:
 
     shear_range: Array
     bore: BoreStress | None
-    envelope: Envelope
+    swept: SweptStress
     traction_demand: Array | None = None
     sliding: FaceSliding | None = None
     contact: RollingContact | None = None
@@ -59,10 +77,15 @@ class RollingHistory:
         if self.traction_demand is not None:
             freeze(self, traction_demand=self.traction_demand)
 
+    @property
+    def envelope(self) -> Envelope:
+        """Map of the maximum stresses below the contour."""
+        return self.swept.envelope
+
     @classmethod
     def unknown(cls, count: int) -> RollingHistory:
         """NaN at every angle: the contour encloses no body."""
-        return cls(np.full(count, np.nan), None, Envelope.unknown())
+        return cls(np.full(count, np.nan), None, SweptStress(Envelope.unknown))
 
     def columns(self) -> dict[Column, Array]:
         """Columns of ``5_cycle.csv``; a contour that encloses no body leaves them unknown."""
@@ -147,7 +170,7 @@ def rolling_history(
     return RollingHistory(
         shear_range=reach * contact.p0,
         bore=bore,
-        envelope=_envelope(machine, pair, bodies, loads, contact),
+        swept=SweptStress(partial(_envelope, machine, pair, bodies, loads, contact)),
         traction_demand=motion.traction_demand,
         sliding=motion.sliding,
         contact=motion.rolling,

@@ -39,7 +39,7 @@ from camwright.pipeline.cycle import solution as solving
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.oil_film_history import FilmHistory
 from camwright.pipeline.cycle.part_loads import PartLoads
-from camwright.pipeline.cycle.rolling_history import RollingHistory
+from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import ContactMesh, Solution
 from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.guide_friction import GuideHeat
@@ -280,15 +280,17 @@ def _rolling(base: Cycle) -> RollingHistory:
             away_from_edges=np.full(POSITIONS, 200e6),
             excluded=5e-4,
         ),
-        envelope=Envelope(
-            theta=np.zeros(1),
-            arc=np.zeros(1),
-            depth=np.array([[0.0, 0.5e-3]]),
-            von_mises=np.array([[300e6, 400e6]]),
-            tau_max=np.array([[150e6, 200e6]]),
-            shear_range=np.array([[150e6, 200e6]]),
-            crossland=np.array([[150e6, 200e6]]),
-            dang_van=np.array([[180e6, 240e6]]),
+        swept=SweptStress(
+            lambda: Envelope(
+                theta=np.zeros(1),
+                arc=np.zeros(1),
+                depth=np.array([[0.0, 0.5e-3]]),
+                von_mises=np.array([[300e6, 400e6]]),
+                tau_max=np.array([[150e6, 200e6]]),
+                shear_range=np.array([[150e6, 200e6]]),
+                crossland=np.array([[150e6, 200e6]]),
+                dang_van=np.array([[180e6, 240e6]]),
+            )
         ),
     )
 

@@ -14,6 +14,7 @@ from camwright.pipeline.follower.follower_forces import (
     FollowerSystem,
     follower_loads,
     jump_speed,
+    torque_on_cam,
     turn_integral,
 )
 from camwright.pipeline.follower.spring import Spring
@@ -168,6 +169,18 @@ def test_varying_cam_speed_adds_the_angular_acceleration():
     driven = follower_loads(harmonic(), SYSTEM, np.full(12, SPEED), theta, 1000.0)
     extra = 0.2 * 1000.0 * steady.lift_slope
     np.testing.assert_allclose(driven.inertia_force - steady.inertia_force, extra, atol=1e-12)
+
+
+@pytest.mark.parametrize("face", [0.0, 0.1])
+def test_torque_on_the_cam_is_that_of_the_loads_without_inertia(face):
+    """The same terms in the same order, computed from kept ones: round-off."""
+    pitch, theta = harmonic(), uniform_turn(90)
+    system = replace(SYSTEM, viscous_damping=2.0, face_friction=face)
+    speed, change = 80.0 + 5.0 * np.cos(theta), 300.0 * np.sin(theta)
+    loads = follower_loads(pitch, system, speed, theta, change)
+    expected = loads.inertia_force * loads.lift_slope - loads.cam_torque
+    torque = torque_on_cam(pitch, system, theta)(speed, change)
+    np.testing.assert_allclose(torque, expected, rtol=1e-13, atol=1e-13)
 
 
 def test_gravity_presses_on_the_cam():

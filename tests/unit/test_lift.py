@@ -108,6 +108,20 @@ def test_finds_the_stroke_between_samples():
     assert lift.highest.theta == pytest.approx(np.pi * 17 / 16, abs=1e-6)
 
 
+def test_kept_derivatives_are_those_of_their_own_angles():
+    """More sets of angles than are kept, shapes and orders in turn."""
+    for shift in (*range(20), 3):
+        theta = uniform_turn(100) + 1e-3 * shift
+        for order in (1, 3, 0):
+            alone = [LIFT(theta, k) for k in range(order + 1)]
+            rows = LIFT.derivatives(theta, order)
+            np.testing.assert_array_equal(rows, alone)
+            np.testing.assert_array_equal(
+                LIFT.derivatives(theta.reshape(4, 25), order)[0], rows[0].reshape(4, 25)
+            )
+            assert not rows.flags.writeable
+
+
 def test_is_read_only():
     with pytest.raises(ValueError, match="read-only"):
         LIFT.values[0] = 1.0

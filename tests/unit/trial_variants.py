@@ -14,7 +14,7 @@ from camwright.geometry.lift import Lift
 from camwright.geometry.periodic_spline import DEGREE, PeriodicPolynomial
 from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.rolling_history import RollingHistory
+from camwright.pipeline.cycle.rolling_history import RollingHistory, SweptStress
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.camshaft_loads import Reversal
 from camwright.pipeline.follower.guide_friction import GuideHeat
@@ -124,7 +124,8 @@ def with_bore(**values: Any) -> Solution:
 
 
 def with_map(**values: Any) -> Solution:
-    return with_rolling(envelope=replace(made.cycle().rolling.envelope, **values))
+    swept = replace(made.cycle().rolling.envelope, **values)
+    return with_rolling(swept=SweptStress(lambda: swept))
 
 
 def with_parts(**values: Any) -> Solution:
