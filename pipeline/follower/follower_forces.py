@@ -193,6 +193,11 @@ class Loads:
         """Rubbing load of the guides over axial force and side-load factor, over the turn."""
         return Rubbing(self.theta, self.rubbing_a, self.rubbing_b)
 
+    def frictionless_force(self, system: FollowerSystem) -> Array:
+        """Axial force without guide friction, N, of the system of these loads."""
+        demand = self.spring_force + self.inertia_force + system.weight + self.viscous_force
+        return np.asarray(np.maximum(demand, 0.0))
+
     @property
     def separated(self) -> NDArray[np.bool_]:
         """Where the follower has no contact with the cam (n,), bool; the forces are zero."""

@@ -125,20 +125,13 @@ def guided_strokes(
         follower_loads(s.pitch, replace(s.system, rubbing=None), s.cam_speed, s.theta)
         for s in strokes
     ]
-    free = [
-        follower_loads(
-            s.pitch,
-            replace(s.system, friction_a=0.0, friction_b=0.0, rubbing=None),
-            s.cam_speed,
-            s.theta,
-        )
-        for s in strokes
-    ]
     for each in points:
         require_fit(stem, guides, each.overhang, knots)
     way = _joined([Push.of(s.pitch, s.system, s.theta) for s in strokes])
     slope = np.concatenate([each.lift_slope for each in points])
-    force = np.concatenate([each.axial_force for each in free])
+    force = np.concatenate(
+        [each.frictionless_force(s.system) for each, s in zip(points, strokes, strict=True)]
+    )
     sizes = [s.theta.size for s in strokes]
     friction_a = np.repeat([s.system.friction_a for s in strokes], sizes)
     friction_b = np.repeat([s.system.friction_b for s in strokes], sizes)
@@ -156,44 +149,35 @@ def guided_strokes(
     push, rounds = balanced(mapping, low, high, start)
     a, b = bores.factors(push, np.arange(push.size))
     ends = np.cumsum([0, *sizes])
-    return tuple(
-        _guided(
-            stroke,
-            unloaded,
-            (a[first:end], b[first:end]),
-            stem,
-            guides,
-            knots,
-            bores.solution(first, end),
-            rounds,
+    spans = [slice(*span) for span in zip(ends[:-1], ends[1:], strict=True)]
+    loads = [
+        follower_loads(
+            s.pitch,
+            replace(s.system, rubbing=Rubbing(s.theta, a[span], b[span])),
+            s.cam_speed,
+            s.theta,
         )
-        for stroke, unloaded, first, end in zip(strokes, free, ends[:-1], ends[1:], strict=True)
+        for s, span in zip(strokes, spans, strict=True)
+    ]
+    reactions = guide_reactions(
+        np.concatenate([each.tangential_force for each in loads]),
+        np.concatenate([each.overhang for each in loads]),
+        stem,
+        guides,
+        np.concatenate([each.end_moment for each in loads]),
+        knots=knots,
+        start=bores.solution,
+    )
+    return tuple(
+        _guided(stroke.system, each, reactions.part(span), force[span], rounds)
+        for stroke, each, span in zip(strokes, loads, spans, strict=True)
     )
 
 
 def _guided(
-    stroke: Stroke,
-    free: Loads,
-    factors: tuple[Array, Array],
-    stem: Stem,
-    guides: GuidePair,
-    knots: int,
-    start: tuple[Array, Array],
-    rounds: int,
+    system: FollowerSystem, loads: Loads, reactions: GuideReactions, free: Array, rounds: int
 ) -> Guided:
-    """Loads and reactions of a stroke from its rubbing factors; its residual is checked."""
-    pitch, system, cam_speed, theta = stroke
-    rubbing = Rubbing(theta, *factors)
-    loads = follower_loads(pitch, replace(system, rubbing=rubbing), cam_speed, theta)
-    reactions = guide_reactions(
-        loads.tangential_force,
-        loads.overhang,
-        stem,
-        guides,
-        loads.end_moment,
-        knots=knots,
-        start=start,
-    )
+    """Loads and reactions of a stroke, whose residual is checked."""
     residual = _residual(system, free, loads, reactions)
     if not residual.max(initial=0.0) <= RESIDUAL:
         raise ContactError(
@@ -272,9 +256,10 @@ class _Bores:
         self.pushes, self.rigid = np.zeros((size, count)), np.zeros((2, count))
         self.started = False
 
-    def solution(self, first: int, end: int) -> tuple[Array, Array]:
-        """Last solution at positions in a row, to start another."""
-        return self.pushes[:, first:end], self.rigid[:, first:end]
+    @property
+    def solution(self) -> tuple[Array, Array]:
+        """Last solution at every position, to start another."""
+        return self.pushes, self.rigid
 
     def factors(self, push: Array, at: NDArray[np.intp]) -> tuple[Array, Array]:
         """Rubbing load over axial force and side-load factor (k,); unloaded: of point supports."""
@@ -296,13 +281,16 @@ class _Bores:
 
 
 def _residual(
-    system: FollowerSystem, free: Loads, loads: Loads, reactions: GuideReactions
+    system: FollowerSystem, free: Array, loads: Loads, reactions: GuideReactions
 ) -> Array:
-    """Residual (n,) of the axial equilibrium over the axial force; 0 where that is bounded."""
+    """Residual (n,) of the axial equilibrium over the axial force; 0 where that is bounded.
+
+    `free` (n,), N, is the axial force without friction.
+    """
     rubs = (
         system.friction_a * reactions.rubbing_load_a + system.friction_b * reactions.rubbing_load_b
     )
-    miss = loads.axial_force - np.sign(loads.lift_slope) * rubs - free.axial_force
+    miss = loads.axial_force - np.sign(loads.lift_slope) * rubs - free
     bounded = share_left(loads.lift_slope, loads.jam_index) <= JAM_FLOOR
     push = np.where(bounded, 0.0, loads.axial_force)
     return np.divide(np.abs(miss), push, out=np.zeros_like(miss), where=push > 0.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
@@ -181,6 +181,12 @@ class GuideReactions:
     def __post_init__(self) -> None:
         names = set(self.__dataclass_fields__) - {"stem_diameter"}
         freeze(self, **{name: getattr(self, name) for name in names})
+
+    def part(self, span: slice) -> GuideReactions:
+        """Reactions at some positions in a row."""
+        whole = ("stem_diameter", "knots_a", "knots_b")
+        names = set(self.__dataclass_fields__) - set(whole)
+        return replace(self, **{name: getattr(self, name)[..., span] for name in names})
 
     @cached_property
     def line_pressure_max_a(self) -> Array:
