@@ -216,6 +216,8 @@ class _Resonant:
         return dynamic_stiffness(drive, self.spring.rate, frequency, self.design.damping)
 
     def back(self, spectrum: NDArray[np.complex128]) -> Array:
+        if not spectrum.any():
+            return np.zeros((*spectrum.shape[:-1], ANGLES))
         return np.fft.irfft(spectrum, ANGLES)
 
     def end_forces(self, cam_speed: Array) -> tuple[Array, Array]:

@@ -353,12 +353,16 @@ class DynamicStiffness:
     @property
     def moving(self) -> NDArray[np.complex128]:
         """Of the moving end."""
+        if not self.phase.any():
+            return np.zeros_like(self.phase)
         square = self._decay**2
         return self._known(1.0j * self._moved * (1.0 + square) / (1.0 - square))
 
     @property
     def fixed(self) -> NDArray[np.complex128]:
         """Of the fixed end."""
+        if not self.phase.any():
+            return np.zeros_like(self.phase)
         decay = self._decay
         return self._known(2.0j * self._moved * decay / (1.0 - decay**2))
 
