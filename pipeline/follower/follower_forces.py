@@ -117,11 +117,6 @@ class FollowerSystem:
                 raise InputError(f"follower.{name}", getattr(self, name), f">= 0 {unit}".rstrip())
         finite("follower.gravity_along_axis", self.gravity_along_axis)
 
-    @property
-    def weight(self) -> float:
-        """Component of the weight towards the cam, N."""
-        return self.mass * self.gravity_along_axis
-
     def guide_factors(self, overhang: ArrayLike) -> tuple[Array, Array]:
         """|A|/F_t and |B|/F_t, see `levers`."""
         return levers(np.asarray(overhang, dtype=float), self.guide_spacing)
@@ -195,7 +190,8 @@ class Loads:
 
     def frictionless_force(self, system: FollowerSystem) -> Array:
         """Axial force without guide friction, N, of the system of these loads."""
-        demand = self.spring_force + self.inertia_force + system.weight + self.viscous_force
+        weight = system.mass * system.gravity_along_axis
+        demand = self.spring_force + self.inertia_force + weight + self.viscous_force
         return np.asarray(np.maximum(demand, 0.0))
 
     @property
@@ -338,43 +334,50 @@ def follower_loads(
     """
     theta = finite("theta", theta)
     speed = _forward(cam_speed, theta)
-    way = _Way.of(pitch, system, theta)
-    lift, slope, push = way.lift, way.slope, way.push
-    acceleration = way.acceleration(speed, finite("cam_acceleration", cam_acceleration))
+    lift, slope, bend = pitch.lift.derivatives(theta, 2)
+    slope = np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0)
+    acceleration = bend * speed**2 + slope * finite("cam_acceleration", cam_acceleration)
     spring_force = system.spring.force(lift)
     inertia_force = system.mass * acceleration
     viscous_force = system.viscous_damping * slope * speed
-    demand = spring_force + inertia_force + system.weight + viscous_force
-    axial_force = way.axial_force(demand)
+    weight = system.mass * system.gravity_along_axis
+    demand = spring_force + inertia_force + weight + viscous_force
+
+    pressure_angle = pitch.pressure_angle(theta)
+    overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
+    push = Push.of(pitch, system, theta)
+    on_points = push.on_points(*system.guide_factors(overhang))
+    rubbing_a, rubbing_b = system.rubbing_factors(push, overhang, theta)
+    jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.side_factor
+    axial_force = np.maximum(demand, 0.0) / share_left(slope, jam_index)
     side_load = axial_force * push.side_factor
-    friction_a = system.friction_a * way.rubbing_a * side_load
-    friction_b = system.friction_b * way.rubbing_b * side_load
-    sliding = way.sliding * axial_force
+    friction_a = system.friction_a * rubbing_a * side_load
+    friction_b = system.friction_b * rubbing_b * side_load
+    sliding = system.face_friction * axial_force * pitch.height(theta)
     friction_power = (friction_a + friction_b) * np.abs(slope) + viscous_force * slope + sliding
-    on_points = way.on_points
     return Loads(
         theta=theta,
         lift=lift,
         lift_slope=slope,
-        pressure_angle=way.pressure_angle,
-        overhang=way.overhang,
+        pressure_angle=pressure_angle,
+        overhang=overhang,
         velocity=slope * speed,
         acceleration=acceleration,
         spring_force=spring_force,
         inertia_force=inertia_force,
         axial_force=axial_force,
-        normal_force=axial_force / np.cos(way.pressure_angle),
+        normal_force=axial_force / np.cos(pressure_angle),
         tangential_force=axial_force * push.side,
         friction_force_a=friction_a,
         friction_force_b=friction_b,
         reaction_a=axial_force * on_points[0],
         reaction_b=axial_force * on_points[1],
         cam_torque=axial_force * slope + sliding,
-        jam_index=way.jam_index,
+        jam_index=jam_index,
         friction_power=friction_power * speed,
         viscous_force=viscous_force,
-        rubbing_a=way.rubbing_a,
-        rubbing_b=way.rubbing_b,
+        rubbing_a=rubbing_a,
+        rubbing_b=rubbing_b,
         jam_index_statics=system.friction_a * np.abs(on_points[0])
         + system.friction_b * np.abs(on_points[1]),
         end_moment=axial_force * push.arm,
@@ -388,68 +391,21 @@ def torque_on_cam(
     """Torque of spring and friction on the cam (n,), N m, by its speed and acceleration (n,).
 
     That of the inertia of the follower is left out; friction depends on the contact force and thus
-    on the motion. As by `follower_loads`, whose forces at fixed angles it does not repeat.
+    on the motion. As by `follower_loads`, without what does not change at the same cam angles.
     """
-    way = _Way.of(pitch, system, theta)
-    still = system.spring.force(way.lift)
+    still = follower_loads(pitch, system, 0.0, theta)
+    slope, bend = still.lift_slope, pitch.lift.derivatives(theta, 2)[2]
+    weight = system.mass * system.gravity_along_axis
+    share = share_left(slope, still.jam_index)
+    arm = slope + system.face_friction * pitch.height(theta)
 
     def torque(speed: Array, cam_acceleration: Array) -> Array:
-        inertia_force = system.mass * way.acceleration(speed, cam_acceleration)
-        viscous_force = system.viscous_damping * way.slope * speed
-        axial_force = way.axial_force(still + inertia_force + system.weight + viscous_force)
-        return np.asarray(
-            inertia_force * way.slope - (axial_force * way.slope + way.sliding * axial_force)
-        )
+        inertia_force = system.mass * (bend * speed**2 + slope * cam_acceleration)
+        viscous_force = system.viscous_damping * slope * speed
+        demand = still.spring_force + inertia_force + weight + viscous_force
+        return np.asarray(inertia_force * slope - np.maximum(demand, 0.0) / share * arm)
 
     return torque
-
-
-@dataclass(frozen=True, eq=False)
-class _Way:
-    """What the forces at cam angles (n,) owe to the geometry and the guides alone.
-
-    sliding : cam torque of the friction of a face over the axial force, m
-    """
-
-    lift: Array
-    slope: Array
-    bend: Array
-    pressure_angle: Array
-    overhang: Array
-    push: Push
-    on_points: tuple[Array, Array]
-    rubbing_a: Array
-    rubbing_b: Array
-    jam_index: Array
-    sliding: Array
-
-    @classmethod
-    def of(cls, pitch: FollowerPath, system: FollowerSystem, theta: Array) -> _Way:
-        lift, slope, bend = pitch.lift.derivatives(theta, 2)
-        overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
-        push = Push.of(pitch, system, theta)
-        a, b = system.rubbing_factors(push, overhang, theta)
-        return cls(
-            lift=lift,
-            slope=np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0),
-            bend=bend,
-            pressure_angle=pitch.pressure_angle(theta),
-            overhang=overhang,
-            push=push,
-            on_points=push.on_points(*system.guide_factors(overhang)),
-            rubbing_a=a,
-            rubbing_b=b,
-            jam_index=(system.friction_a * a + system.friction_b * b) * push.side_factor,
-            sliding=system.face_friction * pitch.height(theta),
-        )
-
-    def acceleration(self, speed: Array, cam_acceleration: Array) -> Array:
-        """Of the follower at a cam speed (n,), rad/s, and its change, rad/s2."""
-        return self.bend * speed**2 + self.slope * cam_acceleration
-
-    def axial_force(self, demand: Array) -> Array:
-        """Axial contact force at one without guide friction, N; zero where that is negative."""
-        return np.asarray(np.maximum(demand, 0.0) / share_left(self.slope, self.jam_index))
 
 
 def _forward(cam_speed: ArrayLike, theta: Array) -> Array:
