@@ -7,9 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 
+from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base import disk_cache
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.engine import (
+    combustion,
+    cylinder,
+    heat_loss,
+    indicated_cycle,
+    indicated_cycle_solver,
+    valves,
+    working_gas,
+)
+from camwright.pipeline.engine import torque as torque_module
 from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.indicated_cycle_solver import SPEED_RANGE
 from camwright.pipeline.engine.pickup_voltage import VoltageTable, speed_from_voltage
@@ -29,6 +41,11 @@ from camwright.pipeline.engine.torque import (
     torque_from_cylinder,
 )
 
+_COMPONENT = "component."
+_MODULES = (
+    *(cylinder, working_gas, valves, combustion, heat_loss),
+    *(indicated_cycle, indicated_cycle_solver, torque_module),
+)
 CRANKING = SPEED_RANGE[0]
 """Cranking speed of an engine at rest, rad/s."""
 
@@ -61,12 +78,31 @@ def engine_torque(case: Case, state: LoadCase) -> Torque:
     if isinstance(engine, TorqueTable):
         return torque_from_csv(case.path(engine.file))
     if isinstance(engine, CylinderEngine):
-        return torque_from_cylinder(_loaded(engine, state), state.speed or CRANKING)
+        return _cylinder_torque(_loaded(engine, state), state.speed or CRANKING)
     if isinstance(engine, PressureTable):
         return torque_from_pressure(pressure(case, engine), engine, state.speed)
     if isinstance(engine, (SpeedTable, VoltageTable)) and case.crankshaft is not None:
         return crank_speed(case, engine).torque(case.crankshaft.inertia)
     raise InputError("engine", "missing", "given")
+
+
+def _cylinder_torque(engine: CylinderEngine, speed: float) -> Torque:
+    """Torque of a cylinder model at a speed, rad/s, from the disk cache where it is known."""
+
+    def compute() -> dict[str, Array]:
+        torque = torque_from_cylinder(engine, speed)
+        arrays = {_COMPONENT + name: part for name, part in torque.components.items()}
+        if torque.varying_inertia is not None:
+            arrays["varying_inertia"] = torque.varying_inertia
+        return arrays | {"theta_crank": torque.theta_crank}
+
+    kept = disk_cache.kept("torque", (engine, speed), compute, _MODULES)
+    parts = {
+        name.removeprefix(_COMPONENT): part
+        for name, part in kept.items()
+        if name.startswith(_COMPONENT)
+    }
+    return Torque(kept["theta_crank"], parts, kept.get("varying_inertia"))
 
 
 def _has_torque(case: Case, state: LoadCase) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -149,7 +150,7 @@ def guided_strokes(
     push, rounds = balanced(mapping, low, high, start)
     a, b = bores.factors(push, np.arange(push.size))
     ends = np.cumsum([0, *sizes])
-    spans = [slice(*span) for span in zip(ends[:-1], ends[1:], strict=True)]
+    spans = [slice(*span) for span in pairwise(ends)]
     loads = [
         follower_loads(
             s.pitch,

@@ -173,7 +173,7 @@ def test_varying_cam_speed_adds_the_angular_acceleration():
 
 @pytest.mark.parametrize("face", [0.0, 0.1])
 def test_torque_on_the_cam_is_that_of_the_loads_without_inertia(face):
-    """The same terms in the same order, without what stays the same: round-off."""
+    """The same terms in another order: round-off."""
     pitch, theta = harmonic(), uniform_turn(90)
     system = replace(SYSTEM, viscous_damping=2.0, face_friction=face)
     speed, change = 80.0 + 5.0 * np.cos(theta), 300.0 * np.sin(theta)

@@ -1,12 +1,17 @@
 """Torque as the sum of its parts."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from cycle_pressures import fmep, net_imep
 
 from camwright.geometry.errors import CamError, InputError
+from camwright.pipeline.base import disk_cache
+from camwright.pipeline.case import load_case_torque
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.engine import indicated_cycle_solver
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
 from camwright.pipeline.engine.torque import (
@@ -25,6 +30,7 @@ ENGINE = CylinderEngine(
     rod_mass=0.123,
 )
 SPEED = 157.08
+CASES = Path(__file__).parents[2] / "cases"
 
 
 def uniform(count):
@@ -159,3 +165,19 @@ def test_a_cycle_that_does_not_settle_raises(monkeypatch):
 def test_speeds_out_of_range_are_refused(speed):
     with pytest.raises(InputError, match="crank_speed"):
         torque_from_cylinder(ENGINE, speed)
+
+
+def test_torque_of_a_case_is_kept_between_runs(tmp_path, monkeypatch):
+    """Read back to the bit, and not computed again."""
+    monkeypatch.delenv(disk_cache.OFF, raising=False)
+    monkeypatch.setenv(disk_cache.FOLDER, str(tmp_path))
+    case = read_case(CASES / "gx120.toml")
+    first = engine_torques(case)["idle"]
+    monkeypatch.setattr(load_case_torque, "torque_from_cylinder", None)
+    second = engine_torques(case)["idle"]
+    computed = torque_from_cylinder(case.engine, case.load_cases[0].speed)
+    for torque in (first, second):
+        assert list(torque.components) == list(computed.components)
+        np.testing.assert_array_equal(torque.total, computed.total)
+        np.testing.assert_array_equal(torque.varying_inertia, computed.varying_inertia)
+        np.testing.assert_array_equal(torque.theta_crank, computed.theta_crank)
