@@ -1,4 +1,4 @@
-"""Periodic splines of the cam angle: quintic interpolation on one turn."""
+"""Periodic splines of an angle: quintic and cubic interpolation on one turn."""
 
 from __future__ import annotations
 
@@ -128,33 +128,48 @@ def periodic_quintic(values: ArrayLike) -> PeriodicPolynomial:
     ----------
     values : array (n,)    any unit, n >= 12
     """
+    return _through(values, DEGREE)
+
+
+def periodic_cubic(values: ArrayLike) -> PeriodicPolynomial:
+    """Periodic cubic (C2) through samples at n equal angles of one turn, from angle 0.
+
+    Parameters
+    ----------
+    values : array (n,)    any unit, n >= 12
+    """
+    return _through(values, 3)
+
+
+def _through(values: ArrayLike, degree: int) -> PeriodicPolynomial:
+    """Periodic spline of odd degree through samples at equal angles."""
     samples = np.asarray(values, dtype=float)
-    count = samples.size
+    count, half = samples.size, degree // 2
     # The splines of equal knots are shifts of one another: a cyclic convolution, solved by FFT.
     at_knots = np.zeros(count)
-    at_knots[[-2, -1, 0, 1, 2]] = _pieces()[1:, 0]
+    at_knots[np.arange(-half, half + 1)] = _pieces(degree)[1:, 0]
     weights = np.fft.irfft(np.fft.rfft(samples) / np.fft.rfft(at_knots), count)
-    shifted = np.stack([np.roll(weights, piece - 3) for piece in range(DEGREE + 1)])
-    powers = (count / FULL_TURN) ** np.arange(DEGREE + 1.0)
-    return PeriodicPolynomial(powers[:, None] * (_pieces().T @ shifted))
+    shifted = np.stack([np.roll(weights, piece - half - 1) for piece in range(degree + 1)])
+    powers = (count / FULL_TURN) ** np.arange(degree + 1.0)
+    return PeriodicPolynomial(powers[:, None] * (_pieces(degree).T @ shifted))
 
 
 @cache
-def _pieces() -> Array:
-    """Quintic B-spline of unit knots: piece m (6, 6) in rising powers of x - m.
+def _pieces(degree: int) -> Array:
+    """B-spline of unit knots: piece m (degree + 1, degree + 1) in rising powers of x - m.
 
     References
     ----------
     de Boor, A Practical Guide to Splines (1978), ch. IX: truncated powers.
     """
-    pieces = np.zeros((DEGREE + 1, DEGREE + 1))
-    for piece in range(DEGREE + 1):
-        for power in range(DEGREE + 1):
+    pieces = np.zeros((degree + 1, degree + 1))
+    for piece in range(degree + 1):
+        for power in range(degree + 1):
             truncated = sum(
-                (-1) ** k * comb(DEGREE + 1, k) * (piece - k) ** (DEGREE - power)
+                (-1) ** k * comb(degree + 1, k) * (piece - k) ** (degree - power)
                 for k in range(piece + 1)
             )
-            pieces[piece, power] = comb(DEGREE, power) * truncated / factorial(DEGREE)
+            pieces[piece, power] = comb(degree, power) * truncated / factorial(degree)
     return readonly(pieces)
 
 

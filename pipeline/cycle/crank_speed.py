@@ -9,13 +9,14 @@ from math import pi
 import numpy as np
 
 from camwright.geometry.arrays import Array, uniform_turn
-from camwright.geometry.errors import CamError
+from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.follower_path import FollowerPath
 from camwright.geometry.periodic_spline import periodic_quintic
 from camwright.pipeline.base.tables import CRANK_ANGLE, Column
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.engine.crankshaft import (
     CrankMotion,
+    Crankshaft,
     Inertia,
     Load,
     MechanismTorque,
@@ -192,15 +193,13 @@ def driven_cam_speed(
     the engine stalls with its inertia.
     """
     steady = np.full(rubbing.theta.size, machine.cam_speed)
-    if torque is None or not machine.speed > 0:
+    if torque is None or machine.crankshaft is None or not machine.speed > 0:
         return steady
     try:
-        study = study_of(machine, torque, pitch, rubbing)
+        _, after = _motions(machine, machine.crankshaft, torque, pitch, rubbing)
     except CamError:
         return steady
-    if study is None:
-        return steady
-    return periodic_quintic(study.after.speed)(rubbing.theta) / machine.gear_ratio
+    return periodic_quintic(after.speed)(rubbing.theta) / machine.gear_ratio
 
 
 def speed_ripple(
@@ -219,28 +218,38 @@ def speed_ripple(
         if machine.crankshaft is None or name not in torques or not machine.speed > 0:
             continue
         try:
-            ripple[name] = _ripple(machine, torques[name], pitch, rubbing.get(name))
+            motions = _motions(machine, machine.crankshaft, torques[name], pitch, rubbing.get(name))
         except CamError:
             ripple[name] = (np.nan, np.nan)
+        else:
+            before, after = (each.statistics.std for each in motions)
+            ripple[name] = (before, after)
     return ripple
 
 
-def _ripple(
-    machine: Machine, torque: Torque, pitch: FollowerPath, rubbing: Rubbing | None
-) -> tuple[float, float]:
-    """Standard deviation of the crank speed of one load case, as of `study_of`."""
-    shaft = machine.crankshaft
-    if shaft is None:
-        return np.nan, np.nan
+def _motions(
+    machine: Machine,
+    shaft: Crankshaft,
+    torque: Torque,
+    pitch: FollowerPath,
+    rubbing: Rubbing | None,
+) -> tuple[CrankMotion, CrankMotion]:
+    """Motion of the crank without and with the cam, as of `study_of`.
+
+    Raises
+    ------
+    CamError
+        If the engine stalls, or its torque is constant.
+    """
     values, inertia = _driving(torque, shaft.inertia)
     speed, load = machine.speed, Load(shaft.load_exponent)
     before = crank_motion(values, inertia, speed, load=load)
-    if not np.ptp(before.net_torque) > 0.0:  # a torque without ripple
-        return np.nan, np.nan
+    if not np.ptp(before.net_torque) > 0.0:
+        raise InputError("engine_torque", "constant", "a torque that varies over the cycle")
     mounted = inertia.plus(shaft.mechanism_inertia)
     system = replace(machine.system, rubbing=rubbing)
     after = _motion_with_cam(values, mounted, speed, pitch, system, machine.gear_ratio, load)
-    return before.statistics.std, after.statistics.std
+    return before, after
 
 
 def consistency(

@@ -18,6 +18,8 @@ from camwright.pipeline.engine.cylinder import CYCLE_ANGLE
 
 SETTLED = 1e-13  # change of the speed between two passes over its mean
 PASSES_MAX = 200
+_STEP_END = 1e-12  # relative step of the kinetic energy; the next one would be its square
+_STEPS_MAX = 60
 
 # Crank torque (n,) of a mechanism without the inertia of its moving parts, N m, from crank
 # speed (n,), rad/s, and crank acceleration (n,), rad/s2.
@@ -313,11 +315,16 @@ def _speed(energy: Array, inertia: Array, mean_speed: float) -> Array:
         text = f"the engine would stall within the cycle: its torque swings {swing:.3g} J"
         stored = 0.5 * float(inertia.mean()) * mean_speed**2
         raise CamError(f"{text} of the {stored:.3g} J that turn at {mean_speed:.4g} rad/s")
-    high = low + float(inertia.max()) * mean_speed**2 + float(np.ptp(energy))
-    floor = scipy.optimize.brentq(
-        lambda level: _time_mean(speed(level)) - mean_speed, low, high, xtol=1e-300, rtol=1e-15
-    )
-    return speed(float(floor))
+    # The mean is a concave rising function of the constant: Newton's steps approach it from below.
+    floor = max(low, 0.5 * float(inertia.mean()) * mean_speed**2)
+    for _ in range(_STEPS_MAX):
+        omega = speed(floor)
+        mean = _time_mean(omega)
+        step = (mean_speed - mean) / (mean**2 * float((1.0 / (inertia * omega**3)).mean()))
+        floor, before = max(low, floor + step), floor
+        if abs(floor - before) <= _STEP_END * floor:
+            return speed(floor)
+    raise CamError(f"the mean crank speed did not converge within {_STEPS_MAX} steps")
 
 
 def _time_mean(speed: Array) -> float:

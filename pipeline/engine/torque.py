@@ -9,10 +9,10 @@ from types import MappingProxyType
 from typing import ClassVar, Literal
 
 import numpy as np
-import scipy
 
-from camwright.geometry.arrays import Array, finite, freeze
+from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.errors import InputError
+from camwright.geometry.periodic_spline import periodic_cubic
 from camwright.pipeline.base.quantities import FileName, Part
 from camwright.pipeline.engine.angle_trace import read_trace
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine
@@ -115,9 +115,7 @@ def uniform_cycle(count: int) -> Array:
 
 def _periodic(values: Array, theta: Array) -> Array:
     """Values on a uniform cycle at other crank angles (rad)."""
-    knots = np.arange(values.size + 1) * (CYCLE_ANGLE / values.size)
-    spline = scipy.interpolate.CubicSpline(knots, np.append(values, values[0]), bc_type="periodic")
-    return np.asarray(spline(np.mod(theta, CYCLE_ANGLE)))
+    return periodic_cubic(values)(theta * (FULL_TURN / CYCLE_ANGLE))
 
 
 def torque_from_cycle(cycle: CylinderCycle) -> Torque:
