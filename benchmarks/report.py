@@ -50,7 +50,7 @@ def main() -> None:
             shutil.copytree(run, copy)
         else:
             case = read_case(ROOT / "cases" / "gx120.toml")
-            run_case(case, copy, positions=72, progress=Silent(), present=report)
+            run_case(case, copy, positions=72, progress=Silent(), report=report)
         start = time.perf_counter()
         subprocess.run([sys.executable, "-m", "camwright", "report", str(copy)], check=True)
         told("report, by the clock", time.perf_counter() - start, "s", SECONDS)

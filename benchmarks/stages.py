@@ -19,7 +19,7 @@ def main() -> None:
     case = read_case(ROOT / "cases" / "gx120.toml")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "gx120"
-        run = run_case(case, out, positions=positions, progress=Silent(), present=report)
+        run = run_case(case, out, positions=positions, progress=Silent(), report=report)
     print(f"{case.name}, {positions} positions, {len(run.trials)} trials")
     for stage, seconds in run.summary["timings_s"].items():
         print(f"{stage:>18} {seconds:8.2f} s")

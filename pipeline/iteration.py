@@ -15,8 +15,8 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.given_lift import given_lift, lift_origin
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.checks.check import Check, Verdict
-from camwright.pipeline.checks.registry import FORECAST, checks_of, without_sign_off
+from camwright.pipeline.checks.check import Check, Verdict, verdict, within_depth
+from camwright.pipeline.checks.registry import FORECAST, checks_of
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import NOT_STORED, ContactStore, is_body, solution
 from camwright.pipeline.engine.torque import Torque
@@ -116,14 +116,16 @@ def trials_of(
     case: Case,
     torques: Mapping[str, Torque],
     *,
+    tier: Tier = Tier.CYCLE,
     sink: TrialSink | None = None,
     progress: Progress = SILENT,
 ) -> Iteration:
-    """Trials by finite elements until one passes or no better one is forecast.
+    """Trials until one passes the checks of its tier or no better one is forecast.
 
     Parameters
     ----------
     torques : mapping    engine torque by load case
+    tier : Tier          depth of the trials, at most CYCLE: the last one alone is certified
     sink : TrialSink     receives each trial when it is solved
 
     Raises
@@ -131,12 +133,12 @@ def trials_of(
     CamError
         If a trial cannot be solved.
     """
-    task = _Task(case, torques, sink or NotKept(), progress)
+    task = _Task(case, torques, min(tier, Tier.CYCLE), sink or NotKept(), progress)
     if case.smoothing.kind == "constrained":
         return _constrained(task)
     if case.engine is None:
         trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
-        reason = f"prescribed lift: {_RESULT[trial.verdict]}, not smoothed"
+        reason = f"prescribed lift: {_result(trial)}, not smoothed"
         return Iteration(trial, reason)
     return _smoothed(task)
 
@@ -147,6 +149,7 @@ class _Task:
 
     case: Case
     torques: Mapping[str, Torque]
+    tier: Tier
     sink: TrialSink
     progress: Progress
 
@@ -165,6 +168,7 @@ class _Task:
         trial = solve(
             case,
             case.contour(lift),
+            tier=self.tier,
             torques=self.torques,
             store=self.sink.store(number),
             progress=_Prefixed(self.progress, f"trial {number}: "),
@@ -174,8 +178,6 @@ class _Task:
             number=number,
             why=why,
             smoothing=smoothing,
-            # the last trial alone is certified, afterwards
-            checks=without_sign_off(trial.checks),
             synthesis=synthesis,
             limits_in_use=uses,
         )
@@ -193,7 +195,7 @@ def _smoothed(task: _Task) -> Iteration:
         lift = cam_lift(case, torques, smoother)
         record = smoothing_record(smoother)
         trial = task.solved(len(attempts) + 1, case, lift, why, record)
-        attempts.append(Attempt(smoother, trial.checks))
+        attempts.append(Attempt(smoother, within_depth(trial.checks)))
         after = next_smoother(attempts, case.solver.max_trials, forecast)
         if isinstance(after, Stop):
             return Iteration(trial, after.reason)
@@ -255,13 +257,18 @@ def _constrained(task: _Task) -> Iteration:
             return Iteration(trial, conflict.sentence)
         shift, problem = corrected(problem, design, trial.cycles, shift)
         last = number == case.solver.max_trials
-        if settled(shift, trial.checks) or trial.mesh is None or last:
-            result = _RESULT[trial.verdict]
+        unmeshed = task.tier is Tier.CYCLE and trial.mesh is None
+        if settled(shift, trial.checks) or unmeshed or last:
             agree = "" if starts is None else f"; {starts.sentence}"
-            return Iteration(trial, f"trial {number} {result}; {shift.sentence}{agree}")
+            return Iteration(trial, f"trial {number} {_result(trial)}; {shift.sentence}{agree}")
         del trial  # its solution takes most of the memory
         why = shift.sentence
         task.progress.note(f"trial {number}: {why}")
+
+
+def _result(trial: Trial) -> str:
+    """Result of the checks that the depth of a trial judges, in words."""
+    return _RESULT[verdict(within_depth(trial.checks))]
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ def preview_case(case: Case, *, corners: bool = True, progress: Progress = SILEN
 
     Returns
     -------
-    Trial   with a check ``signed_off`` that is not evaluated
+    Trial   without a verdict; its checks by finite elements are not evaluated
 
     Raises
     ------

@@ -12,6 +12,7 @@ from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques, measurement_record
 from camwright.pipeline.checks.tolerance_corners import corners_record
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.iteration import trials_of
 from camwright.pipeline.results.field_output import write_fields
@@ -30,21 +31,23 @@ def run_case(
     case: Case,
     out: str | Path,
     *,
+    depth: Tier = Tier.CERTIFIED,
     positions: int | None = None,
     jobs: int | None = None,
     resume: bool = False,
     progress: Progress = SILENT,
-    present: Callable[[Path], object] = lambda _: None,
+    report: Callable[[Path], object] | None = None,
     also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
 ) -> Run:
     """Trials of a case until a cam passes or the limit that binds is named; writes the run folder.
 
     Parameters
     ----------
+    depth : Tier         of the solution; below CERTIFIED the run has no verdict
     positions : int      per cam turn; None: those of the case
     jobs : int           processes for the certificate; None: number of processors, at most 4
     resume : bool        continue an interrupted run
-    present : callable   writes page and pictures into the run folder
+    report : callable    writes page and pictures into the run folder; None: none are written
     also : callable      final trial -> further entries of ``run.json``
 
     Returns
@@ -58,12 +61,13 @@ def run_case(
     """
     out = Path(out)
     case = case if positions is None else case.with_positions(positions)
-    with RunFolder(out, case, resume=resume) as folder:
+    with RunFolder(out, case, depth=depth, resume=resume) as folder:
         watch = Stopwatch(progress)
-        summary = _solved(folder, case, jobs, watch, also)
-        watch.stage("report")  # the solution, which takes most of the memory, is released by now
-        folder.write_summary(summary | {"timings_s": watch.read()})
-        present(folder.path)
+        summary = _solved(folder, case, depth, jobs, watch, also)
+        if report is not None:
+            watch.stage("report")  # the solution, which takes most of the memory, is released
+            folder.write_summary(summary | {"timings_s": watch.read()})
+            report(folder.path)
         folder.finish(summary | {"timings_s": watch.read()})
     return read_run(out)
 
@@ -71,6 +75,7 @@ def run_case(
 def _solved(
     folder: RunFolder,
     case: Case,
+    depth: Tier,
     jobs: int | None,
     watch: Stopwatch,
     also: Callable[[Trial], Mapping[str, Any]],
@@ -81,14 +86,17 @@ def _solved(
     if torques:
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)
-    final, statement = trials_of(case, torques, sink=writer, progress=watch)
-    failing = _failing(final)
-    final = certify_trial(final, jobs=jobs, progress=watch)
-    statement = restated(statement, failing, _failing(final))
-    folder.write_corners(corners_record(final.case, final.corners))
-    writer.judge(final)
-    watch.stage("fields")
-    write_fields(folder.fields, final, watch.advance)
+    final, statement = trials_of(case, torques, tier=depth, sink=writer, progress=watch)
+    if depth is Tier.CERTIFIED:
+        failing = _failing(final)
+        final = certify_trial(final, jobs=jobs, progress=watch)
+        statement = restated(statement, failing, _failing(final))
+        writer.judge(final)
+    if final.corners:
+        folder.write_corners(corners_record(final.case, final.corners))
+    if depth >= Tier.CYCLE:
+        watch.stage("fields")
+        write_fields(folder.fields, final, watch.advance)
     if final.mesh is not None:  # else the contour is no body to machine
         watch.stage(WORKSHOP)
         write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
@@ -126,7 +134,9 @@ def _summary(
     benchmarks = final.solution.benchmarks
     return {
         "trials": final.number,
+        "depth": final.depth.word,
         "verdict": final.verdict,
+        "screen": final.screen,
         "binding": list(final.binding),
         "scope": case.scope.as_record(),
         "statement": statement,

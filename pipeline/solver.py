@@ -30,10 +30,9 @@ def solve(
     case: Case,
     contour: Contour,
     *,
-    tier: Tier = Tier.FINITE_ELEMENTS,
+    tier: Tier = Tier.CERTIFIED,
     torques: Mapping[str, Torque] | None = None,
     positions: int | None = None,
-    certify: int = 0,
     corners: bool = True,
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
@@ -45,11 +44,10 @@ def solve(
     ----------
     case : Case
     contour : Contour     of the cam, such as from `synthesize`
-    tier : Tier           PREVIEW: contact by closed forms; FINITE_ELEMENTS: by finite elements
+    tier : Tier           depth of the solution
     torques : mapping     engine torque by load case; None: computed from the case
     positions : int       per cam turn; None: those of the case
-    certify : int         cam angles solved in full on three meshes; 0: no certificate
-    corners : bool        judge each check at its worst tolerance corner
+    corners : bool        judge each check at its worst tolerance corner; not in a screening
     store : ContactStore  of partial contact solutions, to resume an interrupted run
     progress : Progress
     jobs : int            processes for the certificate; None: number of processors, at most 4
@@ -66,17 +64,18 @@ def solve(
     solved = solution(
         case,
         contour,
-        tier,
+        min(tier, Tier.CYCLE),
         torques=torques,
         positions=positions,
         store=store,
         progress=progress,
     )
-    if certify:
-        solved = certified_solution(solved, certify, jobs=jobs, progress=progress)
+    if tier is Tier.CERTIFIED:
+        solved = certified_solution(solved, jobs=jobs, progress=progress)
     progress.stage(CHECKS)
     trial = Trial(1, "", GIVEN_LIFT, solved, all_checks(solved))
-    return judged_at_corners(trial, torques) if corners else trial
+    tried = corners and tier > Tier.SCREENING
+    return judged_at_corners(trial, torques) if tried else trial
 
 
 def judged_at_corners(trial: Trial, torques: Mapping[str, Torque] | None = None) -> Trial:
@@ -98,8 +97,7 @@ def certify_trial(trial: Trial, *, jobs: int | None = None, progress: Progress =
     ----------
     jobs : int   processes; None: number of processors, at most 4
     """
-    count = trial.case.solver.certificate_positions
-    solved = certified_solution(trial.solution, count, jobs=jobs, progress=progress)
+    solved = certified_solution(trial.solution, jobs=jobs, progress=progress)
     return replace(trial, solution=solved, checks=_judged(solved, trial.corners))
 
 

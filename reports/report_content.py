@@ -11,7 +11,7 @@ import numpy as np
 
 from camwright.pipeline.base.files import Json
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
-from camwright.pipeline.results.run_reader import TrialRecord
+from camwright.pipeline.results.run_reader import CERTIFIED, TrialRecord
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.figure_svg import Drawn, drawn_groups
 from camwright.reports.picture_list import PICTURES, Picture
@@ -171,8 +171,8 @@ def report_content(material: Material) -> Report:
     return Report(
         str(material.case.get("title") or run.summary["case"]), _facts(material),
         verdict(
-            run.verdict, final.checks, final.binding, statement,
-            str(run.summary["scope"]["statement"]),
+            str(run.verdict or run.screen), final.checks, final.binding, statement,
+            str(run.summary["scope"]["statement"]), final.depth,
         ),
         report_tables.tiles(run.summary["headline"]),
         (
@@ -196,6 +196,7 @@ def report_content(material: Material) -> Report:
             _versions(material),
         ),
         f"Camwright · {shortened(str(run.summary['case']), 60)}",
+        "Cam sign-off" if final.depth == CERTIFIED else f"Cam, {final.depth} without sign-off",
     )  # fmt: skip
 
 
@@ -222,7 +223,8 @@ def _facts(material: Material) -> list[tuple[str, str]]:
 def _checks(material: Material) -> Section:
     """Required checks without data; required checks, failed first; optional checks likewise."""
     rows = report_tables.check_rows(material.run.final.checks)
-    missing = [row for row in rows if row.status.id == "not_evaluated"]
+    deeper = [row for row in rows if row.judged_at]
+    missing = [row for row in rows if row.status.id == "not_evaluated" and not row.judged_at]
     known = [row for row in rows if row.status.id != "not_evaluated"]
     required = [row for row in known if row.must_have]
     required.sort(key=lambda row: row.status.id != "fail")
@@ -231,6 +233,7 @@ def _checks(material: Material) -> Section:
         ("Required", required, ""),
         ("Optional", [row for row in known if not row.must_have], ""),
         ("Missing data of optional checks", [row for row in missing if not row.must_have], ""),
+        ("Judged by a deeper solution", deeper, ""),
     )
     return Section(
         "checks", "Checks",
@@ -288,7 +291,7 @@ def _trial(trial: TrialRecord) -> list[str | Status]:
     failing = [f"{row.title} ({row.utilisation})" for row in rows if row.status.id == "fail"]
     unknown = sum(row.status.id == "not_evaluated" for row in rows)
     held = [*failing, *([f"{unknown} without data"] if unknown else [])]
-    word = trial.verdict
+    word = str(trial.verdict or trial.screen)
     return [
         str(trial.number), str(record["smoothing_description"]),
         report_tables.number(record["smoothing_strength"], 3),

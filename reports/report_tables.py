@@ -198,6 +198,7 @@ class CheckRow:
     error: str = ""
     corner: str = ""
     unproven: str = ""
+    judged_at: str = ""
 
     @property
     def place(self) -> str:
@@ -260,7 +261,7 @@ def check_rows(checks: Sequence[Record]) -> list[CheckRow]:
             note=str(check["note"]), waiver=_waiver(check, unit),
             must_have=bool(check["must_have"]),
             error=_error(check, unit), corner=": ".join(worst_corner(check) or ()),
-            unproven=not_proven(check),
+            unproven=not_proven(check), judged_at=str(check["judged_at"]),
         ))  # fmt: skip
     return rows
 

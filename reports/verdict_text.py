@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 from camwright.pipeline.results.check_report import not_proven
 from camwright.pipeline.results.run_reader import (
+    CERTIFIED,
+    OPEN,
     VERDICTS,
+    judgement,
     to_be_confirmed,
-    verdict_line,
-    verdict_of,
 )
 from camwright.reports.report_tables import (
     Record,
@@ -26,15 +27,15 @@ Check = Record
 
 @dataclass(frozen=True)
 class Verdict:
-    """Verdict of a run.
+    """Verdict of a run, or its screen below the certified depth.
 
-    `outcome` is ``pass``, ``incomplete`` or ``fail``; `line` the verdict with its reasons, the
-    numbers of waived checks and of values to be confirmed; `confirm` names these values. `sentence`
-    counts the checks by status, `governing` describes the required check of highest utilisation,
-    `binding` are titles of required checks that fail. `unproven`, `missing` and `waived` are lines
-    on required checks whose error bar lies across the limit, that lack data, and that are waived.
-    `stopped` are the clauses of the reason for which the trials ended, `scope` the parts not
-    covered.
+    `outcome` is ``pass``, ``incomplete`` or ``fail``, of a screen ``open`` or ``fail``; `line` the
+    verdict with its reasons, the numbers of waived checks and of values to be confirmed; `confirm`
+    names these values. `sentence` counts the checks by status, `governing` describes the required
+    check of highest utilisation, `binding` are titles of required checks that fail. `unproven`,
+    `missing` and `waived` are lines on required checks whose error bar lies across the limit, that
+    lack data, and that are waived. `stopped` are the clauses of the reason for which the trials
+    ended, `scope` the parts not covered, `label` what is stated.
     """
 
     outcome: str
@@ -48,6 +49,7 @@ class Verdict:
     unproven: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
     waived: tuple[str, ...] = ()
+    label: str = "Verdict"
 
     @property
     def word(self) -> str:
@@ -85,28 +87,32 @@ def verdict(
     binding: Sequence[str],
     stopped: str,
     scope: str = "",
+    depth: str = CERTIFIED,
 ) -> Verdict:
     """Verdict in sentences.
 
     Parameters
     ----------
-    recorded : str         verdict of the run
+    recorded : str         verdict of the run, or its screen
     checks : sequence      records of the final trial
     binding : sequence     ids of the binding checks
     stopped : str          reason for which the trials ended
     scope : str            parts that the sign-off does not cover, in a sentence
+    depth : str            of the run: below certified it has a screen, no verdict
 
-    The outcome is the worse of the recorded verdict and that of the checks.
+    The outcome is the worse of the recorded one and that of the checks.
     """
     required = [c for c in sorted_checks(checks) if c["must_have"]]
-    missing = [c for c in required if c["status"] == "not_evaluated"]
+    missing = [c for c in required if c["status"] == "not_evaluated" and not c["judged_at"]]
     titles = {str(c["id"]): isolated(str(c["title"])) for c in checks}
     unknown = {str(c["id"]): titles[str(c["id"])] for c in missing}
     clauses = (clause for clause in stopped.split("; ") if clause)
-    outcome = max(recorded, verdict_of(checks), key=VERDICTS.index)
+    judged = judgement(checks, depth)
+    by_checks = str(judged["verdict"] or judged["screen"])
+    outcome = max(recorded, by_checks, key=(*VERDICTS[:-1], OPEN, VERDICTS[-1]).index)
     return Verdict(
         outcome=outcome,
-        line=verdict_line(checks) if outcome == verdict_of(checks) else outcome.upper(),
+        line=str(judged["verdict_line"]) if outcome == by_checks else outcome.upper(),
         confirm=tuple(to_be_confirmed(checks)),
         scope=scope,
         sentence=_sentence(checks, required, missing),
@@ -122,6 +128,7 @@ def verdict(
             for row in check_rows(required)
             if row.status.id == "waived"
         ),
+        label="Verdict" if depth == CERTIFIED else "Screen, no verdict",
     )
 
 
@@ -146,6 +153,9 @@ def _sentence(checks: Sequence[Check], required: Sequence[Check], missing: Seque
         parts.append(f"{failed} {_verb(failed, 'fails', 'fail')}")
     if missing:
         parts.append(f"{len(missing)} {_verb(len(missing), 'lacks', 'lack')} data")
+    deeper = sum(bool(c["judged_at"]) for c in required)
+    if deeper:
+        parts.append(f"{deeper} {_verb(deeper, 'needs', 'need')} a deeper solution")
     waived = sum(c["status"] == "waived" for c in required)
     if waived:
         parts.append(f"{waived} {_verb(waived, 'is', 'are')} waived")

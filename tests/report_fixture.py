@@ -244,7 +244,7 @@ def check(**record: Any) -> dict[str, Any]:
         "unit": "", "load_case": "idle", "cam_angle_deg": 192.0, "sense": "at_most", "note": "",
         "source": "Norton, Cam Design and Manufacturing Handbook (2009)", "must_have": True,
         "method": "closed form, refined between samples", "waiver": None, "status": "pass",
-        "error": None, "corner": None, "corner_demand": None, "evidence": False,
+        "error": None, "corner": None, "corner_demand": None, "evidence": False, "judged_at": "",
         "waived_up_to": None, "not_proven": False,
     }  # fmt: skip
     return base | record
@@ -487,6 +487,7 @@ def write_run(
             "smoothing_description": f"moving average of {12 * number} values 5 deg apart",
             "smoothing_width_deg": 60.0 * number, "closure_mm": 2e-10,
             "prices": None,
+            "depth": "certified" if number == 2 else "cycle",
             "contact_method": "finite elements joined to the half-plane",
             "balance": {
                 "mass_g": 280.0, "unbalance_g_mm": 900.0, "unbalance_angle_deg": 40.0,
@@ -509,7 +510,8 @@ def write_run(
         "statement": "no smoothing that keeps the torque reduction lets roller_static pass",
         "platform": "Linux x86_64", "prices": None, "benchmarks": None, "speed": None,
         "consistency": [], "files": {},
-        "trials": 2, "verdict": verdict_of(records), "binding": list(binding_of(records)),
+        "trials": 2, "depth": "certified", "verdict": verdict_of(records), "screen": None,
+        "binding": list(binding_of(records)),
         "scope": left_out.as_record(),
         "headline": {
             "torque_std_before_Nm": float(before.std()), "torque_std_after_Nm": float(after.std()),

@@ -1,10 +1,10 @@
-"""Check: demand against limit, with method and source; verdict of many checks."""
+"""Check: demand against limit, with method and source; verdict and screen of many checks."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from camwright.pipeline.base.units import in_unit, shown
@@ -17,6 +17,7 @@ from camwright.pipeline.cycle.solution import Solution
 
 Status = Literal["pass", "fail", "not_evaluated", "waived"]
 Verdict = Literal["pass", "incomplete", "fail"]
+Screen = Literal["open", "fail"]
 Error = Literal["sampling", "contact", "guides", "guide_edges", "bore", "unknown"]
 Record = dict[str, str | float | bool | list[str] | None]
 EVERY = "all, standstill and over-speed included"
@@ -83,7 +84,7 @@ class Declaration:
     must_have : bool           it decides the verdict
     evidence : bool            verification of the solution: it cannot be waived
     lift_can_help : bool       a gentler lift can pass it
-    tier : Tier                least tier of the contact; below it the check is left out
+    tier : Tier                least tier that can judge it; below it the check is not evaluated
     forecast : bool            quick enough to forecast a smoother
     moved_by_tolerance : bool  its demand differs at a tolerance corner
     error : str                origin of the error bar of the demand
@@ -117,17 +118,29 @@ class Declaration:
     demand: Callable[[Solution], Demand | None] = field(repr=False)
 
     def __call__(self, solution: Solution) -> Check | None:
-        """Check of a solution; None where it does not apply, or its part is not described.
+        """Check of a solution.
 
+        None where it does not apply, its part is not described, or its tier is a deeper one.
         Whether a part is described has a check of its own, see `part_data`.
         """
-        machine = solution.machine
-        if solution.tier < self.tier or self.needs not in ("", machine.follower.word):
-            return None
-        if self.part and not (machine.scope.covers(self.part) and machine.describes(self.part)):
+        if solution.tier < self.tier or not self._concerns(solution.machine):
             return None
         demand = self.demand(solution)
-        return None if demand is None else self.judged(machine, demand)
+        return None if demand is None else self.judged(solution.machine, demand)
+
+    def deeper(self, solution: Solution) -> Check | None:
+        """The check, not evaluated, of a solution below its tier; None at or above it."""
+        if solution.tier >= self.tier or not self._concerns(solution.machine):
+            return None
+        word = self.tier.word
+        missing = Demand(None, None, note=f"judged at the depth {word}")
+        return replace(self.judged(solution.machine, missing), judged_at=word)
+
+    def _concerns(self, machine: Machine) -> bool:
+        """Whether a machine has the kind of follower and describes the part of the check."""
+        if self.needs not in ("", machine.follower.word):
+            return False
+        return not self.part or (machine.scope.covers(self.part) and machine.describes(self.part))
 
     def judged(self, machine: Machine, demand: Demand) -> Check:
         """Check of a demand on a machine."""
@@ -163,7 +176,7 @@ def check(
     must_have: bool = True,
     evidence: bool = False,
     lift_can_help: bool = False,
-    tier: Tier = Tier.PREVIEW,
+    tier: Tier = Tier.SCREENING,
     forecast: bool = False,
     moved_by_tolerance: bool = True,
     error: Error = "sampling",
@@ -232,6 +245,7 @@ class Check:
     corner : str             tolerance corner of the worst demand; "": none was solved
     corner_demand : float    demand at that corner; None: none was solved
     unconfirmed : tuple      dotted keys of the values on which it rests and no source confirms
+    judged_at : str          depth that judges it, where the solution is less deep; "": judged
     """
 
     declaration: Declaration
@@ -249,6 +263,7 @@ class Check:
     corner: str = ""
     corner_demand: float | None = None
     unconfirmed: tuple[str, ...] = ()
+    judged_at: str = ""
 
     def __str__(self) -> str:
         """Title, worst demand, limit and status in one line, in `unit`."""
@@ -397,6 +412,7 @@ class Check:
             "corner_demand": _shown(self.corner_demand, unit),
             "evidence": self.evidence,
             "to_be_confirmed": list(self.unconfirmed),
+            "judged_at": self.judged_at,
         }
 
 
@@ -412,9 +428,23 @@ def verdict(checks: Iterable[Check]) -> Verdict:
     return "incomplete" if "not_evaluated" in deciding else "pass"
 
 
+def screen(checks: Iterable[Check]) -> Screen:
+    """Result below the certified depth: `fail` if a must-have check fails, else `open`."""
+    failing = any(each.must_have and each.status == "fail" for each in checks)
+    return "fail" if failing else "open"
+
+
+def within_depth(checks: Iterable[Check]) -> tuple[Check, ...]:
+    """The checks without those that a deeper solution judges."""
+    return tuple(each for each in checks if not each.judged_at)
+
+
 def binding(checks: Iterable[Check]) -> tuple[str, ...]:
-    """Ids of the must-have checks that keep the verdict from PASS: those without data first."""
-    return tuple(each.id for each in in_order(checks) if each.blocks)
+    """Ids of the must-have checks that fail or lack data: those without data first.
+
+    A check that a deeper solution judges does not bind.
+    """
+    return tuple(each.id for each in in_order(within_depth(checks)) if each.blocks)
 
 
 def in_order(checks: Iterable[Check]) -> tuple[Check, ...]:

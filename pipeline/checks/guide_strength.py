@@ -15,6 +15,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import NONE, Declaration, Demand, check, not_given
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.solution import Solution
@@ -223,6 +224,7 @@ def _guide_edge_pressure(side: Side) -> Declaration:
         " the beam; modulus at 20 degC, an upper bound; yield strength at the temperature of the"
         " guide",
         lift_can_help=True,
+        tier=Tier.PREVIEW,
         error="guide_edges",
         part="guides",
         formula="p <= R(T); p: greatest pressure between stem and bore, where the line load along"

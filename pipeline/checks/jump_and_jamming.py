@@ -20,6 +20,7 @@ from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import SPEED_RANGE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, least
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.solution import Solution
@@ -195,6 +196,7 @@ def contact_over_speed(solution: Solution) -> Demand:
     title="Minimum contact force / preload with elastic stem",
     method="one mass on the stiffness of the stem, without friction",
     lift_can_help=True,
+    tier=Tier.PREVIEW,
     formula="min N(w, theta) / P >= limits.contact_force_margin over all speeds from standstill to"
     " over-speed and over the load cases at their varying speed; N: contact force of one mass on"
     " the stiffness between cam and mass, on the spring with its surge",

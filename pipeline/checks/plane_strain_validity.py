@@ -29,7 +29,7 @@ SUBSURFACE = 0.3  # half-widths: a shallower maximum is a singularity or an elem
     method="factor of edge_pressure on the plane-strain solution; 1 for a crown whose ellipse lies"
     " within the width",
     evidence=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CYCLE,
     formula="limits.edge_factor >= 1.3 for straight ends; 1 for a crowned roller whose contact ends"
     " within its width",
     reason="the plane solution has no ends, and a smaller factor would hide them",
@@ -55,7 +55,7 @@ def edge_factor(solution: Solution) -> Demand:
     method="least wall of the cam to bore or keyway, and thickness of the outer ring or of the"
     " roller to its hub, over the greatest half-width",
     evidence=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CYCLE,
     error="contact",
 )
 def held_distance(solution: Solution) -> Demand:
@@ -78,7 +78,7 @@ def held_distance(solution: Solution) -> Demand:
     source="singular stress at an edge: at most half of the keyway depth is excluded",
     method="1.5 element lengths at the keyway; the stress within is stated separately",
     evidence=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CYCLE,
     load_cases=NONE,
 )
 def excluded_zone(solution: Solution) -> Demand | None:
@@ -102,7 +102,7 @@ def excluded_zone(solution: Solution) -> Demand | None:
     method="finite elements on a rigid shaft, keyway edges excluded, see excluded_zone",
     must_have=False,
     lift_can_help=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CYCLE,
     error="bore",
 )
 def bore_stress(solution: Solution) -> Demand | None:
@@ -134,7 +134,7 @@ def bore_stress(solution: Solution) -> Demand | None:
     source="0.70 half-widths under a frictionless line contact, Johnson (1985) sec. 4.2(c)",
     method="least depth over the turn; a maximum at the surface is a singularity or element error",
     evidence=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CYCLE,
 )
 def subsurface_depth(solution: Solution) -> Demand:
     """Minimum depth of the maximum von Mises stress, in half-widths."""

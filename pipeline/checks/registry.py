@@ -70,7 +70,6 @@ FORECAST = tuple(each for each in CHECKS if each.forecast)
 """Quick checks of the design, to forecast a smoother."""
 TOLERANCED = tuple(each for each in CHECKS if each.moved_by_tolerance and not each.evidence)
 """Checks of the design whose demand differs at a tolerance corner."""
-PREVIEW_MARK = "preview: "
 WAIVERS_WITHOUT_EFFECT = check(
     id="waivers_without_effect",
     title="Waivers without effect",
@@ -90,16 +89,7 @@ TOLERANCE_CORNERS = check(
     formula="n = 0; n: corners at which loads or guides have no solution",
     reason="a cam that has no solution at a tolerance cannot be signed",
     evidence=True,
-)(made_from_others)
-UNSIGNED = check(
-    id="signed_off",
-    title="Certified finite-element solution",
-    unit="-",
-    sense="at_least",
-    source="a sign-off needs a certified solution by finite elements",
-    method="none: the solution is not certified",
-    formula="1 >= 1 for a certified solution; without one it has no demand",
-    reason="a preview by closed forms is no sign-off.",
+    tier=Tier.PREVIEW,
 )(made_from_others)
 
 
@@ -118,25 +108,20 @@ def checks_of(
 def all_checks(solution: Solution) -> tuple[Check, ...]:
     """All checks of a solution with their values to be confirmed, and one for idle waivers.
 
-    A solution without a certificate has one more check, not evaluated, and cannot pass.
+    Those that a deeper solution judges are not evaluated.
     """
     made = with_values_to_confirm(checks_of(solution), solution.case)
-    if not solution.final:
-        note = "camwright run solves and certifies the case"
-        made = (UNSIGNED.judged(solution.machine, Demand(None, 1.0, note=note)), *made)
-    if solution.tier < Tier.FINITE_ELEMENTS:
-        return in_order(replace(one, method=PREVIEW_MARK + one.method) for one in made)
+    if solution.tier < Tier.CYCLE:
+        mark = f"{solution.tier.word}: "
+        made = tuple(replace(one, method=mark + one.method) for one in made)
+    later = (declared.deeper(solution) for declared in CHECKS)
+    made = (*made, *(one for one in later if one is not None))
     known = {one.id for one in made if not one.evidence}
     idle = [waiver.check for waiver in solution.case.waivers if waiver.check not in known]
     if idle:
         demand = Demand(float(len(idle)), 0.0, note=", ".join(idle))
         made = (*made, WAIVERS_WITHOUT_EFFECT.judged(solution.machine, demand))
     return in_order(made)
-
-
-def without_sign_off(checks: Iterable[Check]) -> tuple[Check, ...]:
-    """The checks without that of the certified solution."""
-    return tuple(one for one in checks if one.id != UNSIGNED.id)
 
 
 def waived(checks: Iterable[Check], waivers: Sequence[Waiver]) -> tuple[Check, ...]:

@@ -59,7 +59,7 @@ def _residual(
         formula=formula,
         reason="Forces that are not in equilibrium are no solution.",
         evidence=True,
-        tier=Tier.FINITE_ELEMENTS,
+        tier=Tier.CYCLE,
     )
     def residual(solution: Solution) -> Demand:
         worst = greatest(solution.cycles, measure)
@@ -117,7 +117,7 @@ contact_complementarity = _residual(
     method="greatest |p0 by finite elements / p0 by Hertz - 1| over the turn",
     must_have=False,
     evidence=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CYCLE,
 )
 def hertz_difference(solution: Solution) -> Demand:
     """Maximum difference of the contact pressure from Hertz, relative."""
@@ -131,7 +131,7 @@ def _certified(
     """Greatest value over the certified cam angles."""
     points = solution.certificate
     if not points:
-        return Demand(None, allowed, note=NO_CERTIFICATE, must_have=solution.final)
+        return Demand(None, allowed, note=NO_CERTIFICATE)
     values = np.array([share(point) for point in points])
     worst = int(np.argmax(values))
     return Demand(float(values[worst]), allowed, Extreme(values[worst], "", points[worst].theta))
@@ -147,7 +147,7 @@ def _certified(
     source=CERTIFIED,
     method="p0 of the cycle against the finite-element solution of both bodies at certified angles",
     evidence=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CERTIFIED,
 )
 def certificate_spread(solution: Solution) -> Demand:
     """Difference of the contact between cycle and certificate, relative."""
@@ -165,7 +165,7 @@ def certificate_spread(solution: Solution) -> Demand:
     method="greatest of p0, half-width, von Mises and maximum shear stress on three meshes,"
     " observed order; safety factor 1.25, at an order below 1 factor 3",
     evidence=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CERTIFIED,
 )
 def certificate_gci(solution: Solution) -> Demand:
     """Grid convergence index of the certificate, relative."""
@@ -196,12 +196,12 @@ def _mesh(
         formula=formula,
         reason="Poor elements give stresses of no known error.",
         evidence=True,
-        tier=Tier.FINITE_ELEMENTS,
+        tier=Tier.CYCLE,
     )
     def quality(solution: Solution) -> Demand:
         if solution.mesh is None:
             note = "this trial has no mesh"
-            return Demand(None, allowed, note=note, must_have=solution.final)
+            return Demand(None, allowed, note=note, must_have=solution.tier is Tier.CERTIFIED)
         return Demand(figure(solution.mesh.quality), allowed)
 
     return quality
@@ -250,12 +250,12 @@ def _uncertainty(
         "c: limits.mesh_uncertainty",
         reason="It is the error bar of every demand on this quantity.",
         evidence=True,
-        tier=Tier.FINITE_ELEMENTS,
+        tier=Tier.CERTIFIED,
     )
     def uncertainty(solution: Solution) -> Demand:
         points, allowed = solution.certificate, solution.machine.limits[MESH_UNCERTAINTY]
         if not points:
-            return Demand(None, allowed, note=NO_CERTIFICATE, must_have=solution.final)
+            return Demand(None, allowed, note=NO_CERTIFICATE)
         worst = max(points, key=lambda point: _gci(figure(point)))
         gci = figure(worst).gci
         return Demand(
@@ -284,7 +284,7 @@ mesh_tau_max = _uncertainty("tau_max", "maximum shear stress", lambda point: poi
     unit="%",
     method=f"beam in guides of {', '.join(map(str, KNOTS_TRIED))} knots",
     evidence=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CYCLE,
 )
 def mesh_reaction(solution: Solution) -> Demand:
     """Discretisation uncertainty of the guide reaction, relative."""
@@ -320,13 +320,13 @@ def _benchmark(name: str, *, title: str, source: str) -> Declaration:
         method="greater difference of p0 and half-width from the reference, by the libraries"
         " of this run",
         evidence=True,
-        tier=Tier.FINITE_ELEMENTS,
+        tier=Tier.CERTIFIED,
     )
     def benchmark(solution: Solution) -> Demand:
         known = solution.benchmarks
         if known is None:
             note = "no benchmark was solved with this trial"
-            return Demand(None, BENCHMARK, note=note, must_have=solution.final)
+            return Demand(None, BENCHMARK, note=note)
         values = [known[f"{name}_p0"], known[f"{name}_half_width"]]
         return Demand(float(np.max(np.abs(values))), BENCHMARK)
 

@@ -114,7 +114,7 @@ def _reduction(cycle: Cycle) -> float:
     method="moment of the solved pressures about the cam axis with their lever arms on the contour,"
     " against axial force times s' plus sliding torque, at every angle, over the greatest torque",
     evidence=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CYCLE,
     moved_by_tolerance=False,
     formula="|sum r x f - (F_a s' + T_s)| / max|T| <= c; r: points of the contour in the contact,"
     " f: solved pressure and face friction on them, F_a: axial force, s': slope of the lift, T_s:"
@@ -142,7 +142,7 @@ def contact_torque(solution: Solution) -> Demand:
     method="work of the pressures over the turn less that of spring and inertia, against the heat"
     " of guides and face, over the energy exchanged",
     evidence=True,
-    tier=Tier.FINITE_ELEMENTS,
+    tier=Tier.CYCLE,
     moved_by_tolerance=False,
     formula="|integral of (T_p - (F_s + F_i) s') - Q| / (integral of |T| / 2) <= c; T_p: cam torque"
     " of the contact pressures, F_s, F_i: spring and inertia force, Q: friction heat of guides and"

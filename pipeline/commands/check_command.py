@@ -42,14 +42,14 @@ def check(
         typer.Option("--verify-record", help="Compare the files of the run with signoff.json."),
     ] = False,
 ) -> int:
-    """Print the verdict of a run, or of a preview of a case.
+    """Print the verdict of a run, or the screen of a preview of a case.
 
-    Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing). A preview is by closed
-    forms and never passes.
+    Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing) or OPEN: a preview, or a
+    run below the certified depth, never passes.
     """
     from camwright.pipeline.results.check_report import junit as junit_text
     from camwright.pipeline.results.check_report import outcome, selected
-    from camwright.pipeline.results.run_reader import VERDICTS
+    from camwright.pipeline.results.run_reader import VERDICTS, exit_word
 
     if verify_record and not _as_signed(target):
         return FAILED
@@ -58,7 +58,7 @@ def check(
     document["checks"] = list(selected(document["checks"], only or ()))
     decided = outcome(document["checks"], fail_on)
     if not only and fail_on != "never":
-        decided = max(decided, document["verdict"], key=VERDICTS.index)
+        decided = max(decided, exit_word(document), key=VERDICTS.index)
     if baseline is not None:
         from camwright.pipeline.results.baseline_comparison import changes
 
@@ -106,7 +106,7 @@ def _checked_run(folder: Path) -> dict[str, Any]:
 def _checked_case(path: Path) -> dict[str, Any]:
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.preview import preview_case
-    from camwright.pipeline.results.run_reader import to_be_confirmed, verdict_line
+    from camwright.pipeline.results.run_reader import judgement, to_be_confirmed
 
     case = read_case(path)
     trial = preview_case(case)
@@ -114,11 +114,9 @@ def _checked_case(path: Path) -> dict[str, Any]:
     return {
         "case": case.name,
         "input_sha256": case.sha256,
-        "verdict": trial.verdict,
-        "verdict_line": verdict_line(checks),
+        **judgement(checks, trial.depth.word),
         "to_be_confirmed": to_be_confirmed(checks),
         "binding": list(trial.binding),
         "scope": case.scope.as_record(),
-        "preview": True,
         "checks": checks,
     }

@@ -33,6 +33,17 @@ def run(
     jobs: Annotated[
         int | None, typer.Option(help="Number of processes; default: number of cores, at most 4.")
     ] = None,
+    depth: Annotated[
+        str,
+        typer.Option(
+            "--depth",
+            help="screening, preview (closed forms), cycle (finite elements) or certified; the "
+            "last alone has a verdict.",
+        ),
+    ] = "certified",
+    no_report: Annotated[
+        bool, typer.Option("--no-report", help="Write no page and no figures.")
+    ] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Resume an interrupted run.")] = False,
     replace: Annotated[
         bool, typer.Option("--replace", help="Replace an earlier run of a case of this name.")
@@ -41,14 +52,16 @@ def run(
 ) -> int:
     """Run a case and write its run folder."""
     from camwright.pipeline.case.case_file import read_case
+    from camwright.pipeline.contact.tiers import Tier
 
     use_cache(not no_cache)
+    tier = Tier.of(depth, "--depth")
     if jobs is not None and not 1 <= jobs <= 256:
         raise InputError("--jobs", jobs, ">= 1 and <= 256")
     design = read_case(case)
     if positions is not None:
         design = design.with_positions(positions)
-    if not (resume and _finished(out, design.sha256)):
+    if not (resume and _finished(out, design.sha256, depth)):
         from camwright.pipeline.results.run_folder import set_aside
         from camwright.pipeline.run import run_case
         from camwright.pipeline.studies.valve_train import valve_record
@@ -59,11 +72,12 @@ def run(
             run_case(
                 design,
                 out,
+                depth=tier,
                 positions=positions,
                 jobs=jobs,
                 resume=resume,
                 progress=progress,
-                present=report,
+                report=None if no_report else report,
                 also=valve_record,
             )
     from camwright.pipeline.results.run_reader import read_verdict
@@ -72,15 +86,16 @@ def run(
     return PASSED
 
 
-def _finished(out: Path, sha256: str) -> bool:
-    """Whether a folder holds the finished run of this case and these versions."""
+def _finished(out: Path, sha256: str, depth: str) -> bool:
+    """Whether a folder holds the finished run of this case, depth and these versions."""
     from camwright.pipeline.results.run_folder import versions
     from camwright.pipeline.results.run_reader import read_summary
 
     if not (out / "run.json").is_file():
         return False
     summary = read_summary(out)
-    return bool(summary["input_sha256"] == sha256 and summary["versions"] == versions())
+    same = summary["input_sha256"] == sha256 and summary["depth"] == depth
+    return bool(same and summary["versions"] == versions())
 
 
 def report(

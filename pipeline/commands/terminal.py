@@ -59,12 +59,15 @@ def show(document: dict[str, Any], folder: Path | None) -> None:
     from camwright.pipeline.results.check_report import (
         binding_lines,
         consistency_line,
+        deeper_lines,
         remarks,
         table,
     )
+    from camwright.pipeline.results.run_reader import within_depth
 
-    stdout.print(table(document["checks"]))
-    for line in remarks(document["checks"]):
+    checks = within_depth(document["checks"])
+    stdout.print(table(checks))
+    for line in (*remarks(checks), *deeper_lines(document["checks"])):
         stdout.print(line, markup=False)
     if "changes" in document:
         from camwright.pipeline.results.baseline_comparison import lines
@@ -72,14 +75,14 @@ def show(document: dict[str, Any], folder: Path | None) -> None:
         for line in lines(document["changes"]):
             stdout.print(f"baseline: {line}", markup=False)
     line = document["verdict_line"]
-    if folder is None:
-        stdout.print(f"verdict: {line}; preview by closed forms", markup=False)
+    if document["verdict"] is None:
+        stdout.print(f"screen: {line}; no verdict below the certified depth", markup=False)
     else:
         count = document["trials"]
         trials = f"{count} trial{'s' if count > 1 else ''}"
         stdout.print(f"verdict: {line}; after {trials}", markup=False)
-        if document["statement"]:
-            stdout.print(document["statement"], markup=False)
+    if folder is not None and document["statement"]:
+        stdout.print(document["statement"], markup=False)
     if document["to_be_confirmed"]:
         values = "; ".join(document["to_be_confirmed"])
         stdout.print(f"values to be confirmed: {values}", markup=False)
@@ -89,5 +92,5 @@ def show(document: dict[str, Any], folder: Path | None) -> None:
         stdout.print(line, markup=False)
     for finding in document.get("consistency", ()):
         stdout.print(consistency_line(finding), markup=False)
-    if folder is not None:
+    if folder is not None and (folder / "8_report.html").is_file():
         stdout.print(f"report: {folder / '8_report.html'}", markup=False)

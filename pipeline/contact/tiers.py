@@ -4,9 +4,41 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from camwright.geometry.errors import InputError
+
 
 class Tier(IntEnum):
-    """Tier of a solution: preview by closed forms, sign-off by finite elements."""
+    """Depth of a solution; each tier judges more checks than the one before.
 
-    PREVIEW = 1
-    FINITE_ELEMENTS = 2
+    SCREENING: closed forms, guides as point supports, no tolerance corners. PREVIEW: closed forms,
+    guides of length. CYCLE: contact by finite elements over the turn. CERTIFIED: the same with its
+    certificate; it alone has a verdict.
+    """
+
+    SCREENING = 1
+    PREVIEW = 2
+    CYCLE = 3
+    CERTIFIED = 4
+
+    @property
+    def word(self) -> str:
+        """Name in records and on the command line, such as ``preview``."""
+        return self.name.lower()
+
+    @classmethod
+    def of(cls, word: str, field: str) -> Tier:
+        """Tier of a word.
+
+        Parameters
+        ----------
+        field : str   that states the word, for the message
+
+        Raises
+        ------
+        InputError
+            If no tier has this word.
+        """
+        for tier in cls:
+            if tier.word == word:
+                return tier
+        raise InputError(field, word, f"one of: {', '.join(tier.word for tier in cls)}")

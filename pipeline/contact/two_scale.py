@@ -102,7 +102,7 @@ def two_scale_history(
         relative_radius=radius,
         p0_hertz=p0,
         half_width_hertz=half_width,
-        tier=Tier.FINITE_ELEMENTS,
+        tier=Tier.CYCLE,
         **results,
     )
 

@@ -77,7 +77,6 @@ class Solution:
                                  cam; empty without a crankshaft
     crank_speed_halved : mapping   the same of the torque at every second crank angle
     bore_error : float           discretisation error of the bore stress, relative; None: not known
-    final : bool                 to be signed off: it must be certified
     coarse : bool                coarse guide mesh, constant crank speed: for ratios of demands
     """
 
@@ -92,7 +91,6 @@ class Solution:
     crank_speed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     crank_speed_halved: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     bore_error: float | None = None
-    final: bool = False
     coarse: bool = False
 
     @property
@@ -176,7 +174,7 @@ NOT_STORED = NotStored()
 def solution(
     case: Case,
     contour: Contour,
-    tier: Tier = Tier.FINITE_ELEMENTS,
+    tier: Tier = Tier.CYCLE,
     *,
     torques: Mapping[str, Torque] | None = None,
     positions: int | None = None,
@@ -252,7 +250,7 @@ def solved_turns(
     mesh = bodies = None
     if body is None:
         body = is_body(contour)
-    if body and tier is Tier.FINITE_ELEMENTS:
+    if body and tier >= Tier.CYCLE:
         progress.stage(MESHING)
         mesh = meshed(pair, turns)
         progress.stage(CONTACT)
@@ -283,19 +281,18 @@ def solved_turns(
 
 
 def certified_solution(
-    solved: Solution, positions: int, *, jobs: int | None = None, progress: Progress = SILENT
+    solved: Solution, *, jobs: int | None = None, progress: Progress = SILENT
 ) -> Solution:
     """The solution with certificate and benchmarks.
 
     Parameters
     ----------
-    positions : int   angles solved in full, both bodies on three meshes
-    jobs : int        processes; None: one a processor, at most 4
+    jobs : int   processes; None: one a processor, at most 4
     """
-    final = replace(solved, final=True)
+    final = replace(solved, tier=Tier.CERTIFIED)
     if solved.mesh is None:
         return final
-    chosen = positions_to_certify(solved.cycles, positions)
+    chosen = positions_to_certify(solved.cycles, solved.case.solver.certificate_positions)
     if not chosen:
         return final
     progress.stage(CERTIFICATE)
@@ -390,7 +387,7 @@ def _contact(
     pieces = dict(_pieces(pair, bodies, each, store, progress))
     first = pieces[0]
     whole = {name: np.concatenate([pieces[k][name] for k in sorted(pieces)]) for name in first}
-    return ContactHistory(**whole, tier=Tier.FINITE_ELEMENTS)
+    return ContactHistory(**whole, tier=Tier.CYCLE)
 
 
 def _pieces(

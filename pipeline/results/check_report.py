@@ -169,6 +169,15 @@ def remarks(records: Iterable[CheckRecord]) -> list[str]:
     return [*still_open, *unproven, *waived]
 
 
+def deeper_lines(records: Iterable[CheckRecord]) -> list[str]:
+    """Checks that a deeper solution judges, a line a depth."""
+    by_depth: dict[str, list[str]] = {}
+    for record in sorted(records, key=rank):
+        if record["judged_at"]:
+            by_depth.setdefault(record["judged_at"], []).append(record["id"])
+    return [f"judged at the depth {depth}: {', '.join(ids)}" for depth, ids in by_depth.items()]
+
+
 def _waived(record: CheckRecord) -> str:
     return {"waived": "waived", "pass": "waiver not needed"}.get(
         record["status"], "waiver without effect"

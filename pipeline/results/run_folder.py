@@ -37,6 +37,7 @@ from camwright.pipeline.base.files import (
 from camwright.pipeline.base.tables import Values, table
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results import run_reader, signoff
 
 _STATE, _CHUNKS, _LOCK = ".state.json", ".chunks", ".lock"
@@ -64,6 +65,7 @@ class RunFolder:
     ----------
     out : Path      final path of the folder
     case : Case     as computed, positions included
+    depth : Tier    of the run
     resume : bool   continue an interrupted run
 
     Raises
@@ -73,10 +75,18 @@ class RunFolder:
         interrupted run has another input or other versions.
     """
 
-    def __init__(self, out: Path, case: Case, *, resume: bool = False) -> None:
+    def __init__(
+        self,
+        out: Path,
+        case: Case,
+        *,
+        depth: Tier = Tier.CERTIFIED,
+        resume: bool = False,
+    ) -> None:
         self.out = _absolute(out)
         self.path = self.out.with_name(f".{self.out.name}.partial")
         self.case = case
+        self.depth = depth
         self.versions = versions()
         self.resumed = False
         self._created: list[Path] = []
@@ -259,7 +269,7 @@ class RunFolder:
             raise ResultError(f"{self.path}: in the way, and not the start of a run")
         self._take_lock()
         if resume and state.is_file():
-            differ = _differing(read_json(state), self.case, self.versions)
+            differ = _differing(read_json(state), self._identity())
             if differ:
                 raise ResultError(
                     f"{self.path}: cannot be resumed: {differ} differ; run without --resume"
@@ -277,7 +287,11 @@ class RunFolder:
             write_atomic(self.path / name, content)
 
     def _identity(self) -> dict[str, Json]:
-        return {"input": self.case.sha256, "versions": self.versions}
+        return {
+            "input": self.case.sha256,
+            "depth": self.depth.word,
+            "versions": self.versions,
+        }
 
     def _take_lock(self) -> None:
         """Lock the folder for this process; the system unlocks it when the process ends."""
@@ -337,14 +351,17 @@ class ContactFiles:
         return pieces
 
 
-def _differing(state: Json, case: Case, versions: Mapping[str, str]) -> str:
-    """Input or versions of an interrupted run that differ, in words; empty if none does."""
+def _differing(state: Json, now: Mapping[str, Json]) -> str:
+    """Input, depth or versions of an interrupted run that differ, in words; empty if none does."""
     known = state if isinstance(state, Mapping) else {}
-    if known.get("input") != case.sha256:
-        return "its input"
-    then = known.get("versions")
-    then = then if isinstance(then, Mapping) else {}
-    names = [name for name in {**then, **versions} if then.get(name) != versions.get(name)]
+    for name in ("input", "depth"):
+        if known.get(name) != now[name]:
+            return f"its {name}"
+    then, running = (
+        each if isinstance(each, Mapping) else {}
+        for each in (known.get("versions"), now["versions"])
+    )
+    names = [name for name in {**then, **running} if then.get(name) != running.get(name)]
     return f"its versions ({', '.join(names)})" if names else ""
 
 

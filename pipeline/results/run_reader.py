@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypedDict
@@ -17,7 +17,7 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json, hash_inputs, read_json, read_text, sha256_of
 from camwright.pipeline.base.tables import Table, read_table
 
-SCHEMA = 3
+SCHEMA = 4
 """Number of the form of a run folder; a folder of another form is refused."""
 HEADLINE = (
     *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),
@@ -31,6 +31,10 @@ STATUSES = ("pass", "waived", "not_evaluated", "fail")
 """Statuses of a check, from the best to the worst."""
 VERDICTS = ("pass", "incomplete", "fail")
 """Verdicts, from the best to the worst."""
+CERTIFIED = "certified"
+"""Depth of a run with a verdict; a shallower one has a screen, ``fail`` or ``open``."""
+OPEN = "open"
+"""Screen without a failed check; as an exit code it counts as ``incomplete``."""
 _DIGITS = 1e-12
 """Relative error of a sum of numbers with the 15 digits of a record."""
 _ROUNDING = 1.001e-9
@@ -48,6 +52,7 @@ class TrialContents(TypedDict):
     smoothing_width_deg: float | None
     smoothing_description: str
     prices: Json
+    depth: str
     contact_method: str
     balance: dict[str, Json]
     mesh: dict[str, Json] | None
@@ -78,6 +83,7 @@ class CheckRecordOfAnyCheck(TypedDict):
     corner: str | None
     corner_demand: float | None
     evidence: bool
+    judged_at: str
 
 
 class CheckRecord(CheckRecordOfAnyCheck, total=False):
@@ -120,7 +126,9 @@ class SummaryOfAnyRun(TypedDict):
     platform: str
     timings_s: dict[str, float]
     trials: int
-    verdict: str
+    depth: str
+    verdict: str | None
+    screen: str | None
     binding: list[str]
     scope: ScopeRecord
     statement: str
@@ -152,9 +160,19 @@ class TrialRecord:
     limits: Table | None = None
 
     @property
-    def verdict(self) -> str:
-        """``fail``, ``incomplete`` or ``pass``; see `verdict_of`."""
-        return verdict_of(self.checks)
+    def depth(self) -> str:
+        """Depth of the solution, such as ``preview``."""
+        return self.record["depth"]
+
+    @property
+    def verdict(self) -> str | None:
+        """``fail``, ``incomplete`` or ``pass``; None below certified. See `judgement`."""
+        return judgement(self.checks, self.depth)["verdict"]
+
+    @property
+    def screen(self) -> str | None:
+        """``fail`` or ``open``; None of a certified trial. See `judgement`."""
+        return judgement(self.checks, self.depth)["screen"]
 
     @property
     def binding(self) -> tuple[str, ...]:
@@ -179,9 +197,14 @@ class Run:
         return self.trials[-1]
 
     @property
-    def verdict(self) -> str:
-        """Verdict by the checks of the final trial."""
+    def verdict(self) -> str | None:
+        """Verdict by the checks of the final trial; None below certified."""
         return self.final.verdict
+
+    @property
+    def screen(self) -> str | None:
+        """``fail`` or ``open`` by the checks of the final trial; None of a certified run."""
+        return self.final.screen
 
 
 def read_run(path: str | Path) -> Run:
@@ -203,7 +226,7 @@ def read_run(path: str | Path) -> Run:
         trials=tuple(_read_trial(path, k + 1) for k in range(summary["trials"])),
         speed=read_table(speed) if speed.exists() else None,
     )
-    _require_verdict(path, summary, run.verdict)
+    _require_judgement(path, summary, run.final.checks, run.final.depth)
     return run
 
 
@@ -217,13 +240,13 @@ def read_verdict(path: Path) -> dict[str, Any]:
     """
     summary = read_summary(path)
     _case_text(path, summary)
-    checks = read_checks(path / f"trial_{summary['trials']}")
-    _require_verdict(path, summary, verdict_of(checks))
+    trial = path / f"trial_{summary['trials']}"
+    checks, depth = read_checks(trial), read_trial_record(trial)["depth"]
+    _require_judgement(path, summary, checks, depth)
     return {
         "case": summary["case"],
         "input_sha256": summary["input_sha256"],
-        "verdict": summary["verdict"],
-        "verdict_line": verdict_line(checks),
+        **judgement(checks, depth),
         "to_be_confirmed": to_be_confirmed(checks),
         "binding": list(binding_of(checks)),
         "trials": summary["trials"],
@@ -287,12 +310,46 @@ def is_result(name: str) -> bool:
 
 
 def binding_of(checks: Iterable[CheckRecord]) -> tuple[str, ...]:
-    """Ids of the must-have checks that fail or lack data."""
+    """Ids of the must-have checks that fail or lack data, without those of a deeper solution."""
     return tuple(
         check["id"]
-        for check in checks
+        for check in within_depth(checks)
         if check["must_have"] and check["status"] not in ("pass", "waived")
     )
+
+
+def within_depth(checks: Iterable[CheckRecord]) -> tuple[CheckRecord, ...]:
+    """The records without those that a deeper solution judges."""
+    return tuple(check for check in checks if not check["judged_at"])
+
+
+def judgement(checks: Iterable[AnyCheck], depth: str) -> dict[str, str | None]:
+    """Depth, verdict, screen and both in one line.
+
+    A certified run has a verdict, see `verdict_of`, and no screen. A shallower one has no verdict;
+    its screen is ``fail`` if a must-have check fails, else ``open``.
+    """
+    checks = tuple(checks)
+    line = verdict_line(checks) if depth == CERTIFIED else screen_line(checks, depth)
+    certified = depth == CERTIFIED
+    return {
+        "depth": depth,
+        "verdict": verdict_of(checks) if certified else None,
+        "screen": None if certified else screen_of(checks),
+        "verdict_line": line,
+    }
+
+
+def screen_of(checks: Iterable[AnyCheck]) -> str:
+    """Screen of the must-have checks, as `checks.check.screen` has it."""
+    failing = any(check["must_have"] and check["status"] == "fail" for check in checks)
+    return "fail" if failing else OPEN
+
+
+def exit_word(judged: Mapping[str, Any]) -> str:
+    """Verdict that decides the exit code; ``incomplete`` for an open screen."""
+    word = judged["verdict"] or judged["screen"]
+    return "incomplete" if word == OPEN else str(word)
 
 
 def verdict_of(checks: Iterable[AnyCheck]) -> str:
@@ -316,6 +373,24 @@ def verdict_line(records: Iterable[AnyCheck]) -> str:
     deciding = [record for record in records if record["must_have"]]
     if not deciding:
         return "FAIL: no check decides"
+    verdict, stated = verdict_of(deciding), _counts(deciding)
+    if verdict == "pass":
+        return f"PASS, {stated}" if stated else "PASS"
+    return f"{verdict.upper()}: {stated}"
+
+
+def screen_line(records: Iterable[AnyCheck], depth: str) -> str:
+    """Screen of the must-have checks in one line, such as ``OPEN at the depth preview: ...``."""
+    deciding = [record for record in records if record["must_have"]]
+    within = [record for record in deciding if not record["judged_at"]]
+    deeper = len(deciding) - len(within)
+    later = f"{_counted(deeper, 'check', 'checks')} judged deeper" if deeper else ""
+    parts = ", ".join(part for part in (_counts(within), later) if part)
+    return f"{screen_of(deciding).upper()} at the depth {depth}: {parts or 'no check fails'}"
+
+
+def _counts(deciding: Sequence[AnyCheck]) -> str:
+    """Counts of the must-have checks that do not simply pass, in words."""
     failed = [record for record in deciding if record["status"] == "fail"]
     unproven = sum(bool(record["not_proven"]) for record in failed)
     statuses = Counter(str(record["status"]) for record in deciding)
@@ -327,10 +402,7 @@ def verdict_line(records: Iterable[AnyCheck]) -> str:
         f"{waived} waived" if waived else "",
         _counted(values, "value to be confirmed", "values to be confirmed"),
     )
-    verdict, stated = verdict_of(deciding), ", ".join(part for part in parts if part)
-    if verdict == "pass":
-        return f"PASS, {stated}" if stated else "PASS"
-    return f"{verdict.upper()}: {stated}"
+    return ", ".join(part for part in parts if part)
 
 
 def _counted(number: int, one: str, many: str) -> str:
@@ -386,10 +458,19 @@ def _case_text(path: Path, summary: Summary) -> str:
     return text
 
 
-def _require_verdict(path: Path, summary: Summary, verdict: str) -> None:
-    said = summary["verdict"]
-    if said != verdict:
-        raise ResultError(f"{path}: run.json says {said}, the checks of the last trial {verdict}")
+def _require_judgement(
+    path: Path, summary: Summary, checks: Iterable[AnyCheck], depth: str
+) -> None:
+    """Refuse a summary whose depth, verdict or screen is not that of the last trial."""
+    judged = judgement(checks, depth)
+    for name, said in (
+        ("depth", summary["depth"]),
+        ("verdict", summary["verdict"]),
+        ("screen", summary["screen"]),
+    ):
+        if said != judged[name]:
+            whose = "the last trial" if name == "depth" else "the checks of the last trial"
+            raise ResultError(f"{path}: run.json says {said}, {whose} {judged[name]}")
 
 
 def _read_trial(run: Path, number: int) -> TrialRecord:

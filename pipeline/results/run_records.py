@@ -17,6 +17,7 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.elasticity.mesh_convergence import Convergence
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cam_balance import balance
 from camwright.pipeline.cycle.crank_speed import SpeedStudy, consistency, study_of
 from camwright.pipeline.cycle.cycle import (
@@ -133,7 +134,8 @@ def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | N
         return float(np.max([np.max(measure(cycle)) for cycle in trial.cycles]))
 
     def contact(measure: Callable[[ContactHistory], Array], scale: float) -> float | None:
-        worst = over(lambda c: measure(c.contact)) if trial.mesh is not None else np.nan
+        known = trial.mesh is not None or trial.depth < Tier.CYCLE
+        worst = over(lambda c: measure(c.contact)) if known else np.nan
         return scale * worst if np.isfinite(worst) else None
 
     after = first.turn.torque_after
@@ -155,7 +157,9 @@ def headline(torques: Mapping[str, Torque], trial: Trial) -> dict[str, float | N
         "guide_reaction_A_max_N": over(lambda c: np.abs(c.guides.reaction_a)),
         "guide_reaction_B_max_N": over(lambda c: np.abs(c.guides.reaction_b)),
         "friction_loss_J_per_cam_turn": float(first.loads.friction_loss),
-        "p0_difference_max_percent": contact(lambda h: np.abs(h.p0_difference), 100.0),
+        "p0_difference_max_percent": contact(lambda h: np.abs(h.p0_difference), 100.0)
+        if trial.depth >= Tier.CYCLE
+        else None,
         "residual_equilibrium_max": _residual_max(trial),
     }
 
@@ -190,6 +194,7 @@ def trial_record(trial: Trial) -> dict[str, Json]:
         "synthesis": trial.synthesis,
         "prices": None if trial.synthesis is None else trial.synthesis["prices"],
         "closure_mm": _MM * trial.lift.closure,
+        "depth": trial.depth.word,
         "contact_method": "; ".join(filter(None, (contact.method, machine.follower.body_model))),
         "line_contact_width_mm": _MM * machine.contact_width,
         "balance": balance(machine.cam, trial.contour).record(),

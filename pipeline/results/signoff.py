@@ -19,7 +19,7 @@ from camwright.pipeline.base.files import (
 )
 from camwright.pipeline.results import run_reader
 from camwright.pipeline.results.model_limits import MODEL_LIMITS, limitations
-from camwright.pipeline.results.run_reader import CheckRecord, to_be_confirmed, verdict_line
+from camwright.pipeline.results.run_reader import CheckRecord, to_be_confirmed
 
 NAME = "signoff.json"
 PRESENTATION = ("figures", "exports", "inspection")
@@ -48,8 +48,7 @@ def record(path: Path) -> dict[str, Json]:
             "platform": summary["platform"],
             "versions": summary["versions"],
         },
-        "verdict": run_reader.verdict_of(checks),
-        "verdict_line": verdict_line(checks),
+        **run_reader.judgement(checks, made["depth"]),
         "binding": list(run_reader.binding_of(checks)),
         "not_evaluated": [c["id"] for c in checks if c["status"] == "not_evaluated"],
         "not_proven": [c["id"] for c in checks if c["not_proven"]],

@@ -10,9 +10,10 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.check import Check, Verdict, binding, verdict
+from camwright.pipeline.checks.check import Check, Screen, Verdict, binding, screen, verdict
 from camwright.pipeline.checks.tolerance_corners import Outcome
 from camwright.pipeline.contact.contact_history import CertificatePoint
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import ContactMesh, Solution
 
@@ -82,7 +83,7 @@ class Trial:
 
     @property
     def mesh(self) -> ContactMesh | None:
-        """Meshes at the maximum Hertz pressure; None in a preview, or without a body."""
+        """Meshes at the maximum Hertz pressure; None without finite elements, or without a body."""
         return self.solution.mesh
 
     @property
@@ -91,11 +92,21 @@ class Trial:
         return self.solution.certificate
 
     @property
-    def verdict(self) -> Verdict:
-        """``fail``, ``incomplete`` or ``pass``, by the must-have checks."""
-        return verdict(self.checks)
+    def depth(self) -> Tier:
+        """Depth of the solution."""
+        return self.solution.tier
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """``fail``, ``incomplete`` or ``pass``, by the must-have checks; None below certified."""
+        return verdict(self.checks) if self.depth is Tier.CERTIFIED else None
+
+    @property
+    def screen(self) -> Screen | None:
+        """``fail`` if a must-have check fails, else ``open``; None of a certified solution."""
+        return None if self.depth is Tier.CERTIFIED else screen(self.checks)
 
     @property
     def binding(self) -> tuple[str, ...]:
-        """Ids of the must-have checks that fail or lack data, worst first."""
+        """Ids of the must-have checks that fail or lack data; see `binding`."""
         return binding(self.checks)

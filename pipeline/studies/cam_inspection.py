@@ -119,8 +119,7 @@ def inspect_part(
     progress.stage("fit")
     fit = inspected(contour, measured)
     real = real_contour(contour, fit, keep_phase=keep_phase)
-    certify = case.solver.certificate_positions
-    trial = solve(case, real, certify=certify, jobs=jobs, progress=progress)
+    trial = solve(case, real, jobs=jobs, progress=progress)
     return RealPart(fit, real, replace(trial, why="measured contour"))
 
 

@@ -11,8 +11,7 @@ from camwright.geometry.errors import CamError, InputError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.check import binding, verdict
-from camwright.pipeline.checks.registry import without_sign_off
+from camwright.pipeline.checks.check import binding, verdict, within_depth
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.preview import preview_case
@@ -83,7 +82,7 @@ def _constrained(case: Case) -> Compared:
 
 
 def _record(trial: Trial) -> Record:
-    rest, checks = trial.cycles[0].turn.torque_after, without_sign_off(trial.checks)
+    rest, checks = trial.cycles[0].turn.torque_after, within_depth(trial.checks)
     return {
         "pressure_angle_max_deg": in_unit(trial.contour.pressure_angle_max().value, "deg"),
         "lift_max_mm": in_unit(trial.lift.highest.value, "mm"),

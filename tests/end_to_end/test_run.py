@@ -65,9 +65,9 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Case, Path, dict
     folder = tmp_path_factory.mktemp("run")
     case, out = small(folder), folder / "out"
     with pytest.raises(KeyboardInterrupt):
-        run_case(case, out, progress=Recorder(stop_after=3), present=report)
+        run_case(case, out, progress=Recorder(stop_after=3), report=report)
     assert not out.exists()
-    run = run_case(case, out, resume=True, jobs=1, progress=Silent(), present=report)
+    run = run_case(case, out, resume=True, jobs=1, progress=Silent(), report=report)
     return case, out, dict(run.summary)
 
 
@@ -225,7 +225,7 @@ def test_folder_of_another_case_is_refused(
     _, out, summary = finished
     other = small(tmp_path, preload='"250 N"')
     with pytest.raises(ResultError, match="holds the run of"):
-        run_case(other, out, progress=Silent(), present=report)
+        run_case(other, out, progress=Silent(), report=report)
     assert json.loads((out / "run.json").read_text()) == summary
 
 
@@ -234,7 +234,7 @@ def test_undercut_is_a_verdict(tmp_path: Path) -> None:
     text = (tmp_path / "case.toml").read_text().replace('kind = "moving_average"', 'kind = "none"')
     (tmp_path / "case.toml").write_text(text)
     case = read_case(tmp_path / "case.toml")
-    summary = run_case(case, tmp_path / "out", progress=Silent(), present=report).summary
+    summary = run_case(case, tmp_path / "out", progress=Silent(), report=report).summary
     assert summary["verdict"] == "fail"
     assert "undercut" in summary["binding"]
     assert "contact_pressure" in summary["binding"], "an unknown contact must not pass"

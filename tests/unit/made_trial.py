@@ -217,7 +217,7 @@ def cycle(
         ),
         "contact": replace(
             base.contact,
-            tier=Tier.FINITE_ELEMENTS,
+            tier=Tier.CYCLE,
             pressure=_pressure(base, driven + 2.0 * rub * np.abs(slope)),
             p0=(800e6 + 100e6 * WAVE) * scale,
             p0_hertz=(800e6 + 100e6 * WAVE) * scale / 1.01,
@@ -385,13 +385,12 @@ def solution(**values: Any) -> Solution:
         case=case(),
         contour=contour(),
         machines=machines(case())[:1],
-        tier=Tier.FINITE_ELEMENTS,
+        tier=Tier.CERTIFIED,
         mesh=MESH,
         cycles=(cycle(),),
         certificate=CERTIFICATE,
         benchmarks=BENCHMARKS,
         crank_speed={"idle": (2.0, 1.0)},
-        final=True,
     )
     return changed_solution(plain, **values)
 

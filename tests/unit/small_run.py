@@ -28,7 +28,7 @@ CYCLE = (LOAD_CASE, CAM_ANGLE, CRANK_ANGLE, Column("lift", "mm"), Column("normal
 TRIAL = {
     "number": 1, "why": "", "smoothing_kind": "none", "smoothing_strength": 1.0,
     "smoothing_width_deg": None, "smoothing_description": "none", "prices": None,
-    "contact_method": "", "balance": {}, "mesh": None, "certificate": [],
+    "depth": "certified", "contact_method": "", "balance": {}, "mesh": None, "certificate": [],
     "widths": np.arange(2.0),
 }  # fmt: skip
 VERDICT_OF = {
@@ -80,6 +80,7 @@ def check(status: str = "pass", **changes: Any) -> dict[str, Any]:
         "corner": None,
         "corner_demand": None,
         "evidence": False,
+        "judged_at": "",
     }
     return record | changes
 
@@ -88,7 +89,9 @@ def summary(verdict: str = "pass", trials: int = 1) -> dict[str, Any]:
     return {
         "timings_s": {"total": 1.0},
         "trials": trials,
+        "depth": "certified",
         "verdict": verdict,
+        "screen": None,
         "binding": [] if verdict == "pass" else ["pressure_angle"],
         "scope": Scope().as_record(),
         "statement": "",

@@ -199,7 +199,7 @@ def test_at_rest_alone_no_speed_dependent_check_is_missing(loads):
     given = turn(start, contour, None, 72)
     pair, unknown = contact_pair(start, contour), ContactHistory.unknown(72)
     cycles = (Cycle(given, contour, pair, None, unknown),)
-    solution = Solution(case, contour, (start,), Tier.FINITE_ELEMENTS, None, cycles)
+    solution = Solution(case, contour, (start,), Tier.CYCLE, None, cycles)
 
     def demand(check):
         """In the unit of its record."""

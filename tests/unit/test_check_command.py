@@ -227,13 +227,17 @@ def test_a_case_file_is_previewed_and_never_passes(tmp_path: Path, command: Comm
     code, out, _ = command("check", file, "--json")
     document = json.loads(out)
     assert code == 1
-    assert document["preview"] is True
-    assert document["verdict"] == "fail"
-    assert document["verdict_line"].startswith("FAIL")
-    assert "signed_off" in document["binding"]
-    previewed = [each for each in document["checks"] if each["id"] != "tolerance_corners"]
-    assert all(record["method"].startswith("preview: ") for record in previewed)
-    assert "preview by closed forms" in command("check", file)[1]
+    assert (document["depth"], document["verdict"], document["screen"]) == ("preview", None, "fail")
+    assert document["verdict_line"].startswith("FAIL at the depth preview: ")
+    for record in document["checks"]:
+        if record["judged_at"]:
+            assert record["status"] == "not_evaluated"
+            assert record["judged_at"] in ("cycle", "certified")
+        elif record["id"] != "tolerance_corners":
+            assert record["method"].startswith("preview: ")
+    text = command("check", file)[1]
+    assert "no verdict below the certified depth" in text
+    assert "judged at the depth certified: " in text
 
 
 def test_a_finished_run_is_checked_from_its_folder(tmp_path: Path, command: Command) -> None:

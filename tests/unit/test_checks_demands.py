@@ -41,15 +41,20 @@ from camwright.pipeline.checks import (
     torque_balance,
 )
 from camwright.pipeline.checks import guide_strength as guides
-from camwright.pipeline.checks.check import Check, Waived, binding, verdict
+from camwright.pipeline.checks.check import (
+    Check,
+    Waived,
+    binding,
+    screen,
+    verdict,
+    within_depth,
+)
 from camwright.pipeline.checks.extremes import greatest, least
 from camwright.pipeline.checks.registry import (
     CHECKS,
     FORECAST,
-    PREVIEW_MARK,
     all_checks,
     checks_of,
-    without_sign_off,
 )
 from camwright.pipeline.contact.tiers import Tier
 
@@ -144,7 +149,7 @@ def test_a_forecast_needs_neither_mesh_nor_residuals_nor_rolling():
     reactions = replace(plain.guides, force_residual=NAN, moment_residual=NAN)
     rough = made.solution(
         cycles=(made.changed_cycle(plain, contact=contact, guides=reactions),),
-        tier=Tier.PREVIEW, mesh=None, certificate=(), benchmarks=None, final=False,
+        tier=Tier.PREVIEW, mesh=None, certificate=(), benchmarks=None,
     )  # fmt: skip
     # A copy of a cycle has nothing of the rolling and parts that were put into it.
     preview = replace(rough, cycles=tuple(replace(cycle) for cycle in rough.cycles))
@@ -156,26 +161,35 @@ def test_a_forecast_needs_neither_mesh_nor_residuals_nor_rolling():
 
 
 def test_a_preview_leaves_out_what_only_finite_elements_can_judge():
-    preview = made.solution(
-        tier=Tier.PREVIEW, mesh=None, certificate=(), benchmarks=None, final=False
-    )
+    preview = made.solution(tier=Tier.PREVIEW, mesh=None, certificate=(), benchmarks=None)
     checks, full = all_checks(preview), all_checks(made.solution())
-    by_elements = {declared.id for declared in CHECKS if declared.tier is Tier.FINITE_ELEMENTS}
+    by_elements = {declared.id for declared in CHECKS if declared.tier > Tier.PREVIEW}
     assert {"contact_equilibrium", "mesh_p0", "edge_factor", "bore_stress"} <= by_elements
-    assert {c.id for c in checks} == {c.id for c in full} - by_elements | {"signed_off"}
-    assert all(c.method.startswith(PREVIEW_MARK) for c in checks)
-    assert not any(c.method.startswith(PREVIEW_MARK) for c in full)
+    judged = within_depth(checks)
+    assert {c.id for c in judged} == {c.id for c in full} - by_elements
+    assert all(c.method.startswith("preview: ") for c in judged)
+    assert not any(c.method.startswith("preview: ") for c in full)
 
 
-def test_only_a_final_solution_passes():
-    """Before it is certified a must-have stands for what is missing, and is never evaluated."""
-    checks = all_checks(made.solution(final=False))
-    assert (checks[0].id, checks[0].status) == ("signed_off", "not_evaluated")
-    assert binding(checks) == ("signed_off",)
+@pytest.mark.parametrize("tier", list(Tier)[:-1])
+def test_a_check_above_the_depth_is_not_evaluated(tier):
+    """It says which depth judges it, and keeps the verdict of the checks from PASS."""
+    checks = all_checks(made.solution(tier=tier))
+    deeper = [c for c in checks if c.declaration.tier > tier]
+    assert deeper and set(checks) - set(deeper) == set(within_depth(checks))
+    for check in deeper:
+        assert (check.status, check.demand) == ("not_evaluated", None)
+        assert check.note == f"judged at the depth {check.judged_at}"
+        assert check.judged_at == check.declaration.tier.word
     assert verdict(checks) == "incomplete"
-    assert without_sign_off(checks) == checks[1:]
-    assert verdict(checks[1:]) == "pass"
-    assert "signed_off" not in {c.id for c in all_checks(made.solution())}
+    assert (verdict(within_depth(checks)), screen(checks)) == ("pass", "open")
+    assert binding(checks) == ()
+
+
+def test_a_certified_solution_judges_every_check():
+    checks = all_checks(made.solution())
+    assert within_depth(checks) == checks
+    assert verdict(checks) == "pass"
 
 
 # --- where -----------------------------------------------------------------------------------
@@ -453,16 +467,19 @@ def test_friction_with_the_wrong_sign_on_the_return_is_seen():
 # --- verification ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("final", [False, True])
-def test_without_certificate_or_mesh_nothing_is_claimed(final):
+@pytest.mark.parametrize("tier", [Tier.CYCLE, Tier.CERTIFIED])
+def test_without_certificate_or_mesh_nothing_is_claimed(tier):
     """A trial of a search may go without; an answer without them does not pass."""
-    bare = made.solution(certificate=(), mesh=None, benchmarks=None, final=final)
+    final = tier is Tier.CERTIFIED
+    bare = made.solution(certificate=(), mesh=None, benchmarks=None, tier=tier)
     checks = {c.id: c for c in all_checks(bare)}
     for name in ("certificate_spread", "certificate_gci", "mesh_angle", "mesh_edges", "mesh_p0"):
         assert checks[name].status == "not_evaluated"
-        assert checks[name].must_have is final
-        assert "this trial has no" in checks[name].note
-    assert verdict(without_sign_off(checks.values())) == ("incomplete" if final else "pass")
+        assert checks[name].must_have is (final or checks[name].judged_at == "certified")
+        assert ("this trial has no" if checks[name].judged_at == "" else "judged at") in (
+            checks[name].note
+        )
+    assert verdict(within_depth(checks.values())) == ("incomplete" if final else "pass")
 
 
 def test_the_worst_certified_angle_is_named():

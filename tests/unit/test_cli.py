@@ -19,6 +19,7 @@ from small_run import check, small_case, summary, write_run, write_trial
 
 from camwright.geometry.errors import ContactError
 from camwright.pipeline import cli
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_folder import RunFolder
 
 Command = Callable[..., tuple[int, str, str]]
@@ -69,13 +70,16 @@ def short_run(
     jobs: int | None,
     resume: bool,
     progress: Any,
-    present: Callable[[Path], object],
+    depth: Tier,
+    report: Callable[[Path], object] | None,
     also: Callable[[Any], object],
 ) -> None:
     progress.stage("cycle")
     progress.advance(1, 2)
-    with RunFolder(out, case, resume=resume) as folder:
+    with RunFolder(out, case, depth=depth, resume=resume) as folder:
         write_trial(folder, [check("fail"), check("not_evaluated", id="x", must_have=False)])
+        if report is not None:
+            (folder.path / "8_report.html").write_text("")
         folder.finish(summary("fail"))
 
 

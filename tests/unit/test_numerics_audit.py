@@ -249,9 +249,7 @@ def solved():
     """The case of every part by finite elements at 24 angles."""
     text = (Path(__file__).parents[1] / "data" / "every_part.toml").read_text()
     case = case_file.parse_case(text)
-    return solve(
-        case, case.contour(given_lift(case)), Tier.FINITE_ELEMENTS, positions=24, torques={}
-    )
+    return solve(case, case.contour(given_lift(case)), Tier.CYCLE, positions=24, torques={})
 
 
 def with_solved_contact(**values):
@@ -302,7 +300,7 @@ def test_the_torque_of_a_sliding_face_includes_its_friction():
     """mu N times the height of the face over the cam axis, beside N s'."""
     shape = made.face_contour()
     case, lift = made.face_case(), shape.pitch.lift
-    plain = solve(case, shape, Tier.FINITE_ELEMENTS, positions=24, torques={})
+    plain = solve(case, shape, Tier.CYCLE, positions=24, torques={})
     cycle = plain.cycles[0]
     force = cycle.loads.normal_force
     height = made.BASE + lift(cycle.theta)

@@ -101,7 +101,7 @@ def full_case():
     return parse_case(text(SPRING + pin + KEYWAY + SHAFT))
 
 
-def harmonic(case, tier=Tier.FINITE_ELEMENTS):
+def harmonic(case, tier=Tier.CYCLE):
     """A harmonic lift of 20 mm on the template's machine; the contact is that of half-planes."""
     theta = uniform_turn(case.solver.positions)
     contour = case.contour(Lift(theta, 0.01 * (1 - np.cos(theta))))

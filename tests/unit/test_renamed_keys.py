@@ -20,7 +20,6 @@ from camwright.pipeline.case.template import template
 from camwright.pipeline.checks.registry import (
     CHECKS,
     TOLERANCE_CORNERS,
-    UNSIGNED,
     WAIVERS_WITHOUT_EFFECT,
 )
 from camwright.pipeline.follower.spring import HelicalSpring
@@ -28,7 +27,7 @@ from camwright.pipeline.results.workshop_files import WORKSHOP
 from camwright.reports import guide_pressure_figure
 
 NAMES = renamed_names()
-CHECK_IDS = {each.id for each in (*CHECKS, TOLERANCE_CORNERS, UNSIGNED, WAIVERS_WITHOUT_EFFECT)}
+CHECK_IDS = {each.id for each in (*CHECKS, TOLERANCE_CORNERS, WAIVERS_WITHOUT_EFFECT)}
 
 ROWS = {
     "[limits]": '{share} = 0.25\n{gap} = "2 mm"',

@@ -73,7 +73,7 @@ def cycle(corner: Corner, width: float = 1.0) -> Cycle:
 def judged(declared: Declaration, corner: Corner, width: float = 1.0) -> Check:
     """A check of that turn."""
     one = cycle(corner, width)
-    return declared(Solution(case(), cam(), (one.machine,), Tier.FINITE_ELEMENTS, None, (one,)))
+    return declared(Solution(case(), cam(), (one.machine,), Tier.CYCLE, None, (one,)))
 
 
 PLAIN = Corner("plain")

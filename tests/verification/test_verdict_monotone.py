@@ -12,8 +12,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import case_of
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.limits import LIMITS, OVERSPEED
-from camwright.pipeline.checks.check import Check, verdict
-from camwright.pipeline.checks.registry import without_sign_off
+from camwright.pipeline.checks.check import Check, verdict, within_depth
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.solver import solve
 
@@ -35,7 +34,7 @@ def tables() -> dict[str, Any]:
 def judged(case: Case) -> dict[str, Check]:
     contour = case.contour(given_lift(case))
     checks = solve(case, contour, tier=Tier.PREVIEW, torques={}, corners=True).checks
-    return {one.id: one for one in without_sign_off(checks)}
+    return {one.id: one for one in within_depth(checks)}
 
 
 @cache

@@ -16,8 +16,7 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
-from camwright.pipeline.checks.check import Verdict
-from camwright.pipeline.checks.registry import without_sign_off
+from camwright.pipeline.checks.check import Verdict, within_depth
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
@@ -112,7 +111,7 @@ def point_of(case: Case) -> Point:
     if rest is None or torque is None:
         raise InputError("engine", "missing", "specified: a redesign balances its torque")
     record = trial.synthesis or {"feasible": False, "prices": []}
-    blocking = [check for check in without_sign_off(trial.checks) if check.blocks]
+    blocking = [check for check in within_depth(trial.checks) if check.blocks]
     return Point(
         feasible=record["feasible"],
         ripple_before=float(np.std(torque)),
