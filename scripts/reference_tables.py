@@ -67,12 +67,13 @@ def _check(one: Declaration) -> str:
     title = one.title.format(follower="follower")
     needs = f"; a {one.needs} only" if one.needs else ""
     part = f"; part `{one.part}`" if one.part else ""
+    depth = f"\n- Judged from the depth {one.tier.word} on."
     decides = "Decides the verdict" if one.must_have else "Does not decide the verdict"
     lines = (
         f"#### `{one.id}`: {title}",
         f"{_sentence(one.formula)} Unit: {one.unit}{needs}{part}.",
         f"- Calculation: {one.method.rstrip('.')}.\n- Limit: {_limit(one)}.\n"
-        f"- Load cases: {one.load_cases}.\n- {decides}. {_sentence(one.reason)}",
+        f"- Load cases: {one.load_cases}.\n- {decides}. {_sentence(one.reason)}{depth}",
     )
     return "\n\n".join(lines)
 

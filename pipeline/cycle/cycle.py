@@ -160,6 +160,12 @@ class Cycle:
             return Column(name, unit, meaning, unknown=True)
 
         turn, loads, contact, guides = self.turn, self.loads, self.contact, self.guides
+        unsolved = np.full(self.theta.size, np.nan)
+
+        def by_elements(values: Array) -> Array:
+            """Values of a contact by finite elements; NaN where it is a closed form."""
+            return unsolved if contact.tier is Tier.PREVIEW else values
+
         columns: dict[Column, Cells] = {
             LOAD_CASE: np.full(self.theta.size, self.load_case),
             CAM_ANGLE: self.theta,
@@ -173,16 +179,18 @@ class Cycle:
                 "line_load", "N/mm", "Normal force over width of the line contact"
             ): contact.line_load,
             contact_column("p0_hertz", "MPa", "Maximum contact pressure, Hertz"): contact.p0_hertz,
-            contact_column("p0_fe", "MPa", "Maximum contact pressure, finite elements"): contact.p0,
+            contact_column(
+                "p0_fe", "MPa", "Maximum contact pressure, finite elements"
+            ): by_elements(contact.p0),
             contact_column(
                 "p0_difference", "percent", "Maximum contact pressure, finite elements over Hertz"
-            ): contact.p0_difference,
+            ): by_elements(contact.p0_difference),
             contact_column(
                 "half_width_hertz", "mm", "Half-width of the contact, Hertz"
             ): contact.half_width_hertz,
             contact_column(
                 "half_width_fe", "mm", "Half-width of the contact, finite elements"
-            ): contact.half_width,
+            ): by_elements(contact.half_width),
             contact_column(
                 "tau_max", "MPa", "Maximum in-plane shear stress below the contact"
             ): contact.tau_max,
@@ -224,10 +232,10 @@ class Cycle:
             Column("cam_torque", "N m", "Torque that drives the cam"): loads.cam_torque,
             contact_column(
                 "residual_equilibrium", "", "Contact pressure against line load, relative"
-            ): contact.residual_equilibrium,
+            ): by_elements(contact.residual_equilibrium),
             contact_column(
                 "residual_complementarity", "", "Contact pressure times gap, relative"
-            ): contact.residual_complementarity,
+            ): by_elements(contact.residual_complementarity),
             Column(
                 "residual_guide_force", "", "Transverse forces on the follower, relative"
             ): guides.force_residual,

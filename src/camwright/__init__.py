@@ -7,7 +7,7 @@ The public names, in the order of the calculation:
 | `read_case`    | read and check a case file                              | `Case`           |
 | `Case`         | a design and its load cases, resolved, SI               |                  |
 | `synthesize`   | torque, lift, cam contour                               | case and contour |
-| `Tier`         | `PREVIEW`: closed forms; `FINITE_ELEMENTS`: the solution to sign |         |
+| `Tier`         | depth: `SCREENING`, `PREVIEW`, `CYCLE`, `CERTIFIED`      |                  |
 | `solve`        | contact, guides, parts and checks of a cam              | `Trial`          |
 | `preview_case` | `synthesize` and `solve` by closed forms                | `Trial`          |
 | `Trial`        | a cam with its solution, checks and verdict             |                  |
