@@ -109,23 +109,24 @@ def lift_from_torque(
     return Lift(readonly(theta), values, closure=float(abs(ends[1] - ends[0])))
 
 
-def spring_deflection(energy: ArrayLike, spring_rate: float, preload: float) -> Array:
+def spring_deflection(energy: ArrayLike, spring_rate: ArrayLike, preload: ArrayLike) -> Array:
     """Deflection of a spring beyond its preload, from the energy it stores, m.
 
     Parameters
     ----------
-    energy : array (...)    J, >= 0, beyond that of the preload
-    spring_rate : float     k, N/m, > 0
-    preload : float         P, N, >= 0
+    energy : array (...)         J, >= 0, beyond that of the preload
+    spring_rate : array (...)    k, N/m, > 0
+    preload : array (...)        P, N, >= 0
     """
     _require_spring(spring_rate, preload)
     stored = finite("spring.energy", energy)
     if not (stored >= 0).all():
         raise InputError("spring.energy", float(stored.min()), ">= 0 J")
-    force = np.sqrt(preload**2 + 2 * spring_rate * stored)
+    preload = np.asarray(preload, dtype=float)
+    force = np.sqrt(preload**2 + 2 * np.asarray(spring_rate) * stored)
     # 2 E / (F + P) equals (F - P) / k without cancellation at small energies
     return readonly(
-        np.divide(2 * stored, force + preload, out=np.zeros_like(stored), where=force > 0)
+        np.divide(2 * stored, force + preload, out=np.zeros_like(force), where=force > 0)
     )
 
 
@@ -140,7 +141,8 @@ def _energy_curve(theta: Array, cam_torque: Array) -> tuple[PeriodicPolynomial, 
     return periodic_quintic(cam_torque).antiderivative()
 
 
-def _require_spring(spring_rate: float, preload: float) -> None:
+def _require_spring(spring_rate: ArrayLike, preload: ArrayLike) -> None:
     positive("spring.rate", spring_rate, "N/m")
-    if not 0 <= preload < np.inf:
-        raise InputError("spring.preload", preload, ">= 0 N and finite")
+    force = np.asarray(preload, dtype=float)
+    if not ((0 <= force) & (force < np.inf)).all():
+        raise InputError("spring.preload", float(force.min()), ">= 0 N and finite")

@@ -173,6 +173,72 @@ def _pieces(degree: int) -> Array:
     return readonly(pieces)
 
 
+def knot_derivatives(values: ArrayLike, order: int) -> Array:
+    """Periodic quintics through samples at equal angles, and their derivatives, at the samples.
+
+    The same splines as `periodic_quintic`, many at once: interpolation and derivatives are
+    convolutions with B-splines at whole steps, products in the harmonics of the samples.
+
+    Parameters
+    ----------
+    values : array (..., n)    any unit, n >= 12, at n equal angles of one turn
+    order : int                highest derivative, 0 to 4
+
+    Returns
+    -------
+    array (order + 1, ..., n)    row k in units per rad^k
+
+    References
+    ----------
+    Unser, Aldroubi and Eden, IEEE Trans. Signal Process. 41 (1993) 821: B-spline filters.
+    """
+    samples = np.asarray(values, dtype=float)
+    count = samples.shape[-1]
+    step, phase = FULL_TURN / count, FULL_TURN / count * np.arange(count // 2 + 1)
+    one, two = np.exp(1j * phase), np.exp(2j * phase)
+    weights = np.fft.rfft(samples, axis=-1) / (66.0 + 52.0 * one.real + 2.0 * two.real) * 120.0
+    symbols = (
+        1j * (20.0 * one.imag + 2.0 * two.imag) / 24.0,
+        (-3.0 + 2.0 * one.real + two.real) / 3.0,
+        1j * (two.imag - 2.0 * one.imag),
+        6.0 - 8.0 * one.real + 2.0 * two.real,
+    )
+    rows = [
+        np.fft.irfft(weights * symbol, n=count, axis=-1) / step**k
+        for k, symbol in enumerate(symbols[:order], start=1)
+    ]
+    return np.stack([samples, *rows])
+
+
+def knot_integrals(values: ArrayLike) -> Array:
+    """Integrals, from the first sample, of the periodic quintics through samples, at the samples.
+
+    Parameters
+    ----------
+    values : array (..., n)    any unit, n >= 12, at n equal angles of one turn, of zero mean
+
+    Returns
+    -------
+    array (..., n)    in units times rad, the first zero
+
+    References
+    ----------
+    de Boor, A Practical Guide to Splines (1978), ch. X: the integral of a B-spline series.
+    """
+    samples = np.asarray(values, dtype=float)
+    count = samples.shape[-1]
+    phase = FULL_TURN / count * np.arange(1, count // 2 + 1)
+    half, three, five = (np.cos(0.5 * k * phase) for k in (1, 3, 5))
+    # the integral of a B-spline is a sum of those of the next degree, at half steps
+    integral = (302.0 * half + 57.0 * three + five) / 360.0
+    interpolation = (66.0 + 52.0 * np.cos(phase) + 2.0 * np.cos(2.0 * phase)) / 120.0
+    spectrum = np.fft.rfft(samples, axis=-1)
+    spectrum[..., 0] = 0.0
+    spectrum[..., 1:] *= integral / (interpolation * 2j * np.sin(0.5 * phase))
+    whole = FULL_TURN / count * np.fft.irfft(spectrum, n=count, axis=-1)
+    return np.asarray(whole - whole[..., :1])
+
+
 @cache
 def _falling(power: int, order: int) -> float:
     """power (power - 1) ..., `order` factors: from differentiating a power."""

@@ -120,6 +120,11 @@ class Case(Section):
             raise first_error(error, "solver") from None
         return self.model_copy(update={"solver": solver})
 
+    @property
+    def folder(self) -> Path | None:
+        """Folder of the case file; None: the case was not read from a file."""
+        return self._folder
+
     def path(self, name: str) -> Path:
         """Path of an included file; `name` as in the case file."""
         if self._folder is None:

@@ -48,7 +48,11 @@ def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
         raise InputError(
             "schema_version", str(version), f"{SCHEMA_VERSION}, the version of this program"
         )
-    case = case_of(data, folder)
+    return completed(case_of(data, folder), folder)
+
+
+def completed(case: Case, folder: Path | None) -> Case:
+    """A case with the files that it includes, read from `folder`; a face too narrow is refused."""
     case._folder = folder
     case._included = MappingProxyType(_read_includes(case, folder))
     if case.lift is not None and case.follower.face is not None:

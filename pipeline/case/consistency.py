@@ -29,13 +29,18 @@ def check_sections(case: Case) -> None:
     InputError
         For the first contradiction, by its dotted name.
     """
+    check_numbers(case)
+    _check_values(case)
+
+
+def check_numbers(case: Case) -> None:
+    """As `check_sections`, but for the names of the values with a source or a confirmation."""
     _check_start(case)
     _check_geometry(case)
     _check_names(case)
     _check_film(case)
     _check_tolerances(case)
     _check_mass(case)
-    _check_values(case)
 
 
 def _check_values(case: Case) -> None:

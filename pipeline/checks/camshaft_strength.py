@@ -309,7 +309,7 @@ def shaft_bearing_life(solution: Solution) -> Demand:
         if not all((load <= RATED * rating).all() for load in both):
             return float(np.nan)
         spin = np.full(cycle.theta.size, cycle.cam_speed)
-        return min(rating_life(load, spin, rating).seconds for load in both)
+        return min(float(rating_life(load, spin, rating).seconds) for load in both)
 
     worst = worst_case(solution.cycles, life, at_least=True)
     notes = [] if target is not None else ["no life of the camshaft's bearings is required"]

@@ -163,7 +163,7 @@ def _life(cycle: Cycle, rating: float | None) -> float:
     force = cycle.surged_force
     if rating is None or not _known(force):
         return np.nan
-    return rating_life(force, spin(cycle), rating).seconds
+    return float(rating_life(force, spin(cycle), rating).seconds)
 
 
 @check(
@@ -385,5 +385,5 @@ def _grease_life(cycle: Cycle, solution: Solution) -> float:
     if not bearing.C or bearing.temperature is None or roller is None or not _known(force):
         return np.nan
     across = 2.0 * roller.radius if bearing.ring is None else bearing.ring.outer_diameter
-    share = equivalent_load(force, spin(cycle)) / bearing.C
+    share = float(equivalent_load(force, spin(cycle))) / bearing.C
     return bearing_life.grease_life(_mean_speed(cycle), across, share, bearing.temperature)

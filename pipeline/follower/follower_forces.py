@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -49,7 +50,7 @@ class Push:
 
     side: Array
     arm: Array
-    spacing: float
+    spacing: float | Array
 
     @classmethod
     def of(cls, pitch: FollowerPath, system: FollowerSystem, theta: Array) -> Push:
@@ -66,6 +67,63 @@ class Push:
         """Reactions of point supports over the axial force, from factors of the side force."""
         tilt = self.arm / self.spacing
         return self.side * factor_a - tilt, self.side * factor_b - tilt
+
+    def rubbing_on_points(self, overhang: Array) -> tuple[Array, Array]:
+        """Rubbing load of point supports A and B over axial force and side-load factor."""
+        factors, loaded = levers(overhang, self.spacing), self.side_factor
+        on_a, on_b = (
+            np.divide(np.abs(load), loaded, out=factor.copy(), where=loaded > 0.0)
+            for load, factor in zip(self.on_points(*factors), factors, strict=True)
+        )
+        return on_a, on_b
+
+
+class MovedMass(Protocol):
+    """Mass, friction and supports of a follower, or of many: floats, or arrays (m, 1).
+
+    See `FollowerSystem`.
+    """
+
+    @property
+    def mass(self) -> float | Array: ...
+    @property
+    def guide_spacing(self) -> float | Array: ...
+    @property
+    def overhang_at_max_lift(self) -> float | Array: ...
+    @property
+    def friction_a(self) -> float | Array: ...
+    @property
+    def friction_b(self) -> float | Array: ...
+    @property
+    def gravity_along_axis(self) -> float | Array: ...
+    @property
+    def viscous_damping(self) -> float | Array: ...
+    @property
+    def face_friction(self) -> float | Array: ...
+
+    def spring_force(self, lift: Array) -> Array:
+        """Force (..., n) of the spring at a lift, N."""
+        ...
+
+    def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:
+        """Rubbing load of guides A and B over axial force and side-load factor."""
+        ...
+
+
+class FollowerMotion(NamedTuple):
+    """Motion of a follower, or of many, over cam angles; arrays (..., n), SI.
+
+    Lift and its derivatives by the cam angle, slopes of a dwell zero; highest (..., 1): maximum
+    lift; height of the reference point over the cam axis; push of the cam on the stem.
+    """
+
+    lift: Array
+    slope: Array
+    bend: Array
+    highest: float | Array
+    pressure_angle: Array
+    height: Array
+    push: Push
 
 
 @dataclass(frozen=True)
@@ -117,6 +175,10 @@ class FollowerSystem:
                 raise InputError(f"follower.{name}", getattr(self, name), f">= 0 {unit}".rstrip())
         finite("follower.gravity_along_axis", self.gravity_along_axis)
 
+    def spring_force(self, lift: Array) -> Array:
+        """Force (..., n) of the spring at a lift, N."""
+        return self.spring.force(lift)
+
     def guide_factors(self, overhang: ArrayLike) -> tuple[Array, Array]:
         """|A|/F_t and |B|/F_t, see `levers`."""
         return levers(np.asarray(overhang, dtype=float), self.guide_spacing)
@@ -124,24 +186,13 @@ class FollowerSystem:
     def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:
         """Rubbing load of guides A and B over axial force and side-load factor."""
         if self.rubbing is None:
-            return self.rubbing_on_points(push, overhang)
+            return push.rubbing_on_points(overhang)
         return self.rubbing.at(theta)
-
-    def rubbing_on_points(self, push: Push, overhang: Array) -> tuple[Array, Array]:
-        """Rubbing load of point supports A and B over axial force and side-load factor."""
-        factors = self.guide_factors(overhang)
-        on_a, on_b = (
-            np.divide(
-                np.abs(load), push.side_factor, out=factor.copy(), where=push.side_factor > 0.0
-            )
-            for load, factor in zip(push.on_points(*factors), factors, strict=True)
-        )
-        return on_a, on_b
 
 
 @dataclass(frozen=True, eq=False)
 class Loads:
-    """Forces on the follower at each cam angle; arrays (n,), SI.
+    """Forces on the follower at each cam angle; arrays (n,), of many followers (..., n), SI.
 
     `tangential_force`: side force on the stem, signed like the pressure angle; `end_moment`: couple
     of the axial force of a face beside the stem axis, N m, positive towards the side force.
@@ -273,7 +324,7 @@ def share_left(lift_slope: Array, jam_index: Array) -> Array:
     return np.where(share < JAM_FLOOR, JAM_FLOOR, share)  # NaN stays
 
 
-def levers(overhang: Values, guide_spacing: float) -> tuple[Values, Values]:
+def levers(overhang: Values, guide_spacing: float | Array) -> tuple[Values, Values]:
     """|A|/F_t = (a+b)/b and |B|/F_t = a/b (...) of a stem on two point supports.
 
     References
@@ -333,40 +384,71 @@ def follower_loads(
     cam (2024), eq. 40 for c3.
     """
     theta = finite("theta", theta)
-    speed = _forward(cam_speed, theta)
     lift, slope, bend = pitch.lift.derivatives(theta, 2)
-    slope = np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0)
-    acceleration = bend * speed**2 + slope * finite("cam_acceleration", cam_acceleration)
-    spring_force = system.spring.force(lift)
+    motion = FollowerMotion(
+        lift=lift,
+        slope=np.where(np.abs(slope) > REST * pitch.lift.stroke, slope, 0.0),
+        bend=bend,
+        highest=pitch.lift.highest.value,
+        pressure_angle=pitch.pressure_angle(theta),
+        height=pitch.height(theta),
+        push=Push.of(pitch, system, theta),
+    )
+    rate = finite("cam_acceleration", cam_acceleration)
+    return loads_of(motion, system, _forward(cam_speed, theta), theta, rate)
+
+
+def loads_of(
+    motion: FollowerMotion,
+    system: MovedMass,
+    cam_speed: Array,
+    theta: Array,
+    cam_acceleration: ArrayLike = 0.0,
+) -> Loads:
+    """Forces of `follower_loads`, of one follower or of many at once.
+
+    Parameters
+    ----------
+    motion : FollowerMotion         arrays (..., n)
+    system : MovedMass              floats, or arrays (..., 1)
+    cam_speed : array (..., n or 1) rad/s, >= 0
+    theta : array (n,)              cam angles, rad
+    cam_acceleration : array (n,)   rad/s2
+
+    Returns
+    -------
+    Loads   arrays (..., n)
+    """
+    lift, slope, push = motion.lift, motion.slope, motion.push
+    acceleration = motion.bend * cam_speed**2 + slope * np.asarray(cam_acceleration)
+    spring_force = system.spring_force(lift)
     inertia_force = system.mass * acceleration
-    viscous_force = system.viscous_damping * slope * speed
+    viscous_force = system.viscous_damping * slope * cam_speed
     weight = system.mass * system.gravity_along_axis
     demand = spring_force + inertia_force + weight + viscous_force
 
-    pressure_angle = pitch.pressure_angle(theta)
-    overhang = system.overhang_at_max_lift + (pitch.lift.highest.value - lift)
-    push = Push.of(pitch, system, theta)
-    on_points = push.on_points(*system.guide_factors(overhang))
+    overhang = system.overhang_at_max_lift + (motion.highest - lift)
+    on_points = push.on_points(*levers(overhang, system.guide_spacing))
     rubbing_a, rubbing_b = system.rubbing_factors(push, overhang, theta)
     jam_index = (system.friction_a * rubbing_a + system.friction_b * rubbing_b) * push.side_factor
     axial_force = np.maximum(demand, 0.0) / share_left(slope, jam_index)
     side_load = axial_force * push.side_factor
     friction_a = system.friction_a * rubbing_a * side_load
     friction_b = system.friction_b * rubbing_b * side_load
-    sliding = system.face_friction * axial_force * pitch.height(theta)
+    sliding = system.face_friction * axial_force * motion.height
     friction_power = (friction_a + friction_b) * np.abs(slope) + viscous_force * slope + sliding
     return Loads(
         theta=theta,
         lift=lift,
         lift_slope=slope,
-        pressure_angle=pressure_angle,
+        pressure_angle=motion.pressure_angle,
         overhang=overhang,
-        velocity=slope * speed,
+        velocity=slope * cam_speed,
         acceleration=acceleration,
         spring_force=spring_force,
         inertia_force=inertia_force,
         axial_force=axial_force,
-        normal_force=axial_force / np.cos(pressure_angle),
+        normal_force=axial_force / np.cos(motion.pressure_angle),
         tangential_force=axial_force * push.side,
         friction_force_a=friction_a,
         friction_force_b=friction_b,
@@ -374,7 +456,7 @@ def follower_loads(
         reaction_b=axial_force * on_points[1],
         cam_torque=axial_force * slope + sliding,
         jam_index=jam_index,
-        friction_power=friction_power * speed,
+        friction_power=friction_power * cam_speed,
         viscous_force=viscous_force,
         rubbing_a=rubbing_a,
         rubbing_b=rubbing_b,

@@ -39,13 +39,13 @@ class RollerMotion:
         return float(np.mean(np.abs(self.spin)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RatingLife:
-    """Basic rating life: P_m, N; L10 in revolutions of the bearing and in seconds."""
+    """Basic rating life (...): P_m, N; L10 in revolutions of the bearing and in seconds."""
 
-    mean_load: float
-    revolutions: float
-    seconds: float
+    mean_load: Array
+    revolutions: Array
+    seconds: Array
 
 
 def roller_motion(
@@ -113,15 +113,19 @@ def wear(normal_force: Values, spin: Values, exponent: float = BALL_LIFE_EXPONEN
 
 def equivalent_load(
     normal_force: ArrayLike, spin: ArrayLike, exponent: float = BALL_LIFE_EXPONENT
-) -> float:
-    """Constant load of equal rating life P_m, N, over positions equally spaced in time.
+) -> Array:
+    """Constant loads of equal rating life P_m (...), N, over positions equally spaced in time.
 
     P_m = (sum N^p |n| / sum |n|)^(1/p).
+
+    Parameters
+    ----------
+    normal_force, spin : array (..., n)   N and rad/s
 
     Raises
     ------
     InputError
-        If a force is negative, the shapes differ, or every spin is zero.
+        If a force is negative, the shapes differ, or every spin of a turn is zero.
 
     References
     ----------
@@ -133,29 +137,28 @@ def equivalent_load(
         raise InputError("roller spin", turns.shape, f"of shape {force.shape}")
     if (force < 0.0).any():
         raise InputError("normal_force", float(force.min()), ">= 0 N")
-    if not turns.any():
+    if not turns.any(axis=-1).all():
         raise InputError("roller spin", 0.0, "> 0 rad/s at some angle")
-    largest = float(force.max())
-    if largest == 0.0:
-        return 0.0
-    share = wear(force / largest, turns, exponent).mean() / turns.mean()
-    return float(largest * float(share) ** (1.0 / exponent))
+    largest = force.max(axis=-1, keepdims=True)
+    shares = np.divide(force, largest, out=np.zeros_like(force), where=largest > 0.0)
+    share = wear(shares, turns, exponent).mean(axis=-1) / turns.mean(axis=-1)
+    return np.asarray(largest[..., 0] * share ** (1.0 / exponent))
 
 
 def rating_life(
     normal_force: ArrayLike,
     spin: ArrayLike,
-    dynamic_rating: float,
+    dynamic_rating: ArrayLike,
     exponent: float = BALL_LIFE_EXPONENT,
 ) -> RatingLife:
     """Rating life L10 of the bearing under the load of the cycle.
 
     Parameters
     ----------
-    normal_force : array (n,)   N, at positions equally spaced in time
-    spin : array (n,)           rad/s
-    dynamic_rating : float      C, N, > 0
-    exponent : float            3 for ball bearings, 10/3 for roller bearings
+    normal_force : array (..., n)   N, at positions equally spaced in time
+    spin : array (..., n)           rad/s
+    dynamic_rating : array (...)    C, N, > 0
+    exponent : float                3 for ball bearings, 10/3 for roller bearings
 
     Returns
     -------
@@ -170,14 +173,15 @@ def rating_life(
     ----------
     ISO 281:2007, 6.2: L10 = (C/P)^p million revolutions.
     """
-    if not 0.0 < dynamic_rating < np.inf:
-        raise InputError("roller.bearing.C", dynamic_rating, "> 0 N")
+    rating = np.asarray(dynamic_rating, dtype=float)
+    if not ((0.0 < rating) & (rating < np.inf)).all():
+        raise InputError("roller.bearing.C", float(rating.min()), "> 0 N")
     mean_load = equivalent_load(normal_force, spin, exponent)
-    spin_mean = float(np.mean(np.abs(spin)))
-    revolutions = np.inf
-    if mean_load > 0.0:
-        revolutions = RATED_REVOLUTIONS * (dynamic_rating / mean_load) ** exponent
-    return RatingLife(mean_load, revolutions, revolutions * FULL_TURN / spin_mean)
+    spin_mean = np.mean(np.abs(spin), axis=-1)
+    unloaded = np.full(np.broadcast(rating, mean_load).shape, np.inf)
+    ratio = np.divide(rating, mean_load, out=unloaded, where=mean_load > 0.0)
+    revolutions = np.asarray(RATED_REVOLUTIONS * ratio**exponent)
+    return RatingLife(mean_load, revolutions, np.asarray(revolutions * FULL_TURN / spin_mean))
 
 
 def static_safety(normal_force: ArrayLike, static_rating: float) -> float:

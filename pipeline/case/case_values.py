@@ -1,0 +1,191 @@
+"""Values of a case by dotted key: their unit, the value, and the case with others.
+
+A key is that of the case file: ``spring.rate``, ``roller.bearing.C``, ``load_case[0].speed``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from typing import Any, TypeVar, get_args
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base import units
+from camwright.pipeline.base.quantities import Count, In, Part
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import case_of, completed
+from camwright.pipeline.case.section import Section, section_of, suggestion
+from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
+
+_STEP = re.compile(r"([A-Za-z_0-9]+)(?:\[(\d{1,4})\])?")
+Node = TypeVar("Node", Section, Part)
+
+
+def steps_of(key: str) -> tuple[str | int, ...]:
+    """Names and numbers of a key: ``load_case[0].speed`` is load_case, 0, speed.
+
+    Raises
+    ------
+    InputError
+        If it is no dotted key.
+    """
+    steps: list[str | int] = []
+    for part in key.split("."):
+        match = _STEP.fullmatch(part)
+        if match is None:
+            raise InputError("factor", key, "a dotted key of the case file")
+        steps += [match[1]] if match[2] is None else [match[1], int(match[2])]
+    return tuple(steps)
+
+
+def quantity_of(key: str) -> In | Count | None:
+    """Unit and bounds of the number at a key; None: the value is no number.
+
+    Raises
+    ------
+    InputError
+        If no case has such a key; with the closest one.
+    """
+    model: Any = Case
+    name = ""
+    for step in steps_of(key):
+        if isinstance(step, int):
+            continue
+        if name == "materials":  # this step is the name of one
+            name = step
+            continue
+        sections = _sections_in(model)
+        if not sections:
+            raise InputError("factor", key, f"a key of the case file: {name} is no table")
+        known = {
+            field.alias or each: field
+            for section in reversed(sections)
+            for each, field in section.model_fields.items()
+        }
+        if step not in known:
+            raise InputError("factor", key, f"a key of the case file{suggestion(step, known)}")
+        name, model = step, _Hint(known[step].annotation, tuple(known[step].metadata))
+    return _mark_in(model)
+
+
+class _Hint:
+    """Annotation of a field, with the marks that pydantic has split off."""
+
+    def __init__(self, annotation: Any, metadata: tuple[Any, ...]) -> None:
+        self.annotation, self.metadata = annotation, metadata
+
+
+def _sections_in(hint: Any) -> tuple[type[Section], ...]:
+    """Sections that a hint holds, through unions, tuples and tables of parts."""
+    if isinstance(hint, _Hint):
+        hint = hint.annotation
+    if isinstance(hint, type) and issubclass(hint, Section):
+        return (hint,)
+    if isinstance(hint, type) and issubclass(hint, Part):
+        return (section_of(hint),)
+    return tuple(section for each in get_args(hint) for section in _sections_in(each))
+
+
+def _mark_in(hint: Any) -> In | Count | None:
+    marks = hint.metadata if isinstance(hint, _Hint) else getattr(hint, "__metadata__", ())
+    for mark in marks:
+        if isinstance(mark, (In, Count)):
+            return mark
+    inner = hint.annotation if isinstance(hint, _Hint) else hint
+    for each in get_args(inner):
+        mark = _mark_in(each)
+        if mark is not None:
+            return mark
+    return None
+
+
+def value_of(case: Case, key: str) -> Any:
+    """Value at a key, SI; None where the case leaves it out."""
+    node: Any = case
+    for step in steps_of(key):
+        if node is None:
+            return None
+        if isinstance(step, int):
+            node = node[step] if step < len(node) else None
+        elif isinstance(node, Mapping):
+            node = node.get(step)
+        else:
+            node = getattr(node, _attribute(node, step), None)
+    return node
+
+
+def _attribute(node: Section | Part, key: str) -> str:
+    """Name of the field with a key."""
+    if isinstance(node, Part):
+        return key
+    for name, field in type(node).model_fields.items():
+        if (field.alias or name) == key:
+            return name
+    return key
+
+
+def replaced(case: Case, values: Mapping[str, float]) -> Case:
+    """The case with other numbers, SI, of the bounds of their fields alone.
+
+    Faster than `with_values`; the sections are not compared with one another.
+
+    Raises
+    ------
+    InputError
+        If a number is out of the bounds of its field, or contradicts its own table.
+    """
+    for key, value in values.items():
+        mark = quantity_of(key)
+        if mark is not None:
+            mark.require(key, value)
+        case = _put(case, steps_of(key), value)
+    return case
+
+
+def _put(node: Any, steps: tuple[str | int, ...], value: float) -> Any:
+    first, *rest = steps
+    if isinstance(first, int):
+        inner = _put(node[first], tuple(rest), value) if rest else value
+        return (*node[:first], inner, *node[first + 1 :])
+    name = _attribute(node, first)
+    inner = _put(getattr(node, name), tuple(rest), value) if rest else value
+    if isinstance(node, Part):
+        if name not in {field.name for field in fields(node)}:  # type: ignore[arg-type]
+            raise InputError("factor", name, f"a key of {node.table}")
+        return replace(node, **{name: inner})  # type: ignore[type-var]
+    return node.model_copy(update={name: inner})
+
+
+def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:
+    """The case with other values, read and checked as a case file.
+
+    Parameters
+    ----------
+    values : mapping   by dotted key: text as in a case file; a float of a field with a unit in SI
+
+    Raises
+    ------
+    InputError
+        If a key is unknown, or the case is refused; by its dotted name.
+    """
+    tables = tables_of(case)
+    for key, value in values.items():
+        quantity = quantity_of(key)
+        if isinstance(value, float) and isinstance(quantity, In) and quantity.unit:
+            value = units.format(value, quantity.unit)
+        _enter(tables, key, value)
+    return completed(case_of(tables, case.folder), case.folder)
+
+
+def _enter(tables: Tables, key: str, value: TomlValue) -> None:
+    *path, last = steps_of(key)
+    table: Any = tables
+    for step in path:
+        known = isinstance(table, list) if isinstance(step, int) else isinstance(table, dict)
+        if not known or (isinstance(step, int) and step >= len(table)):
+            raise InputError("factor", key, "a value in a table of the case")
+        table = table[step] if isinstance(step, int) else table.setdefault(step, {})
+    if not isinstance(table, dict) or isinstance(last, int):
+        raise InputError("factor", key, "a value in a table of the case")
+    table[last] = value
