@@ -144,5 +144,5 @@ def _energy_curve(theta: Array, cam_torque: Array) -> tuple[PeriodicPolynomial, 
 def _require_spring(spring_rate: ArrayLike, preload: ArrayLike) -> None:
     positive("spring.rate", spring_rate, "N/m")
     force = np.asarray(preload, dtype=float)
-    if not ((0 <= force) & (force < np.inf)).all():
+    if not ((force >= 0) & (force < np.inf)).all():
         raise InputError("spring.preload", float(force.min()), ">= 0 N and finite")

@@ -27,6 +27,8 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
     from pydantic import GetCoreSchemaHandler
     from pydantic_core import CoreSchema
 
@@ -90,6 +92,17 @@ class In:
         """Whether a value in SI is finite and within the bounds."""
         low, high, least, most = self._bounds
         return isfinite(value) and low < value < high and least <= value <= most
+
+    def holds_each(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether each value (...) in SI is finite and within the bounds."""
+        low, high, least, most = self._bounds
+        return (
+            (abs(values) < inf)
+            & (low < values)
+            & (values < high)
+            & (least <= values)
+            & (values <= most)
+        )
 
     @property
     def limit(self) -> str:

@@ -172,9 +172,8 @@ def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:
     tables = tables_of(case)
     for key, value in values.items():
         quantity = quantity_of(key)
-        if isinstance(value, float) and isinstance(quantity, In) and quantity.unit:
-            value = units.format(value, quantity.unit)
-        _enter(tables, key, value)
+        in_si = isinstance(value, float) and isinstance(quantity, In) and quantity.unit
+        _enter(tables, key, units.format(value, quantity.unit) if in_si else value)
     return completed(case_of(tables, case.folder), case.folder)
 
 

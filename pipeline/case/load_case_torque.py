@@ -60,7 +60,7 @@ def engine_torques(case: Case) -> dict[str, Torque]:
     return {
         state.name: engine_torque(case, state)
         for state in case.load_cases
-        if _has_torque(case, state)
+        if has_torque(case, state)
     }
 
 
@@ -105,7 +105,7 @@ def _cylinder_torque(engine: CylinderEngine, speed: float) -> Torque:
     return Torque(kept["theta_crank"], parts, kept.get("varying_inertia"))
 
 
-def _has_torque(case: Case, state: LoadCase) -> bool:
+def has_torque(case: Case, state: LoadCase) -> bool:
     """Whether a load case has an engine torque: not at rest, unless it is cranked."""
     cranked = isinstance(case.engine, CylinderEngine) and not state.fired
     return state.speed > 0 or state.torque is not None or cranked

@@ -11,10 +11,11 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.pitch_curve import magnitude
 
 
-def ripple_reduction(before: Array, after: Array) -> float:
-    """1 - std of the torque after over that before; NaN without a ripple."""
-    ripple = float(np.std(before))
-    return float(1.0 - np.std(after) / ripple) if ripple > 0 else np.nan
+def ripple_reduction(before: Array, after: Array) -> Array:
+    """1 - std of the torque (..., n) after over that before (...); NaN without a ripple."""
+    ripple, left = np.std(before, axis=-1), np.std(after, axis=-1)
+    none = np.full(np.broadcast(ripple, left).shape, np.nan)
+    return np.asarray(1.0 - np.divide(left, ripple, out=none, where=ripple > 0))
 
 
 def unloading(inertia: Array, spring: Array) -> Array:

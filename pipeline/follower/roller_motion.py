@@ -174,7 +174,7 @@ def rating_life(
     ISO 281:2007, 6.2: L10 = (C/P)^p million revolutions.
     """
     rating = np.asarray(dynamic_rating, dtype=float)
-    if not ((0.0 < rating) & (rating < np.inf)).all():
+    if not ((rating > 0.0) & (rating < np.inf)).all():
         raise InputError("roller.bearing.C", float(rating.min()), "> 0 N")
     mean_load = equivalent_load(normal_force, spin, exponent)
     spin_mean = np.mean(np.abs(spin), axis=-1)

@@ -288,16 +288,26 @@ class Spring(Part):
     source: str = ""
 
     def force(self, lift: Array) -> Array:
-        """Force P + k s at a lift (...), m, in N."""
-        return self.preload + self.rate * lift
+        """Force at a lift (...), m, in N."""
+        return spring_force(self.preload, self.rate, lift)
 
     def stiffness(self, lift: Array) -> Array:
         """Slope k of the force over the lift (...), N/m."""
         return self.rate + 0.0 * lift
 
     def energy(self, lift: float) -> float:
-        """Energy P s + k s^2 / 2 at a lift, m, beyond that at zero lift, J."""
-        return self.preload * lift + 0.5 * self.rate * lift**2
+        """Energy at a lift, m, beyond that at zero lift, J."""
+        return float(spring_energy(self.preload, self.rate, np.asarray(lift)))
+
+
+def spring_force(preload: float | Array, rate: float | Array, lift: Array) -> Array:
+    """Force P + k s (...) of a linear spring at a lift (...), m, in N."""
+    return np.asarray(preload + rate * lift)
+
+
+def spring_energy(preload: float, rate: float, lift: Array) -> Array:
+    """Energy P s + k s^2 / 2 (...) of a linear spring at a lift (...), m, in J."""
+    return np.asarray(preload * lift + 0.5 * rate * lift**2)
 
 
 def surge_harmonics(

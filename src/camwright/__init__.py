@@ -15,6 +15,7 @@ The public names, in the order of the calculation:
 | `run_case`     | trials until the checks pass or a limit binds; run folder | `Run`          |
 | `read_run`     | read a run folder                                       | `Run`            |
 | `report`       | page and figures of a run folder                        | files by part    |
+| `screen_designs` | closed-form checks of thousands of designs at once    | columns          |
 | `CamError`     | every error that the user can correct, in one line      |                  |
 
 All values are in SI units: m, N, Pa, rad, s, kg. A name is imported when it is first used.
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from camwright.pipeline.results.run_reader import read_run
     from camwright.pipeline.results.trial import Trial
     from camwright.pipeline.run import run_case
+    from camwright.pipeline.screening.design_screening import screen_designs
     from camwright.pipeline.solver import solve
     from camwright.reports.sections import report
 
@@ -50,6 +52,7 @@ _HOMES = {
     "read_run": "pipeline.results.run_reader",
     "report": "reports.sections",
     "run_case": "pipeline.run",
+    "screen_designs": "pipeline.screening.design_screening",
     "solve": "pipeline.solver",
     "synthesize": "pipeline.iteration",
 }
@@ -65,6 +68,7 @@ __all__ = [
     "read_run",
     "report",
     "run_case",
+    "screen_designs",
     "solve",
     "synthesize",
 ]

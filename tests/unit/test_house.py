@@ -31,6 +31,7 @@ ORDER = (
     "pipeline.smoothing",
     "pipeline.results",
     "pipeline",
+    "pipeline.screening",
     "pipeline.studies",
     "pipeline.studies.redesign",
     "pipeline.studies.papers",

@@ -1,0 +1,355 @@
+"""Lift, contour, loads and contact of many designs, arrays (designs, cam angles)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebvander
+
+from camwright.geometry.arrays import Array, uniform_turn
+from camwright.geometry.energy import spring_deflection
+from camwright.geometry.extrema import sampled_greatest, sampled_least
+from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
+from camwright.geometry.pitch_curve import curvature_slope, speed_and_curvature
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import value_of
+from camwright.pipeline.case.limits import OVERSPEED, AnyLimit
+from camwright.pipeline.case.load_case_torque import engine_torque
+from camwright.pipeline.case.machine import CREEP, Machine, machine
+from camwright.pipeline.checks import demands
+from camwright.pipeline.contact.hertz import peak_pressure_square
+from camwright.pipeline.follower.follower_forces import (
+    REST,
+    FollowerMotion,
+    Loads,
+    Push,
+    loads_of,
+)
+from camwright.pipeline.follower.spring import spring_force
+
+Columns = Mapping[str, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class FollowerOfDesigns:
+    """Mass, spring and guides of many designs, each (m, 1); guides are point supports."""
+
+    mass: Array
+    preload: Array
+    rate: Array
+    guide_spacing: Array
+    overhang_at_max_lift: Array
+    friction_a: Array
+    friction_b: Array
+    viscous_damping: Array
+    gravity_along_axis: float = 0.0
+    face_friction: float = 0.0
+
+    def spring_force(self, lift: Array) -> Array:
+        """Force (m, n) of the springs at a lift (m, n), N."""
+        return spring_force(self.preload, self.rate, lift)
+
+    def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:  # noqa: ARG002
+        """Rubbing load of point supports A and B over axial force and side-load factor."""
+        return push.rubbing_on_points(overhang)
+
+
+class State(NamedTuple):
+    """A load case of many designs: crank speed, rad/s, and preload, N, (m, 1).
+
+    torque (m or 1, n): of the engine less its mean, crank N m, at the cam angles of the loads; None
+    without one. weight: of its torque ripple.
+    """
+
+    speed: Array
+    preload: Array
+    torque: Array | None
+    weight: float
+
+
+@dataclass(frozen=True, eq=False)
+class Turns:
+    """Loads of a load case of many designs."""
+
+    state: State
+    crank_speed: Array
+    cam_speed: Array
+    loads: Loads
+    p0: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """What the lifts of a group of designs follow from.
+
+    torque (1 or m, N): smoothed engine torque, crank N m; energy (N,): of the spring over the turn,
+    J, of a synthesised lift; lift (N,): of the case file, m. Two are None.
+    """
+
+    torque: Array | None = None
+    energy: Array | None = None
+    lift: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Designs:
+    """Designs of one structure with what follows from them; arrays (m, 1) and (m, n).
+
+    Parameters
+    ----------
+    case : Case          with the values that all designs share
+    columns : mapping    by key of an array path, SI, each (m, 1)
+    source : Source      of the lift
+    torques : mapping    engine torque by number of the load case, less its mean, (m or 1, N)
+    count : int          designs m
+    step : int           every `step`-th sample of the lift is a cam angle of the loads
+    """
+
+    case: Case
+    columns: Columns
+    source: Source
+    torques: Mapping[int, Array]
+    count: int
+    step: int
+
+    def value(self, key: str) -> Array:
+        """Values of a key (m, 1), SI; NaN where the case leaves it out."""
+        if key in self.columns:
+            return self.columns[key]
+        stated = value_of(self.case, key)
+        return np.full((self.count, 1), np.nan if stated is None else float(stated))
+
+    def limit(self, row: AnyLimit) -> Array:
+        """Values of a limit (m,), SI; NaN where there is none."""
+        return self.value(f"limits.{row.id}")[:, 0]
+
+    @cached_property
+    def machine(self) -> Machine:
+        """Machine of the shared values in the design load case."""
+        return machine(self.case, self.case.load_cases[0])
+
+    @cached_property
+    def lift(self) -> Array:
+        """Lift at equal cam angles (m or 1, N), m."""
+        source = self.source
+        if source.lift is not None:
+            return source.lift[None, :]
+        rate, preload = self.value("spring.rate"), self.value("spring.preload")
+        if source.energy is not None:
+            energy = source.energy[None, :]
+        elif source.torque is not None:
+            share = self.case.mechanism.gear_ratio * self.value("mechanism.compensation")
+            stored = knot_integrals(source.torque)
+            stored = stored - sampled_least(stored)[:, None]
+            energy = share * np.maximum(stored, 0.0)
+        return spring_deflection(energy, rate, preload)
+
+    @cached_property
+    def jets(self) -> Array:
+        """Lift and three derivatives (4, m, N), m/rad^k."""
+        jets = knot_derivatives(self.lift, 3)
+        return np.broadcast_to(jets, (4, self.count, jets.shape[-1]))
+
+    @cached_property
+    def highest(self) -> Array:
+        """Maximum lift (m,), m."""
+        return sampled_greatest(self.jets[0])
+
+    @cached_property
+    def along(self) -> Array:
+        """Velocity of the roller centre along the follower axis (m, N), m/rad."""
+        return np.asarray(self.jets[1] - self.value("cam.offset"))
+
+    @cached_property
+    def across(self) -> Array:
+        """Height of the roller centre over the cam axis (m, N), m."""
+        prime, offset = self.value("cam.prime_radius"), self.value("cam.offset")
+        return np.asarray(np.sqrt(prime**2 - offset**2) + self.jets[0])
+
+    @cached_property
+    def _path(self) -> tuple[Array, Array]:
+        return speed_and_curvature(self.along, self.across, self.jets[1], self.jets[2])
+
+    @property
+    def pitch_speed(self) -> Array:
+        """Path length of the roller centre per cam angle (m, N), m/rad."""
+        return self._path[0]
+
+    @property
+    def pitch_curvature(self) -> Array:
+        """Curvature of the pitch curve (m, N), 1/m, positive where convex."""
+        return self._path[1]
+
+    @cached_property
+    def undercut_factor(self) -> Array:
+        """1 - r kappa (m, N): zero at a cusp."""
+        return np.asarray(1.0 - self.value("roller.radius") * self.pitch_curvature)
+
+    @cached_property
+    def least_factor(self) -> Array:
+        """Minimum undercut factor (m,)."""
+        return sampled_least(self.undercut_factor)
+
+    @cached_property
+    def curvature_rate(self) -> Array:
+        """Derivative of the contour's curvature by its length (m, N), 1/m^2."""
+        slope = curvature_slope(self.along, self.across, *self.jets[1:])
+        return np.asarray(slope / (self.undercut_factor**3 * self.pitch_speed))
+
+    @cached_property
+    def contour_radius(self) -> Array:
+        """Distance of the contour from the cam axis (m, N), m."""
+        inset = self.value("roller.radius") / self.pitch_speed
+        offset = self.value("cam.offset")
+        return demands.contour_radius(self.along, self.across, offset, inset)
+
+    @cached_property
+    def pressure_angle(self) -> Array:
+        """Pressure angle (m, N), rad."""
+        return np.asarray(np.arctan2(self.along, self.across))
+
+    @cached_property
+    def theta(self) -> Array:
+        """Cam angles of the loads (n,), rad."""
+        return uniform_turn(self.jets.shape[-1] // self.step)
+
+    def at_loads(self, values: Array) -> Array:
+        """Values (m, N) at the cam angles of the loads (m, n)."""
+        return values[..., :: self.step]
+
+    @cached_property
+    def motion(self) -> FollowerMotion:
+        """Motion at the cam angles of the loads."""
+        lift, slope, bend = (self.at_loads(each) for each in self.jets[:3])
+        stroke = (self.highest - sampled_least(self.jets[0]))[:, None]
+        angle = self.at_loads(self.pressure_angle)
+        push = Push(np.tan(angle), np.zeros_like(angle), self.value("guides.spacing"))
+        return FollowerMotion(
+            lift=lift,
+            slope=np.where(np.abs(slope) > REST * stroke, slope, 0.0),
+            bend=bend,
+            highest=self.highest[:, None],
+            pressure_angle=angle,
+            height=self.at_loads(self.across),
+            push=push,
+        )
+
+    @cached_property
+    def follower(self) -> FollowerOfDesigns:
+        """Mass, spring and guides at the preload of the case."""
+        return FollowerOfDesigns(
+            mass=self.value("follower.mass"),
+            preload=self.value("spring.preload"),
+            rate=self.value("spring.rate"),
+            guide_spacing=self.value("guides.spacing"),
+            overhang_at_max_lift=self.value("follower.overhang_at_max_lift"),
+            friction_a=self.value("guides.a.friction"),
+            friction_b=self.value("guides.b.friction"),
+            viscous_damping=self.value("follower.viscous_damping"),
+        )
+
+    @cached_property
+    def states(self) -> tuple[State, ...]:
+        """Load cases of the designs, then standstill and over-speed at each preload."""
+        base, stated = self.value("spring.preload"), self.case.load_cases
+        states: list[State] = []
+        preloads: list[Array] = []
+        for k, each in enumerate(stated):
+            own = self.value(f"load_case[{k}].preload")
+            preload = np.where(np.isnan(own), base, own)
+            if not any(np.array_equal(preload, known) for known in preloads):
+                preloads.append(preload)
+            torque = self.torques.get(k)
+            torque = None if torque is None else self.at_loads(torque)
+            speed = self.value(f"load_case[{k}].speed")
+            states.append(State(speed, preload, torque, each.ripple_weight))
+        over = self.value(f"limits.{OVERSPEED.id}")
+        for speed in (np.zeros_like(over), over):
+            if np.isnan(speed).all():
+                continue
+            states += [State(speed, preload, None, 0.0) for preload in preloads]
+        return tuple(states)
+
+    @cached_property
+    def turns(self) -> tuple[Turns, ...]:
+        """Loads in each load case."""
+        return tuple(self._turns(state) for state in self.states)
+
+    def _turns(self, state: State) -> Turns:
+        crank = np.maximum(state.speed, CREEP)
+        speed = crank / self.case.mechanism.gear_ratio
+        system = replace(self.follower, preload=state.preload)
+        loads = loads_of(self.motion, system, speed, self.theta)
+        return Turns(state, crank, speed, loads, self._pressure(loads.normal_force))
+
+    @cached_property
+    def contact_width(self) -> Array:
+        """Width of the line contact (m, 1), m."""
+        chamfers = 2.0 * self.value("roller.chamfer")
+        return np.minimum(self.value("cam.width"), self.value("roller.width") - chamfers)
+
+    @cached_property
+    def _relative_curvature(self) -> Array:
+        """1/R (m, n), 1/m: 1/r + kappa/(1 - r kappa) of roller and contour; NaN if undercut."""
+        factor = self.at_loads(self.undercut_factor)
+        bounded = np.where(self.least_factor[:, None] > 0.0, factor, np.nan)
+        return np.asarray(1.0 / (self.value("roller.radius") * bounded))
+
+    def _pressure(self, normal_force: Array) -> Array:
+        """Maximum contact pressure (m, n), Pa; NaN where the contour bounds no body."""
+        load = np.maximum(normal_force, 0.0) / self.contact_width
+        modulus = self.machine.contact_modulus
+        return np.sqrt(peak_pressure_square(load, self._relative_curvature, modulus))
+
+    @cached_property
+    def fastest(self) -> Array:
+        """Crank speed (m,) of over-speed, at least of the fastest load case, rad/s."""
+        speeds = np.stack([np.maximum(each.speed, CREEP)[:, 0] for each in self.states])
+        return np.asarray(np.nanmax(speeds, axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class TorqueOfSpeed:
+    """Engine torque of a load case less its mean over the crank speed.
+
+    speeds (k,), rad/s; torques (k, N), crank N m: one a speed, or at Chebyshev nodes between the
+    least and the greatest of more than `_NODES` speeds.
+    """
+
+    speeds: Array
+    torques: Array
+    interpolated: bool
+
+    @classmethod
+    def of(cls, case: Case, number: int, speeds: Array | None) -> TorqueOfSpeed:
+        """Torque of a load case at the speeds (m,) of designs; None: at that of the case."""
+        state = case.load_cases[number]
+        wanted = np.array([state.speed]) if speeds is None else np.unique(speeds)
+        wanted = wanted[(wanted > 0.0) & np.isfinite(wanted)] if speeds is not None else wanted
+        if interpolated := wanted.size > _NODES:
+            place = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
+            wanted = wanted.min() + 0.5 * np.ptp(wanted) * (1.0 + place)
+        torques = [
+            engine_torque(case, state.model_copy(update={"speed": float(speed)}))
+            for speed in wanted
+        ]
+        totals = np.stack([each.without_mean().total for each in torques])
+        return cls(wanted, totals, interpolated)
+
+    def at(self, speeds: Array | None) -> Array:
+        """Torque (m, N) at speeds (m,); (1, N) at that of the case, None."""
+        if speeds is None:
+            return self.torques
+        if not self.interpolated:
+            return self.torques[np.searchsorted(self.speeds, speeds)]
+        middle, half = self.speeds.mean(), self.speeds[0] - self.speeds.mean()
+        basis = chebvander((self.speeds - middle) / half, _NODES - 1)
+        weights = chebvander((speeds - middle) / half, _NODES - 1) @ np.linalg.inv(basis)
+        return np.asarray(weights @ self.torques)
+
+
+_NODES = 9

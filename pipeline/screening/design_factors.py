@@ -1,0 +1,224 @@
+"""Factors of many designs: values by dotted key, their bounds, and groups of one structure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import CamError, InputError
+from camwright.pipeline.base.quantities import In
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import quantity_of, replaced, value_of, with_values
+from camwright.pipeline.case.consistency import check_numbers
+from camwright.pipeline.case.limits import LIMITS
+from camwright.pipeline.case.machine import machine
+from camwright.pipeline.case.toml_text import TomlValue
+from camwright.pipeline.follower.guide_reactions import require_fit
+
+ARRAYS: tuple[str, ...] = (
+    "spring.rate", "spring.preload", "spring.travel_max",
+    "cam.prime_radius", "cam.offset", "cam.width", "cam.bore_radius", "cam.profile_tolerance",
+    "roller.radius", "roller.width", "roller.bearing.C", "roller.bearing.C0",
+    "roller.bearing.speed_limit", "roller.bearing.radial_limit",
+    "roller.bearing.static_radial_limit",
+    "follower.mass", "follower.overhang_at_max_lift", "follower.viscous_damping",
+    "guides.spacing",
+    "guides.a.length", "guides.a.friction", "guides.a.friction_min", "guides.a.friction_max",
+    "guides.b.length", "guides.b.friction", "guides.b.friction_min", "guides.b.friction_max",
+    "crankshaft.inertia", "mechanism.compensation",
+    "smoothing.spacing", "smoothing.width", "smoothing.harmonics", "smoothing.taper",
+    "smoothing.cutoff",
+    "tolerances.mass", "tolerances.inertia", "tolerances.phase",
+    *(f"limits.{name}" for name in LIMITS),
+)  # fmt: skip
+"""Keys with an array path; and preload and speed of each load case."""
+
+Factor = Array | Sequence[TomlValue]
+
+
+def is_array(case: Case, key: str) -> bool:
+    """Whether designs that differ in a key are solved at once."""
+    if key.startswith("smoothing.") and case.smoothing.kind == "constrained":
+        return False
+    if key.startswith("load_case["):
+        return key.endswith((".preload", ".speed"))
+    return key in ARRAYS
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Designs of one structure.
+
+    Parameters
+    ----------
+    case : Case           with the values that all of them share; None: refused
+    rows : array (m,)     numbers of the designs
+    values : mapping      by key of an array path, SI, each (m,)
+    refused : str         reason of a case that is None
+    """
+
+    case: Case | None
+    rows: NDArray[np.intp]
+    values: Mapping[str, Array]
+    refused: str = ""
+
+
+def count_of(factors: Mapping[str, Factor]) -> int:
+    """Number of designs.
+
+    Raises
+    ------
+    InputError
+        If the factors have different numbers of values, or there is none.
+    """
+    counts = {key: len(values) for key, values in factors.items()}
+    if len(set(counts.values())) != 1:
+        raise InputError("factors", str(counts)[:200], "of one length each, at least one factor")
+    return next(iter(counts.values()))
+
+
+def groups(case: Case, factors: Mapping[str, Factor]) -> Iterator[Group]:
+    """The designs by the values that have no array path, in order of their first design.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown, or the factors differ in length.
+    """
+    count = count_of(factors)
+    quantities = {key: quantity_of(key) for key in factors}
+    shared = [key for key in factors if not is_array(case, key)]
+    together: dict[tuple[TomlValue, ...], list[int]] = {}
+    for row in range(count):
+        together.setdefault(tuple(_plain(factors[key][row]) for key in shared), []).append(row)
+    for values, members in together.items():
+        rows = np.array(members, dtype=np.intp)
+        try:
+            own = with_values(case, dict(zip(shared, values, strict=True))) if shared else case
+        except CamError as error:
+            yield Group(None, rows, {}, str(error))
+            continue
+        arrays = {
+            key: _numbers(key, quantities[key], factors[key], members)
+            for key in factors
+            if key not in shared
+        }
+        yield Group(own, rows, arrays)
+
+
+def _plain(value: object) -> TomlValue:
+    """A value of an array as one of a TOML file."""
+    plain = value.item() if isinstance(value, np.generic) else value
+    if isinstance(plain, (str, int, float, bool)):
+        return plain
+    raise InputError("factors", str(plain)[:80], "text, number, true or false")
+
+
+def _numbers(key: str, quantity: object, values: Factor, rows: Sequence[int]) -> Array:
+    """Values in SI (m,); NaN for text that is no such quantity, refused by `refusals`."""
+    if not isinstance(quantity, In):
+        raise InputError("factor", key, "the key of a number")
+    if isinstance(values, np.ndarray) and values.dtype.kind in "fiu":
+        return np.asarray(values[rows], dtype=float)
+    return np.array([_number(quantity, _plain(values[row])) for row in rows])
+
+
+def _number(quantity: In, value: TomlValue) -> float:
+    if isinstance(value, bool) or not isinstance(value, (str, int, float)):
+        return np.nan
+    if not isinstance(value, str):
+        return float(value) if abs(value) < 1e308 else np.nan
+    try:
+        return quantity.read(value)
+    except InputError:
+        return np.nan
+
+
+def refusals(case: Case, values: Mapping[str, Array], highest: Array) -> list[str]:
+    """Refusal of each design in words, "" where it is accepted.
+
+    Suspects are found on arrays; the case of each is then made, and names field, value and limit.
+
+    Parameters
+    ----------
+    values : mapping       by key of an array path, SI, each (m,)
+    highest : array (m,)   maximum lift, m; NaN where it is not known
+    """
+    words = [""] * highest.size
+    for row in np.flatnonzero(_suspects(case, values, highest)):
+        numbers = {key: float(column[row]) for key, column in values.items()}
+        try:
+            own = replaced(case, numbers)
+            check_numbers(own)
+            _require_guided(own, float(highest[row]))
+        except CamError as error:
+            words[row] = str(error)
+    return words
+
+
+def _require_guided(case: Case, highest: float) -> None:
+    """Refuse guides that the roller enters, or that the stem leaves."""
+    if not isfinite(highest):
+        return
+    state = machine(case, case.load_cases[0])
+    least = state.overhang_at_max_lift
+    require_fit(state.stem, state.guides, np.array([least, least + highest]), knots=3)
+
+
+def _suspects(case: Case, values: Mapping[str, Array], highest: Array) -> NDArray[np.bool_]:
+    """Designs that may be refused (m,): out of bounds, or against one another."""
+    count = highest.size
+
+    def at(key: str) -> Array:
+        """Values of a key (m,); NaN where the case leaves it out."""
+        if key in values:
+            return values[key]
+        stated = value_of(case, key)
+        return np.full(count, np.nan if stated is None else stated, dtype=float)
+
+    wrong = np.zeros(count, dtype=bool)
+    for key, column in values.items():
+        quantity = quantity_of(key)
+        if isinstance(quantity, In):
+            wrong |= ~quantity.holds_each(column)
+    with np.errstate(invalid="ignore"):  # a comparison with NaN, of a missing value, is false
+        surface = at("cam.prime_radius") - np.nan_to_num(at("roller.radius"))
+        inside = at("cam.bore_radius") + np.nan_to_num(at("cam.keyway.depth"))
+        wrong |= (np.abs(at("cam.offset")) >= at("cam.prime_radius")) | (surface <= 0.0)
+        wrong |= (inside >= surface) | (at("cam.keyway.width") >= 1.8 * at("cam.bore_radius"))
+        wrong |= at("roller.hub_radius") >= at("roller.radius")
+        wrong |= 2.0 * at("roller.chamfer") >= at("roller.width")
+        wrong |= at("roller.pin.span") < at("roller.width")
+        wrong |= at("follower.mass") <= case.spring_mass
+        wrong |= at("workshop.tool_radius") > at("limits.tool_radius")
+        half = 0.5 * (at("guides.a.length") + at("guides.b.length"))
+        wrong |= at("guides.spacing") <= half
+        for side in "ab":
+            friction = at(f"guides.{side}.friction")
+            wrong |= at(f"guides.{side}.friction_min") > friction
+            wrong |= at(f"guides.{side}.friction_max") < friction
+            usual = (1.0 + 0.5) * friction
+            if not case.tolerances.source.strip():
+                wrong |= at(f"guides.{side}.friction_max") < usual
+        mouth = at("follower.overhang_at_max_lift")
+        wrong |= mouth < 0.5 * at("guides.a.length")
+        reach = mouth + highest + at("guides.spacing") + 0.5 * at("guides.b.length")
+        wrong |= at("follower.stem_length") < reach
+        for k, state in enumerate(case.load_cases):
+            speed = at(f"load_case[{k}].speed")
+            wrong |= speed > at("limits.overspeed")
+            if state.name.casefold().startswith(("standstill", "over-speed")):
+                wrong |= speed != state.speed
+            if k == 0 and case.engine is not None:
+                wrong |= ~(speed > 0.0)
+        if not case.tolerances.source.strip() or case.smoothing.kind == "constrained":
+            stated = ("tolerances.", "cam.profile_tolerance", "load_case[")
+            for key, column in values.items():
+                if key.startswith(stated):
+                    wrong |= column != value_of(case, key)
+    return np.asarray(wrong)

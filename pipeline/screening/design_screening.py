@@ -1,0 +1,335 @@
+"""Columns of the screening of many designs: demand, limit, utilisation, status, headline."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.errors import CamError, InputError
+from camwright.geometry.extrema import sampled_greatest, sampled_least
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import replaced
+from camwright.pipeline.case.given_lift import given_lift
+from camwright.pipeline.case.load_case_torque import has_torque
+from camwright.pipeline.checks.check import Declaration
+from camwright.pipeline.checks.registry import CHECKS, accepted
+from camwright.pipeline.follower.spring import spring_energy
+from camwright.pipeline.preview import preview_case
+from camwright.pipeline.screening.design_arrays import Designs, Source, TorqueOfSpeed, Turns
+from camwright.pipeline.screening.design_factors import Factor, Group, count_of, groups, refusals
+from camwright.pipeline.screening.screened_checks import SCREENED, Screened, torque_after
+from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
+
+BLOCK = 500
+"""Designs solved at once: arrays of some megabytes."""
+Column = NDArray[np.float64] | NDArray[np.object_]
+
+
+def screen_designs(
+    case: Case, factors: Mapping[str, Factor], *, positions: int = 180
+) -> dict[str, Column]:
+    """Closed-form checks of many designs at once, from lift to spring and bearing.
+
+    Designs that differ in the keys of `ARRAYS` alone, and in preload and speed of load cases, are
+    solved as arrays: spring rate, preload and travel, prime and roller radius, offset, widths,
+    bore, bearing ratings, follower mass, overhang and damping, spacing, length and friction of the
+    guides, inertia, share of compensation, width of a smoother and every limit. Others are grouped
+    by their values, with one case each. The lift of a constrained synthesis is that of the case:
+    every design keeps its stored energy.
+
+    Parameters
+    ----------
+    case : Case
+    factors : mapping   dotted key of the case file -> n values: SI numbers, or text as in the file
+    positions : int     cam angles of the loads, at least; the lift is that of the case
+
+    Returns
+    -------
+    dict   column -> (n,), in the units of the records: of each check that screening can judge
+           ``{id}.demand``, ``.limit``, ``.utilisation``, ``.error`` (NaN: missing or infinite) and
+           ``.status``, "" where the check does not apply; ``headline.{key}`` as in ``run.json``;
+           ``screen``: "fail", "open", or "error" for a refused design; ``governing``: must-have
+           check of the greatest utilisation; ``message``: of a refusal or a contour that bounds no
+           body, else ""
+
+    Raises
+    ------
+    InputError
+        If a key is unknown, the factors differ in length, or the follower has no roller.
+    """
+    if not 36 <= positions <= 7200:
+        raise InputError("positions", positions, "36 to 7200")
+    count = count_of(factors)
+    columns: dict[str, Column] = {
+        name: np.full(count, "", dtype=object) for name in ("screen", "governing", "message")
+    }
+    for group in groups(case, factors):
+        if group.case is None:
+            _put(columns, group.rows, {"screen": "error", "message": group.refused})
+            continue
+        try:
+            blocks = _Blocks.of(group.case, group, positions)
+        except CamError as error:
+            _put(columns, group.rows, {"screen": "error", "message": str(error)})
+            continue
+        for rows, own in blocks.screened():
+            _put(columns, rows, own)
+    return columns
+
+
+def _put(
+    columns: dict[str, Column], rows: NDArray[np.intp], own: Mapping[str, Column | str]
+) -> None:
+    count = len(columns["message"])
+    for name, values in own.items():
+        if name not in columns:
+            is_text = isinstance(values, str) or values.dtype == object
+            empty = np.full(count, "", dtype=object) if is_text else np.full(count, np.nan)
+            columns[name] = empty
+        columns[name][rows] = values
+
+
+@dataclass(frozen=True, eq=False)
+class _Blocks:
+    """A group with the source of its lifts and its engine torques."""
+
+    case: Case
+    group: Group
+    synthesised: Array | None
+    torques: Mapping[int, TorqueOfSpeed]
+    positions: int
+
+    @classmethod
+    def of(cls, case: Case, group: Group, positions: int) -> _Blocks:
+        if case.roller_given is None:
+            raise InputError("follower.kind", case.follower.kind, '"roller" for screening')
+        energy = None
+        if case.lift is None and case.smoothing.kind == "constrained":
+            case, energy = _synthesis(case)
+        torques = {
+            k: TorqueOfSpeed.of(case, k, group.values.get(f"load_case[{k}].speed"))
+            for k, state in enumerate(case.load_cases)
+            if has_torque(case, state)
+        }
+        return cls(case, group, energy, torques, positions)
+
+    def screened(self) -> Iterator[tuple[NDArray[np.intp], Mapping[str, Column | str]]]:
+        """Rows and columns of each block of designs."""
+        for start in range(0, self.group.rows.size, BLOCK):
+            rows = self.group.rows[start : start + BLOCK]
+            values = {key: each[start : start + BLOCK] for key, each in self.group.values.items()}
+            words = np.array(refusals(self.case, values, np.full(rows.size, np.nan)), dtype=object)
+            good = words == ""
+            if not good.all():
+                yield rows[~good], {"screen": "error", "message": words[~good]}
+            if good.any():
+                yield rows[good], self._columns({key: each[good] for key, each in values.items()})
+
+    def _columns(self, values: Mapping[str, Array]) -> dict[str, Column]:
+        designs = self._designs(values)
+        columns = judged_columns(designs) | headline_columns(designs)
+        refused = np.array(refusals(self.case, values, designs.highest), dtype=object)
+        away = refused != ""
+        if away.any():
+            for column in columns.values():
+                column[away] = "" if column.dtype == object else np.nan
+            columns["screen"][away] = "error"
+            columns["message"][away] = refused[away]
+        return columns
+
+    def _designs(self, values: Mapping[str, Array]) -> Designs:
+        case, count = self.case, 1 if not values else len(next(iter(values.values())))
+        torques = {
+            k: each.at(values.get(f"load_case[{k}].speed")) for k, each in self.torques.items()
+        }
+        source = Source(energy=self.synthesised)
+        if case.lift is not None:
+            source = Source(lift=given_lift(case).values)
+        elif self.synthesised is None:
+            source = Source(torque=_smoothed(case, values, torques[0], count))
+        samples = next(
+            each.shape[-1]
+            for each in (source.torque, source.energy, source.lift)
+            if each is not None
+        )
+        return Designs(
+            case=case,
+            columns={key: each[:, None] for key, each in values.items()},
+            source=source,
+            torques={k: _resampled(each, samples) for k, each in torques.items()},
+            count=count,
+            step=_step(samples, self.positions),
+        )
+
+
+def _step(samples: int, positions: int) -> int:
+    """Greatest divisor of a number of samples that leaves at least some positions."""
+    return max(
+        step
+        for step in range(1, samples + 1)
+        if samples % step == 0 and (step == 1 or samples // step >= positions)
+    )
+
+
+def _resampled(torque: Array, count: int) -> Array:
+    """Torque (..., n) at another number of equal angles, by its harmonics."""
+    n = torque.shape[-1]
+    return torque if n == count else np.fft.irfft(np.fft.rfft(torque), n=count) * (count / n)
+
+
+def _smoothed(case: Case, values: Mapping[str, Array], torque: Array, count: int) -> Array:
+    """Torque (1 or m, N) behind a smoother in each design, crank N m."""
+    keys = [key for key in values if key.startswith("smoothing.")]
+    if not keys:
+        return smoothed(torque, Smoother.from_case(case.smoothing))
+    rows = np.broadcast_to(torque, (count, torque.shape[-1]))
+    smoothers = np.stack([values[key] for key in keys], axis=1)
+    kinds, which = np.unique(smoothers, axis=0, return_inverse=True)
+    result = np.empty_like(rows)
+    for k, kind in enumerate(kinds):
+        own = replaced(case, dict(zip(keys, map(float, kind), strict=True)))
+        at = np.flatnonzero(which.ravel() == k)
+        result[at] = smoothed(rows[at], Smoother.from_case(own.smoothing))
+    return result
+
+
+_SYNTHESES: dict[str, tuple[Case, Array]] = {}  # by the hash of the case, made once a process
+
+
+def _synthesis(case: Case) -> tuple[Case, Array]:
+    """The case as its synthesis draws it, and the energy of its spring over the turn (N,), J."""
+    key = case.sha256
+    if key not in _SYNTHESES:
+        trial = preview_case(case, corners=False)
+        spring, lift = trial.case.spring, trial.lift.values
+        _SYNTHESES.clear()
+        _SYNTHESES[key] = trial.case, spring_energy(spring.preload, spring.rate, lift)
+    return _SYNTHESES[key]
+
+
+def judged_columns(designs: Designs) -> dict[str, Column]:
+    """Columns of each check, ``screen``, ``governing`` and ``message`` (m,) of designs."""
+    columns: dict[str, Column] = {}
+    count, machine = designs.count, designs.machine
+    fails = np.zeros(count, dtype=bool)
+    most = np.full(count, -np.inf)
+    governing = np.full(count, "", dtype=object)
+    for each in SCREENED:
+        declared = _declared()[each.check]
+        part = declared.part
+        if part and not (machine.scope.covers(part) and machine.describes(part)):
+            continue
+        judged = each.judged(designs)
+        if judged is None:
+            continue
+        figures = _figures(designs, each, declared, *judged)
+        columns |= {f"{each.check}.{name}": column for name, column in figures.items()}
+        if declared.must_have:
+            used = np.asarray(figures["utilisation"], dtype=float)
+            greater = used > most  # NaN is not
+            governing[greater], most[greater] = each.check, used[greater]
+            fails |= figures["status"] == "fail"
+    cut = designs.least_factor
+    return columns | {
+        "screen": np.where(fails, "fail", "open").astype(object),
+        "governing": governing,
+        "message": np.array(
+            [
+                "" if f > 0.0 else f"undercut factor of the contour = {f:.4g}, must be > 0"
+                for f in cut
+            ],
+            dtype=object,
+        ),
+    }
+
+
+@cache
+def _declared() -> Mapping[str, Declaration]:
+    return {each.id: each for each in CHECKS}
+
+
+def _figures(
+    designs: Designs,
+    screened: Screened,
+    declared: Declaration,
+    demand: Array,
+    limit: Array | float | None,
+) -> dict[str, Column]:
+    """Demand, limit, utilisation, error and status (m,) in the unit of the record."""
+    allowed = np.broadcast_to(
+        np.asarray(np.nan if limit is None else limit, dtype=float), demand.shape
+    )
+    at_most = declared.sense == "at_most"
+    known = ~np.isnan(demand) & np.isfinite(allowed)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        holds = demand <= allowed if at_most else demand >= allowed
+        used = utilisations(demand, allowed, at_most=at_most)
+    if screened.bound:
+        known &= ~holds  # a lower bound within the limit says nothing
+    status = np.where(known, np.where(holds, "pass", "fail"), "not_evaluated").astype(object)
+    for waiver in designs.case.waivers:
+        if waiver.check == declared.id and not declared.evidence:
+            up_to = accepted(waiver, declared.unit).up_to
+            covered = demand <= up_to if at_most else demand >= up_to
+            status[(status == "fail") & covered] = "waived"
+    scale = in_unit(1.0, declared.unit)
+    return {
+        "demand": demand * scale,
+        "limit": allowed * scale,
+        "utilisation": np.where(known, used, np.nan),
+        "error": screened.deviation * np.abs(demand) * scale,
+        "status": status,
+    }
+
+
+def utilisations(demand: Array, limit: Array, *, at_most: bool) -> Array:
+    """Utilisations (m,) of demands and limits (m,); see `Check.utilisation`."""
+    part, whole = (demand, limit) if at_most else (limit, demand)
+    without = np.where(part <= whole, 0.0, np.inf)
+    return np.divide(part, whole, out=without, where=whole > 0.0)
+
+
+def headline_columns(designs: Designs) -> dict[str, Column]:
+    """Columns ``headline.{key}`` (m,) as in ``run.json``."""
+    first, turns = designs.turns[0], designs.turns
+    before = first.state.torque
+
+    def over(measure: Callable[[Turns], Array]) -> Array:
+        return np.max([sampled_greatest(measure(each)) for each in turns], axis=0)
+
+    p0 = over(lambda each: each.p0)
+    least = np.min([sampled_least(each.loads.normal_force) for each in turns], axis=0)
+    figures = {
+        "lift_max_mm": 1e3 * designs.highest,
+        "pressure_angle_max_deg": np.degrees(sampled_greatest(np.abs(designs.pressure_angle))),
+        "pitch_radius_of_curvature_min_mm": 1e3 / sampled_greatest(designs.pitch_curvature),
+        "normal_force_min_N": np.maximum(least, 0.0),
+        "normal_force_max_N": over(lambda each: each.loads.normal_force),
+        "p0_hertz_max_MPa": 1e-6 * p0,
+        "guide_reaction_A_max_N": over(lambda each: np.abs(each.loads.reaction_a)),
+        "guide_reaction_B_max_N": over(lambda each: np.abs(each.loads.reaction_b)),
+        "friction_loss_J_per_cam_turn": _friction_loss(first),
+    }
+    if before is not None:
+        after = torque_after(designs, first)
+        whole = (designs.count,)
+        figures |= {
+            "torque_std_before_Nm": np.broadcast_to(before.std(axis=-1), whole),
+            "torque_std_after_Nm": after.std(axis=-1),
+            "torque_p2p_before_Nm": np.broadcast_to(np.ptp(before, axis=-1), whole),
+            "torque_p2p_after_Nm": np.ptp(after, axis=-1),
+        }
+    return {f"headline.{name}": np.array(each, dtype=float) for name, each in figures.items()}
+
+
+def _friction_loss(turns: Turns) -> Array:
+    """Friction loss of the guides over one cam turn (m,), J."""
+    loads = turns.loads
+    rubbing = loads.friction_force * np.abs(loads.lift_slope)
+    return FULL_TURN * np.mean(rubbing + loads.viscous_force * loads.lift_slope, axis=-1)

@@ -1,0 +1,472 @@
+"""Demand and limit of each check that screening judges, of many designs at once.
+
+The formulas are those of the checks, on arrays. Where a check adds what screening leaves out
+(length and clearance of the guides, surge of the spring), the demand is a lower bound of its
+utilisation, and `bound` is True: a design that fails it fails the check.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.extrema import sampled_greatest, sampled_least
+from camwright.pipeline.case.limits import (
+    CAM_RADIUS,
+    CONTACT_FORCE_MARGIN,
+    CONTACT_SAFETY,
+    CURVATURE_RATE,
+    CURVATURE_RATIO,
+    EDGE_FACTOR,
+    GUIDE_GAP,
+    GUIDE_LENGTH,
+    JAM_INDEX,
+    JUMP,
+    JUMP_SPEED,
+    MINIMUM_WALL,
+    OVERSPEED,
+    PRESSURE_ANGLE,
+    ROLLER_LIFE,
+    ROLLER_LOAD_SHARE,
+    ROLLER_SPEED_SHARE,
+    ROLLER_STATIC_SAFETY,
+    SHAKEDOWN_SAFETY,
+    SPRING_FATIGUE,
+    SPRING_SOLID,
+    SPRING_SURGE,
+    TOOL_RADIUS,
+    TORQUE_REDUCTION,
+    UNDERCUT_FACTOR,
+    WAVINESS,
+    Limit,
+)
+from camwright.pipeline.checks import demands
+from camwright.pipeline.checks.cam_shape import TOOL_ALLOWANCE
+from camwright.pipeline.checks.contact_strength import LeastLimit, LoadCycles, pressure_limits
+from camwright.pipeline.checks.guide_strength import pv_limit
+from camwright.pipeline.checks.spring_strength import (
+    PRELOAD_TOLERANCE,
+    RATE_TOLERANCE,
+    Work,
+    hardest_work,
+)
+from camwright.pipeline.follower.roller_motion import rating_life, rolling_share
+from camwright.pipeline.follower.spring import HelicalSpring
+from camwright.pipeline.screening.design_arrays import Designs, Turns
+
+Judged = tuple[Array, Array | float | None]
+"""Demand (m,) and limit (m,), SI; NaN and None are missing."""
+Side = Literal["a", "b"]
+
+
+class Screened(NamedTuple):
+    """A check that screening judges.
+
+    deviation: greatest deviation of the demand from that of the preview, relative, as measured; 0:
+    of a lower bound of the utilisation, `bound`.
+    """
+
+    check: str
+    judged: Callable[[Designs], Judged | None]
+    deviation: float = 1e-3
+    bound: bool = False
+
+
+def _worst(designs: Designs, measure: Callable[[Turns], Array]) -> Array:
+    """Greatest over load cases and cam angles (m,) of a measure (m, n)."""
+    return np.max([sampled_greatest(measure(turns)) for turns in designs.turns], axis=0)
+
+
+def _least(designs: Designs, measure: Callable[[Turns], Array]) -> Array:
+    """Least over load cases and cam angles (m,) of a measure (m, n)."""
+    return np.min([sampled_least(measure(turns)) for turns in designs.turns], axis=0)
+
+
+def _pressure_angle(designs: Designs) -> Judged:
+    return sampled_greatest(np.abs(designs.pressure_angle)), designs.limit(PRESSURE_ANGLE)
+
+
+def _curvature_ratio(designs: Designs) -> Judged:
+    convex = 1.0 / sampled_greatest(designs.pitch_curvature)
+    return convex / designs.value("roller.radius")[:, 0], designs.limit(CURVATURE_RATIO)
+
+
+def _undercut(designs: Designs) -> Judged:
+    return designs.least_factor, designs.limit(UNDERCUT_FACTOR)
+
+
+def _concave_radius(designs: Designs) -> Judged:
+    hollow = sampled_least(designs.pitch_curvature)
+    with np.errstate(divide="ignore"):
+        radius = designs.value("roller.radius")[:, 0] - 1.0 / np.minimum(hollow, -0.0)
+    tool, stated = designs.limit(TOOL_RADIUS), designs.case.workshop.tool_radius
+    largest = np.where(np.isnan(tool), np.nan if stated is None else stated, tool)
+    return np.where(hollow < 0.0, radius, np.inf), TOOL_ALLOWANCE * largest
+
+
+def _curvature_rate(designs: Designs) -> Judged:
+    return sampled_greatest(np.abs(designs.curvature_rate)), designs.limit(CURVATURE_RATE)
+
+
+def _minimum_wall(designs: Designs) -> Judged:
+    keyway = designs.case.cam.held_radius - designs.case.cam.bore_radius
+    held = designs.value("cam.bore_radius")[:, 0] + keyway
+    return sampled_least(designs.contour_radius) / held, designs.limit(MINIMUM_WALL)
+
+
+def _cam_radius(designs: Designs) -> Judged:
+    return sampled_greatest(designs.contour_radius), designs.limit(CAM_RADIUS)
+
+
+def _spring_travel(designs: Designs) -> Judged:
+    return designs.highest, designs.value("spring.travel_max")[:, 0]
+
+
+def _guide_gap(designs: Designs) -> Judged:
+    base = designs.value("cam.prime_radius"), designs.value("cam.offset")
+    overhang, length = (
+        designs.value("follower.overhang_at_max_lift"),
+        designs.value("guides.a.length"),
+    )
+    mouth = (overhang - 0.5 * length)[:, 0]
+    highest = np.sqrt(base[0] ** 2 - base[1] ** 2)[:, 0] + designs.highest + mouth
+    over_cam = highest - sampled_greatest(designs.contour_radius)
+    gap = np.minimum(over_cam, mouth - designs.value("roller.radius")[:, 0])
+    return gap, designs.limit(GUIDE_GAP)
+
+
+def _guide_length(designs: Designs) -> Judged:
+    lengths = designs.value("guides.a.length") + designs.value("guides.b.length")
+    spread = (designs.value("guides.spacing") + 0.5 * lengths)[:, 0]
+    overhang = designs.value("follower.overhang_at_max_lift")[:, 0] + designs.highest
+    return spread / overhang, designs.limit(GUIDE_LENGTH)
+
+
+def _contact_force_margin(designs: Designs) -> Judged:
+    least = _least(designs, lambda turns: turns.loads.normal_force / turns.state.preload)
+    return np.maximum(least, 0.0), designs.limit(CONTACT_FORCE_MARGIN)
+
+
+def _jump(designs: Designs) -> Judged:
+    worst = _worst(
+        designs,
+        lambda turns: np.maximum(
+            demands.unloading(turns.loads.inertia_force, turns.loads.spring_force), 0.0
+        ),
+    )
+    return worst, designs.limit(JUMP)
+
+
+def _jump_speed(designs: Designs) -> Judged:
+    """From the greatest quotient of unloading inertia and spring force, at the crank speed."""
+    speeds = []
+    for turns in designs.turns:
+        use = demands.unloading(turns.loads.inertia_force, turns.loads.spring_force)
+        greatest = np.maximum(sampled_greatest(use), 0.0)
+        with np.errstate(divide="ignore"):
+            speeds.append(turns.crank_speed[:, 0] / np.sqrt(greatest))
+    over = np.where(np.isnan(designs.limit(OVERSPEED)), np.nan, designs.fastest)
+    return np.min(speeds, axis=0), designs.limit(JUMP_SPEED) * over
+
+
+def _contact_at_overspeed(designs: Designs) -> Judged:
+    over = np.where(np.isnan(designs.limit(OVERSPEED)), np.nan, designs.fastest)[:, None]
+
+    def force(turns: Turns) -> Array:
+        inertia = (over / turns.crank_speed) ** 2 * turns.loads.inertia_force
+        return demands.force_left(turns.loads.spring_force, inertia, turns.state.preload)
+
+    return _least(designs, force), designs.limit(CONTACT_FORCE_MARGIN)
+
+
+def _jam_index(designs: Designs) -> Judged:
+    worst = _worst(
+        designs, lambda turns: demands.jam_outward(turns.loads.lift_slope, turns.loads.jam_index)
+    )
+    return worst, designs.limit(JAM_INDEX)
+
+
+def greatest_friction(designs: Designs, side: Side) -> Array:
+    """Maximum friction coefficient of a guide (m, 1); see `FrictionRange`."""
+    stated, nominal = (
+        designs.value(f"guides.{side}.{key}") for key in ("friction_max", "friction")
+    )
+    return np.where(np.isnan(stated), nominal * (1.0 + designs.case.tolerances.friction), stated)
+
+
+def _jam_index_friction_max(designs: Designs) -> Judged:
+    motion, follower = designs.motion, designs.follower
+    overhang = follower.overhang_at_max_lift + (motion.highest - motion.lift)
+    on_a, on_b = motion.push.rubbing_on_points(overhang)
+    index = greatest_friction(designs, "a") * on_a + greatest_friction(designs, "b") * on_b
+    outward = demands.jam_outward(motion.slope, index * motion.push.side_factor)
+    return sampled_greatest(outward), designs.limit(JAM_INDEX)
+
+
+def _greatest_pressure(designs: Designs) -> Array:
+    return _worst(designs, lambda turns: turns.p0)
+
+
+def _contact(
+    name: str, safety: Limit, factor: Callable[[Designs], Array | float] = lambda _: 1.0
+) -> Callable[[Designs], Judged | None]:
+    """Contact pressure times a factor against the least limit of cam and roller."""
+
+    def judged(designs: Designs) -> Judged | None:
+        if designs.case.roller.crown_radius is not None:
+            return None
+        limits = pressure_limits(designs.machine, LoadCycles(0.0, 0.0))
+        demand = factor(designs) * _greatest_pressure(designs)
+        return demand, _least_limit(designs, limits[name], safety, demand)
+
+    return judged
+
+
+def _least_limit(designs: Designs, least: LeastLimit, safety: Limit, demand: Array) -> Array:
+    """Limit (m,) at the safety of each design; missing where a body lacks it, unless exceeded."""
+    if least.value is None:
+        return np.full(designs.count, np.nan)
+    limit = least.value * designs.machine.limits[safety] / designs.limit(safety)
+    return np.where(demand > limit, limit, np.nan) if least.lacking else limit
+
+
+def _edge_factor(designs: Designs) -> Array:
+    return designs.limit(EDGE_FACTOR)
+
+
+def _edge_pressure(designs: Designs) -> Judged | None:
+    """The edge factor stands in the demand, the limit is that of the contact pressure."""
+    return _contact("contact_pressure", CONTACT_SAFETY, _edge_factor)(designs)
+
+
+def _greatest_force(designs: Designs) -> Array:
+    return _worst(designs, lambda turns: turns.loads.normal_force)
+
+
+def _bearing(key: str, designs: Designs) -> Array:
+    return designs.value(f"roller.bearing.{key}")[:, 0]
+
+
+def _roller_static(designs: Designs) -> Judged:
+    force = _greatest_force(designs)
+    safety = np.divide(
+        _bearing("C0", designs), force, out=np.full_like(force, np.nan), where=force > 0.0
+    )
+    return safety, designs.limit(ROLLER_STATIC_SAFETY)
+
+
+def _roller_load_share(designs: Designs) -> Judged:
+    return _greatest_force(designs) / _bearing("C", designs), designs.limit(ROLLER_LOAD_SHARE)
+
+
+def _roller_radial(designs: Designs) -> Judged:
+    return _greatest_force(designs), _bearing("radial_limit", designs)
+
+
+def _roller_static_radial(designs: Designs) -> Judged:
+    return _greatest_force(designs), _bearing("static_radial_limit", designs)
+
+
+def _spin(designs: Designs, turns: Turns) -> Array:
+    """Speed of the roller on its pin (m, n), rad/s."""
+    speed = designs.at_loads(designs.pitch_speed)
+    return np.asarray(turns.cam_speed * rolling_share(speed, designs.value("roller.radius")))
+
+
+def _roller_speed(designs: Designs) -> Judged:
+    worst = _worst(designs, lambda turns: np.abs(_spin(designs, turns)))
+    return worst, designs.limit(ROLLER_SPEED_SHARE) * _bearing("speed_limit", designs)
+
+
+def _roller_life(designs: Designs) -> Judged:
+    rating = _bearing("C", designs)
+    known = np.where(np.isnan(rating), 1.0, rating)
+    lives = [
+        rating_life(turns.loads.normal_force, _spin(designs, turns), known).seconds
+        for turns in designs.turns
+    ]
+    return np.where(np.isnan(rating), np.nan, np.min(lives, axis=0)), designs.limit(ROLLER_LIFE)
+
+
+def _area(designs: Designs, side: Side) -> Array:
+    """Projected area of a guide (m, 1), m^2."""
+    return designs.value(f"guides.{side}.length") * designs.value(f"guides.{side}.diameter")
+
+
+def _reaction(turns: Turns, side: Side) -> Array:
+    return turns.loads.reaction_a if side == "a" else turns.loads.reaction_b
+
+
+def _guide_pressure(side: Side) -> Callable[[Designs], Judged]:
+    def judged(designs: Designs) -> Judged:
+        area = _area(designs, side)
+        worst = _worst(designs, lambda turns: demands.guide_pressure(_reaction(turns, side), area))
+        return worst, designs.value(f"guides.{side}.pressure_limit")[:, 0]
+
+    return judged
+
+
+def _guide_pv(side: Side) -> Callable[[Designs], Judged]:
+    def judged(designs: Designs) -> Judged:
+        area, guides = _area(designs, side), designs.machine.guides
+        means = [
+            demands.guide_pv(_reaction(turns, side), turns.loads.velocity, area).mean(axis=-1)
+            for turns in designs.turns
+        ]
+        return np.max(means, axis=0), pv_limit(guides.a if side == "a" else guides.b)
+
+    return judged
+
+
+def _guide_speed(side: Side) -> Callable[[Designs], Judged]:
+    def judged(designs: Designs) -> Judged:
+        worst = _worst(designs, lambda turns: np.abs(turns.loads.velocity))
+        return worst, designs.value(f"guides.{side}.speed_limit")[:, 0]
+
+    return judged
+
+
+def _profile_waviness(designs: Designs) -> Judged:
+    band, length = designs.value("cam.profile_tolerance"), designs.value("cam.waviness_length")
+    along = designs.at_loads(designs.pitch_speed * designs.undercut_factor)
+
+    def share(turns: Turns) -> Array:
+        rate = FULL_TURN * turns.cam_speed * along / length
+        added = designs.value("follower.mass") * 0.5 * band * rate**2
+        force = turns.loads.normal_force
+        return np.divide(added, force, out=np.full_like(force, np.inf), where=force > 0.0)
+
+    worst = np.max([share(turns).max(axis=-1) for turns in designs.turns], axis=0)
+    return worst, designs.limit(WAVINESS)
+
+
+def torque_after(designs: Designs, turns: Turns) -> Array:
+    """Crank torque of engine and cam (m, n), N m."""
+    before = np.zeros(1) if turns.state.torque is None else turns.state.torque
+    return np.asarray(before - turns.loads.cam_torque / designs.case.mechanism.gear_ratio)
+
+
+def _torque_reduction(designs: Designs) -> Judged | None:
+    shares = [
+        demands.ripple_reduction(turns.state.torque, torque_after(designs, turns))
+        for turns in designs.turns
+        if turns.state.torque is not None and turns.state.weight > 0.0
+    ]
+    if not shares:
+        return None
+    return np.min(shares, axis=0), designs.limit(TORQUE_REDUCTION)
+
+
+class _Wound(NamedTuple):
+    """Spring design with its hardest work in each design of the group, (m,)."""
+
+    design: HelicalSpring
+    work: Work
+
+
+def _wound(designs: Designs) -> _Wound | None:
+    spring = designs.case.spring
+    if spring.design is None:
+        return None
+    preload = np.max([turns.state.preload[:, 0] for turns in designs.turns], axis=0)
+    return _Wound(spring.design, hardest_work(spring, spring.design, preload, designs.highest))
+
+
+def _of_spring(
+    judged: Callable[[Designs, HelicalSpring, Work], Judged],
+) -> Callable[[Designs], Judged | None]:
+    def of_designs(designs: Designs) -> Judged | None:
+        wound = _wound(designs)
+        return None if wound is None else judged(designs, *wound)
+
+    return of_designs
+
+
+def _spring_stress(_: Designs, design: HelicalSpring, work: Work) -> Judged:
+    return design.stress(work.greatest) / design.static_strength, 1.0
+
+
+def _spring_fatigue(designs: Designs, design: HelicalSpring, work: Work) -> Judged:
+    return 1.0 / design.fatigue_use(work.preload, work.greatest), designs.limit(SPRING_FATIGUE)
+
+
+def _spring_solid(designs: Designs, design: HelicalSpring, work: Work) -> Judged:
+    return design.solid_clearance(work.preload, work.travel), designs.limit(SPRING_SOLID)
+
+
+def _spring_coil_gap(_: Designs, design: HelicalSpring, work: Work) -> Judged:
+    return design.gap_left(work.preload, work.travel), design.minimum_gaps
+
+
+def _spring_solid_stress(designs: Designs, design: HelicalSpring, work: Work) -> Judged:
+    return np.full(designs.count, design.solid_stress(work.rate)), design.static_strength
+
+
+def _spring_buckling(_: Designs, design: HelicalSpring, work: Work) -> Judged:
+    return (design.deflection(work.preload) + work.travel) / design.buckling_deflection, 1.0
+
+
+def _spring_rate(designs: Designs, design: HelicalSpring, _: Work) -> Judged:
+    rate = designs.value("spring.rate")[:, 0]
+    return np.abs(design.rate / rate - 1.0), designs.case.spring.rate_tolerance or RATE_TOLERANCE
+
+
+def _spring_relaxation(designs: Designs, design: HelicalSpring, work: Work) -> Judged:
+    lost = design.relaxed_preload(work.preload, work.greatest)
+    allowed = designs.case.spring.preload_tolerance or PRELOAD_TOLERANCE
+    return np.full(designs.count, np.nan) if lost is None else np.asarray(lost), allowed
+
+
+def _spring_surge(designs: Designs, design: HelicalSpring, _: Work) -> Judged:
+    turns_per_second = designs.fastest / designs.case.mechanism.gear_ratio / FULL_TURN
+    return design.surge_frequency / turns_per_second, designs.limit(SPRING_SURGE)
+
+
+SCREENED: tuple[Screened, ...] = (
+    Screened("pressure_angle", _pressure_angle),
+    Screened("curvature_ratio", _curvature_ratio),
+    Screened("undercut", _undercut),
+    Screened("concave_radius", _concave_radius),
+    Screened("curvature_rate", _curvature_rate),
+    Screened("minimum_wall", _minimum_wall),
+    Screened("cam_radius", _cam_radius),
+    Screened("spring_travel", _spring_travel),
+    Screened("guide_gap", _guide_gap),
+    Screened("guide_length", _guide_length),
+    Screened("torque_reduction", _torque_reduction),
+    Screened("contact_force_margin", _contact_force_margin),
+    Screened("jump", _jump),
+    Screened("jump_speed", _jump_speed),
+    Screened("contact_at_overspeed", _contact_at_overspeed),
+    Screened("jam_index", _jam_index),
+    Screened("jam_index_friction_max", _jam_index_friction_max),
+    Screened("contact_pressure", _contact("contact_pressure", CONTACT_SAFETY)),
+    Screened("edge_pressure", _edge_pressure),
+    Screened("shakedown", _contact("shakedown", SHAKEDOWN_SAFETY)),
+    Screened("roller_static", _roller_static),
+    Screened("roller_load_share", _roller_load_share),
+    Screened("roller_radial", _roller_radial),
+    Screened("roller_static_radial", _roller_static_radial),
+    Screened("roller_speed", _roller_speed),
+    Screened("roller_life", _roller_life),
+    Screened("guide_speed_A", _guide_speed("a")),
+    Screened("guide_speed_B", _guide_speed("b")),
+    Screened("guide_pressure_A", _guide_pressure("a"), bound=True),
+    Screened("guide_pressure_B", _guide_pressure("b"), bound=True),
+    Screened("guide_pv_A", _guide_pv("a"), bound=True),
+    Screened("guide_pv_B", _guide_pv("b"), bound=True),
+    Screened("profile_waviness", _profile_waviness),
+    Screened("spring_stress", _of_spring(_spring_stress), bound=True),
+    Screened("spring_fatigue", _of_spring(_spring_fatigue), bound=True),
+    Screened("spring_solid", _of_spring(_spring_solid)),
+    Screened("spring_coil_gap", _of_spring(_spring_coil_gap)),
+    Screened("spring_solid_stress", _of_spring(_spring_solid_stress)),
+    Screened("spring_buckling", _of_spring(_spring_buckling)),
+    Screened("spring_rate", _of_spring(_spring_rate)),
+    Screened("spring_relaxation", _of_spring(_spring_relaxation)),
+    Screened("spring_surge", _of_spring(_spring_surge)),
+)
+"""Checks that screening judges, in the order of the calculation."""
