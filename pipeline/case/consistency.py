@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from camwright.pipeline.case.case import Case
 
 
+_ROUND_OFF = 1e-9  # of a share of the friction
+
+
 def check_sections(case: Case) -> None:
     """Refuse a case whose sections contradict one another.
 
@@ -98,12 +101,10 @@ def _check_start(case: Case) -> None:
             raise InputError(f"load_case[{k}].{name}", getattr(load_case, name), limit)
 
 
-def _check_tolerances(case: Case) -> None:
-    """A tolerance is tighter than its default only with a source."""
-    if case.tolerances.source.strip():
-        return
+def tightened_tolerances(case: Case) -> dict[str, tuple[str, str]]:
+    """Tolerances tighter than their default, by dotted name: value and bound of the default."""
     stated, usual, spring = case.tolerances, Tolerances(), case.spring
-    bounds = {
+    least: dict[str, tuple[float, float, str]] = {
         "tolerances.friction": (stated.friction, usual.friction, ""),
         "tolerances.mass": (stated.mass, usual.mass, ""),
         "tolerances.inertia": (stated.inertia, usual.inertia, ""),
@@ -114,14 +115,30 @@ def _check_tolerances(case: Case) -> None:
             case.cam.profile_tolerance, CamBody.profile_tolerance, "mm",
         ),
     }  # fmt: skip
+    tight = {
+        name: (shown(value, unit), f">= {shown(bound, unit)}")
+        for name, (value, bound, unit) in least.items()
+        if value < bound
+    }
+    share = usual.friction * (1.0 - _ROUND_OFF)
     for side, guide in (("a", case.guides.a), ("b", case.guides.b)):
-        if guide.friction_max is not None and not guide.source.strip():
-            least = guide.friction * (1.0 + usual.friction)
-            bounds[f"guides.{side}.friction_max"] = guide.friction_max, least, ""
-    for field, (value, least, unit) in bounds.items():
-        if value < least:
-            limit = f">= {shown(least, unit)} without tolerances.source"
-            raise InputError(field, shown(value, unit), limit)
+        low, high = guide.friction * (1.0 - share), guide.friction * (1.0 + share)
+        if guide.friction_min is not None and guide.friction_min > low:
+            bounds = shown(guide.friction_min, ""), f"<= {shown(low, '')}"
+            tight[f"guides.{side}.friction_min"] = bounds
+        if guide.friction_max is not None and guide.friction_max < high:
+            bounds = shown(guide.friction_max, ""), f">= {shown(high, '')}"
+            tight[f"guides.{side}.friction_max"] = bounds
+    return tight
+
+
+def _check_tolerances(case: Case) -> None:
+    """A tolerance is tighter than its default only with a source."""
+    sources = {f"guides.{side}": getattr(case.guides, side).source for side in "ab"}
+    for name, (value, bound) in tightened_tolerances(case).items():
+        part = name.rpartition(".")[0]
+        if not (case.tolerances.source.strip() or sources.get(part, "").strip()):
+            raise InputError(name, value, f"{bound} without tolerances.source")
 
 
 def _check_mass(case: Case) -> None:

@@ -139,7 +139,8 @@ class Tolerances(Section):
 
     mass is that of the follower, inertia that of the crankshaft. Tolerances of the spring and of
     the line profile are in their own sections; friction ranges from guides.*.friction_min to
-    friction_max if these are given. A tolerance tighter than its default needs `source`.
+    friction_max if these are given. A tolerance tighter than its default needs `source`, and is to
+    be confirmed.
     """
 
     friction: Annotated[float, In(above=0, below=1)] = 0.5

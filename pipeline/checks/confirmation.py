@@ -1,6 +1,7 @@
 """Values on which each check rests, and those of them that no source confirms.
 
-A value is confirmed by its source, or by an entry ``[[confirmed]]`` of the case.
+A value is confirmed by its source, or by an entry ``[[confirmed]]`` of the case; a tolerance
+tighter than its default by such an entry alone.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from types import MappingProxyType
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.consistency import tightened_tolerances
 from camwright.pipeline.case.section import suggestion
 from camwright.pipeline.case.toml_text import Tables
 from camwright.pipeline.case.value_sources import OF_A_CHECK, confirms, source_of, values_at
@@ -258,14 +260,15 @@ def with_values_to_confirm(checks: Iterable[Check], case: Case) -> tuple[Check, 
     """The checks with the values on which they rest and which nothing confirms.
 
     The source that a check declares for its limit counts as a value, ``checks.ID``, where it is
-    recalled. A check without data rests on none.
+    recalled. A check judged at the tolerance corners rests on every tolerance that is tighter than
+    its default, whatever its source. A check without data rests on none.
 
     Raises
     ------
     InputError
         If the case confirms the source of an unknown check.
     """
-    tables = case.tables()
+    tables, tight = case.tables(), tuple(tightened_tolerances(case))
     confirmed = {each.value for each in case.confirmed}
     for value in confirmed:
         if value.startswith(OF_A_CHECK) and value.removeprefix(OF_A_CHECK) not in RESTS_ON:
@@ -277,7 +280,7 @@ def with_values_to_confirm(checks: Iterable[Check], case: Case) -> tuple[Check, 
             one,
             unconfirmed=tuple(
                 value
-                for value in dict.fromkeys(_open_values(one, tables))
+                for value in dict.fromkeys(_open_values(one, tables, tight))
                 if value not in confirmed
             ),
         )
@@ -285,7 +288,7 @@ def with_values_to_confirm(checks: Iterable[Check], case: Case) -> tuple[Check, 
     )
 
 
-def _open_values(one: Check, tables: Tables) -> Iterator[str]:
+def _open_values(one: Check, tables: Tables, tight: tuple[str, ...]) -> Iterator[str]:
     """Values on which a check rests and whose source does not confirm them."""
     if not one.evaluated or one.evidence:
         return
@@ -295,5 +298,7 @@ def _open_values(one: Check, tables: Tables) -> Iterator[str]:
     own = () if limit is None else (f"limits.{limit.id}",)
     for path in (*own, *RESTS_ON[one.id]):
         for value in values_at(tables, path):
-            if not confirms(source_of(tables, value)):
+            if value in tight or not confirms(source_of(tables, value)):
                 yield value
+    if one.declaration.moved_by_tolerance:
+        yield from tight

@@ -2,6 +2,7 @@
 
 import tomllib
 from dataclasses import replace
+from datetime import date
 from functools import cache
 from typing import Any
 
@@ -21,8 +22,9 @@ ENDURANCE = "materials.steel.endurance_pressure"
 
 
 def tables() -> dict[str, Any]:
-    """The case that describes every part, at the fewest positions."""
+    """The case that describes every part, at the fewest positions and the usual tolerances."""
     read = tomllib.loads(made.CASE_FILE.read_text(encoding="utf-8"))
+    read["cam"]["profile_tolerance"] = "0.1 mm"
     read["solver"]["positions"] = 36
     return read
 
@@ -114,6 +116,60 @@ def test_a_check_without_data_rests_on_nothing():
     assert check.unconfirmed
     missing = with_values_to_confirm([replace(check, demand=None)], case)
     assert missing[0].unconfirmed == ()
+
+
+TIGHT = {
+    "tolerances.friction": (0.4, 0.5), "tolerances.mass": (0.02, 0.03),
+    "tolerances.inertia": (0.01, 0.05), "tolerances.phase": ("0.5 deg", "1 deg"),
+    "spring.rate_tolerance": (0.03, 0.05), "spring.preload_tolerance": (0.03, 0.05),
+    "cam.profile_tolerance": ("0.05 mm", "0.1 mm"), "guides.a.friction_max": (0.13, 0.15),
+    "guides.b.friction_min": (0.07, 0.05),
+}  # fmt: skip
+DRAWING = {"source": "drawing 4711, rev. B"}
+
+
+def toleranced(value: str, stated: str | float, **more: Any) -> Case:
+    """Every tolerance at its default or wider, but one; a source for all of them."""
+    changed = tables() | more
+    for name, (_, usual) in TIGHT.items():
+        *parents, key = name.split(".")
+        table = changed
+        for part in parents:
+            table = table.setdefault(part, {})
+        table[key] = stated if name == value else usual
+    for side in "ab":
+        changed["guides"][side]["friction"] = 0.1
+    changed["tolerances"] |= DRAWING
+    return case_of(changed)
+
+
+@pytest.mark.parametrize("value", TIGHT)
+def test_a_tighter_tolerance_counts_until_the_case_confirms_it(value):
+    """Whatever its source, and only below its default."""
+    tight, usual = TIGHT[value]
+    assert value not in contact(toleranced(value, usual)).unconfirmed
+    assert value in contact(toleranced(value, tight)).unconfirmed
+    for by in (DRAWING, {"name": "A. Engineer", "date": date(2025, 1, 2)}):
+        confirmed = toleranced(value, tight, confirmed=[{"value": value} | by])
+        assert value not in contact(confirmed).unconfirmed
+
+
+def test_a_tolerance_is_not_confirmed_by_an_open_source():
+    with pytest.raises(InputError, match=r"confirmed\.tolerances\.mass\.source = assumed"):
+        toleranced(
+            "tolerances.mass", 0.02, confirmed=[{"value": "tolerances.mass", "source": "assumed"}]
+        )
+
+
+@pytest.mark.parametrize("value", TIGHT)
+def test_a_tighter_tolerance_without_a_source_is_refused(value):
+    tight, _ = TIGHT[value]
+    own = toleranced(value, tight).tables()
+    own["tolerances"].pop("source")
+    for side in "ab":
+        own["guides"][side].pop("source", None)
+    with pytest.raises(InputError, match=f"{value} = .*without tolerances.source"):
+        case_of(own)
 
 
 @cache
