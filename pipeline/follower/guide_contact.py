@@ -15,7 +15,7 @@ from camwright.geometry.errors import ContactError
 MAX_STEPS = 60
 TOLERANCE = 1e-10  # of the contact law, over the maximum indentation
 _ROUND_OFF = 1e-14
-_LEAST_DENT = 1e-12  # indentation over clearance below which a load is scaled up
+_LEAST_DENT = 1e-12  # indentation over slack below which a load is scaled up
 _LEAST_LENGTH = 1e-15  # lower bound of a step length
 _TOUCH = 1e-9  # initial indentation of a rigid beam over the clearance
 
@@ -87,11 +87,17 @@ class BearingLine:
         return np.asarray(self.law_miss(self.deflection(push, rigid), push) <= allowed)
 
     def enlargement(self, load: Array) -> Array:
-        """Factor (n,) that scales a load up to an indentation above round-off of the clearance."""
+        """Factor (n,) that scales a load up to an indentation above round-off of the slack.
+
+        A beam without slack, tight in one guide, moves in proportion to a small load: none is
+        scaled.
+        """
         size = np.abs(load[0]) + np.abs(load[1]) / self.positions[-1]
-        least = _LEAST_DENT * self.stiffness.min() * self.play.max()
+        slack = np.abs(self.rigid_modes[self.edges] @ self.slack_corners).max()
+        least = _LEAST_DENT * self.stiffness.min() * slack
         return np.where((size > 0.0) & (size < least), least / np.where(size > 0.0, size, 1.0), 1.0)
 
+    @cached_property
     def slack_corners(self) -> Array:
         """End motions (2, corners) of a rigid beam in contact with two edges of the guides.
 
@@ -139,7 +145,7 @@ def settle(
     load = load * enlargement
     if start is None:
         push = np.zeros((len(line.positions), load.shape[1]))
-        corners = line.slack_corners()
+        corners = line.slack_corners
         rigid = corners[:, np.argmax(corners.T @ load, axis=0)]
     else:
         push, rigid = start[0] * enlargement, start[1].copy()

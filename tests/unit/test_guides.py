@@ -136,6 +136,30 @@ def test_a_load_that_hardly_dents_the_bore_is_still_in_equilibrium(force):
     assert solved.reaction_b == pytest.approx(force * (0.04 - 0.01) / (0.08 + 0.018), rel=2e-2)
 
 
+@pytest.mark.parametrize("force", [1e-30, 1e-12, 1e-6, 1.0])
+def test_a_guide_without_clearance_holds_a_light_load_alone(force):
+    """A tight guide leaves the stem no slack; the other, with clearance, is out of reach."""
+    tight, loose = replace(NYLON, clearance=0.0), replace(STEEL, clearance=1e-3)
+    solved = guide_reactions([force], 0.04, STEM, replace(PAIR, a=tight, b=loose))
+    assert solved.reaction_b[0] == 0.0
+    assert solved.reaction_a[0] == pytest.approx(force, rel=1e-9, abs=0.0)
+    assert solved.moment_a[0] == pytest.approx(-force * 0.04, rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize("loose", [1e-9, 30e-6])
+def test_less_and_less_clearance_ends_at_none(loose):
+    """Reactions of a guide without clearance are the limit of those with less and less."""
+    force, arm = np.array([-1e-12, 1e-9, 3.0, 300.0]), 0.04
+
+    def solved(clearance):
+        a, b = replace(NYLON, clearance=clearance), replace(STEEL, clearance=loose)
+        return guide_reactions(force, arm, STEM, replace(PAIR, a=a, b=b))
+
+    none, little = solved(0.0), solved(1e-15)
+    np.testing.assert_allclose(none.reaction_a, little.reaction_a, rtol=1e-6)
+    np.testing.assert_allclose(none.reaction_b[2:], little.reaction_b[2:], rtol=1e-6)
+
+
 def test_answers_do_not_depend_on_the_company():
     together = guide_reactions(FORCE, OVERHANG, STEM, PAIR)
     alone = [
