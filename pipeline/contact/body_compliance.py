@@ -38,6 +38,8 @@ _BLIND_SHARE = 0.05
 _BATCH = 180
 # Contacts up to which the full body is faster than its condensation.
 _FEW = 8
+# Parts of the displacements kept in memory: a turn of 720 positions.
+_PARTS_KEPT = 4
 # Surface nodes about a contact for the fit of its stress and bending.
 _NEIGHBOURS = 10
 # Modules whose source enters the cache key.
@@ -163,16 +165,31 @@ class LoadedBody:
     def displacements(self, contacts: Array, normals: Array) -> Iterator[tuple[slice, Array]]:
         """Contacts in parts, and the displacement (2, m, part) of the correction, m per N/m.
 
-        At the nodes of `condensed_nodes` (m,).
+        At the nodes of `condensed_nodes` (m,). The last parts are kept in memory: corrections and
+        stress at a bore follow from the same displacement.
         """
+        few = contacts.shape[1] <= _FEW
         for start in range(0, contacts.shape[1], _BATCH):
             part = slice(start, start + _BATCH)
-            loads, held = self._cancelling_loads(contacts[:, part], normals[:, part])
-            if contacts.shape[1] <= _FEW:
-                yield part, self.body.displacement(loads, held)[:, self.condensed_nodes]
-            else:
-                loads = loads[:, self.condensed_nodes]
-                yield part, self._condensed.displacement(loads, held)
+            at, up = contacts[:, part], normals[:, part]
+            places = at.tobytes() + up.tobytes()
+            displaced = self._last.pop(places, None)
+            if displaced is None:
+                loads, held = self._cancelling_loads(at, up)
+                if few:
+                    displaced = self.body.displacement(loads, held)[:, self.condensed_nodes]
+                else:
+                    loads = loads[:, self.condensed_nodes]
+                    displaced = self._condensed.displacement(loads, held)
+            self._last[places] = displaced
+            if len(self._last) > _PARTS_KEPT:
+                del self._last[next(iter(self._last))]
+            yield part, displaced
+
+    @cached_property
+    def _last(self) -> dict[bytes, Array]:
+        """Last parts of `displacements` by their contacts and normals."""
+        return {}
 
     @cached_property
     def condensed_nodes(self) -> NDArray[np.int64]:

@@ -29,7 +29,7 @@ from camwright.pipeline.cycle.oil_film_history import FilmHistory, film_history
 from camwright.pipeline.follower.flat_face_motion import FaceSliding
 from camwright.pipeline.follower.follower_forces import Loads, follower_loads
 
-# Every so many contact angles the stress that the real body adds is solved.
+# The stress that the real body adds is taken at every so many contact angles.
 _THINNED = 4
 _MM, _MPA = 1e3, 1e-6
 MAPS = ("von_mises", "tau_max", "shear_range", "crossland", "dang_van")
@@ -202,11 +202,11 @@ def _envelope(
 def added_stress(pair: ContactPair, bodies: CycleBodies, theta: Array, line_load: Array) -> Array:
     """Stress (n,) along the contour, Pa, that the real cam adds under loads (n,) N/m.
 
-    Solved at every few angles and interpolated: the effect of a wall is smooth.
+    Interpolated between every few angles: the effect of a wall is smooth.
     """
-    few = theta[::_THINNED]
-    unit = bodies.cam.correction(pair.contour.points(few), pair.contour.normal(few)).along
-    return line_load * np.interp(theta, few, unit, period=FULL_TURN)
+    along = bodies.cam.correction(pair.contour.points(theta), pair.contour.normal(theta)).along
+    unit = along[::_THINNED]
+    return line_load * np.interp(theta, theta[::_THINNED], unit, period=FULL_TURN)
 
 
 def envelope_arrays(turns: Mapping[str, RollingHistory]) -> dict[str, Array]:
