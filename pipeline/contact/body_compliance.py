@@ -162,7 +162,9 @@ class LoadedBody:
         slope, bend = np.concatenate(parts, axis=1)
         return {"slope": slope, "bend": bend}
 
-    def displacements(self, contacts: Array, normals: Array) -> Iterator[tuple[slice, Array]]:
+    def displacements(
+        self, contacts: Array, normals: Array
+    ) -> Iterator[tuple[slice[int, int, None], Array]]:
         """Contacts in parts, and the displacement (2, m, part) of the correction, m per N/m.
 
         At the nodes of `condensed_nodes` (m,). The last parts are kept in memory: corrections and

@@ -124,7 +124,8 @@ def _bend(body: RingBody) -> Array:
         mesh, material.modulus, material.poisson, {}, body.springs(mesh, None, 0.0)
     )
     contact, normal = np.array([[0.0], [body.radius]]), np.array([[0.0], [1.0]])
-    return LoadedBody(elastic, body.surface, body.free).correction(contact, normal).bend[0]
+    bend = LoadedBody(elastic, body.surface, body.free).correction(contact, normal).bend
+    return np.asarray(bend[0])
 
 
 def ball_springs(

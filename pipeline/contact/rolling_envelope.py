@@ -290,7 +290,7 @@ def _greatest_root(form: Array, p0: Array, field: Array, along: Array) -> Array:
     ratio = np.where(loaded, along, 0.0) / np.where(loaded, p0, 1.0)
     varying = greatest_line((field * bent).sum(axis=0), 2.0 * bent[0], ratio)
     squares = p0[:, None] ** 2 * varying + (form[0, 0] * along**2)[:, None]
-    return np.sqrt(np.maximum(squares, 0.0))
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
 
 
 def greatest_line(height: Array, slope: Array, at: Array) -> Array:
