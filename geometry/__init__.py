@@ -8,6 +8,7 @@ In the order of the calculation:
 | `arrays`            | read-only arrays, checks of input values    | theta, rad                   |
 | `extrema`           | extremes of a periodic function             |                              |
 | `periodic_spline`   | periodic quintic (C4), cubic, and integral  |                              |
+| `monotone_cubic`    | cubic without extremes between its samples  |                              |
 | `acceleration_jump` | discontinuity of the acceleration           | m/rad^2                      |
 | `lift`              | lift and its derivatives                    | s, m; s', s'', s''', m/rad^k |
 | `motion_laws`       | lift by rise, dwell and return              | s, m                         |

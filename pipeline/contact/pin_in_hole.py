@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array, finite, freeze
 from camwright.geometry.errors import ContactError, InputError
+from camwright.geometry.monotone_cubic import MonotoneCubic
 from camwright.pipeline.base import disk_cache
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact.elasticity import active_set, radial_compliance
@@ -239,17 +240,15 @@ def _peak(angle: Array, pressure: Array) -> float:
 
 
 @lru_cache(maxsize=16)
-def _peak_table(
-    pin: Pin, bush: Bush
-) -> tuple[scipy.interpolate.PchipInterpolator, scipy.interpolate.PchipInterpolator, float]:
+def _peak_table(pin: Pin, bush: Bush) -> tuple[MonotoneCubic, MonotoneCubic, float]:
     """Peak p R/Q and contact angle over log(1 + clearance number); largest clearance number.
 
     The solutions are cached on disk.
     """
     table = disk_cache.kept("pin", (pin, bush), lambda: _solved_table(pin, bush), RECIPE)
     at = np.log1p(table["number"])
-    peaks = scipy.interpolate.PchipInterpolator(at, np.log(table["peak"]))
-    angles = scipy.interpolate.PchipInterpolator(at, np.log(table["angle"]))
+    peaks = MonotoneCubic(at, np.log(table["peak"]))
+    angles = MonotoneCubic(at, np.log(table["angle"]))
     return peaks, angles, float(table["number"][-1])
 
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.monotone_cubic import MonotoneCubic
 from camwright.pipeline.engine.cylinder import CYCLE_ANGLE, CylinderEngine, LiftPoint
 
 # At equal pressures the slope of the nozzle flow is infinite; below this relative difference the
@@ -38,10 +38,10 @@ class Valve:
         is_open = past < duration
         if self.table:
             angle = np.array([point.angle for point in self.table])
-            curve = scipy.interpolate.PchipInterpolator(
-                angle - self.opens, [point.lift for point in self.table]
+            curve = MonotoneCubic(
+                angle - self.opens, np.array([point.lift for point in self.table])
             )
-            return np.where(is_open, curve(np.minimum(past, duration), nu=derivative), 0.0)
+            return np.where(is_open, curve(np.minimum(past, duration), derivative), 0.0)
         phase = 2.0 * pi * past / duration
         if derivative == 0:
             return np.where(is_open, 0.5 * self.lift_max * (1.0 - np.cos(phase)), 0.0)

@@ -18,9 +18,9 @@ from math import inf
 from typing import Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
-import scipy
 
 from camwright.geometry.arrays import Array
+from camwright.geometry.monotone_cubic import MonotoneCubic
 from camwright.geometry.pitch_curve import curvature_slope, magnitude, speed_and_curvature
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
@@ -316,14 +316,12 @@ def _limit_curvature(relief: Array, ratings: Ratings) -> Array:
 
 
 @lru_cache(maxsize=8)
-def _curvature_table(crown_radius: float, modulus: float) -> scipy.interpolate.PchipInterpolator:
+def _curvature_table(crown_radius: float, modulus: float) -> MonotoneCubic:
     """ln(1/R) by ln(p0^3/N) of an elliptic contact, both rising."""
     curvature = np.geomspace(*_CURVATURES, _CURVATURE_STEPS)
     steepness = np.log(pressure_cubed_per_force(curvature, crown_radius, modulus))
     rising = np.diff(steepness, prepend=-inf) > 0
-    return scipy.interpolate.PchipInterpolator(
-        steepness[rising], np.log(curvature[rising]), extrapolate=True
-    )
+    return MonotoneCubic(steepness[rising], np.log(curvature[rising]))
 
 
 def _inertia(at: Loads, cam_speed: float) -> Array:
