@@ -8,13 +8,13 @@ from math import pi
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import FULL_TURN, Array, finite, freeze
 from camwright.geometry.contour import Contour
 from camwright.geometry.cutouts import KeywayLike
 from camwright.geometry.errors import GeometryError, InputError
+from camwright.geometry.extrema import refined
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.quantities import (
     Angle,
@@ -108,6 +108,9 @@ def torque_reversals(theta: Array, torque: ArrayLike, drag: float = 0.0) -> tupl
 
 _BALANCED = 1e-9
 """First moment over the area to the power 3/2, up to which the cam is balanced."""
+_PLACES = 400  # of a counter-hole, tried between bore and contour
+_CUTS, _PARTS = 6, 64  # of the step about the outermost place
+_ZOOMS = 14  # in the search of the greatest hole
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -404,17 +407,21 @@ def counter_hole(
         raise GeometryError("counter-hole: the cam has no unbalance")
     direction, ring = _heavy_side(unbalance), contour.polygon(1440)
 
-    def spare(place: float) -> float:
-        """Wall to the contour less the required one, m, at a hole centre `place`, m."""
-        away = np.hypot(*(ring - (place * direction)[:, None])).min()
-        return float(away - np.sqrt(need / (np.pi * place)) - wall)
+    def spare(place: Array) -> Array:
+        """Wall to the contour less the required one (...), m, at hole centres `place`, m."""
+        return _wall_outside(ring, direction, place) - np.sqrt(need / (np.pi * place)) - wall
 
-    places = np.linspace(bore_radius, _reach(unbalance, ring), 400)
-    fits = [place for place in places if spare(place) >= 0.0]
-    if not fits:
+    places = np.linspace(bore_radius, _reach(unbalance, ring), _PLACES)
+    fits = places[spare(places) >= 0.0]
+    if not fits.size:
         raise GeometryError("no counter-hole fits between bore and contour")
     # spare() decreases to zero beyond the outermost feasible place
-    outermost = float(scipy.optimize.brentq(spare, fits[-1], places[-1]))
+    inside, outside = fits[-1], places[-1]
+    for _ in range(_CUTS):
+        between = np.linspace(inside, outside, _PARTS + 1)
+        last = int(np.flatnonzero(spare(between) >= 0.0)[-1])
+        inside, outside = between[last], between[min(last + 1, _PARTS)]
+    outermost = float(inside)
     radius = float(np.sqrt(need / (np.pi * outermost)))
     if outermost - radius - wall < bore_radius + keyway_depth:
         raise GeometryError("no counter-hole fits between bore and contour")
@@ -441,22 +448,27 @@ def greatest_hole(
     """
     direction, ring = _heavy_side(unbalance), contour.polygon(1440)
 
-    def radius(place: float) -> float:
-        away = np.hypot(*(ring - (place * direction)[:, None])).min()
-        return float(min(away, place - bore_radius - keyway_depth)) - wall
+    def radius(place: Array) -> Array:
+        away = _wall_outside(ring, direction, place)
+        return np.asarray(np.minimum(away, place - bore_radius - keyway_depth) - wall)
 
-    def taken(place: float) -> float:
-        return max(radius(place), 0.0) ** 2 * place
+    def lost(place: Array) -> Array:
+        return np.asarray(-(np.maximum(radius(place), 0.0) ** 2) * place)
 
-    places = np.linspace(bore_radius, _reach(unbalance, ring), 400)
-    best = int(np.argmax([taken(place) for place in places]))
-    around = (places[max(best - 1, 0)], places[min(best + 1, places.size - 1)])
-    place = float(
-        scipy.optimize.minimize_scalar(lambda x: -taken(x), bounds=around, method="bounded").x
-    )
-    if not radius(place) > 0.0:
+    places, step = np.linspace(bore_radius, _reach(unbalance, ring), _PLACES, retstep=True)
+    best = int(np.argmin(lost(places)))
+    _, place = refined(lost, places[[best]], float(step), _ZOOMS)
+    place = np.clip(place, places[0], places[-1])
+    if not radius(place)[0] > 0.0:
         raise GeometryError("no hole fits between bore and contour")
-    return CounterHole(place * direction, radius(place))
+    return CounterHole(place[0] * direction, float(radius(place)[0]))
+
+
+def _wall_outside(ring: Array, direction: Array, place: Array) -> Array:
+    """Distance from the contour (2, n) to points (...) along a direction (2,), m."""
+    along, square = direction @ ring, (ring**2).sum(axis=0)
+    away = square - (2.0 * place[..., None]) * along
+    return np.asarray(np.sqrt(np.maximum(away.min(axis=-1) + place**2, 0.0)))
 
 
 def _heavy_side(unbalance: Unbalance) -> Array:
