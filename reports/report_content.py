@@ -313,11 +313,12 @@ def _evidence(material: Material) -> Section:
     blocks = [
         Block(
             Tabular(certificate), "Certificate points",
-            "The contact is solved again at these cam angles, with both bodies meshed, on three "
-            "successively finer meshes. Edges are counted across the half-width a. Order: observed "
-            "order of convergence, omitted if the values do not converge. GCI: grid convergence "
-            "index of the finest mesh. Deviation: pressure of the cycle relative to the "
-            "extrapolated one.",
+            "The contact is solved again at these cam angles, with both bodies meshed: at the two "
+            "of the greatest pressure on three successively finer meshes, at the others on the two "
+            "coarser ones, with the least order observed there. Edges are counted across the "
+            "half-width a. Order: of convergence, omitted if the values do not converge. GCI: grid "
+            "convergence index of the finest mesh. Deviation: pressure of the cycle relative to "
+            "the extrapolated one.",
         ) if certificate.rows else Block(
             None, "Certificate points", "The final trial has no certificate points."
         ),

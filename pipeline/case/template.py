@@ -196,7 +196,7 @@ torque_reduction = "what this design is for"
 [solver]
 positions = 72                       # per cam turn; 720 for a final run
 max_trials = 3                       # number of lifts, each smoother than the last
-certificate_positions = 1            # cam angles solved on three meshes
+certificate_positions = 1            # cam angles solved in full
 
 # --- Workshop files
 [workshop]

@@ -17,7 +17,7 @@ In the order of the calculation:
 | `body_compliance`    | correction of the half-plane for a real body   | Pa m/N; 1/N          |
 | `two_scale`          | contact over the turn by patch and corrections | p0, tau, sigma_v, Pa |
 | `full_contact`       | two bodies in contact by finite elements       | p, Pa; u, m          |
-| `certificate`        | full contact at one cam angle on three meshes  | gci, -               |
+| `certificate`        | full contact at one cam angle on its meshes    | gci, -               |
 | `contact_benchmarks` | benchmarks: NAFEMS R0094 and Hertz             | -                    |
 | `ring_body`          | outer ring of a bearing on balls               | N/m                  |
 | `pin_in_hole`        | conforming contact: Persson, complementarity   | p, Pa; phi, rad      |

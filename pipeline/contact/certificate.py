@@ -1,8 +1,9 @@
-"""Certificate: cam and follower by finite elements at one cam angle, on three meshes."""
+"""Certificate: cam and follower by finite elements at one cam angle, on three or two meshes."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -14,7 +15,11 @@ from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair, elastic_body
-from camwright.pipeline.contact.elasticity.mesh_convergence import converged
+from camwright.pipeline.contact.elasticity.mesh_convergence import (
+    Convergence,
+    converged,
+    converged_on_two,
+)
 from camwright.pipeline.contact.elasticity.surface_integrals import ContactFrame
 from camwright.pipeline.contact.full_contact import ContactSide, ContactSolution, solve_contact
 
@@ -93,24 +98,69 @@ def solve_pair(
     return SolvedPair(theta, frame, cam, facing, sides, float(half_width), solution)
 
 
+@dataclass(frozen=True)
+class MeshFigures:
+    """Contact of both bodies on one mesh.
+
+    edges per half-width; degrees of freedom; p0, tau_max, von_mises Pa; half_width m; residuals,
+    relative.
+    """
+
+    edges: float
+    dofs: int
+    p0: float
+    half_width: float
+    tau_max: float
+    von_mises: float
+    residual_equilibrium: float
+    residual_complementarity: float
+
+
+def mesh_figures(pair: ContactPair, theta: float, normal_force: float, edges: float) -> MeshFigures:
+    """Contact at a cam angle theta (rad) under a normal force (N) on one mesh.
+
+    Raises
+    ------
+    ContactError
+        If the load is not positive, or the solution fails.
+    """
+    solved = solve_pair(pair, theta, normal_force, edges).solution
+    names = [each.name for each in fields(MeshFigures) if each.name not in ("edges", "dofs")]
+    return MeshFigures(edges, solved.dofs, **{name: float(getattr(solved, name)) for name in names})
+
+
 def certificate_point(
-    pair: ContactPair, history: ContactHistory, index: int, theta: float
+    history: ContactHistory,
+    index: int,
+    theta: float,
+    meshes: Sequence[MeshFigures],
+    worst: Sequence[CertificatePoint] = (),
 ) -> CertificatePoint:
-    """Certificate at position `index` of a history, at the cam angle theta (rad)."""
-    force = float(history.line_load[index]) * pair.width
-    solutions = [solve_pair(pair, theta, force, edges).solution for edges in EDGES]
+    """Certificate at position `index` of a history, at the cam angle theta (rad).
+
+    Parameters
+    ----------
+    meshes : sequence   coarse to fine: three, or two with the points `worst`
+    worst : sequence    points on three meshes, whose orders are assumed on two
+    """
 
     def over_meshes(name: str) -> tuple[float, ...]:
-        return tuple(float(getattr(s, name)) for s in solutions)
+        return tuple(float(getattr(mesh, name)) for mesh in meshes)
+
+    def figure(name: str) -> Convergence:
+        if not worst:
+            return converged(over_meshes(name), REFINEMENT)
+        observed = [point.figures[name][0] for point in worst]
+        return converged_on_two(over_meshes(name), REFINEMENT, observed)
 
     return CertificatePoint(
         theta=theta,
-        p0=converged(over_meshes("p0"), REFINEMENT),
-        half_width=converged(over_meshes("half_width"), REFINEMENT),
-        tau_max=converged(over_meshes("tau_max"), REFINEMENT),
-        von_mises=converged(over_meshes("von_mises"), REFINEMENT),
-        edges=EDGES,
-        dofs=tuple(s.dofs for s in solutions),
+        p0=figure("p0"),
+        half_width=figure("half_width"),
+        tau_max=figure("tau_max"),
+        von_mises=figure("von_mises"),
+        edges=over_meshes("edges"),
+        dofs=tuple(mesh.dofs for mesh in meshes),
         p0_hertz=float(history.p0_hertz[index]),
         p0_cycle=float(history.p0[index]),
         half_width_cycle=float(history.half_width[index]),
@@ -118,4 +168,5 @@ def certificate_point(
         von_mises_cycle=float(history.von_mises[index]),
         residual_equilibrium=max(over_meshes("residual_equilibrium")),
         residual_complementarity=max(over_meshes("residual_complementarity")),
+        order_from=tuple(point.theta for point in worst),
     )

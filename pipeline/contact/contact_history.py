@@ -90,10 +90,12 @@ class ContactHistory:
 
 @dataclass(frozen=True)
 class CertificatePoint:
-    """Both bodies by finite elements at one cam angle on three meshes, and the values of the cycle.
+    """Both bodies by finite elements at one cam angle, and the values of the cycle.
 
-    theta rad; convergence of p0 (Pa), half_width (m), tau_max and von_mises (Pa); edges per
-    half-width and degrees of freedom of each mesh; residuals, the largest of the three.
+    On three meshes; or on the two coarser ones by the orders observed at the cam angles
+    `order_from` (rad). theta rad; convergence of p0 (Pa), half_width (m), tau_max and von_mises
+    (Pa); edges per half-width and degrees of freedom of each mesh; residuals, the largest of the
+    meshes.
     """
 
     theta: float
@@ -110,6 +112,7 @@ class CertificatePoint:
     von_mises_cycle: float
     residual_equilibrium: float
     residual_complementarity: float
+    order_from: tuple[float, ...] = ()
 
     @property
     def figures(self) -> Mapping[str, tuple[Convergence, float]]:

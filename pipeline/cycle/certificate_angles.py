@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import as_completed
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.worker_processes import pool, workers_for
-from camwright.pipeline.contact.certificate import certificate_point
+from camwright.pipeline.contact.certificate import (
+    EDGES,
+    MeshFigures,
+    certificate_point,
+    mesh_figures,
+)
 from camwright.pipeline.contact.contact_history import CertificatePoint, ContactHistory
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.cycle.cycle import Cycle
+
+FINEST = 2
+"""Cam angles at which the finest mesh is solved."""
 
 
 def positions_to_certify(cycles: Sequence[Cycle], count: int) -> tuple[tuple[int, int], ...]:
@@ -54,27 +62,57 @@ _EXTREMES: tuple[Callable[[ContactHistory], Array], ...] = (
 )
 
 
+def finest_positions(
+    cycles: Sequence[Cycle], chosen: Sequence[tuple[int, int]]
+) -> tuple[tuple[int, int], ...]:
+    """Of chosen (load case, position) the two of the greatest contact pressure."""
+    by_pressure = sorted(chosen, key=lambda at: -float(cycles[at[0]].contact.p0[at[1]]))
+    return tuple(by_pressure[:FINEST])
+
+
 def certified(
     pair: ContactPair,
     cycles: Sequence[Cycle],
-    chosen: Iterable[tuple[int, int]],
+    chosen: Sequence[tuple[int, int]],
     jobs: int | None,
     advance: Callable[[int, int], None],
 ) -> tuple[CertificatePoint, ...]:
-    """Certificate points at chosen (load case, position), solved in `jobs` processes."""
+    """Certificate points at chosen (load case, position), solved in `jobs` processes.
+
+    The finest mesh is solved at `finest_positions` alone; their orders hold for the others.
+    """
+    finest = finest_positions(cycles, chosen)
     tasks = [
-        (pair, cycles[case].contact, index, float(cycles[case].theta[index]))
-        for case, index in chosen
+        (at, edges)
+        for edges in reversed(EDGES)  # the longest first
+        for at in chosen
+        if edges != EDGES[-1] or at in finest
     ]
+
+    def arguments(at: tuple[int, int], edges: float) -> tuple[ContactPair, float, float, float]:
+        case, index = at
+        cycle = cycles[case]
+        force = float(cycle.contact.line_load[index]) * pair.width
+        return pair, float(cycle.theta[index]), force, edges
+
+    solved: dict[tuple[tuple[int, int], float], MeshFigures] = {}
     workers = workers_for(jobs, len(tasks))
     if workers <= 1:
-        points = []
         for task in tasks:
-            points.append(certificate_point(*task))
-            advance(len(points), len(tasks))
-        return tuple(points)
-    with pool(workers) as fresh:
-        futures = [fresh.submit(certificate_point, *task) for task in tasks]
-        for count, _ in enumerate(as_completed(futures), start=1):
-            advance(count, len(tasks))
-        return tuple(future.result() for future in futures)
+            solved[task] = mesh_figures(*arguments(*task))
+            advance(len(solved), len(tasks))
+    else:
+        with pool(workers) as fresh:
+            futures = {fresh.submit(mesh_figures, *arguments(*task)): task for task in tasks}
+            for future in as_completed(futures):
+                solved[futures[future]] = future.result()
+                advance(len(solved), len(tasks))
+
+    def point(at: tuple[int, int], worst: Sequence[CertificatePoint] = ()) -> CertificatePoint:
+        case, index = at
+        meshes = [solved[at, edges] for edges in EDGES if (at, edges) in solved]
+        theta = float(cycles[case].theta[index])
+        return certificate_point(cycles[case].contact, index, theta, meshes, worst)
+
+    worst = {at: point(at) for at in finest}
+    return tuple(worst.get(at) or point(at, tuple(worst.values())) for at in chosen)

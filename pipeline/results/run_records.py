@@ -297,6 +297,7 @@ def certificate_record(point: CertificatePoint) -> dict[str, Json]:
         "p0_hertz_MPa": _MPA * point.p0_hertz,
         "edges_across_half_width": list(point.edges),
         "dofs": list(point.dofs),
+        "order_observed_at_deg": [float(np.degrees(theta)) for theta in point.order_from],
         "spread_percent": 100 * point.spread,
         "gci_percent": 100 * point.gci,
         "residual_equilibrium": point.residual_equilibrium,

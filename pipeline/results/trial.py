@@ -88,7 +88,7 @@ class Trial:
 
     @property
     def certificate(self) -> tuple[CertificatePoint, ...]:
-        """Angles solved in full on three meshes; empty unless certified."""
+        """Angles solved in full; empty unless certified."""
         return self.solution.certificate
 
     @property

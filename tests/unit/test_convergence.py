@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.contact.elasticity.mesh_convergence import converged
+from camwright.pipeline.contact.elasticity.mesh_convergence import converged, converged_on_two
 
 
 @pytest.mark.parametrize("order", [1.0, 2.0, 3.0])
@@ -45,3 +45,41 @@ def test_anything_but_three_finite_values_is_refused(values):
 def test_a_ratio_too_small_to_tell_anything_is_refused():
     with pytest.raises(InputError):
         converged((3.0, 2.0, 1.0), 1.05)
+
+
+@pytest.mark.parametrize("order", [1.0, 1.7, 2.0])
+def test_two_meshes_of_the_order_elsewhere_give_the_limit(order):
+    """A power law of another coefficient; the bar: 3 times the distance from the limit, and more."""
+    sizes = np.array([4.0, 2.0, 1.0])
+    elsewhere = converged(7 + 0.001 * sizes**order, 2.0)
+    found = converged_on_two(10 + 0.02 * sizes[:2] ** order, 2.0, [elsewhere])
+    np.testing.assert_allclose(found.extrapolated, 10, rtol=1e-12)
+    own = 3 * 0.02 * 2.0**order / found.values[1]
+    np.testing.assert_allclose(found.gci, own + elsewhere.gci, rtol=1e-9)
+
+
+def test_two_meshes_take_the_least_order_and_never_a_narrower_bar():
+    fast, slow = converged((1.16, 1.04, 1.01), 2.0), converged((1.4, 1.2, 1.1), 2.0)
+    alone, both = (converged_on_two((2.02, 2.01), 2.0, each) for each in ([fast], [fast, slow]))
+    assert (alone.order, both.order) == (fast.order, slow.order)
+    assert both.gci == pytest.approx(slow.gci + 3 * 0.01 / 2.01)
+    assert converged_on_two((2.0, 2.0), 2.0, [fast, slow]).gci == slow.gci
+
+
+def test_two_meshes_without_an_observed_order_are_not_extrapolated():
+    scattered = converged((1.0, 1.02, 1.01), 2.0)
+    found = converged_on_two((1.0, 1.001), 2.0, [scattered])
+    assert (found.order, found.extrapolated) == (None, 1.001)
+    own = 3 * 0.001 / 1.001 / (np.sqrt(2.0) - 1)
+    assert found.gci == pytest.approx(scattered.gci + own)
+
+
+@pytest.mark.parametrize("values", [(1.0,), (1.0, np.nan), (1.0, 2.0, 3.0)])
+def test_anything_but_two_finite_values_is_refused(values):
+    with pytest.raises(InputError):
+        converged_on_two(values, 2.0, [converged((3.0, 2.0, 1.5), 2.0)])
+
+
+def test_two_meshes_alone_are_refused():
+    with pytest.raises(InputError, match="observed"):
+        converged_on_two((1.0, 2.0), 2.0, [])

@@ -13,7 +13,7 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.follower_height import face_height
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.machine import machines
-from camwright.pipeline.contact.certificate import certificate_point
+from camwright.pipeline.contact.certificate import EDGES, certificate_point, mesh_figures
 from camwright.pipeline.contact.closed_form import closed_form_history
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.elasticity.elastic_body import Elastic
@@ -129,7 +129,9 @@ def test_certificate_and_cycle_agree(eccentric, at):
     pair, only = contact_pair(turn.machine, contour), slice(at, at + 1)
     force = turn.loads.normal_force[only]
     history = two_scale_history(pair, CycleBodies.meshed(pair), THETA[only], force)
-    point = certificate_point(pair, history, 0, float(THETA[at]))
+    theta = float(THETA[at])
+    meshes = [mesh_figures(pair, theta, float(force[0]), edges) for edges in EDGES]
+    point = certificate_point(history, 0, theta, meshes)
     assert point.spread < 0.002
     assert point.gci < 0.005
     assert point.tau_max.extrapolated == pytest.approx(point.tau_max_cycle, rel=0.01)

@@ -1,4 +1,4 @@
-"""Mesh convergence on three meshes: Richardson extrapolation, observed order, error estimate."""
+"""Mesh convergence on three or two meshes: Richardson extrapolation, order, error estimate."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ class Convergence:
     """A quantity on meshes of decreasing element size.
 
     values, coarse to fine; extrapolated to zero element size; order, the observed one (None where
-    the values scatter); gci, the grid convergence index: relative error bar of the finest value.
+    the values scatter), or of two meshes the assumed one; gci, the grid convergence index: relative
+    error bar of the finest value.
     """
 
     values: tuple[float, ...]
@@ -65,3 +66,46 @@ def converged(values: Sequence[float], ratio: float) -> Convergence:
     gain = ratio ** min(max(order, _ORDER_LEAST), _ORDER_MOST) - 1.0
     safety = _SAFETY if order >= _ORDER_TRUSTED else _SAFETY_COARSE
     return Convergence(figures, fine + second / gain, order, safety * abs(second) / scale / gain)
+
+
+def converged_on_two(
+    values: Sequence[float], ratio: float, observed: Sequence[Convergence]
+) -> Convergence:
+    """Richardson extrapolation of two values by the order observed on three meshes elsewhere.
+
+    The order is the least observed one, within its bounds; without one at every place the finer
+    value is not extrapolated, and its bar is that of the least bound. The safety factor is 3; the
+    greatest observed bar is added, as the scatter of the finest mesh is not known here.
+
+    Parameters
+    ----------
+    observed : sequence   convergence of the same quantity on three meshes, at least one
+
+    Raises
+    ------
+    InputError
+        If there are not two finite values, no observed convergence, or the ratio is below 1.1.
+
+    References
+    ----------
+    Roache (1998), sec. 5.6: safety factor 3 on two meshes.
+    """
+    if len(values) != 2 or not np.isfinite(values).all():
+        raise InputError("values", tuple(values), "two finite numbers")
+    if not observed:
+        raise InputError("observed", 0, "at least one convergence on three meshes")
+    if not ratio >= 1.1:
+        raise InputError("ratio", ratio, ">= 1.1")
+    coarse, fine = (float(v) for v in values)
+    orders = [each.order for each in observed if each.order is not None]
+    order = None
+    if len(orders) == len(observed):
+        order = min(max(min(orders), _ORDER_LEAST), _ORDER_MOST)
+    change = (fine - coarse) / (ratio ** (order or _ORDER_LEAST) - 1.0)
+    bar = _SAFETY_COARSE * abs(change) / (abs(fine) or 1.0)
+    return Convergence(
+        values=(coarse, fine),
+        extrapolated=fine if order is None else fine + change,
+        order=order,
+        gci=bar + max(each.gci for each in observed),
+    )
