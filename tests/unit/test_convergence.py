@@ -49,7 +49,7 @@ def test_a_ratio_too_small_to_tell_anything_is_refused():
 
 @pytest.mark.parametrize("order", [1.0, 1.7, 2.0])
 def test_two_meshes_of_the_order_elsewhere_give_the_limit(order):
-    """A power law of another coefficient; the bar: 3 times the distance from the limit, and more."""
+    """A power law of another coefficient; the bar: 3 times the error, and more."""
     sizes = np.array([4.0, 2.0, 1.0])
     elsewhere = converged(7 + 0.001 * sizes**order, 2.0)
     found = converged_on_two(10 + 0.02 * sizes[:2] ** order, 2.0, [elsewhere])
