@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from run_recomputed import RECOMPUTED, RunFiles, line_contact_by_quadrature
 
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.errors import ResultError
@@ -18,6 +19,7 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machines
+from camwright.pipeline.contact import contact_benchmarks
 from camwright.pipeline.contact.two_scale import CycleBodies, two_scale_history
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.solution import CONTACT
@@ -112,6 +114,42 @@ def test_run_folder_holds_what_was_promised(
     assert len(cycle) == 3 * POSITIONS
     assert {"torque_after_Nm", "shear_range_MPa", "bore_stress_MPa"} <= set(cycle.columns)
     assert cycle.load_cases == ("idle", "standstill", "over-speed")
+
+
+@pytest.mark.parametrize("name", RECOMPUTED)
+def test_demands_by_the_files_of_the_run(straight: Path, name: str) -> None:
+    """Each by a formulation of its own, see `run_recomputed`."""
+    function, relative, absolute = RECOMPUTED[name]
+    run = RunFiles(straight)
+    demand = run.checks[name]["demand"]
+    assert function(run) == pytest.approx(demand, rel=relative, abs=absolute)
+
+
+def test_certified_stresses_are_those_of_hertz(straight: Path) -> None:
+    """Peaks below a line contact on a half-plane of nu = 0.3; real bodies within 3 %."""
+    (point,) = RunFiles(straight).record["certificate"]
+    p0 = point["p0_hertz_MPa"]
+    for name, share in (("p0", 1.0), ("tau_max", 0.300), ("von_mises", 0.558)):
+        assert point[f"{name}_MPa"]["extrapolated"] == pytest.approx(share * p0, rel=0.03), name
+
+
+def test_benchmarks_by_quadrature(straight: Path) -> None:
+    """Contacts solved by elements against the singular integral equation of the half-plane."""
+    run, steel, soft = RunFiles(straight), 210e9, 70e9
+    own = 1e-3 * run.value("roller.radius")
+    for name, radius, side, moduli, load in (
+        ("nafems", 0.05, 0.2, (soft, steel), 35e6),
+        ("hertz", own, 4.0 * own, (steel, steel), 1e5),
+    ):
+        p0, half_width, _ = contact_benchmarks.disc_on_block(radius, side, moduli, load)
+        modulus = 1.0 / sum((1.0 - 0.3**2) / young for young in moduli)
+        wanted = line_contact_by_quadrature(load, radius, modulus)
+        worst = max(abs(half_width / wanted[0] - 1.0), abs(p0 / wanted[1] - 1.0))
+        # the published half-width of NAFEMS has three digits
+        check = run.checks[f"benchmark_{name}"]
+        assert check["demand"] == pytest.approx(
+            100.0 * worst, abs=0.1 if name == "nafems" else 1e-3
+        )
 
 
 def test_case_file_in_the_folder_repeats_the_run(

@@ -1,15 +1,19 @@
-"""Every check at 0.99 and 1.01 of its limit, with a NaN, without its data, and by hand.
+"""Every check at 0.99 and 1.01 of its limit, with a NaN, without its data, by hand, and elsewhere.
 
 `check_registry.TRIED` holds one entry a check; one that is added without fails the last tests.
 """
 
+import ast
+import re
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import made_trial as made
 import numpy as np
 import pytest
 from check_registry import BY_ID, BY_ITSELF, DATA, MADE_LATER, TRIED, check
+from recomputations import CLAIMS, RECOMPUTED_IN
 
 from camwright.geometry.errors import CamError
 from camwright.pipeline.case.case_file import read_case
@@ -159,6 +163,58 @@ def test_every_check_is_tried():
     assert set(BY_ID) == set(TRIED) | BY_ITSELF | DATA
     assert len(CHECKS) == len(BY_ID)
     assert {declared.id for declared in (TOLERANCE_CORNERS, WAIVERS_WITHOUT_EFFECT)} == MADE_LATER
+
+
+@cache
+def parsed(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+@cache
+def words_of_test(path: str, name: str) -> frozenset[str]:
+    """Names and parts of texts in a test, and in the functions and tables of its file it uses."""
+    file = Path(__file__).parents[1] / path
+    tree = parsed(file)
+    known = {each.name: each for each in tree.body if isinstance(each, ast.FunctionDef)}
+    known |= {
+        target.id: each
+        for each in tree.body
+        if isinstance(each, ast.Assign)
+        for target in each.targets
+        if isinstance(target, ast.Name)
+    }
+    beside = {
+        alias.name: file.parents[1] / f"{each.module}.py"
+        for each in tree.body
+        if isinstance(each, ast.ImportFrom) and (file.parents[1] / f"{each.module}.py").exists()
+        for alias in each.names
+    }
+    assert name in known, f"{path} has no {name}"
+    words, left = set(), [name]
+    while left:
+        for node in ast.walk(known.pop(left.pop())):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                words |= set(re.findall(r"\w+", node.value))
+            elif isinstance(node, ast.Name | ast.Attribute | ast.arg):
+                word = getattr(node, "id", None) or getattr(node, "attr", None) or node.arg
+                words.add(word)
+                left += [word] if word in known and word not in left else []
+    for own in {beside[name] for name in words & set(beside)}:
+        words |= set(re.findall(r"\w+", own.read_text(encoding="utf-8")))
+    return frozenset(words)
+
+
+def test_every_check_is_recomputed():
+    """A check cannot be added without a test that recomputes its demand from a solution."""
+    assert set(RECOMPUTED_IN) == set(BY_ID) - DATA
+    assert len(RECOMPUTED_IN) == CLAIMS, "a check is claimed twice"
+
+
+@pytest.mark.parametrize("name", RECOMPUTED_IN)
+def test_the_recomputation_of_a_check_names_it(name):
+    words = words_of_test(*RECOMPUTED_IN[name])
+    group, _, own = name.partition("_")
+    assert {name, name.rstrip("AB")} & words or {f"{group}_", own} <= words
 
 
 @pytest.mark.parametrize(

@@ -485,8 +485,7 @@ def test_the_estimate_by_hardness_ends_at_400(brinell, limit):
     steel = replace(found.case.cam.material, hardness_brinell=brinell)
     case = found.case.model_copy(update={"cam": replace(found.case.cam, material=steel)})
     check = checked(found, case)["pressure_by_hardness"]
-    assert check.demand == pytest.approx(demand("shakedown", cam="through_hardened",
-                                                other="bearing_steel"))  # fmt: skip
+    assert check.demand == pytest.approx(roark()[0].max(), rel=1e-3)  # steel on steel
     if limit is None:
         assert check.status == "not_evaluated"
         assert "401 HB, above the 400 HB" in check.note

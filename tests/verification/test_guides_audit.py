@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pin_in_hole_elements import half_annulus, pin_in_hole_by_elements
+from run_recomputed import convergence_index
 from scipy.integrate import quad, solve_bvp
 from skfem import Basis, BilinearForm, ElementQuad2, ElementVector, LinearForm
 from skfem.helpers import ddot, eye, sym_grad, trace
@@ -29,6 +30,7 @@ from camwright.pipeline.checks import guide_strength, guide_wear, jump_and_jammi
 from camwright.pipeline.checks.check import Check, Declaration
 from camwright.pipeline.checks.error_bars import GUIDE_EDGE_ERROR, GUIDE_ERROR, with_error_bars
 from camwright.pipeline.checks.registry import CHECKS, checks_of
+from camwright.pipeline.checks.solution_verification import mesh_reaction
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.part_loads import guide_bodies
 from camwright.pipeline.cycle.solution import Solution
@@ -286,6 +288,30 @@ def test_jam_indices_by_collocation(solved, checks) -> None:
         drag, loads = mu_a * pushes["a"] + mu_b * pushes["b"], cycle.loads
         free = loads.spring_force[k] + loads.inertia_force[k]
         assert check.demand == pytest.approx(drag / (free + drag), rel=2e-3), name
+
+
+def test_uncertainty_of_the_reaction_covers_its_error_by_collocation(solved) -> None:
+    """Index of three numbers of knots by Roache; the error against the beam by collocation."""
+    demand = mesh_reaction.demand(solved)
+    assert demand is not None
+    check = mesh_reaction.judged(solved.machine, demand)
+    assert check.demand is not None
+    cycle, k = place(solved, check)
+    machine, loads = cycle.machine, cycle.loads
+    assert np.abs(cycle.guides.reaction_a[k]) == max(
+        np.abs(each.guides.reaction_a).max() for each in solved.cycles
+    )
+    values = [
+        guide_reactions(
+            loads.tangential_force[[k]], loads.overhang[[k]], machine.stem, machine.guides, knots=n
+        ).reaction_a[0]
+        for n in (7, 13, 25)
+    ]
+    assert check.demand == pytest.approx(0.01 * convergence_index(*values)[0], rel=1e-6)
+    pushed, other = beam_in_bores(cycle, k)["a"]
+    exact = abs(pushed[0] - other[0])
+    # the collocation has an error of 1e-3 of its own
+    assert abs(abs(values[2]) / exact - 1.0) <= check.demand + 1e-3
 
 
 def test_guided_length_by_hand(checks) -> None:
