@@ -1,8 +1,11 @@
 """Demands of the solution of `made_trial`, worked out by hand: closed forms with their sources."""
 
+from functools import cache
+
 import made_trial as made
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
+from scipy.spatial import cKDTree
 
 WIRE, COIL, COILS, FREE = 6e-3, 40e-3, 8.2, 0.13
 S = 0.5 * made.STROKE * (1.0 - np.cos(made.THETA))
@@ -141,10 +144,11 @@ def gouge() -> float:
     centre = shape.polygon(720) + 0.2 * np.stack(
         [(np.roll(y, -1) - np.roll(y, 1))[::20], (np.roll(x, 1) - np.roll(x, -1))[::20]]
     ) / np.hypot(np.roll(x, -1) - np.roll(x, 1), np.roll(y, -1) - np.roll(y, 1))[::20]  # fmt: skip
-    apart = np.hypot(x - centre[0][:, None], y - centre[1][:, None])
-    return 1e3 * float(np.max(0.2 - apart))
+    nearest, _ = cKDTree(np.stack([x, y], axis=1)).query(centre.T)
+    return 1e3 * float(np.max(0.2 - nearest))
 
 
+@cache
 def thrown() -> np.ndarray:
     """m e w^2 of a polygon of the contour less the keyway in strips, turning with the shaft."""
     x, y = made.contour().polygon(7200)
@@ -161,6 +165,7 @@ def thrown() -> np.ndarray:
     return size * np.stack([np.cos(turned), np.sin(turned)])
 
 
+@cache
 def shaft_forces() -> dict[float, np.ndarray]:
     """Forces on the shaft, N, by their place, m: three moments about the first bearing vanish."""
     loads = made.cycle().loads
@@ -226,6 +231,7 @@ def shaft_stress() -> float:
     return worst
 
 
+@cache
 def shaft_curve() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Places, m, deflection (2, n, x), m, slope, rad, by integrating M/(E I) twice."""
     x = np.linspace(-0.015, 0.06, 7501)
