@@ -65,8 +65,13 @@ def torque():
 
 
 @pytest.fixture(scope="module")
-def demands():
-    return {one.corner.name: one.demands for one in outcomes(case(), {}, cam())}
+def tried():
+    return outcomes(case(), {}, cam())
+
+
+@pytest.fixture(scope="module")
+def demands(tried):
+    return {one.corner.name: one.demands for one in tried}
 
 
 def test_one_at_a_time_then_a_seeded_sample():
@@ -228,13 +233,12 @@ def test_a_demand_unknown_at_a_corner_is_missing():
     assert (named.corner, named.status) == ("c", "not_evaluated")
 
 
-def test_record_holds_every_corner():
-    seen = outcomes(case(), {}, cam())
-    written = corners_record(case(), seen)
-    assert written["tried"] == len(seen) - 1 == len(corners_of(case()))
+def test_record_holds_every_corner(tried):
+    written = corners_record(case(), tried)
+    assert written["tried"] == len(tried) - 1 == len(corners_of(case()))
     nominal = written["corners"][0]
     assert nominal["name"] == "nominal"
     # In the units of the checks: MPa and rpm.
-    demands, record = seen[0].demands, nominal["demands"]
+    demands, record = tried[0].demands, nominal["demands"]
     assert record["contact_pressure"] == pytest.approx(1e-6 * demands["contact_pressure"])
     assert record["jump_speed"] == pytest.approx(30.0 / np.pi * demands["jump_speed"])

@@ -373,8 +373,8 @@ def test_the_bar_of_an_integral_covers_its_error(name, positions):
 
 
 def test_the_bar_of_a_bearing_life_covers_its_error():
-    """Of 36 positions against 1440; the error of the finer is a thousandth of that."""
-    coarse, fine = roller_life(previewed(36)), roller_life(previewed(1440))
+    """Of 36 positions against 360; the error of the finer is a hundredth of that."""
+    coarse, fine = roller_life(previewed(36)), roller_life(previewed(360))
     assert abs(coarse.demand / fine.demand - 1.0) <= (coarse.error_share or 0.0) + 1e-9
     assert (coarse.error_share or 0.0) > (fine.error_share or 0.0)
 

@@ -64,7 +64,8 @@ WORDS = {name for part in [*Part.__subclasses__(), Follower] for name in part.de
 def outcome(keys: tuple[str, ...]) -> tuple[str, bool]:
     """Verdict without a key, "error" if it cannot be read or solved; whether it has a default."""
     try:
-        case, found = case_of(without(*keys)), verdict(judged(without(*keys)))
+        tables = without(*keys)
+        case, found = case_of(tables), verdict(judged(tables))
     except CamError:
         return "error", False
     table: Any = case.tables()
@@ -73,7 +74,7 @@ def outcome(keys: tuple[str, ...]) -> tuple[str, bool]:
     return found, table is not None or keys[-1] in WORDS
 
 
-@settings(max_examples=12, deadline=None, derandomize=True)
+@settings(max_examples=6, deadline=None, derandomize=True)
 @given(st.sampled_from(data()))
 def test_no_datum_of_a_described_part_can_be_left_out(keys):
     """A sample; `make verify` tries every one."""
@@ -116,8 +117,9 @@ def test_a_part_that_is_neither_described_nor_left_out_is_a_row(keys, name):
     row = checks[f"data_{name}"]
     assert (row.status, row.must_have) == ("not_evaluated", True)
     assert "[scope]" in row.note
+    # the scope leaves the row out, see above; no need to solve the machine again
     tables["scope"] = {"not_covered": [name], "reason": "covered by the engine maker"}
-    assert f"data_{name}" not in {one.id for one in judged(tables)}
+    assert BY_ID[f"data_{name}"](made.solution(case=case_of(tables))) is None
 
 
 def test_a_scope_has_a_reason():
