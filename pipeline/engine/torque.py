@@ -99,9 +99,16 @@ class Torque:
         return replace(self, components={**self.components, "load": known + load})
 
     def resampled(self, n: int) -> Torque:
-        """The torque at `n` angles, by a periodic cubic spline through each component."""
-        if n == self.theta_crank.size:
-            return self
+        """The torque at `n` angles: some of its own, or by a periodic cubic spline through each
+        component.
+        """
+        step, rest = divmod(self.theta_crank.size, n)
+        if rest == 0:  # exactly, so that an inertia of zero stays zero
+            parts = {name: part[::step] for name, part in self.components.items()}
+            varying = self.varying_inertia
+            return Torque(
+                self.theta_crank[::step], parts, None if varying is None else varying[::step]
+            )
         theta = uniform_cycle(n)
         parts = {name: _periodic(part, theta) for name, part in self.components.items()}
         varying = self.varying_inertia

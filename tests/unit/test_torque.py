@@ -85,6 +85,15 @@ def test_resampling_keeps_the_parts_and_their_sum(torque):
     assert torque.resampled(720) is torque
 
 
+def test_every_second_angle_keeps_its_values_exactly():
+    """An inertia of zero at a dead centre stays zero: below it the crank motion is refused."""
+    theta = uniform(720)
+    inertia = np.maximum(np.sin(theta), 0.0) ** 2
+    half = Torque(theta, {"gas": np.sin(3.0 * theta)}, inertia).resampled(360)
+    np.testing.assert_array_equal(half.varying_inertia, inertia[::2])
+    np.testing.assert_array_equal(half.total, np.sin(3.0 * theta)[::2])
+
+
 @pytest.mark.parametrize(
     ("theta", "parts"),
     [
