@@ -13,11 +13,10 @@ from __future__ import annotations
 import resource
 import sys
 import tempfile
-import time
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
+from parts import dense_solution
 
 from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.case_file import read_case
@@ -29,25 +28,12 @@ from camwright.pipeline.smoothing.problem_setup import problem_of
 ROOT = Path(__file__).resolve().parent.parent
 POSITIONS = 720
 SYNTHESIS_BUDGET, LOOP_BUDGET = 100.0, 4500.0  # dense solutions
-ROUNDS = 5
 
 
 def cpu() -> float:
     """CPU seconds of this process and of those it waited for."""
     spent = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     return sum(each.ru_utime + each.ru_stime for each in spent)
-
-
-def dense_solution() -> float:
-    """Seconds of one solution of 1000 dense equations, the least of some rounds."""
-    random = np.random.default_rng(0)
-    matrix, right = random.normal(size=(1000, 1000)), random.normal(size=1000)
-    found = []
-    for _ in range(ROUNDS):
-        start = time.process_time()
-        np.linalg.solve(matrix, right)
-        found.append(time.process_time() - start)
-    return min(found)
 
 
 def main() -> int:
