@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.results.trial import CONSTRAINED, GIVEN_LIFT, SmoothingRecord, Trial
-from camwright.pipeline.smoothing.constrained_synthesis import synthesise
-from camwright.pipeline.smoothing.fe_correction import (
-    LimitShift,
-    corrected,
-    design_record,
-    redrawn,
-    settled,
-)
-from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import judged_at_corners, solve
@@ -52,6 +45,23 @@ def preview_case(case: Case, *, corners: bool = True, progress: Progress = SILEN
         )
         smoother = None if case.engine is None else Smoother.from_case(case.smoothing)
         return replace(trial, smoothing=smoothing_record(smoother))
+    trial = _synthesised(case, torques, progress)
+    return judged_at_corners(trial, torques) if corners else trial
+
+
+def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) -> Trial:
+    """Trial of the constrained synthesis, without tolerance corners."""
+    # Most previews need no optimiser.
+    from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+    from camwright.pipeline.smoothing.fe_correction import (
+        LimitShift,
+        corrected,
+        design_record,
+        redrawn,
+        settled,
+    )
+    from camwright.pipeline.smoothing.problem_setup import problem_of
+
     problem = problem_of(case, torques)
     earlier: LimitShift | None = None
     for _ in range(_ROUNDS):
@@ -73,7 +83,7 @@ def preview_case(case: Case, *, corners: bool = True, progress: Progress = SILEN
         earlier, problem = corrected(problem, design, trial.cycles, earlier)
         if not design.feasible or settled(earlier, trial.checks):
             break
-    return judged_at_corners(trial, torques) if corners else trial
+    return trial
 
 
 def smoothing_record(smoother: Smoother | None) -> SmoothingRecord:
