@@ -43,8 +43,13 @@ class PeriodicPolynomial:
         freeze(self, coefficients=self.coefficients)
 
     def __call__(self, theta: ArrayLike, derivative: int = 0) -> Array:
-        """Value, or derivative of order `derivative`, at any angle, rad."""
-        value: Array = self._evaluate(theta, derivative, derivative)[0]
+        """Value, or derivative of order `derivative`, at any angle, rad; read-only if kept."""
+        angles = np.asarray(theta, dtype=float)
+        if _KEPT_FROM <= angles.size <= _KEPT_TO:
+            rows = _kept.get(self, {}).get((angles.shape, angles.tobytes()))
+            if derivative == 0 or (rows is not None and len(rows) > derivative):
+                return self.derivatives(angles, derivative)[derivative]
+        value: Array = self._evaluate(angles, derivative, derivative)[0]
         return value
 
     def derivatives(self, theta: ArrayLike, order: int) -> Array:

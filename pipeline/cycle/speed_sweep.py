@@ -289,9 +289,14 @@ class _Follower:
         moving = self.resonant.stiffness(cam_speed).moving
         surge = self.resonant.back(moving * self.resonant.spectrum)
         speed = cam_speed[:, None]
-        push = self.spring + speed**2 * self.inertia + speed * self.viscous + surge
+        push = speed**2 * self.inertia
+        push += self.spring
+        if self.viscous.any():
+            push += speed * self.viscous
+        push += surge
         normal = push * self.gain
-        torque = np.maximum(push, 0.0) * self.arm
+        torque = np.maximum(push, 0.0, out=push)
+        torque *= self.arm
         elastic = self._elastic(speed, moving)
         lowest, soft = np.argmin(normal, axis=1), np.argmin(elastic, axis=1)
         return {
@@ -316,9 +321,12 @@ class _Follower:
         w = speed * self.resonant.order
         behind = rate + moving - mass * w**2
         joint = stem + 1.0j * damping * w
-        drive = behind * spectrum
-        drive[:, 0] += ANGLES * machine.spring.preload
-        return self.resonant.back(joint * drive / (joint + behind))
+        force = behind * spectrum
+        force[:, 0] += ANGLES * machine.spring.preload
+        force *= joint
+        joint += behind
+        force /= joint
+        return self.resonant.back(force)
 
 
 def _met(modes: Array, peak: Array, enough: float, top: float) -> Array:

@@ -93,8 +93,18 @@ def turns(inputs: Sequence[TurnInput], positions: int, *, coarse: bool = False) 
     for (stem, guides), strokes in wanted.items():
         solved = guided_strokes(tuple(strokes.values()), stem, guides, knots)
         guided[stem, guides] = dict(zip(strokes, solved, strict=True))
+    engine = {id(torque): torque for _, _, torque in inputs if torque is not None}
+    before = {
+        key: torque.without_mean().resampled(positions).total for key, torque in engine.items()
+    }
     return tuple(
-        _turn(each, theta, guided[each.machine.stem, each.machine.guides], coarse=coarse)
+        _turn(
+            each,
+            theta,
+            guided[each.machine.stem, each.machine.guides],
+            before.get(id(each.torque)),
+            coarse=coarse,
+        )
         for each in inputs
     )
 
@@ -109,7 +119,15 @@ def _rubbed(machine: Machine) -> tuple[FollowerSystem, ...]:
     return system, *(replace(system, friction_a=a, friction_b=b) for a, b in bounds)
 
 
-def _turn(given: TurnInput, theta: Array, guided: Mapping[_Key, Guided], *, coarse: bool) -> Turn:
+def _turn(
+    given: TurnInput,
+    theta: Array,
+    guided: Mapping[_Key, Guided],
+    before: Array | None,
+    *,
+    coarse: bool,
+) -> Turn:
+    """Turn of one load case; `before` (n,), N m, is the torque of the engine less its mean."""
     machine, contour, torque = given
     pitch = contour.pitch
 
@@ -118,7 +136,6 @@ def _turn(given: TurnInput, theta: Array, guided: Mapping[_Key, Guided], *, coar
 
     nominal = solved(machine.system)
     loads, driving = nominal.loads, None if coarse else torque
-    before = None if torque is None else torque.without_mean().resampled(theta.size).total
     after = None if before is None else before - loads.cam_torque / machine.gear_ratio
     return Turn(
         machine=machine,
