@@ -1,4 +1,4 @@
-"""Figures drawn by matplotlib: SVG for page and PDF, PNG files.
+"""Figures drawn by matplotlib: SVG for page and PDF, PNG files on request.
 
 Drawings use the colours of the light theme. For the page each colour becomes a style variable, so
 that one SVG serves the light and the dark theme. The hues are those of Okabe and Ito (2008), safe
@@ -87,11 +87,10 @@ MARKERS = {"dot": "o", "cross": "+"}
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A figure with its drawings."""
+    """A figure with its drawing."""
 
     figure: Figure
     svg: str
-    png: bytes
 
     @property
     def themed(self) -> Markup:
@@ -102,20 +101,19 @@ class Drawn:
 @lru_cache(maxsize=1)
 def drawn_groups(material: Material) -> Sequence[tuple[str, Sequence[Drawn]]]:
     """Drawings of the sheet, by group; cached."""
-    return tuple((t, tuple(map(_drawn, figures))) for t, figures in groups(material.turn))
+    return tuple(
+        (title, tuple(Drawn(each, svg_of(each)) for each in figures))
+        for title, figures in groups(material.turn)
+    )
 
 
 def write(material: Material) -> list[Path]:
     """Write ``figures/ID.png`` of each figure."""
     return [
-        write_atomic(material.folder / FIGURES / f"{one.figure.id}.png", one.png)
-        for _, drawn in drawn_groups(material)
-        for one in drawn
+        write_atomic(material.folder / FIGURES / f"{each.id}.png", png_of(each))
+        for _, figures in groups(material.turn)
+        for each in figures
     ]
-
-
-def _drawn(figure: Figure) -> Drawn:
-    return Drawn(figure, *svg_and_png(figure))
 
 
 @contextmanager
@@ -130,12 +128,18 @@ def draw(figure: Figure) -> Canvas:
     return _angles(figure) if isinstance(figure, AngleFigure) else _outline(figure)
 
 
-def svg_and_png(figure: Figure) -> tuple[str, bytes]:
-    """SVG text and PNG file of a figure, in the colours of the light theme."""
+def svg_of(figure: Figure) -> str:
+    """SVG text of a figure, in the colours of the light theme."""
     with style(figure.id):
         canvas, svg = draw(figure), io.StringIO()
         canvas.savefig(svg, format="svg", metadata={"Date": None})
-        return svg.getvalue(), png(canvas)
+        return svg.getvalue()
+
+
+def png_of(figure: Figure) -> bytes:
+    """PNG file of a figure, in the colours of the light theme."""
+    with style(figure.id):
+        return png(draw(figure))
 
 
 def png(canvas: Canvas, dpi: int = 150) -> bytes:

@@ -17,31 +17,40 @@ class Part:
     """A part of a report.
 
     `write` writes the files of the part into the run folder and returns them. A part `on_request`
-    is written only if its name is stated.
+    is written only if its name is stated; those `as_png` are the pictures as files.
     """
 
     name: str
     words: str
     write: Callable[[Material], Sequence[Path]]
     on_request: bool = False
+    as_png: bool = False
+
+
+def _pictures(name: str, words: str, write: Callable[[Material], Sequence[Path]]) -> Part:
+    return Part(name, f"{words} as PNG", write, on_request=True, as_png=True)
 
 
 PARTS = (
-    Part("figures", "figures as PNG", figure_svg.write),
-    Part("fields", "pictures of the stress fields",
-         partial(picture_list.write_pictures, picture_list.stress_pictures)),
-    Part("guides", "picture of the guide pressure",
-         partial(picture_list.write_pictures, picture_list.guide_pictures)),
-    Part("envelope", "maps of the maximum stress below the contour",
-         partial(picture_list.write_pictures, picture_list.envelope_pictures)),
+    _pictures("figures", "figures", figure_svg.write),
+    _pictures("fields", "pictures of the stress fields",
+              partial(picture_list.write_pictures, picture_list.stress_pictures)),
+    _pictures("guides", "picture of the guide pressure",
+              partial(picture_list.write_pictures, picture_list.guide_pictures)),
+    _pictures("envelope", "maps of the maximum stress below the contour",
+              partial(picture_list.write_pictures, picture_list.envelope_pictures)),
     Part("page", page.PAGE, page.write),
     Part("scene", f"{scene_page.FILE}, interactive 3-D view", scene_page.write),
     Part("pdf", pdf.PDF, pdf.write, on_request=True),
 )  # fmt: skip
 
 
-def chosen(names: Iterable[str] = ()) -> tuple[Part, ...]:
+def chosen(names: Iterable[str] = (), *, png: bool = False) -> tuple[Part, ...]:
     """Parts of these names, in order; without names all parts that are not on request.
+
+    Parameters
+    ----------
+    png : bool   the pictures as PNG files as well
 
     Raises
     ------
@@ -54,7 +63,9 @@ def chosen(names: Iterable[str] = ()) -> tuple[Part, ...]:
             listed = ", ".join(f"{part.name} ({part.words})" for part in PARTS)
             raise InputError("--only", name, f"one of {listed}")
     return tuple(
-        part for part in PARTS if part.name in selected or not (selected or part.on_request)
+        part
+        for part in PARTS
+        if part.name in selected or (png and part.as_png) or not (selected or part.on_request)
     )
 
 
@@ -72,7 +83,9 @@ def report(folder: Path, parts: Iterable[Part] | None = None) -> dict[str, Seque
     """
     material = read_material(Path(folder))
     try:
-        (material.folder / FIGURES).mkdir(exist_ok=True)
-        return {part.name: part.write(material) for part in (chosen() if parts is None else parts)}
+        selected = chosen() if parts is None else tuple(parts)
+        if any(part.as_png for part in selected):
+            (material.folder / FIGURES).mkdir(exist_ok=True)
+        return {part.name: part.write(material) for part in selected}
     except OSError as error:
         raise ResultError(f"{folder}: {error.strerror or error}") from None

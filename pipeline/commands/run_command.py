@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -44,6 +45,9 @@ def run(
     no_report: Annotated[
         bool, typer.Option("--no-report", help="Write no page and no figures.")
     ] = False,
+    png: Annotated[
+        bool, typer.Option("--png", help="Write the figures as PNG files as well.")
+    ] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Resume an interrupted run.")] = False,
     replace: Annotated[
         bool, typer.Option("--replace", help="Replace an earlier run of a case of this name.")
@@ -65,7 +69,7 @@ def run(
         from camwright.pipeline.results.run_folder import set_aside
         from camwright.pipeline.run import run_case
         from camwright.pipeline.studies.valve_train import valve_record
-        from camwright.reports.sections import report
+        from camwright.reports import sections
 
         old = set_aside(out, design) if replace else nullcontext()
         with old, progress_shown() as progress:
@@ -77,7 +81,9 @@ def run(
                 jobs=jobs,
                 resume=resume,
                 progress=progress,
-                report=None if no_report else report,
+                report=None
+                if no_report
+                else partial(sections.report, parts=sections.chosen(png=png)),
                 also=valve_record,
             )
     from camwright.pipeline.results.run_reader import read_verdict
@@ -101,6 +107,9 @@ def _finished(out: Path, sha256: str, depth: str) -> bool:
 def report(
     folder: DirArgument,
     pdf: Annotated[bool, typer.Option("--pdf", help="Write 8_report.pdf as well.")] = False,
+    png: Annotated[
+        bool, typer.Option("--png", help="Write the figures as PNG files as well.")
+    ] = False,
     only: Annotated[
         list[str] | None,
         typer.Option("--only", metavar="PART", help="Write this part only; may be repeated."),
@@ -111,7 +120,7 @@ def report(
     from camwright.reports import sections
     from camwright.reports.page import PAGE
 
-    names = [part.name for part in sections.chosen(only or ())]
+    names = [part.name for part in sections.chosen(only or (), png=png)]
     names += ["pdf"] if pdf else []
     with progress_shown() as shown:
         shown.stage("report")

@@ -41,7 +41,7 @@ def material(tmp_path_factory: pytest.TempPathFactory) -> Material:
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Plots left blank, for tests of words."""
     blank = '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>'
-    monkeypatch.setattr(figure_svg, "svg_and_png", lambda figure: (blank, b""))
+    monkeypatch.setattr(figure_svg, "svg_of", lambda figure: blank)
 
 
 @pytest.fixture(scope="module")

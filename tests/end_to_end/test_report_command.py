@@ -48,7 +48,8 @@ def run(tmp_path: Path) -> Path:
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures left blank, where what counts is which files come."""
-    monkeypatch.setattr(figure_svg, "svg_and_png", lambda figure: ("<svg></svg>", b"\x89PNG"))
+    monkeypatch.setattr(figure_svg, "svg_of", lambda figure: "<svg></svg>")
+    monkeypatch.setattr(figure_svg, "png_of", lambda figure: b"\x89PNG")
 
 
 def digests(folder: Path) -> dict[str, str]:
@@ -93,9 +94,18 @@ def test_one_part_alone_writes_its_files_alone(run: Path) -> None:
 @pytest.mark.usefixtures("quick")
 def test_a_report_has_all_parts_but_those_to_ask_for(run: Path) -> None:
     made = sections.report(run)
-    assert {path.stem for path in made["figures"]} >= ALWAYS
     assert list(made) == [part.name for part in sections.PARTS if not part.on_request]
+    assert not (run / "figures").exists()
     assert not (run / printing.PDF).exists()
+
+
+@pytest.mark.usefixtures("quick")
+def test_pictures_come_as_files_when_asked(run: Path) -> None:
+    before = digests(run)
+    assert report(run, "--png") == PASSED
+    made = {Path(name) for name in set(digests(run)) - set(before)}
+    assert {path.stem for path in made if path.suffix == ".png"} >= ALWAYS
+    assert Path(page.PAGE) in made
 
 
 @pytest.mark.usefixtures("quick")

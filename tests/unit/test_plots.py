@@ -101,7 +101,7 @@ def test_the_alternative_text_tells_range_place_and_limit():
 
 def test_the_svg_is_well_formed_themed_and_free_of_clashing_ids():
     svg, other = (
-        figure_svg.themed(figure_svg.svg_and_png(made)[0], made.id)
+        figure_svg.themed(figure_svg.svg_of(made), made.id)
         for made in (figure(), AngleFigure("second", "", "", CRANK, figure().panels))
     )
     ET.fromstring(svg)
@@ -137,21 +137,22 @@ def test_words_of_near_limits_stand_clear_of_each_other():
 
 def test_trimming_coordinates_leaves_numbers_to_read_alone():
     small = Panel("depth", "mm", (Curve("", 0.004 + 0.004 * WAVE),), (LimitLine(0.0075, "limit"),))
-    svg = figure_svg.themed(figure_svg.svg_and_png(figure(small))[0], "small")
+    svg = figure_svg.themed(figure_svg.svg_of(figure(small)), "small")
     assert re.search(r">0\.00\d+<", svg)
     assert "limit 0.0075 mm" in svg
     assert not re.search(r'"[^"<>]*\d\.\d{3}', svg)
 
 
 def test_the_same_figure_gives_the_same_bytes():
-    svg, png = figure_svg.svg_and_png(figure())
-    assert (svg, png) == figure_svg.svg_and_png(figure())
+    png = figure_svg.png_of(figure())
+    assert figure_svg.svg_of(figure()) == figure_svg.svg_of(figure())
+    assert png == figure_svg.png_of(figure())
     assert png.startswith(b"\x89PNG")
 
 
 def test_hostile_labels_stay_text():
     panel = Panel("x", "", (Curve("<script>$x_2$", WAVE), Curve("b", WAVE)))
-    svg = figure_svg.svg_and_png(figure(panel))[0]
+    svg = figure_svg.svg_of(figure(panel))
     assert "<script" not in svg
     assert "&lt;script&gt;$x_2$" in svg
 
@@ -181,9 +182,9 @@ def test_the_outline_has_equal_axes_and_holds_the_follower():
                      and abs(np.mean(c.get_xdata()[:-1]) - 20.0) < 1e-9]  # fmt: skip
         assert circle.get_linestyle() == line
         assert np.ptp(circle.get_ydata()) == pytest.approx(6.0, rel=1e-3)
-    assert figure_svg.svg_and_png(
+    assert figure_svg.svg_of(
         OutlineFigure("o", "", "", 42 * ring, 50 * ring, None, "roller", None, None, 0, "")
-    )[0]
+    )
 
 
 def live_curves(made):
