@@ -172,8 +172,10 @@ def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:
     tables = tables_of(case)
     for key, value in values.items():
         quantity = quantity_of(key)
-        in_si = isinstance(value, float) and isinstance(quantity, In) and quantity.unit
-        _enter(tables, key, units.format(value, quantity.unit) if in_si else value)
+        if isinstance(value, float) and isinstance(quantity, In) and quantity.unit:
+            _enter(tables, key, units.format(value, quantity.unit))
+        else:
+            _enter(tables, key, value)
     return completed(case_of(tables, case.folder), case.folder)
 
 

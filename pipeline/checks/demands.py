@@ -23,7 +23,7 @@ def unloading(inertia: Array, spring: Array) -> Array:
     return -inertia / spring
 
 
-def force_left(spring: Array, inertia: Array, preload: float) -> Array:
+def force_left(spring: Array, inertia: Array, preload: float | Array) -> Array:
     """Sum of spring and inertia force over the preload, without friction."""
     return (spring + inertia) / preload
 
@@ -33,7 +33,7 @@ def jam_outward(lift_slope: Array, jam_index: Array) -> Array:
     return np.where(np.real(lift_slope) > 0, jam_index, 0.0 * jam_index)
 
 
-def guide_pressure(bearing_load: Array, area: float) -> Array:
+def guide_pressure(bearing_load: Array, area: float | Array) -> Array:
     """Mean guide pressure, Pa, from the bearing load, N, and the projected area, m^2.
 
     Bearing load: greater push on one side over the loaded share of the length.
@@ -41,11 +41,11 @@ def guide_pressure(bearing_load: Array, area: float) -> Array:
     return magnitude(bearing_load) / area
 
 
-def guide_pv(normal_load: Array, velocity: Array, area: float) -> Array:
+def guide_pv(normal_load: Array, velocity: Array, area: float | Array) -> Array:
     """PV value, Pa m/s, from the normal load, N, sliding speed, m/s, and projected area, m^2."""
     return magnitude(normal_load * velocity) / area
 
 
-def contour_radius(along: Array, across: Array, offset: float, inset: Array) -> Array:
+def contour_radius(along: Array, across: Array, offset: float | Array, inset: Array) -> Array:
     """Distance of the contour from the cam axis, m; inset: r / |dP/dtheta|, see `Contour`."""
     return np.sqrt((across * (1.0 - inset)) ** 2 + (offset + inset * along) ** 2)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Generic, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,12 @@ from camwright.pipeline.checks.check import NONE, SPEED_RANGE, Declaration, Dema
 from camwright.pipeline.checks.extremes import Extreme
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpringSweep, highest_speed
-from camwright.pipeline.follower.spring import HelicalSpring, Spring, surge_harmonics
+from camwright.pipeline.follower.spring import (
+    HelicalSpring,
+    Number,
+    Spring,
+    surge_harmonics,
+)
 
 RATE_TOLERANCE = 0.05  # of the rate, where the case has none
 PRELOAD_TOLERANCE = 0.05  # of the preload, where the case has none
@@ -23,25 +28,27 @@ HARDEST = "preload and rate high"
 STABLE = "stable at any deflection"
 
 
-class Work(NamedTuple):
+class Work(NamedTuple, Generic[Number]):
     """Hardest spring in tolerance: preload, maximum force, N; travel, m; rate, N/m."""
 
-    preload: float
-    greatest: float
-    travel: float
+    preload: Number
+    greatest: Number
+    travel: Number
     rate: float
 
 
-Measure = Callable[[HelicalSpring, Work], float]
+Measure = Callable[[HelicalSpring, Work[float]], float]
 
 
-def hardest_work(spring: Spring, design: HelicalSpring, preload: float, travel: float) -> Work:
+def hardest_work(
+    spring: Spring, design: HelicalSpring, preload: Number, travel: Number
+) -> Work[Number]:
     """Working range of the hardest spring in tolerance.
 
     Parameters
     ----------
-    preload : float   greatest of the load cases, N
-    travel : float    maximum lift, m
+    preload : float or array (m,)   greatest of the load cases, N
+    travel : float or array (m,)    maximum lift, m
     """
     hard = preload * (1.0 + spring.preload_tolerance)
     rate = design.rate * (1.0 + spring.rate_tolerance)
@@ -60,7 +67,7 @@ def _design(solution: Solution) -> HelicalSpring:
     return design
 
 
-def _work(solution: Solution) -> Work:
+def _work(solution: Solution) -> Work[float]:
     preload = max(machine.spring.preload for machine in solution.machines)
     travel = solution.contour.pitch.lift.highest.value
     return hardest_work(solution.machine.spring, _design(solution), preload, travel)

@@ -105,7 +105,7 @@ def _reduction(cycle: Cycle) -> float:
     before, after = cycle.turn.torque_before, cycle.turn.torque_after
     if before is None or after is None:
         return np.nan
-    return demands.ripple_reduction(before, after)
+    return float(demands.ripple_reduction(before, after))
 
 
 @check(

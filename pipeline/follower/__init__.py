@@ -10,6 +10,7 @@ In the order of the calculation:
 | `guide_contact`         | beam in bores with unilateral contact      | N; m                  |
 | `guide_reactions`       | reactions and pressures of two guides      | A, B, N; p, Pa        |
 | `friction_coupling`     | contact force with guide friction          | F_a, N                |
+| `guide_table`           | reactions over side force and overhang     | F_t, N; a, m          |
 | `guide_effects`         | effects of guide length and clearance      | N                     |
 | `guide_friction`        | friction bounds and power, temperature     | mu, -; W; K           |
 | `elastic_follower`      | elastic follower, periodic response        | x, m; N, N            |

@@ -101,7 +101,7 @@ def roller_motion(
     )
 
 
-def rolling_share(pitch_speed: Values, roller_radius: float) -> Values:
+def rolling_share(pitch_speed: Values, roller_radius: float | Array) -> Values:
     """Spin of the roller relative to the follower over cam speed, of |dP/dtheta|, m/rad."""
     return pitch_speed / roller_radius - 1.0
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +32,9 @@ STATIC_STRENGTH = 0.56  # permissible shear stress over R_m, also at solid lengt
 DYNAMIC_GAP = 1.5  # minimum gaps of a dynamic load over those of a static one, cold coiled
 ISOTROPIC = 2.6  # E / G at a Poisson ratio of 0.3
 DAMPING, LEAST_DAMPING = 0.01, 0.002  # ratio of the surge that a case does not state
+
+Number = TypeVar("Number", float, Array)
+"""A value, or values of many designs."""
 
 WireModulus = Annotated[float, In("GPa", above=0, at_most=1e5)]
 WireDensity = Annotated[float, In("kg/m^3", above=0, at_most=1e5)]
@@ -155,11 +158,11 @@ class HelicalSpring(Part):
         """Maximum shear stress (...) of the wire with Wahl factor, Pa."""
         return self.wahl_factor * self._stress_per_newton * finite("spring.force", force)
 
-    def deflection(self, force: float) -> float:
+    def deflection(self, force: Number) -> Number:
         """Deflection from the free length, m."""
         return force / self.rate
 
-    def solid_clearance(self, preload: float, travel: float) -> float:
+    def solid_clearance(self, preload: Number, travel: Number) -> Number:
         """Clearance to the solid length at full lift over the maximum deflection.
 
         Negative: the spring is solid.
@@ -167,7 +170,7 @@ class HelicalSpring(Part):
         deflection = self.deflection(preload) + travel
         return (self.free_length - self.solid_length - deflection) / deflection
 
-    def gap_left(self, preload: float, travel: float) -> float:
+    def gap_left(self, preload: Number, travel: Number) -> Number:
         """Sum of the gaps between the active coils at full lift, m; negative: solid."""
         return self.free_length - self.solid_length - self.deflection(preload) - travel
 
@@ -260,7 +263,7 @@ class HelicalSpring(Part):
             return np.inf
         return float(self.free_length * 0.5 / (1.0 - ratio) * (1.0 - np.sqrt(root)))
 
-    def relaxed_preload(self, preload: float, greatest: float) -> float | None:
+    def relaxed_preload(self, preload: Number, greatest: Number) -> Number | None:
         """Loss of preload by relaxation over the preload; None without data.
 
         The share of the greatest force that is lost acts at every deflection.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
@@ -14,7 +14,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.energy import spring_deflection
 from camwright.geometry.extrema import sampled_greatest, sampled_least
 from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
-from camwright.geometry.pitch_curve import curvature_slope, speed_and_curvature
+from camwright.geometry.pitch_curve import speed_and_curvature
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
 from camwright.pipeline.case.limits import OVERSPEED, AnyLimit
@@ -28,7 +28,9 @@ from camwright.pipeline.follower.follower_forces import (
     Loads,
     Push,
     loads_of,
+    share_left,
 )
+from camwright.pipeline.follower.guide_table import GuideRatios, GuideTable, Place, guide_table
 from camwright.pipeline.follower.spring import spring_force
 
 Columns = Mapping[str, Array]
@@ -36,7 +38,11 @@ Columns = Mapping[str, Array]
 
 @dataclass(frozen=True, eq=False)
 class FollowerOfDesigns:
-    """Mass, spring and guides of many designs, each (m, 1); guides are point supports."""
+    """Mass, spring and guides of many designs, each (m, 1).
+
+    rubbing: loads of guides A and B over axial force and side-load factor, (m, n); None: of point
+    supports.
+    """
 
     mass: Array
     preload: Array
@@ -46,6 +52,7 @@ class FollowerOfDesigns:
     friction_a: Array
     friction_b: Array
     viscous_damping: Array
+    rubbing: tuple[Array, Array] | None = None
     gravity_along_axis: float = 0.0
     face_friction: float = 0.0
 
@@ -54,8 +61,8 @@ class FollowerOfDesigns:
         return spring_force(self.preload, self.rate, lift)
 
     def rubbing_factors(self, push: Push, overhang: Array, theta: Array) -> tuple[Array, Array]:  # noqa: ARG002
-        """Rubbing load of point supports A and B over axial force and side-load factor."""
-        return push.rubbing_on_points(overhang)
+        """Rubbing load of guides A and B over axial force and side-load factor."""
+        return push.rubbing_on_points(overhang) if self.rubbing is None else self.rubbing
 
 
 class State(NamedTuple):
@@ -73,12 +80,18 @@ class State(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Turns:
-    """Loads of a load case of many designs."""
+    """Loads of a load case of many designs, arrays (m, 1) and (m, n).
+
+    guides: loads of the guides over those of point supports; jam_index_max: at the maximum friction
+    on the rise.
+    """
 
     state: State
     crank_speed: Array
     cam_speed: Array
     loads: Loads
+    guides: GuideRatios
+    jam_index_max: Array
     p0: Array
 
 
@@ -150,9 +163,9 @@ class Designs:
 
     @cached_property
     def jets(self) -> Array:
-        """Lift and three derivatives (4, m, N), m/rad^k."""
-        jets = knot_derivatives(self.lift, 3)
-        return np.broadcast_to(jets, (4, self.count, jets.shape[-1]))
+        """Lift and two derivatives (3, m, N), m/rad^k."""
+        jets = knot_derivatives(self.lift, 2)
+        return np.broadcast_to(jets, (3, self.count, jets.shape[-1]))
 
     @cached_property
     def highest(self) -> Array:
@@ -195,12 +208,6 @@ class Designs:
         return sampled_least(self.undercut_factor)
 
     @cached_property
-    def curvature_rate(self) -> Array:
-        """Derivative of the contour's curvature by its length (m, N), 1/m^2."""
-        slope = curvature_slope(self.along, self.across, *self.jets[1:])
-        return np.asarray(slope / (self.undercut_factor**3 * self.pitch_speed))
-
-    @cached_property
     def contour_radius(self) -> Array:
         """Distance of the contour from the cam axis (m, N), m."""
         inset = self.value("roller.radius") / self.pitch_speed
@@ -224,7 +231,7 @@ class Designs:
     @cached_property
     def motion(self) -> FollowerMotion:
         """Motion at the cam angles of the loads."""
-        lift, slope, bend = (self.at_loads(each) for each in self.jets[:3])
+        lift, slope, bend = (self.at_loads(each) for each in self.jets)
         stroke = (self.highest - sampled_least(self.jets[0]))[:, None]
         angle = self.at_loads(self.pressure_angle)
         push = Push(np.tan(angle), np.zeros_like(angle), self.value("guides.spacing"))
@@ -283,8 +290,90 @@ class Designs:
         crank = np.maximum(state.speed, CREEP)
         speed = crank / self.case.mechanism.gear_ratio
         system = replace(self.follower, preload=state.preload)
-        loads = loads_of(self.motion, system, speed, self.theta)
-        return Turns(state, crank, speed, loads, self._pressure(loads.normal_force))
+        motion, theta, table = self.motion, self.theta, self._table
+        free = loads_of(motion, system, speed, theta)
+        # without guide friction: the share that friction leaves is taken out
+        force = free.axial_force * share_left(motion.slope, free.jam_index)
+        system = replace(system, rubbing=self._settled(force, system))
+        loads = loads_of(motion, system, speed, theta)
+        guides = table.ratios(np.abs(loads.tangential_force), self._place)
+        return Turns(
+            state=state,
+            crank_speed=crank,
+            cam_speed=speed,
+            loads=loads,
+            guides=guides,
+            jam_index_max=self._jam_index_max(force, system),
+            p0=self._pressure(loads.normal_force),
+        )
+
+    @cached_property
+    def _table(self) -> GuideTable:
+        return guide_table(self.machine.stem, self.machine.guides)
+
+    @cached_property
+    def _place(self) -> Place:
+        return self._table.place(self._overhang, self.value("guides.spacing"))
+
+    @property
+    def _overhang(self) -> Array:
+        motion = self.motion
+        return np.asarray(self.follower.overhang_at_max_lift + (motion.highest - motion.lift))
+
+    @cached_property
+    def _on_points(self) -> tuple[Array, Array]:
+        return self.motion.push.rubbing_on_points(self._overhang)
+
+    def _settled(self, force: Array, system: FollowerOfDesigns) -> tuple[Array, Array]:
+        """Rubbing load of the guides over axial force and side-load factor at equilibrium (m, n).
+
+        Fixed point of the axial force, whose friction depends on the guides' loads; the change of
+        their ratios with the force is small.
+
+        Parameters
+        ----------
+        force : array (m, n)   axial force without guide friction, N
+        """
+        slope = self.motion.slope
+        shape, factor = force.shape, np.broadcast_to(self._side_factor, force.shape).ravel()
+        rubs = tuple(
+            np.broadcast_to(friction * on, shape).ravel() * factor
+            for friction, on in zip(
+                (system.friction_a, system.friction_b), self._on_points, strict=True
+            )
+        )
+        force, direction = force.ravel(), np.broadcast_to(np.sign(slope), shape).ravel()
+        axial, left = force.copy(), np.flatnonzero((force * factor > 0.0) & (direction != 0.0))
+        for _ in range(_ROUNDS):
+            if not left.size:
+                break
+            now, place = axial[left], self._place.of(left)
+            ratios = self._table.rubbing(now * factor[left], place)
+            jam = ratios[0] * rubs[0][left] + ratios[1] * rubs[1][left]
+            axial[left] = force[left] / share_left(direction[left], jam)
+            left = left[np.abs(axial[left] - now) > _SETTLED * now]
+        ratios = self._table.rubbing((axial * factor).reshape(shape), self._place)
+        return ratios[0] * self._on_points[0], ratios[1] * self._on_points[1]
+
+    @cached_property
+    def _side_factor(self) -> Array:
+        return self.motion.push.side_factor
+
+    def _jam_index_max(self, force: Array, system: FollowerOfDesigns) -> Array:
+        """Jam index on the rise at the maximum friction (m, n)."""
+        most = replace(
+            system, friction_a=self.greatest_friction("a"), friction_b=self.greatest_friction("b")
+        )
+        rubbing_a, rubbing_b = self._settled(force, most)
+        index = most.friction_a * rubbing_a + most.friction_b * rubbing_b
+        return demands.jam_outward(self.motion.slope, index * self._side_factor)
+
+    def greatest_friction(self, side: Literal["a", "b"]) -> Array:
+        """Maximum friction coefficient of a guide (m, 1); see `FrictionRange`."""
+        stated = self.value(f"guides.{side}.friction_max")
+        nominal = self.value(f"guides.{side}.friction")
+        scattered = nominal * (1.0 + self.case.tolerances.friction)
+        return np.where(np.isnan(stated), scattered, stated)
 
     @cached_property
     def contact_width(self) -> Array:
@@ -353,3 +442,4 @@ class TorqueOfSpeed:
 
 
 _NODES = 9
+_ROUNDS, _SETTLED = 30, 1e-6  # of the guide friction

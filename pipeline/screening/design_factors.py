@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import CamError, InputError
+from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import quantity_of, replaced, value_of, with_values
@@ -28,8 +29,8 @@ ARRAYS: tuple[str, ...] = (
     "roller.bearing.static_radial_limit",
     "follower.mass", "follower.overhang_at_max_lift", "follower.viscous_damping",
     "guides.spacing",
-    "guides.a.length", "guides.a.friction", "guides.a.friction_min", "guides.a.friction_max",
-    "guides.b.length", "guides.b.friction", "guides.b.friction_min", "guides.b.friction_max",
+    "guides.a.friction", "guides.a.friction_min", "guides.a.friction_max",
+    "guides.b.friction", "guides.b.friction_min", "guides.b.friction_max",
     "crankshaft.inertia", "mechanism.compensation",
     "smoothing.spacing", "smoothing.width", "smoothing.harmonics", "smoothing.taper",
     "smoothing.cutoff",
@@ -41,12 +42,19 @@ ARRAYS: tuple[str, ...] = (
 Factor = Array | Sequence[TomlValue]
 
 
-def is_array(case: Case, key: str) -> bool:
-    """Whether designs that differ in a key are solved at once."""
-    if key.startswith("smoothing.") and case.smoothing.kind == "constrained":
+def is_array(case: Case, key: str, values: Factor) -> bool:
+    """Whether designs that differ in a key are solved at once.
+
+    Not in a table that the case leaves out, and not at a speed of zero: it has no engine torque.
+    """
+    if value_of(case, key.rpartition(".")[0]) is None:
         return False
+    if key.startswith("smoothing."):
+        return key in ARRAYS and case.smoothing.kind != "constrained"
     if key.startswith("load_case["):
-        return key.endswith((".preload", ".speed"))
+        speeds = (each for each in values if key.endswith(".speed"))
+        still = any(_number(In("rpm"), _plain(each)) == 0.0 for each in speeds)
+        return key.endswith((".preload", ".speed")) and not still
     return key in ARRAYS
 
 
@@ -92,7 +100,7 @@ def groups(case: Case, factors: Mapping[str, Factor]) -> Iterator[Group]:
     """
     count = count_of(factors)
     quantities = {key: quantity_of(key) for key in factors}
-    shared = [key for key in factors if not is_array(case, key)]
+    shared = [key for key, values in factors.items() if not is_array(case, key, values)]
     together: dict[tuple[TomlValue, ...], list[int]] = {}
     for row in range(count):
         together.setdefault(tuple(_plain(factors[key][row]) for key in shared), []).append(row)
@@ -134,7 +142,7 @@ def _number(quantity: In, value: TomlValue) -> float:
     if not isinstance(value, str):
         return float(value) if abs(value) < 1e308 else np.nan
     try:
-        return quantity.read(value)
+        return units.parse(value, quantity.unit, "") if quantity.unit else np.nan
     except InputError:
         return np.nan
 

@@ -111,7 +111,7 @@ class _Blocks:
             raise InputError("follower.kind", case.follower.kind, '"roller" for screening')
         energy = None
         if case.lift is None and case.smoothing.kind == "constrained":
-            case, energy = _synthesis(case)
+            case, energy = synthesis(case)
         torques = {
             k: TorqueOfSpeed.of(case, k, group.values.get(f"load_case[{k}].speed"))
             for k, state in enumerate(case.load_cases)
@@ -202,7 +202,7 @@ def _smoothed(case: Case, values: Mapping[str, Array], torque: Array, count: int
 _SYNTHESES: dict[str, tuple[Case, Array]] = {}  # by the hash of the case, made once a process
 
 
-def _synthesis(case: Case) -> tuple[Case, Array]:
+def synthesis(case: Case) -> tuple[Case, Array]:
     """The case as its synthesis draws it, and the energy of its spring over the turn (N,), J."""
     key = case.sha256
     if key not in _SYNTHESES:
@@ -237,7 +237,7 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
             fails |= figures["status"] == "fail"
     cut = designs.least_factor
     return columns | {
-        "screen": np.where(fails, "fail", "open").astype(object),
+        "screen": _SCREEN[fails.astype(int)],
         "governing": governing,
         "message": np.array(
             [
@@ -252,6 +252,10 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
 @cache
 def _declared() -> Mapping[str, Declaration]:
     return {each.id: each for each in CHECKS}
+
+
+_STATUS = np.array(["not_evaluated", "pass", "fail"], dtype=object)
+_SCREEN = np.array(["open", "fail"], dtype=object)
 
 
 def _figures(
@@ -272,7 +276,7 @@ def _figures(
         used = utilisations(demand, allowed, at_most=at_most)
     if screened.bound:
         known &= ~holds  # a lower bound within the limit says nothing
-    status = np.where(known, np.where(holds, "pass", "fail"), "not_evaluated").astype(object)
+    status = _STATUS[np.where(known, np.where(holds, 1, 2), 0)]
     for waiver in designs.case.waivers:
         if waiver.check == declared.id and not declared.evidence:
             up_to = accepted(waiver, declared.unit).up_to
@@ -283,7 +287,7 @@ def _figures(
         "demand": demand * scale,
         "limit": allowed * scale,
         "utilisation": np.where(known, used, np.nan),
-        "error": screened.deviation * np.abs(demand) * scale,
+        "error": screened.deviation * np.fmax(np.abs(demand), np.abs(allowed)) * scale,
         "status": status,
     }
 
@@ -312,8 +316,12 @@ def headline_columns(designs: Designs) -> dict[str, Column]:
         "normal_force_min_N": np.maximum(least, 0.0),
         "normal_force_max_N": over(lambda each: each.loads.normal_force),
         "p0_hertz_max_MPa": 1e-6 * p0,
-        "guide_reaction_A_max_N": over(lambda each: np.abs(each.loads.reaction_a)),
-        "guide_reaction_B_max_N": over(lambda each: np.abs(each.loads.reaction_b)),
+        "guide_reaction_A_max_N": over(
+            lambda each: np.abs(each.guides.net_a * each.loads.reaction_a)
+        ),
+        "guide_reaction_B_max_N": over(
+            lambda each: np.abs(each.guides.net_b * each.loads.reaction_b)
+        ),
         "friction_loss_J_per_cam_turn": _friction_loss(first),
     }
     if before is not None:

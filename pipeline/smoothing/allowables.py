@@ -114,7 +114,7 @@ def travel_limits(case: Case) -> dict[str, float]:
     if design is None or {"spring_rate", "preload"} & set(case.smoothing.free):
         return allowed
     preload = max(machine.spring.preload for machine in machines(case))
-    over: dict[str, Callable[[Work], float]] = {
+    over: dict[str, Callable[[Work[float]], float]] = {
         "spring_stress": lambda work: design.static_use(work.greatest) - 1.0,
         "spring_fatigue": lambda work: (
             limits[SPRING_FATIGUE] - design.fatigue_safety(work.preload, work.greatest)
@@ -135,7 +135,7 @@ def travel_limits(case: Case) -> dict[str, float]:
     }
     for name, excess in over.items():
 
-        def at(travel: float, excess: Callable[[Work], float] = excess) -> float:
+        def at(travel: float, excess: Callable[[Work[float]], float] = excess) -> float:
             return excess(hardest_work(spring, design, preload, travel))
 
         if at(_TRAVEL_LEAST) < 0.0 < at(_TRAVEL_MOST):

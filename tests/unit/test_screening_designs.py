@@ -1,0 +1,123 @@
+"""Screening of many designs: rows, refusals, groups, utilisations."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_values import quantity_of, replaced, value_of, with_values
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.screening.design_factors import ARRAYS
+from camwright.pipeline.screening.design_screening import screen_designs, utilisations
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+@cache
+def case() -> Case:
+    return read_case(CASES / "gx120.toml")
+
+
+def test_refused_designs_are_rows_that_name_field_value_and_limit() -> None:
+    factors = {
+        "spring.rate": ["24.2 kN/m", "-1 kN/m", "24.2 kN/m", "24.2 kN/m", "24.2 kN/m"],
+        "roller.radius": [0.008, 0.008, 0.06, 0.008, 0.008],
+        "cam.bore_radius": [0.0085, 0.0085, 0.0085, 0.05, 0.0085],
+        "guides.spacing": [0.08, 0.08, 0.08, 0.08, 0.019],
+    }
+    columns = screen_designs(case(), factors)
+    assert list(columns["screen"]) == ["fail", "error", "error", "error", "error"]
+    words = ("", "spring.rate = -1 kN/m, must be > 0", "roller.radius", "cam.", "guides.spacing")
+    for message, start in zip(columns["message"], words, strict=True):
+        assert message.startswith(start)
+        assert bool(message) == bool(start)
+    demand = columns["pressure_angle.demand"]
+    assert np.isnan(demand[1:]).all()
+    assert columns["pressure_angle.status"][1] == ""
+    alone = screen_designs(case(), {key: values[:1] for key, values in factors.items()})
+    assert demand[0] == pytest.approx(alone["pressure_angle.demand"][0], rel=1e-12)
+
+
+def test_an_undercut_cam_fails_with_its_factor() -> None:
+    columns = screen_designs(case(), {"roller.radius": [0.008, 0.03]})
+    assert list(columns["message"][:1]) == [""]
+    assert columns["message"][1].startswith("undercut factor of the contour = -")
+    assert columns["screen"][1] == columns["undercut.status"][1] == "fail"
+    assert columns["contact_pressure.status"][1] == "not_evaluated"
+
+
+def test_designs_of_other_structure_are_grouped() -> None:
+    factors = {
+        "roller.material": ["bearing_steel", "c45", "bearing_steel", "none"],
+        "spring.rate": [20e3, 20e3, 30e3, 20e3],
+    }
+    columns = screen_designs(case(), factors)
+    assert columns["screen"][3] == "error"
+    assert columns["message"][3].startswith("roller.material = none")
+    for row in range(3):
+        values = {key: column[row] for key, column in factors.items()}
+        own = with_values(case(), values)
+        alone = screen_designs(own, {"spring.rate": [own.spring.rate]})
+        for name in ("contact_pressure.demand", "contact_pressure.limit", "shakedown.limit"):
+            np.testing.assert_allclose(columns[name][row], alone[name][0], rtol=1e-12)
+
+
+def test_a_limit_of_each_design_is_its_own() -> None:
+    columns = screen_designs(case(), {"limits.pressure_angle": ["30 deg", "60 deg"]})
+    assert list(columns["pressure_angle.status"]) == ["fail", "pass"]
+    np.testing.assert_allclose(columns["pressure_angle.limit"], [30.0, 60.0], rtol=1e-12)
+
+
+def test_the_width_of_a_smoother_is_that_of_the_case() -> None:
+    columns = screen_designs(case(), {"smoothing.spacing": ["5 deg", "7 deg"]})
+    own = with_values(case(), {"smoothing.spacing": "7 deg"})
+    alone = screen_designs(own, {"spring.rate": [own.spring.rate]})
+    np.testing.assert_allclose(
+        columns["torque_reduction.demand"][1], alone["torque_reduction.demand"][0], rtol=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("factors", "words"),
+    [
+        ({"spring.rat": [1.0]}, "factor = spring.rat, must be a key .*did you mean rate"),
+        ({"spring.rate": [1.0], "cam.width": [1.0, 2.0]}, "factors = .* of one length"),
+        ({}, "factors"),
+    ],
+)
+def test_factors_that_no_case_has_are_refused(factors: dict[str, list[float]], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        screen_designs(case(), factors)
+
+
+def test_every_array_key_is_a_number_of_the_case_file() -> None:
+    for key in ARRAYS:
+        assert quantity_of(key) is not None, key
+
+
+def test_replaced_values_are_those_read() -> None:
+    numbers = {"spring.rate": 3e4, "load_case[0].speed": 120.0, "limits.pressure_angle": 0.5}
+    fast, read = replaced(case(), numbers), with_values(case(), dict(numbers))
+    for key, number in numbers.items():
+        assert value_of(fast, key) == number
+        assert value_of(read, key) == pytest.approx(number, rel=1e-15)
+    with pytest.raises(InputError, match=r"spring\.rate = -1 kN/m, must be > 0"):
+        replaced(case(), {"spring.rate": -1000.0})
+
+
+@pytest.mark.parametrize("sense", ["at_most", "at_least"])
+def test_utilisations_are_those_of_the_checks(sense: str) -> None:
+    declared = replace(CHECKS[0], sense=sense)  # type: ignore[arg-type]
+    pairs = [(1.0, 2.0), (2.0, 1.0), (0.0, 0.0), (-1.0, 0.5), (0.5, 0.0), (np.inf, 1.0)]
+    demand, limit = np.array(pairs).T
+    mine = utilisations(demand, limit, at_most=sense == "at_most")
+    for used, (value, allowed) in zip(mine, pairs, strict=True):
+        assert used == Check(declared, value, allowed, "", "", "").utilisation
