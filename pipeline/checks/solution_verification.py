@@ -288,10 +288,11 @@ def mesh_reaction(solution: Solution) -> Demand:
     """Discretisation uncertainty of the guide reaction, relative."""
     cycle = max(solution.cycles, key=lambda c: float(np.max(np.abs(c.guides.reaction_a))))
     k = int(np.argmax(np.abs(cycle.guides.reaction_a)))
-    load, reach = cycle.loads.tangential_force[[k]], cycle.loads.overhang[[k]]
-    machine = cycle.machine
+    loads, machine = cycle.loads, cycle.machine
+    at = loads.tangential_force[[k]], loads.overhang[[k]]
+    couple = loads.end_moment[[k]]
     values = [
-        float(guide_reactions(load, reach, machine.stem, machine.guides, knots=n).reaction_a[0])
+        float(guide_reactions(*at, machine.stem, machine.guides, couple, knots=n).reaction_a[0])
         for n in KNOTS_TRIED
     ]
     figure = converged(values, 2.0)

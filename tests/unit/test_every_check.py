@@ -25,6 +25,8 @@ from camwright.pipeline.checks.registry import (
     TOLERANCE_CORNERS,
     WAIVERS_WITHOUT_EFFECT,
 )
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.solution import solution as solve
 from camwright.pipeline.follower.guide_reactions import guide_reactions
 from camwright.pipeline.preview import preview_case
 
@@ -137,6 +139,21 @@ def test_mesh_uncertainty_of_the_reaction_by_hand(monkeypatch):
     demand = result.as_record()["demand"]
     assert demand == pytest.approx(100.0 * 1.25 * 0.0075 / 1.0025 / 3.0, rel=1e-9)
     assert "observed order 2.00" in result.method
+
+
+def test_mesh_uncertainty_of_the_reaction_includes_the_couple_of_a_face(monkeypatch):
+    """The finest is the reaction of the turn, to which a face adds the couple of its contact."""
+    finest = []
+
+    def kept(values, ratio):
+        finest.append(values[-1])
+        return made.converged(0.01)
+
+    monkeypatch.setattr(verification, "converged", kept)
+    solution = solve(made.face_case(), made.face_contour(), Tier.PREVIEW, torques={}, positions=24)
+    assert verification.mesh_reaction.demand(solution) is not None
+    greatest = max((c.guides.reaction_a for c in solution.cycles), key=lambda r: np.abs(r).max())
+    assert abs(finest[0]) == pytest.approx(np.abs(greatest).max(), rel=1e-6)
 
 
 @pytest.mark.parametrize("name", sorted(MUST_HAVE))
