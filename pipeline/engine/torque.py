@@ -102,6 +102,8 @@ class Torque:
         """The torque at `n` angles: some of its own, or by a periodic cubic spline through each
         component.
         """
+        if n == self.theta_crank.size:
+            return self
         step, rest = divmod(self.theta_crank.size, n)
         if rest == 0:  # exactly, so that an inertia of zero stays zero
             parts = {name: part[::step] for name, part in self.components.items()}
