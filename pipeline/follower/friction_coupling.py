@@ -170,7 +170,7 @@ def guided_strokes(
         start=bores.solution,
     )
     return tuple(
-        _guided(stroke.system, each, reactions.part(span), force[span], rounds)
+        _guided(stroke.system, each, reactions.part(span.start, span.stop), force[span], rounds)
         for stroke, each, span in zip(strokes, loads, spans, strict=True)
     )
 

@@ -182,11 +182,11 @@ class GuideReactions:
         names = set(self.__dataclass_fields__) - {"stem_diameter"}
         freeze(self, **{name: getattr(self, name) for name in names})
 
-    def part(self, span: slice) -> GuideReactions:
-        """Reactions at some positions in a row."""
+    def part(self, first: int, end: int) -> GuideReactions:
+        """Reactions at the positions from `first` to before `end`."""
         whole = ("stem_diameter", "knots_a", "knots_b")
         names = set(self.__dataclass_fields__) - set(whole)
-        return replace(self, **{name: getattr(self, name)[..., span] for name in names})
+        return replace(self, **{name: getattr(self, name)[..., first:end] for name in names})
 
     @cached_property
     def line_pressure_max_a(self) -> Array:
