@@ -269,7 +269,7 @@ class LoadedBody:
         far = self._half_plane_displacement(contacts, normals)
         if self.body.springs is not None:
             loads += self.body.springs.forces(far)
-        return loads, -far
+        return loads, np.negative(far, out=far)
 
     def _half_plane_displacement(self, contacts: Array, normals: Array) -> Array:
         """Half-plane displacement (2, nodes, count) at held nodes and springs."""

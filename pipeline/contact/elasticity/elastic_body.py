@@ -233,15 +233,26 @@ class CondensedBody:
         forces = np.asarray(loads, dtype=float)
         right = forces.reshape(-1, forces.shape[2]).copy()
         solution = np.zeros_like(right)
-        seen = self.body.dofs[:, self.nodes].ravel()
         if held_at is not None:
-            held_displacement = np.zeros((self.body.basis.N, forces.shape[2]))
-            held_displacement[self.body.dofs] = np.asarray(held_at, dtype=float)
-            held = self.body.held_dofs
-            right -= self.body.stiffness[seen][:, held] @ held_displacement[held]
-            solution[~self._kept] = held_displacement[seen[~self._kept]]
+            place, coupling, rows = self._held
+            moved = np.asarray(held_at, dtype=float).reshape(-1, forces.shape[2])[place]
+            right -= coupling @ moved
+            solution[~self._kept] = moved[rows]
         solution[self._kept] = self._matrix.solve_last(right[self._kept])
         return solution.reshape(forces.shape)
+
+    @cached_property
+    def _held(self) -> tuple[NDArray[np.int64], scipy.sparse.sparray, NDArray[np.int64]]:
+        """Places of the held degrees of freedom in a flat displacement (2, all nodes).
+
+        The stiffness that couples the nodes to them, and which of them are of the nodes.
+        """
+        body, seen = self.body, self.body.dofs[:, self.nodes].ravel()
+        place = np.empty(body.basis.N, dtype=int)
+        place[body.dofs.ravel()] = np.arange(body.dofs.size)
+        held = body.held_dofs
+        coupling = body.stiffness[seen][:, held].tocsr()
+        return place[held], coupling, np.searchsorted(held, seen[~self._kept])
 
     def everywhere(self, loads: ArrayLike) -> Array:
         """Displacement (2, all nodes, k) of the body under forces (2, m, k) on the nodes."""
