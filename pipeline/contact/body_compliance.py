@@ -174,7 +174,7 @@ class LoadedBody:
         for start in range(0, contacts.shape[1], _BATCH):
             part = slice(start, start + _BATCH)
             at, up = contacts[:, part], normals[:, part]
-            places = at.tobytes() + up.tobytes()
+            places = few, at.tobytes(), up.tobytes()
             displaced = self._last.pop(places, None)
             if displaced is None:
                 loads, held = self._cancelling_loads(at, up)
@@ -189,8 +189,8 @@ class LoadedBody:
             yield part, displaced
 
     @cached_property
-    def _last(self) -> dict[bytes, Array]:
-        """Last parts of `displacements` by their contacts and normals."""
+    def _last(self) -> dict[tuple[bool, bytes, bytes], Array]:
+        """Last parts of `displacements`, by whether contacts are few, contacts and normals."""
         return {}
 
     @cached_property

@@ -412,7 +412,8 @@ def _fingerprint(pair: ContactPair, each: Turn) -> str:
     """SHA-256 of the inputs of the contact of a turn."""
     digest = hashlib.sha256(pair.contour.pitch.lift.values.tobytes())
     digest.update(each.loads.normal_force.tobytes())
-    digest.update(repr((pair.width, pair.bore_radius, pair.cam, pair.follower)).encode())
+    size = pair.width, pair.bore_radius
+    digest.update(repr((*size, pair.cam, pair.follower, CHUNK)).encode())
     if pair.counter_hole is not None:
         digest.update(np.array([*pair.counter_hole.centre, pair.counter_hole.radius]).tobytes())
     return digest.hexdigest()

@@ -285,6 +285,20 @@ def test_bore_agrees_with_the_whole_field():
     assert few.von_mises == pytest.approx(on_bore[:1], rel=5e-3)
 
 
+def test_displacements_do_not_depend_on_what_was_solved_before():
+    """To the bit; 185 contacts leave a last part of five, which alone are solved otherwise."""
+    theta = uniform_turn(185)
+    pair = circular()[0]
+    at, up = pair.contour.points(theta), pair.contour.normal(theta)
+    first, second = (CycleBodies.meshed(pair).cam for _ in range(2))
+    many, few = [list(first.displacements(at[:, s:], up[:, s:])) for s in (0, 180)]
+    few_first = list(second.displacements(at[:, 180:], up[:, 180:]))
+    again = list(second.displacements(at, up))
+    for one, other in zip([*many, *few], [*again, *few_first], strict=True):
+        np.testing.assert_array_equal(one[1], other[1])
+    np.testing.assert_allclose(many[-1][1], few[0][1], atol=1e-9 * np.abs(few[0][1]).max())
+
+
 def test_bore_grows_with_the_load_and_names_the_edges_of_the_keyway():
     from cam_parts import Keyway
 
