@@ -11,7 +11,7 @@ In the order of the calculation:
 | `body_mesh`     | meshes of cam, roller, face and patch     | x, y, m               |
 | `mesh_quality`  | angles, scaled Jacobians, edges           | deg; -                |
 | `vtu`           | VTU file of a grid                        |                       |
-| `mesh_files`    | MSH, VTU and PVD files                    | mm, N, MPa            |
+| `mesh_files`    | MSH and VTU files                         | mm, N, MPa            |
 | `calculix_deck` | input deck for CalculiX and Abaqus        | mm, N, MPa            |
 | `step_solid`    | STEP file of the cam                      | mm                    |
 

@@ -1,13 +1,12 @@
-"""Mesh and field files: MSH of gmsh, VTU and PVD of VTK; lengths in mm."""
+"""Mesh and field files: MSH of gmsh, VTU of VTK; lengths in mm."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +16,7 @@ from camwright.geometry.errors import MeshError, ResultError
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.element_size import MILLIMETRE
 from camwright.meshes.gmsh_mesher import Index, session
-from camwright.meshes.vtu import QUAD, QUADRATIC_TRIANGLE, Grid, vtu
+from camwright.meshes.vtu import QUADRATIC_TRIANGLE, Grid, vtu
 
 UNITS = "units_mm_N_MPa"
 """Field data that names the units of every VTU file."""
@@ -120,46 +119,6 @@ def write_vtu(
     _write_grid(path, grid)
 
 
-def write_sheet(
-    path: str | Path,
-    points: Array,
-    point_data: Fields,
-    field_data: Mapping[str, float] | None = None,
-) -> None:
-    """VTU file of a closed sheet with fields, as quadrilaterals.
-
-    Parameters
-    ----------
-    path
-    points : (2, n, k)           m; n consecutive rows, the last joined to the first
-    point_data : mapping         field name, unit included -> (n, k)
-    field_data : mapping         as for `write_vtu`
-
-    Raises
-    ------
-    MeshError
-        If a field does not fit the points.
-    ResultError
-        If the file cannot be written; one already there is left as it was.
-    """
-    rows, columns = points.shape[1:]
-    for name, values in point_data.items():
-        if np.shape(values) != (rows, columns):
-            raise MeshError(f"field '{name}' = {np.shape(values)}, must be {(rows, columns)}")
-    number = np.arange(rows * columns).reshape(rows, columns)
-    here, there = number, np.roll(number, -1, axis=0)
-    corners = [here[:, :-1], here[:, 1:], there[:, 1:], there[:, :-1]]
-    grid = Grid(
-        _in_space(points.reshape(2, -1) / MILLIMETRE),
-        np.stack(corners, axis=-1).reshape(-1, 4),
-        QUAD,
-        {name: np.asarray(values, dtype=float).ravel() for name, values in point_data.items()},
-        {},
-        {UNITS: 1.0, **(field_data or {})},
-    )
-    _write_grid(path, grid)
-
-
 def _in_space(points: Array) -> Array:
     return np.column_stack([points.T, np.zeros(points.shape[1])])
 
@@ -187,28 +146,6 @@ def _joined(bodies: Mapping[str, BodyMesh], data: Mapping[str, Fields]) -> dict[
                 values = np.vstack([values, np.zeros(values.shape[1])])
             parts[name].append(values.T)
     return {name: np.concatenate(values) for name, values in parts.items()}
-
-
-def write_pvd(path: str | Path, entries: Iterable[tuple[float, str | Path]]) -> None:
-    """PVD collection of ParaView: `entries` are (time, file relative to the collection).
-
-    Raises
-    ------
-    ResultError
-        If the file cannot be written; one already there is left as it was.
-    """
-    rows = "".join(
-        f'    <DataSet timestep="{float(time)!r}" part="0" '
-        f"file={quoteattr(Path(file).as_posix())}/>\n"
-        for time, file in entries
-    )
-    with replacing(path) as temporary:
-        temporary.write_text(
-            '<?xml version="1.0"?>\n'
-            '<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
-            f"  <Collection>\n{rows}  </Collection>\n</VTKFile>\n",
-            encoding="utf-8",
-        )
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.iteration import trials_of
-from camwright.pipeline.results.field_output import write_fields
+from camwright.pipeline.results.field_output import Shown, write_fields
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.pipeline.results.run_records import crank_speed_record, headline, torque_columns
@@ -35,6 +35,7 @@ def run_case(
     positions: int | None = None,
     jobs: int | None = None,
     resume: bool = False,
+    fields: Shown = Shown.DEFAULT,
     progress: Progress = SILENT,
     report: Callable[[Path], object] | None = None,
     also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
@@ -47,6 +48,7 @@ def run_case(
     positions : int      per cam turn; None: those of the case
     jobs : int           processes for the certificate; None: number of processors, at most 4
     resume : bool        continue an interrupted run
+    fields : Shown       cam angles of the stress field
     report : callable    writes page and pictures into the run folder; None: none are written
     also : callable      final trial -> further entries of ``run.json``
 
@@ -63,7 +65,7 @@ def run_case(
     case = case if positions is None else case.with_positions(positions)
     with RunFolder(out, case, depth=depth, resume=resume) as folder:
         watch = Stopwatch(progress)
-        summary = _solved(folder, case, depth, jobs, watch, also)
+        summary = _solved(folder, case, depth, jobs, fields, watch, also)
         if report is not None:
             watch.stage("report")  # the solution, which takes most of the memory, is released
             folder.write_summary(summary | {"timings_s": watch.read()})
@@ -77,6 +79,7 @@ def _solved(
     case: Case,
     depth: Tier,
     jobs: int | None,
+    fields: Shown,
     watch: Stopwatch,
     also: Callable[[Trial], Mapping[str, Any]],
 ) -> dict[str, Any]:
@@ -96,7 +99,7 @@ def _solved(
         folder.write_corners(corners_record(final.case, final.corners))
     if depth >= Tier.CYCLE:
         watch.stage("fields")
-        write_fields(folder.fields, final, watch.advance)
+        write_fields(folder.fields, final, fields, watch.advance)
     if final.mesh is not None:  # else the contour is no body to machine
         watch.stage(WORKSHOP)
         write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.results.field_file import ZONE, Step, read_series
 from camwright.reports import field_raster
 from camwright.reports.report_tables import Record
 
@@ -32,14 +33,15 @@ CONTACT_REACH = 4.0
 ISO_SHARE = (0.2, 0.4, 0.6, 0.8, 0.95)
 DECADES = 3.2
 FIELD = "von_mises_MPa"
+_CONTACT = ("contact_x_mm", "contact_y_mm", "normal_x", "normal_y")
 
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """A stress field on six-node triangles: points (2, n) mm, triangles (6, m), values MPa.
+    """A stress field: points (2, n) mm, triangles (3, m), values MPa, displacement (2, n) mm.
 
-    `displacement` (2, n) mm and `body` (n,) are zero if the file has none; `notes` are the scalars
-    of the file, such as ``half_width_mm``.
+    outline (2, k): edges of the bodies; body (n,): 0 cam, 1 follower; `notes` are the data of the
+    cam angle, such as ``half_width_mm``.
     """
 
     points: Array
@@ -47,6 +49,7 @@ class Field:
     von_mises: Array
     displacement: Array
     body: Array
+    outline: NDArray[np.int64]
     notes: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -92,70 +95,71 @@ class Raster:
     note: str = ""
 
 
-def read_field(vtu: Path) -> Field:
-    """The field of a VTU file.
+def read_field(path: Path) -> Field:
+    """The field at the cam angle of the highest pressure.
 
     Raises
     ------
     ResultError
-        If the file is absent, unreadable, or has no von Mises stress on triangles.
+        If the file is absent, unreadable or no stress field.
     """
-    import pyvista
-
-    if not vtu.is_file():
-        raise ResultError(f"{vtu.name}: no such file")
-    grid = pyvista.read(vtu)
-    if FIELD not in grid.point_data or not grid.n_cells:
-        raise ResultError(f"{vtu.name}: no point data {FIELD}")
-    cells = next((c for c in grid.cells_dict.values() if c.shape[1] in (3, 6)), None)
-    if cells is None:
-        raise ResultError(f"{vtu.name}: no triangles")
-    zeros = np.zeros((grid.n_points, 3))
-    data = grid.point_data
-    shift = np.asarray(data["displacement_mm"]) if "displacement_mm" in data else zeros
-    body = np.asarray(data["body"]) if "body" in data else zeros[:, 0]
-    notes = {
-        str(name): float(np.ravel(grid.field_data[name])[0])
-        for name in grid.field_data
-        if np.size(grid.field_data[name]) == 1
-    }
-    return Field(
-        np.asarray(grid.points, dtype=float).T[:2],
-        np.asarray(cells).T,
-        np.asarray(data[FIELD], dtype=float),
-        np.asarray(shift, dtype=float).T[:2],
-        np.asarray(body, dtype=float),
-        notes,
+    series = read_series(path)
+    try:
+        number = int(np.nanargmax(series.notes["p0_hertz_MPa"]))
+        blocks = series.step(number)
+        first, parts, start = next(iter(blocks)), [], 0
+        for name, step in blocks.items():
+            parts.append((
+                step.points, start + step.triangles[:, ~step.hidden], step.data[FIELD],
+                step.data["displacement_mm"].T[:2],
+                np.full(step.points.shape[1], float(name.removesuffix(ZONE) != first)),
+                start + (_surface(step) if name.endswith(ZONE) else _outline(step)),
+            ))  # fmt: skip
+            start += step.points.shape[1]
+    except (KeyError, ValueError, IndexError, StopIteration) as error:
+        raise ResultError(f"{path.name}: no stress field ({error})") from None
+    notes = {n: float(v[number]) for n, v in series.notes.items() if v.dtype.kind == "f"}
+    points, triangles, mises, moved, body, outline = (
+        np.concatenate(each, axis=-1) for each in zip(*parts, strict=True)
     )
+    return Field(points, triangles, mises, moved, body, outline, notes)
+
+
+def _outline(step: Step) -> NDArray[np.int64]:
+    """Edges (2, k) of a body, without those of hidden triangles."""
+    edges = np.stack([step.triangles, np.roll(step.triangles, -1, axis=0)]).reshape(2, -1)
+    _, first, count = np.unique(
+        np.sort(edges, axis=0), axis=1, return_index=True, return_counts=True
+    )
+    outer = first[count == 1]
+    return edges[:, outer[~np.tile(step.hidden, 3)[outer]]]
+
+
+def _surface(step: Step) -> NDArray[np.int64]:
+    """Edges (2, k) of the mesh below a contact, without its arc."""
+    edges = _outline(step)
+    # Nodes of a ring follow one another; edges along the surface lead to the next ring.
+    return edges[:, (np.abs(edges[0] - edges[1]) > 1) | (edges == 0).any(axis=0)]
+
+
+def stated(field: Field, name: str) -> float:
+    """A number that the file states at its cam angle; ResultError if it does not."""
+    try:
+        return field.notes[name]
+    except KeyError:
+        raise ResultError(f"the field does not state {name}") from None
 
 
 def find_contact(field: Field) -> tuple[Array, Array]:
     """Contact point and unit normal towards the follower, each (2,).
 
-    Both are notes of the file. In files without them the roller is the smaller body, a circle about
-    the centre of its extent, and the contact is the nearest point of the other body.
-
     Raises
     ------
     ResultError
-        If the field does not hold two bodies.
+        If the file states neither.
     """
-    names = ("contact_x_mm", "contact_y_mm", "normal_x", "normal_y")
-    if all(name in field.notes for name in names):
-        x, y, nx, ny = (field.notes[name] for name in names)
-        return np.array([x, y]), np.array([nx, ny]) / np.hypot(nx, ny)
-    marks = np.unique(field.body)
-    if marks.size != 2:
-        raise ResultError(f"the field holds {marks.size} bodies, must be 2")
-    parts = [field.points[:, field.body == mark] for mark in marks]
-    extents = [np.ptp(part, axis=1) for part in parts]
-    roller = int(np.argmin([e.max() for e in extents]))
-    centre = (parts[roller].min(axis=1) + parts[roller].max(axis=1)) / 2
-    away = parts[1 - roller] - centre[:, None]
-    nearest = int(np.argmin(np.hypot(*away)))
-    point = parts[1 - roller][:, nearest]
-    normal = centre - point
-    return point, normal / np.hypot(*normal)
+    x, y, nx, ny = (stated(field, name) for name in _CONTACT)
+    return np.array([x, y]), np.array([nx, ny]) / np.hypot(nx, ny)
 
 
 def contact_view(field: Field, half_width: float, point: Array, normal: Array) -> View:
@@ -208,7 +212,7 @@ def frame_body(raster: Raster) -> bytes:
     )  # fmt: skip
 
 
-def render(vtu: Path, views: Sequence[View]) -> list[Raster]:
+def render(path: Path, views: Sequence[View]) -> list[Raster]:
     """Rasters of the views by the first OpenGL window that works, else by matplotlib."""
     for window in WINDOWS:
         with tempfile.TemporaryDirectory() as name:
@@ -216,7 +220,7 @@ def render(vtu: Path, views: Sequence[View]) -> list[Raster]:
             (out / "views.json").write_text(json.dumps([asdict(view) for view in views]))
             try:
                 child = subprocess.run(  # noqa: S603 - our own interpreter and module
-                    [sys.executable, "-m", __name__, str(vtu.resolve()), str(out)],
+                    [sys.executable, "-m", __name__, str(path.resolve()), str(out)],
                     env=os.environ | {"VTK_DEFAULT_OPENGL_WINDOW": window}, check=False,
                     capture_output=True, timeout=PATIENCE_S,
                 )  # fmt: skip
@@ -225,15 +229,12 @@ def render(vtu: Path, views: Sequence[View]) -> list[Raster]:
             if child.returncode == 0:
                 pixels = [np.load(out / f"{number}.npy") for number in range(len(views))]
                 return [Raster(view, image) for view, image in zip(views, pixels, strict=True)]
-    return [flat(read_field(vtu), view) for view in views]
+    return [flat(read_field(path), view) for view in views]
 
 
 def flat(field: Field, view: View) -> Raster:
-    """A view drawn by matplotlib, each six-node triangle as four straight ones."""
-    corners = field.triangles[[[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]] if len(
-        field.triangles
-    ) == 6 else field.triangles[None]  # fmt: skip
-    straight = np.concatenate(list(corners), axis=1)
+    """A view drawn by matplotlib."""
+    straight = field.triangles
     placed = view.placed(deformed(field, view))
     xmin, xmax, ymin, ymax = view.window
     x, y = placed[:, straight]
@@ -257,31 +258,25 @@ def _paint(field: Field, view: View) -> Array:
     """Render one view, in the child process."""
     import pyvista
 
-    nodes = len(field.triangles)
     xy = view.placed(deformed(field, view))
-    cells = np.hstack([np.full((field.triangles.shape[1], 1), nodes), field.triangles.T])
-    kind = pyvista.CellType.QUADRATIC_TRIANGLE if nodes == 6 else pyvista.CellType.TRIANGLE
-    grid = pyvista.UnstructuredGrid(
-        cells.ravel(), np.full(len(cells), kind), np.column_stack([*xy, np.zeros(xy.shape[1])])
-    )
-    grid.point_data[FIELD] = np.clip(field.von_mises, *view.clim)
+    points = np.column_stack([*xy, np.zeros(xy.shape[1])])
+    surface = pyvista.PolyData.from_regular_faces(points, field.triangles.T.astype(int))
+    surface.point_data[FIELD] = np.clip(field.von_mises, *view.clim)
     xmin, xmax, ymin, ymax = view.window
     width, height = view.size
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=[width, height], lighting="none")
     plotter.set_background("white")
-    surface = grid.extract_surface(nonlinear_subdivision=2, algorithm="dataset_surface")
     plotter.add_mesh(
         surface, scalars=FIELD, cmap=COLOUR_MAP, clim=view.clim, log_scale=view.log, n_colors=256,
         lighting=False, show_scalar_bar=False, interpolate_before_map=True,
     )  # fmt: skip
-    edges = surface.extract_feature_edges(
-        boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
-    )
+    lines = np.column_stack([np.full(field.outline.shape[1], 2), field.outline.T])
+    edges = pyvista.PolyData(points, lines=lines)
     plotter.add_mesh(edges, color="black", line_width=2.0, lighting=False)
     if view.iso:
-        lines = surface.contour(list(view.iso), scalars=FIELD)
-        if lines.n_points:
-            plotter.add_mesh(lines, color="black", line_width=1.2, lighting=False, opacity=0.5)
+        levels = surface.contour(list(view.iso), scalars=FIELD)
+        if levels.n_points:
+            plotter.add_mesh(levels, color="black", line_width=1.2, lighting=False, opacity=0.5)
     plotter.enable_anti_aliasing("ssaa")
     plotter.enable_parallel_projection()
     middle = ((xmin + xmax) / 2, (ymin + ymax) / 2)
@@ -297,8 +292,8 @@ def _paint(field: Field, view: View) -> Array:
 
 def main(arguments: Sequence[str]) -> int:
     """Child process: render the views of OUT/views.json into OUT/0.npy, OUT/1.npy ..."""
-    vtu, out = Path(arguments[0]), Path(arguments[1])
-    field = read_field(vtu)
+    path, out = Path(arguments[0]), Path(arguments[1])
+    field = read_field(path)
     for number, record in enumerate(json.loads((out / "views.json").read_text())):
         values: Record = {k: tuple(v) if isinstance(v, list) else v for k, v in record.items()}
         np.save(out / f"{number}.npy", _paint(field, View(**values)))

@@ -21,7 +21,7 @@ from camwright.reports import (
 )
 from camwright.reports.report_data import FIGURES, Material
 
-FIELD = Path("fields") / "contact_worst.vtu"
+FIELD = Path("fields") / "stress.vtkhdf"
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,19 +48,22 @@ class Picture:
 @lru_cache(maxsize=1)
 def stress_pictures(material: Material) -> Sequence[Picture]:
     """Stress field below the contact and in both bodies."""
-    turn, vtu = material.turn, material.folder / FIELD
+    turn, path = material.turn, material.folder / FIELD
     try:
-        field = field_picture.read_field(vtu)
+        field = field_picture.read_field(path)
         point, normal = field_picture.find_contact(field)
-        half_width = field.notes.get("half_width_mm") or turn.half_width
+        solved, hertz, cam_angle = (
+            field_picture.stated(field, name)
+            for name in ("half_width_mm", "half_width_hertz_mm", "cam_angle_deg")
+        )
+        half_width = hertz if np.isnan(solved) else solved
         views = [
             field_picture.contact_view(field, half_width, point, normal),
             field_picture.body_view(field),
         ]
-        rasters = field_picture.render(vtu, views)
+        rasters = field_picture.render(path, views)
     except ResultError as error:
         return (Picture("Stress field", note=f"The stress field is not available: {error}."),)
-    cam_angle = float(field.notes.get("cam_angle_deg", turn.columns["cam_angle_deg"][turn.worst]))
     angle = report_tables.number(cam_angle)
     peak = report_tables.quantity(views[0].clim[1], "MPa")
     final = material.run.final

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.spatial import Delaunay
 
 from camwright.pipeline.case.scope_section import Scope
+from camwright.pipeline.results.field_file import Block, field_file
 from camwright.pipeline.results.run_reader import SCHEMA, binding_of, verdict_of
 
 RATE, PRELOAD, PRIME_RADIUS, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044
@@ -359,52 +360,47 @@ def arc(outline: np.ndarray, contact: np.ndarray, a: float) -> np.ndarray:
     return np.array([np.interp(where, length, row) for row in loop])
 
 
-def write_field(path: Path, g: dict[str, np.ndarray], worst: int, p0: float, a: float) -> None:
-    """contact_worst.vtu: cam and roller as six-node triangles, millimetres and MPa."""
-    import meshio
-
+def write_field(
+    path: Path, g: dict[str, np.ndarray], worst: int, cycle: dict[str, np.ndarray]
+) -> None:
+    """stress.vtkhdf: cam and roller at the worst angle, under the Hertz pressure."""
+    p0, a = cycle["p0_hertz_MPa"][worst], cycle["half_width_hertz_mm"][worst] / 1e3
     normal, contact = g["normal"][:, worst], g["contour"][:, worst]
     centre = contact + ROLLER * normal
     angles = np.linspace(0, 2 * np.pi, 4000, endpoint=False) + np.arctan2(*-normal[::-1])
     ring = np.array([np.cos(angles), np.sin(angles)])
-    bodies = [
-        (arc(np.ascontiguousarray(g["contour"]), contact, a), BORE * ring[:, ::60], -normal),
-        (arc(centre[:, None] + ROLLER * ring, contact, a), centre[:, None] + HUB * ring[:, ::80],
-         normal),
-    ]  # fmt: skip
+    bodies = {
+        "cam": (arc(np.ascontiguousarray(g["contour"]), contact, a), BORE * ring[:, ::60], -normal),
+        "roller": (arc(centre[:, None] + ROLLER * ring, contact, a),
+                   centre[:, None] + HUB * ring[:, ::80], normal),
+    }  # fmt: skip
     from matplotlib.path import Path as Outline
 
-    points, cells, stress, body = [], [], [], []
-    count = 0
-    for number, (outline, hole, inward) in enumerate(bodies):
+    blocks, stress = {}, {}
+    for name, (outline, hole, inward) in bodies.items():
         cloud = body_points(outline, hole, contact, a)
         corners = Delaunay(cloud.T).simplices
         mid = cloud[:, corners].mean(axis=2)
         keep = Outline(outline.T).contains_points(mid.T)
         keep &= ~Outline(hole.T).contains_points(mid.T)
-        corners = corners[keep]
-        pairs = np.sort(corners[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        edges, inverse = np.unique(pairs, axis=0, return_inverse=True)
-        whole = np.concatenate([cloud, cloud[:, edges].mean(axis=2)], axis=1)
-        six = np.hstack([corners, cloud.shape[1] + inverse.reshape(-1, 3)])
-        away = whole - contact[:, None]
+        away = cloud - contact[:, None]
         across = np.array([-inward[1], inward[0]])
-        field = p0 * hertz_stress(across @ away / a, inward @ away / a)
-        points.append(whole.T)
-        cells.append(six + count)
-        stress.append(field)
-        body.append(np.full(whole.shape[1], number))
-        count += whole.shape[1]
-    xy = np.concatenate(points) * 1e3
-    meshio.Mesh(
-        np.column_stack([xy, np.zeros(len(xy))]),
-        [("triangle6", np.concatenate(cells))],
-        point_data={
-            "von_mises_MPa": np.concatenate(stress) / 1e6,
-            "displacement_mm": np.zeros((len(xy), 3)),
-            "body": np.concatenate(body).astype(float),
-        },
-    ).write(path)
+        blocks[name] = Block(corners[keep].T.astype(np.int64), cloud.shape[1], cloud * 1e3)
+        stress[name] = p0 * hertz_stress(across @ away / a, inward @ away / a)
+    notes = {
+        "cam_angle_deg": [cycle["cam_angle_deg"][worst]],
+        "half_width_mm": [a * 1e3], "half_width_hertz_mm": [a * 1e3], "p0_hertz_MPa": [p0],
+        "contact_x_mm": [contact[0] * 1e3], "contact_y_mm": [contact[1] * 1e3],
+        "normal_x": [normal[0]], "normal_y": [normal[1]],
+    }  # fmt: skip
+    fields = {"displacement_mm": 3, "von_mises_MPa": 1}
+    with field_file(path, [cycle["cam_angle_deg"][worst]], blocks, fields, notes) as file:
+        for name, block in blocks.items():
+            data = {
+                "displacement_mm": np.zeros((1, block.nodes, 3)),
+                "von_mises_MPa": stress[name][None],
+            }
+            file.write(name, 0, data, np.zeros((1, block.triangles.shape[1]), dtype=bool))
 
 
 def quoted(text: str) -> str:
@@ -533,11 +529,7 @@ def write_run(
         },
     }))  # fmt: skip
     if field:
-        write_field(
-            folder / "fields" / "contact_worst.vtu", g, worst,
-            float(cycle["p0_hertz_MPa"][worst]) * 1e6,
-            float(cycle["half_width_hertz_mm"][worst]) / 1e3,
-        )  # fmt: skip
+        write_field(folder / "fields" / "stress.vtkhdf", g, worst, cycle)
     return folder
 
 

@@ -23,6 +23,8 @@ from camwright.pipeline.commands.terminal import (
 )
 
 TEMPLATE_SUFFIX = ".toml"
+FIELDS = ("none", "worst", "default", "all")
+"""Values of `field_output.Shown`, which is imported with the solver alone."""
 
 
 def run(
@@ -52,6 +54,13 @@ def run(
     replace: Annotated[
         bool, typer.Option("--replace", help="Replace an earlier run of a case of this name.")
     ] = False,
+    fields: Annotated[
+        str,
+        typer.Option(
+            metavar="none|worst|default|all",
+            help="Cam angles of the stress field; default: the worst, the certified, every 15 deg.",
+        ),
+    ] = "default",
     no_cache: NoCacheOption = False,
 ) -> int:
     """Run a case and write its run folder."""
@@ -62,10 +71,13 @@ def run(
     tier = Tier.of(depth, "--depth")
     if jobs is not None and not 1 <= jobs <= 256:
         raise InputError("--jobs", jobs, ">= 1 and <= 256")
+    if fields not in FIELDS:
+        raise InputError("--fields", fields, f"one of {', '.join(FIELDS)}")
     design = read_case(case)
     if positions is not None:
         design = design.with_positions(positions)
     if not (resume and _finished(out, design.sha256, depth)):
+        from camwright.pipeline.results.field_output import Shown
         from camwright.pipeline.results.run_folder import set_aside
         from camwright.pipeline.run import run_case
         from camwright.pipeline.studies.valve_train import valve_record
@@ -80,6 +92,7 @@ def run(
                 positions=positions,
                 jobs=jobs,
                 resume=resume,
+                fields=Shown(fields),
                 progress=progress,
                 report=None
                 if no_report

@@ -30,7 +30,7 @@ from camwright.pipeline.contact.elasticity.elastic_body import (
 )
 from camwright.pipeline.contact.elasticity.halfplane import point_force_displacement
 from camwright.pipeline.contact.elasticity.sparse_factor import back_end
-from camwright.pipeline.contact.hertz import subsurface_stress
+from camwright.pipeline.contact.hertz import subsurface_displacement, subsurface_stress
 
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 _BLIND_SHARE = 0.05
@@ -112,8 +112,7 @@ class LoadedBody:
         kept = self.kept(
             "body", contacts, normals, lambda: self._displacement_slopes(contacts, normals), RECIPE
         )
-        modulus, bend = self._plane_strain_modulus, kept["bend"]
-        return Correction(along=modulus * kept["slope"], bend=bend, along_by_depth=modulus * bend)
+        return self._as_correction(kept["slope"], kept["bend"])
 
     def kept(
         self,
@@ -218,25 +217,43 @@ class LoadedBody:
         """Displacement (2, nodes, count) of the correction in the whole body, m per N/m."""
         return self.body.displacement(*self._cancelling_loads(contacts, normals))
 
-    def fields(
-        self, contacts: Array, normals: Array, line_load: Array, half_width: Array
-    ) -> tuple[Array, Array]:
-        """Displacement (2, nodes, count) m and stress (3, nodes, count) Pa under contacts.
+    def superposed(
+        self, points: Array, correction: tuple[Array, Array], contacts: Array, normals: Array,
+        line_load: Array, half_width: Array,
+    ) -> tuple[Array, Array]:  # fmt: skip
+        """Displacement (2, m, k), m, and stress (3, m, k), Pa, of the loaded body at points.
 
-        contacts (2, count) m, normals (2, count); line_load (count,) N/m, half_width (count,) m,
-        zero without contact. The half-plane part is that of a Hertz pressure in closed form.
+        The correction plus the field of a half-plane under a Hertz pressure in closed form.
+
+        Parameters
+        ----------
+        points : (2, m) or (2, m, k)         m
+        correction : (2, m, c), (3, m, c)    at the points, see `correction_fields`; c is 1 or k
+        contacts, normals : (2, c)           m; outward normals
+        line_load, half_width : (k,)         N/m, m; zero without contact
         """
-        points = self.body.mesh.points
-        displaced, nodal = self.correction_fields(contacts, normals)
+        displaced, nodal = correction
         near = hertz_stress(points, contacts, normals, half_width)
         x, depth, tangents = _surface_coordinates(points, contacts, normals)
-        # Within the half-width the point force is replaced by its value at that depth.
-        deep = np.where(np.hypot(x, depth) < half_width, half_width, depth)
-        touching = line_load > 0
-        sideways, down = self._unit_displacement(x, np.where(touching, deep, 1.0))
+        size = np.where(half_width > 0, half_width, 1.0)
+        sideways, down = subsurface_displacement(x / size, depth / size, self.body.poisson)
+        down = down - 2 / np.pi * np.log(size)
         settled = sideways * tangents[:, None, :] - down * normals[:, None, :]
-        load = np.where(touching, line_load, 0.0)
-        return load * (displaced + settled), load * (nodal + near)
+        load = np.where(line_load > 0, line_load, 0.0)
+        return (
+            load * (displaced + settled / self._plane_strain_modulus),
+            load * (nodal + near),
+        )
+
+    def correction_of(self, displaced: Array, contacts: Array, normals: Array) -> Correction:
+        """Correction at contacts (2, count) from its `correction_fields` there, m per N/m."""
+        at_surface = displaced[:, self.condensed_nodes]
+        return self._as_correction(*self._at_contacts(at_surface, contacts, normals))
+
+    def _as_correction(self, slope: Array, bend: Array) -> Correction:
+        """Correction of the slopes of its displacement, see `_displacement_slopes`."""
+        modulus = self._plane_strain_modulus
+        return Correction(along=modulus * slope, bend=bend, along_by_depth=modulus * bend)
 
     def correction_fields(self, contacts: Array, normals: Array) -> tuple[Array, Array]:
         """Displacement (2, nodes, count), m, and stress (3, nodes, count), Pa, per N/m."""
@@ -314,15 +331,29 @@ class LoadedBody:
 def hertz_stress(points: Array, contacts: Array, normals: Array, half_width: Array) -> Array:
     """Stress xx, yy, xy (3, m, count), 1/m, of a half-plane under Hertz pressures of 1 N/m.
 
-    At points (2, m), m; surfaces at contacts (2, count), m, with outward normals (2, count);
-    half_width (count,), m; no stress where it is not positive.
+    At points (2, m) or (2, m, count), m; surfaces at contacts (2, count), m, with outward normals
+    (2, count); half_width (count,), m; no stress where it is not positive. Of one contact there
+    may be any number of half-widths.
     """
-    x, depth, tangents = _surface_coordinates(points, contacts, normals)
+    x, depth, _ = _surface_coordinates(points, contacts, normals)
     size = np.where(half_width > 0, half_width, np.inf)
-    # A concave flank rises above the tangent: depth 0.
-    near = subsurface_stress(x / size, np.maximum(depth, 0.0) / size) * (2 / (np.pi * size))
-    along, into, shear = near
-    t, n = tangents[:, None, :], normals[:, None, :]
+    x, depth = x / size, depth / size
+    # A concave flank rises above the tangent. Beside the pressure the field continues there, as
+    # that of a point force does: normal stresses are odd in the depth, the shear is even.
+    above = np.where(depth < 0, -1.0, 1.0)
+    near = subsurface_stress(x, np.where(np.abs(x) < 1, np.maximum(depth, 0.0), np.abs(depth)))
+    near = near * (2 / (np.pi * size)) * np.stack([above, above, np.ones_like(above)])
+    return from_contact_axes(near, normals)
+
+
+def from_contact_axes(stress: Array, normals: Array) -> Array:
+    """Stress xx, yy, xy (3, m, k) of stress along the surface, into the depth and shear.
+
+    stress (3, m, k); outward normals (2, k) or (2, 1).
+    """
+    along, into, shear = stress
+    n = normals[:, None, :]
+    t = np.stack([n[1], -n[0]])
     return np.stack(
         [
             along * t[0] ** 2 + into * n[0] ** 2 - 2 * shear * t[0] * n[0],
@@ -336,7 +367,7 @@ def _surface_coordinates(
     points: Array, contacts: Array, normals: Array
 ) -> tuple[Array, Array, Array]:
     """Coordinates along the surfaces and depths (m, count), m; tangents (2, count)."""
-    arm = points[:, :, None] - contacts[:, None, :]
+    arm = (points if points.ndim == 3 else points[:, :, None]) - contacts[:, None, :]
     tangents = np.stack([normals[1], -normals[0]])
-    x = np.einsum("cmk,ck->mk", arm, tangents)
-    return x, -np.einsum("cmk,ck->mk", arm, normals), tangents
+    x = np.einsum("cmk,ck->mk", arm, np.broadcast_to(tangents, (2, arm.shape[2])))
+    return x, -np.einsum("cmk,ck->mk", arm, np.broadcast_to(normals, (2, arm.shape[2]))), tangents

@@ -125,6 +125,37 @@ def subsurface_stress(x: ArrayLike, depth: ArrayLike, friction: float = 0.0) -> 
     )
 
 
+def subsurface_displacement(x: ArrayLike, depth: ArrayLike, poisson: float) -> Array:
+    """Displacement under a frictionless Hertz line contact.
+
+    Parameters
+    ----------
+    x, depth : array (...)   in half-widths, depth into the solid
+
+    Returns
+    -------
+    array (2, ...)   along the surface and into the solid, in units of line load over plane-strain
+                     modulus E / (1 - nu^2); rigid motion as in `halfplane.point_force_displacement`
+                     with the half-width as the unit of length
+
+    References
+    ----------
+    Derived here: Flamant's solution superposed with the complex potential
+    ``w/(w + r) + ln((w + r)/2) - 1/2``, ``r = sqrt(w^2 - 1)``, ``w = x + i z``, of the Hertz
+    pressure (Johnson, Contact Mechanics (1985), sec. 2.6 and 4.2).
+    """
+    x, z = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(depth, dtype=float))
+    w = x + 1j * np.where(np.abs(x) < 1, np.maximum(z, 1e-12), z + 0.0)
+    total = w + np.sqrt(w - 1) * np.sqrt(w + 1)
+    slope = 2 / total
+    # Divided by i, the cut of the logarithm runs outside the solid.
+    potential = w / total + np.log(total / 2j) - 0.5
+    nu = poisson / (1 - poisson)
+    along = (1 - nu) * potential.imag + (1 + nu) * z * slope.real
+    into = -2 * potential.real - (1 + nu) * (1 + z * slope.imag)
+    return np.stack([along, into]) / np.pi
+
+
 @lru_cache(maxsize=32)
 def von_mises_peak(poisson: float) -> tuple[float, float]:
     """Maximum von Mises stress under a frictionless contact over p0, and its depth over a.

@@ -11,10 +11,11 @@ In the order of a run:
 | `run_folder`           | the folder of a run while it is written; resumption                   |
 | `run_records`          | columns of the tables, key figures, records of trial and crank speed  |
 | `trial_writer`         | files of a trial                                                      |
-| `stress_fields`        | VTU files of the contact and of both bodies over the turn             |
-| `contact_patch_series` | VTU files of the stress below the contact over the turn               |
+| `field_file`           | VTKHDF file of meshes with fields over the turn: writer and reader    |
+| `contact_zone`         | fine mesh of a body below its contact, interpolation on it            |
+| `stress_fields`        | displacement and stress of both bodies over the turn                  |
 | `recorded_turn`        | outlines and poses of cam and follower for the scene                  |
-| `field_output`         | all field files of a run                                              |
+| `field_output`         | files of ``fields/``                                                  |
 | `workshop_files`       | contour table, DXF drawing, STEP solid, cutter path, inspection sheet |
 | `contact_deck`         | contact at one cam angle as an input deck                             |
 | `check_report`         | checks of a run as table, lines and JUnit XML                         |

@@ -1,56 +1,70 @@
-"""Field files of a run: contact at its maximum, bodies and patch over the turn, stress map."""
+"""Field files of a run: the stress of both bodies over the turn, and their positions."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from enum import StrEnum
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
 
-from camwright.meshes.mesh_files import write_sheet
+from camwright.geometry.arrays import Array
 from camwright.pipeline.base.files import npz_bytes, write_atomic
-from camwright.pipeline.contact.certificate import solve_pair
-from camwright.pipeline.contact.contact_pair import ContactPair
-from camwright.pipeline.contact.rolling_envelope import Envelope
+from camwright.pipeline.contact.elasticity import plane_stress_measures
 from camwright.pipeline.contact.two_scale import CycleBodies
 from camwright.pipeline.cycle.certificate_angles import positions_to_certify
 from camwright.pipeline.cycle.cycle import Cycle
-from camwright.pipeline.cycle.rolling_history import MAPS
-from camwright.pipeline.results.contact_patch_series import write_patches
+from camwright.pipeline.results.contact_zone import zone_nodes
+from camwright.pipeline.results.field_file import Block, FieldFile, Notes, field_file
 from camwright.pipeline.results.recorded_turn import turn_view
-from camwright.pipeline.results.stress_fields import IntArray, write_bodies, write_contact
+from camwright.pipeline.results.stress_fields import (
+    BodyField,
+    IntArray,
+    TurnFields,
+)
 from camwright.pipeline.results.trial import Trial
 
-BODIES_STEP = np.radians(5.0)
-ENVELOPE = "envelope.vtu"
-TURN = "turn.npz"
-_MEGAPASCAL = 1e6
+STEP = np.radians(15.0)
+STRESS, TURN, VIEW = "stress.vtkhdf", "turn.npz", "view_stress.py"
+FIELDS = {"displacement_mm": 3, "stress_MPa": 6, "von_mises_MPa": 1, "tau_max_MPa": 1}
+"""Point data and their components; stress in the order XX, YY, ZZ, XY, YZ, XZ of VTK."""
+
+_MILLIMETRE, _MEGAPASCAL = 1e-3, 1e6
+_TOGETHER = 24  # positions whose fields are in memory at once
+_DIGITS = 9  # of a cam angle, deg
+
+
+class Shown(StrEnum):
+    """Cam angles of the stress field: none, the worst, those of `shown_positions`, all."""
+
+    NONE = "none"
+    WORST = "worst"
+    DEFAULT = "default"
+    ALL = "all"
 
 
 def write_fields(
-    folder: Path, final: Trial, advance: Callable[[int, int], None] = lambda *_: None
-) -> None:
+    folder: Path, final: Trial, shown: Shown = Shown.DEFAULT,
+    advance: Callable[[int, int], None] = lambda *_: None,
+) -> None:  # fmt: skip
     """Write ``fields/`` of a trial; nothing if the contour encloses no body.
 
-    Series and map are those of the load case with the maximum contact pressure.
+    The load case is that with the maximum contact pressure.
     """
     if final.mesh is None:
         return
-    pair = final.cycles[0].pair
-    index = round(final.mesh.theta / (final.cycles[0].theta[1] - final.cycles[0].theta[0]))
-    force = max(float(cycle.loads.normal_force[index]) for cycle in final.cycles)
-    write_contact(
-        folder / "contact_worst.vtu", solve_pair(pair, final.mesh.theta, force), pair.follower.name
-    )
     chosen = hardest(final.cycles)
     cycle = final.cycles[chosen]
+    bodies = cycle.bodies or CycleBodies.meshed(cycle.pair)
+    write_atomic(folder / TURN, npz_bytes(turn_view(cycle.pair, bodies, cycle)))
+    if shown is Shown.NONE:
+        return
     certified = positions_to_certify(final.cycles, final.case.solver.certificate_positions)
-    indices = shown_positions(cycle, [k for number, k in certified if number == chosen])
-    bodies = cycle.bodies or CycleBodies.meshed(pair)
-    write_bodies(folder, pair, bodies, cycle, indices, chosen + 1, advance)
-    write_patches(folder, pair, bodies, cycle, chosen + 1, advance)
-    write_envelope(folder / ENVELOPE, pair, cycle.rolling.envelope, chosen + 1)
-    write_atomic(folder / TURN, npz_bytes(turn_view(pair, bodies, cycle)))
+    positions = shown_positions(cycle, shown, [k for number, k in certified if number == chosen])
+    write_stress(folder / STRESS, TurnFields(cycle.pair, bodies, cycle), positions, advance)
+    script = files("camwright.pipeline.results") / "templates" / VIEW
+    write_atomic(folder / VIEW, script.read_bytes())
 
 
 def hardest(cycles: Sequence[Cycle]) -> int:
@@ -58,26 +72,89 @@ def hardest(cycles: Sequence[Cycle]) -> int:
     return int(np.argmax([cycle.contact.p0_hertz.max() for cycle in cycles]))
 
 
-def shown_positions(cycle: Cycle, certified: Sequence[int]) -> IntArray:
-    """Positions at every `BODIES_STEP`, and the certified ones."""
-    stride = max(1, round(BODIES_STEP / (cycle.theta[1] - cycle.theta[0])))
-    return np.union1d(np.arange(0, cycle.theta.size, stride), np.array(certified, dtype=np.int64))
+def shown_positions(cycle: Cycle, shown: Shown, certified: Sequence[int]) -> IntArray:
+    """Positions of a cycle in order; by default every `STEP`, the certified ones and the worst."""
+    count = cycle.theta.size
+    worst = int(cycle.contact.p0_hertz.argmax())
+    if shown is Shown.WORST:
+        return np.array([worst])
+    stride = max(1, round(float(STEP / (cycle.theta[1] - cycle.theta[0]))))
+    every = np.arange(0, count, 1 if shown is Shown.ALL else stride)
+    return np.union1d(every, np.array([worst, *certified], dtype=np.int64))
 
 
-def write_envelope(path: Path, pair: ContactPair, map_: Envelope, number: int) -> None:
-    """Maximum stresses of a turn in a band under the contour, in the cam frame.
+def write_stress(
+    path: Path, fields: TurnFields, positions: IntArray,
+    advance: Callable[[int, int], None] = lambda *_: None,
+) -> None:  # fmt: skip
+    """Stress and displacement of both bodies at some positions of a cycle, as one VTKHDF file.
 
-    Depths are along the inward normal; `number` is that of the load case, from 1.
+    A block per body on its coarse mesh, and one below the contact of each, of names ending in
+    `ZONE`; elements of the coarse mesh which that one replaces are hidden. In the cam frame, in
+    which the follower rotates. Times are cam angles in degrees.
     """
-    at, normal = pair.contour.points(map_.theta), pair.contour.normal(map_.theta)
-    points = at[:, :, None] - normal[:, :, None] * map_.depth
-    fields = {
-        f"{name}_MPa": values / _MEGAPASCAL
-        for name in MAPS
-        if (values := getattr(map_, name)) is not None
+    cam, _ = fields.names
+    coarse = {cam: fields.bodies.cam.body.mesh, fields.names[1]: fields.bodies.follower.body.mesh}
+    blocks = {
+        name: Block(triangles, coarse[name].corners if name in coarse else zone_nodes())
+        for name, triangles in fields.triangles.items()
     }
-    places = {
-        "depth_mm": map_.depth * 1e3,
-        "cam_angle_deg": np.broadcast_to(np.degrees(map_.theta)[:, None], map_.depth.shape),
+    blocks[cam] = Block(
+        blocks[cam].triangles,
+        blocks[cam].nodes,
+        coarse[cam].points[:, : blocks[cam].nodes] / _MILLIMETRE,
+    )
+    times = np.asarray(np.degrees(fields.cycle.theta[positions]), dtype=float).round(_DIGITS)
+    notes = _notes(fields, positions, times)
+    with field_file(path, times, blocks, FIELDS, notes) as file:
+        for start in range(0, positions.size, _TOGETHER):
+            part = positions[start : start + _TOGETHER]
+            shown = fields.at(part)
+            for name, field in shown.items():
+                _write(file, name, start, field, fields.poisson[name], blocks[name])
+            advance(min(start + _TOGETHER, positions.size), positions.size)
+
+
+def _notes(fields: TurnFields, positions: IntArray, times: Array) -> Notes:
+    """Data of each position."""
+    cycle, contour = fields.cycle, fields.pair.contour
+    contact, theta = cycle.contact, cycle.theta[positions]
+    point, normal = contour.points(theta) / _MILLIMETRE, contour.normal(theta)
+    return {
+        "load_case": [cycle.load_case] * positions.size,
+        "cam_angle_deg": times,
+        "line_load_N_per_mm": contact.line_load[positions] * _MILLIMETRE,
+        "half_width_mm": contact.half_width[positions] / _MILLIMETRE,
+        "half_width_hertz_mm": contact.half_width_hertz[positions] / _MILLIMETRE,
+        "p0_fe_MPa": contact.p0[positions] / _MEGAPASCAL,
+        "p0_hertz_MPa": contact.p0_hertz[positions] / _MEGAPASCAL,
+        "von_mises_MPa": contact.von_mises[positions] / _MEGAPASCAL,
+        "contact_x_mm": point[0],
+        "contact_y_mm": point[1],
+        "normal_x": normal[0],
+        "normal_y": normal[1],
     }
-    write_sheet(path, points, fields | places, {"load_case_number": number})
+
+
+def _write(
+    file: FieldFile, name: str, first: int, field: BodyField, poisson: float, block: Block
+) -> None:
+    """One block at consecutive positions."""
+    points = None
+    if block.points is None:
+        points = field.points.transpose(2, 1, 0) / _MILLIMETRE
+    stress = field.stress / _MEGAPASCAL
+    measures = {
+        "von_mises_MPa": plane_stress_measures.von_mises(stress, poisson).T,
+        "tau_max_MPa": plane_stress_measures.shear_in_plane(stress).T,
+    }
+    xx, yy, xy = stress.transpose(0, 2, 1)
+    nothing = np.zeros_like(xx)
+    whole = [xx, yy, poisson * (xx + yy), xy, nothing, nothing]
+    displaced = field.displacement.transpose(2, 1, 0) / _MILLIMETRE
+    data = {
+        "displacement_mm": np.concatenate([displaced, nothing[:, :, None]], axis=-1),
+        "stress_MPa": np.stack(whole, axis=-1),
+        **measures,
+    }
+    file.write(name, first, data, field.hidden.T, points)

@@ -39,8 +39,8 @@ def turn_view(pair: ContactPair, bodies: CycleBodies, cycle: Cycle) -> Mapping[s
         "cam_angle_deg": np.degrees(cycle.theta[shown]),
         "cam_mm": _MM * cam_outlines(pair, 2 * shown.size),
         "follower_mm": _MM * bodies.follower.body.mesh.points,
-        "follower_origin_mm": _MM * np.stack([place.origin for place in places]),
-        "follower_turn_deg": np.degrees([place.angle for place in places]),
+        "follower_origin_mm": _MM * places.origin,
+        "follower_turn_deg": np.degrees(places.angle),
     }
 
 

@@ -45,7 +45,17 @@ _OURS = re.compile(
     r"case\.toml|(run|signoff|corners)\.json|inputs|fields|figures|exports|workshop|inspection|trial_\d+"
     r"|scene\.html|\d+_\w+\.(csv|html|json|pdf)"
 )
-_LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib")
+_LIBRARIES = (
+    "numpy",
+    "scipy",
+    "scikit-fem",
+    "gmsh",
+    "meshio",
+    "h5py",
+    "pyvista",
+    "vtk",
+    "matplotlib",
+)
 
 
 def versions() -> dict[str, str]:

@@ -1,203 +1,252 @@
-"""VTU files of the contact and of both bodies over the turn."""
+"""Displacement and stress of cam and follower over the turn, in the cam frame.
+
+On the coarse mesh of each body, and on a fine mesh below its contact.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
-from camwright.meshes.body_mesh import BodyMesh
-from camwright.meshes.mesh_files import write_pvd, write_vtu
-from camwright.pipeline.contact.certificate import SolvedPair
+from camwright.geometry.contour import Contour
+from camwright.geometry.errors import GeometryError
+from camwright.meshes.gmsh_mesher import Index
+from camwright.pipeline.contact.body_compliance import Correction, from_contact_axes
 from camwright.pipeline.contact.contact_pair import ContactPair
-from camwright.pipeline.contact.elasticity import plane_stress_measures as stress
-from camwright.pipeline.contact.elasticity.elastic_body import ElasticBody, StressRecovery
-from camwright.pipeline.contact.two_scale import CycleBodies
+from camwright.pipeline.contact.two_scale import CycleBodies, stress_on_patch
 from camwright.pipeline.cycle.cycle import Cycle
-
-_MILLIMETRE, _MEGAPASCAL = 1e-3, 1e6
-_TOGETHER = 24  # positions whose fields are in memory at once
-BODIES_INDEX = "bodies_cycle.pvd"
+from camwright.pipeline.results.contact_zone import (
+    MIDDLE,
+    ZoneSite,
+    patch_weights,
+    zone_places,
+    zone_triangles,
+)
+from camwright.pipeline.results.field_file import ZONE
 
 IntArray = NDArray[np.int64]
 
 
-def write_contact(path: Path, solved: SolvedPair, name: str) -> None:
-    """Displacement and stress of both bodies at one angle, in the cam frame.
-
-    `name` is that of the body of the follower in the file.
-    """
-    sides = zip(("cam", name), solved.sides, solved.solution.displacements, strict=True)
-    # The follower is fixed in the solution; the approach is its rigid motion.
-    rigid = {"cam": np.zeros(2), name: -solved.solution.approach * solved.frame.normal}
-    data = {
-        body: _point_data(side.body, field + rigid[body][:, None], _recovered(side.body, field))
-        for body, side, field in sides
-    }
-    write_vtu(
-        path,
-        {"cam": solved.cam, name: solved.follower},
-        data,
-        {
-            "cam_angle_deg": float(np.degrees(solved.theta)),
-            "half_width_mm": solved.solution.half_width / _MILLIMETRE,
-            "peak_pressure_MPa": solved.solution.p0 / _MEGAPASCAL,
-            "contact_x_mm": float(solved.frame.origin[0]) / _MILLIMETRE,
-            "contact_y_mm": float(solved.frame.origin[1]) / _MILLIMETRE,
-            "normal_x": float(solved.frame.normal[0]),
-            "normal_y": float(solved.frame.normal[1]),
-        },
-    )
-
-
-def write_bodies(
-    folder: Path,
-    pair: ContactPair,
-    bodies: CycleBodies,
-    cycle: Cycle,
-    indices: IntArray,
-    number: int,
-    advance: Callable[[int, int], None] = lambda *_: None,
-) -> Path:
-    """Both bodies at some positions of a turn, as ``bodies_cycle.pvd`` with its pieces.
-
-    In the cam frame, in which the follower rotates. Displacements are relative to the support of
-    each body. The stress is that of the Hertz pressure on the half-plane plus the finite-element
-    correction; the meshes are too coarse to resolve the contact. Times are cam angles in degrees.
-
-    Parameters
-    ----------
-    indices : (n,)   positions of the cycle, in order
-    number : int     of the load case, from 1
-    """
-    pieces = folder / "bodies"
-    pieces.mkdir(exist_ok=True)
-    entries, other = [], pair.follower.name
-    for start in range(0, indices.size, _TOGETHER):
-        part = indices[start : start + _TOGETHER]
-        places = follower_places(pair, cycle.theta[part])
-        fields = _loaded(pair, bodies, cycle, part)
-        for k, place, (on_cam, facing) in zip(part, places, fields, strict=True):
-            angle = float(np.degrees(cycle.theta[k]))
-            name = f"bodies_{round(1000 * angle):06d}.vtu"
-            there = facing.turned(place.turn)
-            write_vtu(
-                pieces / name,
-                {"cam": bodies.cam.body.mesh, other: place.mesh(bodies.follower.body.mesh)},
-                {
-                    "cam": _point_data(bodies.cam.body, on_cam.displacement, on_cam.stress),
-                    other: _point_data(bodies.follower.body, there.displacement, there.stress),
-                },
-                position_notes(pair, cycle, int(k), number),
-            )
-            entries.append((angle, f"bodies/{name}"))
-        advance(min(start + _TOGETHER, indices.size), indices.size)
-    index = folder / BODIES_INDEX
-    write_pvd(index, entries)
-    return index
-
-
 @dataclass(frozen=True, eq=False)
 class BodyField:
-    """Displacement (2, n), m, and stress xx, yy, xy (3, n), Pa, at the nodes of a body."""
+    """Field of a mesh at k cam angles.
 
+    points (2, n, k), m; displacement (2, n, k), m; stress xx, yy, xy (3, n, k), Pa; hidden (t, k)
+    triangles that another mesh replaces.
+    """
+
+    points: Array
     displacement: Array
     stress: Array
+    hidden: NDArray[np.bool_]
 
-    def turned(self, turn: Array) -> BodyField:
-        """The field in rotated axes; `turn` (2, 2) transforms a vector to them."""
+    def placed(self, places: Places) -> BodyField:
+        """The field of a body in its own frame, in that of the cam."""
+        turn = places.turn
         xx, yy, xy = self.stress
-        tensor = turn @ np.array([[xx, xy], [xy, yy]]).transpose(2, 0, 1) @ turn.T
-        turned = np.stack([tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 0, 1]])
-        return BodyField(turn @ self.displacement, turned)
+        tensor = np.einsum(
+            "kab,bcnk,kdc->adnk", turn, np.array([[xx, xy], [xy, yy]]), turn, optimize=True
+        )
+        return replace(
+            self,
+            points=np.einsum("kab,bnk->ank", turn, self.points) + places.origin.T[:, None],
+            displacement=np.einsum("kab,bnk->ank", turn, self.displacement),
+            stress=np.stack([tensor[0, 0], tensor[1, 1], tensor[0, 1]]),
+        )
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
-    """Pose of a body: origin (2,), m, of its own frame, and rotation (2, 2) of its axes."""
+class Places:
+    """Poses of a body at k cam angles: origins (k, 2), m, and rotations (k, 2, 2) of its axes."""
 
     origin: Array
     turn: Array
 
     @property
-    def angle(self) -> float:
-        """Rotation, rad."""
-        return float(np.arctan2(self.turn[1, 0], self.turn[0, 0]))
-
-    def mesh(self, own: BodyMesh) -> BodyMesh:
-        return own.transformed(self.angle, self.origin)
+    def angle(self) -> Array:
+        """Rotation (k,), rad."""
+        return np.arctan2(self.turn[:, 1, 0], self.turn[:, 0, 0])
 
 
-def follower_places(pair: ContactPair, theta: Array) -> list[Place]:
-    """Poses of the follower's body in the cam frame at cam angles (n,)."""
-    contacts, normals = pair.contour.points(theta), pair.contour.normal(theta)
-    at, up = (np.broadcast_to(v, contacts.shape) for v in facing(pair, theta))
-    places = []
-    for k in range(theta.size):
-        n, u = -normals[:, k], up[:, k]
-        cosine, sine = u @ n, u[0] * n[1] - u[1] * n[0]
-        turn = np.array([[cosine, -sine], [sine, cosine]])
-        places.append(Place(contacts[:, k] - turn @ at[:, k], turn))
-    return places
-
-
-def facing(pair: ContactPair, theta: Array) -> tuple[Array, Array]:
-    """Contacts (2, n) on the follower and outward normals (2, n), in its own frame."""
+def follower_places(pair: ContactPair, theta: Array) -> Places:
+    """Poses of the follower's body in the cam frame at cam angles (k,)."""
+    contacts, normals = pair.contour.points(theta), -pair.contour.normal(theta)
     at, up = pair.follower.contacts(pair.contour, theta)
-    return np.repeat(at, theta.size // at.shape[1], 1), np.repeat(up, theta.size // up.shape[1], 1)
+    cosine, sine = (up * normals).sum(axis=0), up[0] * normals[1] - up[1] * normals[0]
+    turn = np.array([[cosine, -sine], [sine, cosine]]).transpose(2, 0, 1)
+    at = np.broadcast_to(at, contacts.shape)
+    return Places(contacts.T - np.einsum("kab,bk->ka", turn, at), turn)
 
 
-def position_notes(pair: ContactPair, cycle: Cycle, k: int, number: int) -> dict[str, float]:
-    """Data of a position of the cycle; `number` is that of its load case, from 1."""
-    contact, theta = cycle.contact, float(cycle.theta[k])
-    point, normal = pair.contour.points(theta), pair.contour.normal(theta)
-    return {
-        "cam_angle_deg": float(np.degrees(theta)),
-        "load_case_number": float(number),
-        "line_load_N_per_mm": float(contact.line_load[k]) * _MILLIMETRE,
-        "half_width_mm": float(contact.half_width[k]) / _MILLIMETRE,
-        "half_width_hertz_mm": float(contact.half_width_hertz[k]) / _MILLIMETRE,
-        "peak_pressure_MPa": float(contact.p0[k]) / _MEGAPASCAL,
-        "contact_x_mm": float(point[0]) / _MILLIMETRE,
-        "contact_y_mm": float(point[1]) / _MILLIMETRE,
-        "normal_x": float(normal[0]),
-        "normal_y": float(normal[1]),
-    }
+@dataclass(frozen=True, eq=False)
+class TurnFields:
+    """Fields of the bodies of a cycle, block by block."""
+
+    pair: ContactPair
+    bodies: CycleBodies
+    cycle: Cycle
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Cam and follower."""
+        return "cam", self.pair.follower.name
+
+    @property
+    def poisson(self) -> dict[str, float]:
+        """Poisson ratio by block."""
+        cam, other = self.pair.cam.poisson, self.pair.follower.material.poisson
+        first, second = self.names
+        return {first: cam, second: other, first + ZONE: cam, second + ZONE: other}
+
+    @cached_property
+    def triangles(self) -> dict[str, Index]:
+        """Triangles (3, t) by block."""
+        first, second = self.names
+        return {
+            first: self.bodies.cam.body.mesh.triangles[:3],
+            second: self.bodies.follower.body.mesh.triangles[:3],
+            first + ZONE: zone_triangles(),
+            second + ZONE: zone_triangles(),
+        }
+
+    @cached_property
+    def _sites(self) -> tuple[ZoneSite, ZoneSite]:
+        return ZoneSite(self.bodies.cam), ZoneSite(self.bodies.follower)
+
+    def at(self, part: IntArray) -> dict[str, BodyField]:
+        """Fields by block at some positions of the cycle, (k,), in the cam frame.
+
+        The displacement of the follower includes its rigid motion by the approach, so that the
+        displaced surfaces touch.
+        """
+        pair, theta, contact = self.pair, self.cycle.theta[part], self.cycle.contact
+        load = contact.line_load[part], contact.half_width_hertz[part]
+        contour, normals = pair.contour, pair.contour.normal(theta)
+        first, second = self.names
+        at_cam = self._sites[0], contour.points(theta), normals
+        cam = Loaded(*at_cam, *load, lambda along: fallen_back(contour, theta, along))
+        facing = self._sites[1], *pair.follower.contacts(contour, theta)
+        other = Loaded(*facing, *load, contour.follower_gap)
+        places = follower_places(pair, theta)
+        fields = {
+            first: cam.coarse,
+            second: other.coarse.placed(places),
+            first + ZONE: self._with_patch(cam, part),
+            second + ZONE: other.fine.placed(places),
+        }
+        closing = approach(fields[first + ZONE], fields[second + ZONE], normals)
+        for name in (second, second + ZONE):
+            moved = fields[name].displacement - closing * normals[:, None]
+            fields[name] = replace(fields[name], displacement=moved)
+        return fields
+
+    def _with_patch(self, cam: Loaded, part: IntArray) -> BodyField:
+        """Field below the contact, its stress that whose maxima the cycle lists."""
+        field, contact = cam.fine, self.cycle.contact
+        pressure = contact.pressure[part]
+        solved = np.isfinite(pressure).all(axis=1) & (cam.line_load > 0)
+        if not solved.any():
+            return field
+        chosen, poisson = part[solved], self.pair.cam.poisson
+        corners, shares, blend = patch_weights(poisson)
+        stress = stress_on_patch(
+            self.pair, cam.reduced(solved), self.cycle.theta[chosen], cam.line_load[solved],
+            cam.half_width[solved], contact.p0_hertz[chosen], pressure[solved],
+        )  # fmt: skip
+        inner = np.einsum("cink,in->cnk", stress[:, corners], shares, optimize=True)
+        inner = from_contact_axes(inner, cam.normals[:, solved])
+        total, count = field.stress.copy(), corners.shape[1]
+        weight = blend[:count, None]
+        below = total[:, :count]
+        below[:, :, solved] += weight * (inner - below[:, :, solved])
+        return replace(field, stress=total)
 
 
-def _loaded(
-    pair: ContactPair, bodies: CycleBodies, cycle: Cycle, part: IntArray
-) -> Iterator[tuple[BodyField, BodyField]]:
-    """Cam and follower, each in its own frame, at some positions."""
-    theta, contact = cycle.theta[part], cycle.contact
-    load = contact.line_load[part], contact.half_width_hertz[part]
-    cam = bodies.cam.fields(pair.contour.points(theta), pair.contour.normal(theta), *load)
-    other = bodies.follower.fields(*facing(pair, theta), *load)
-    for k in range(part.size):
-        yield (
-            BodyField(cam[0][..., k], cam[1][..., k]),
-            BodyField(other[0][..., k], other[1][..., k]),
+def fallen_back(contour: Contour, theta: Array, along: Array) -> Array:
+    """Height (m, k) of the tangent above the contour, m, at distances `along` (m, k), m.
+
+    By the circle of curvature where the contour does not reach as far.
+    """
+    try:
+        return -contour.surface_offset(theta, -along.T).T
+    except GeometryError:
+        bend = contour.curvature(theta) * along
+        return bend * along / (1 + np.sqrt(np.maximum(1 - bend**2, 0.0)))
+
+
+def approach(cam: BodyField, follower: BodyField, normals: Array) -> Array:
+    """Approach (k,), m, of the supports of both bodies, by which their surfaces touch.
+
+    From the fields below the contact, each relative to its support; `normals` (2, k) of the cam.
+    """
+    apart = follower.displacement[:, MIDDLE] - cam.displacement[:, MIDDLE]
+    return np.asarray((apart * normals).sum(axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """A body under contacts in its own frame.
+
+    contacts, normals (2, c) with c = 1 where all are equal; line_load N/m and half_width m (k,);
+    height of the tangent above the surface, m, at distances (m, k) along it, m.
+    """
+
+    site: ZoneSite
+    contacts: Array
+    normals: Array
+    line_load: Array
+    half_width: Array
+    height: Callable[[Array], Array]
+
+    @cached_property
+    def correction(self) -> tuple[Array, Array]:
+        """Correction (2, nodes, c), (3, nodes, c) on the coarse mesh."""
+        return self.site.body.correction_fields(self.contacts, self.normals)
+
+    def reduced(self, chosen: NDArray[np.bool_]) -> Correction:
+        """Correction at some of k different contacts."""
+        displaced = self.correction[0][:, :, chosen]
+        return self.site.body.correction_of(
+            displaced, self.contacts[:, chosen], self.normals[:, chosen]
         )
 
+    @cached_property
+    def radius(self) -> Array:
+        """Radius (k,) of the fine mesh, m."""
+        return self.site.radius(self.contacts, self.half_width)
 
-def _recovered(body: ElasticBody, displacement: Array) -> Array:
-    recovery = StressRecovery(body, np.arange(body.mesh.triangles.shape[1]))
-    nodal = np.zeros((3, body.mesh.points.shape[1]))
-    nodal[:, recovery.nodes] = recovery(displacement[:, :, None])[:, :, 0]
-    return nodal
+    @property
+    def coarse(self) -> BodyField:
+        """Field at the corners of the coarse mesh; elements within the fine mesh are hidden."""
+        mesh = self.site.body.body.mesh
+        corners, count = mesh.corners, self.line_load.size
+        points = mesh.points[:, :corners]
+        displaced, nodal = (values[:, :corners] for values in self.correction)
+        field = self._superposed(points, (displaced, nodal))
+        distance = np.hypot(*(points[:, :, None] - self.contacts[:, None]))
+        inside = distance < self.radius
+        still = np.broadcast_to(points[:, :, None], (2, corners, count))
+        return BodyField(still, *field, inside[mesh.triangles[:3]].all(axis=0))
 
+    @property
+    def fine(self) -> BodyField:
+        """Field on the fine mesh below the contact."""
+        along, depth = zone_places(self.half_width, self.radius)
+        depth = depth + self.height(along)
+        normals = self.normals[:, None]
+        tangents = np.stack([normals[1], -normals[0]])
+        points = self.contacts[:, None] + tangents * along - normals * depth
+        correction = self.site.interpolated(self.correction, points, self.normals)
+        field = self._superposed(points, correction)
+        shown = np.zeros((zone_triangles().shape[1], self.line_load.size), dtype=bool)
+        return BodyField(points, *field, shown)
 
-def _point_data(body: ElasticBody, displacement: Array, nodal: Array) -> dict[str, Array]:
-    shown = nodal / _MEGAPASCAL
-    return {
-        "displacement_mm": displacement / _MILLIMETRE,
-        "von_mises_MPa": stress.von_mises(shown, body.poisson),
-        "tau_max_MPa": stress.shear_in_plane(shown),
-        "stress_xx_MPa": shown[0],
-        "stress_yy_MPa": shown[1],
-        "stress_xy_MPa": shown[2],
-    }
+    def _superposed(self, points: Array, correction: tuple[Array, Array]) -> tuple[Array, Array]:
+        return self.site.body.superposed(
+            points, correction, self.contacts, self.normals, self.line_load, self.half_width
+        )

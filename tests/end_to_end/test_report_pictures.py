@@ -18,6 +18,7 @@ import report_fixture
 from browser_fixture import chromium
 
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.results.field_file import Block, field_file
 from camwright.reports import field_picture, picture_list, sections
 
 
@@ -43,28 +44,23 @@ def contact(folder):
     return field, point, normal, float(cycle["half_width_hertz_mm"][worst])
 
 
-def test_the_contact_is_found_from_the_field_alone(contact):
+def test_contact_is_that_stated_in_the_file(contact):
     field, point, normal, half_width = contact
     found, direction = field_picture.find_contact(field)
-    np.testing.assert_allclose(found, point, atol=0.2 * half_width)
-    np.testing.assert_allclose(direction, normal, atol=0.01)
+    np.testing.assert_allclose(found, point, rtol=1e-12)
+    np.testing.assert_allclose(direction, normal, rtol=1e-12)
+    assert field.notes["half_width_mm"] == pytest.approx(half_width, rel=1e-12)
+    with pytest.raises(ResultError, match="contact_x_mm"):
+        field_picture.find_contact(replace(field, notes={}))
 
 
-def test_what_the_file_says_of_its_contact_is_believed(contact):
-    field = contact[0]
-    notes = {"contact_x_mm": 1.0, "contact_y_mm": 2.0, "normal_x": 0.0, "normal_y": 3.0}
-    point, normal = field_picture.find_contact(replace(field, notes=notes))
-    assert point.tolist() == [1.0, 2.0]
-    assert normal.tolist() == [0.0, 1.0]
-
-
-def test_numbers_of_the_whole_file_are_read(folder, tmp_path):
-    import pyvista
-
-    grid = pyvista.read(folder / picture_list.FIELD)
-    grid.field_data["half_width_mm"] = [0.125]
-    grid.save(tmp_path / "noted.vtu")
-    assert field_picture.read_field(tmp_path / "noted.vtu").notes["half_width_mm"] == 0.125
+def test_outline_is_that_of_both_bodies(contact):
+    field, *_ = contact
+    ends = field.points[:, field.outline]
+    length = np.hypot(*(ends[:, 0] - ends[:, 1]))
+    roller = field.body[field.outline[0]] == 1
+    rims = 2 * np.pi * 1e3 * (report_fixture.ROLLER + report_fixture.HUB)
+    assert length[roller].sum() == pytest.approx(rims, rel=0.02)  # chords of the hub
 
 
 def test_the_contact_view_puts_the_roller_above(contact):
@@ -131,7 +127,15 @@ def test_pictures_are_whole_png_files(folder, contact):
 
 def test_a_file_without_field_is_refused(tmp_path):
     with pytest.raises(ResultError, match="no such file"):
-        field_picture.read_field(tmp_path / "none.vtu")
+        field_picture.read_field(tmp_path / "none.vtkhdf")
+    (tmp_path / "text.vtkhdf").write_text("no HDF5")
+    with pytest.raises(ResultError, match=r"text.vtkhdf: not a field file"):
+        field_picture.read_field(tmp_path / "text.vtkhdf")
+    blocks = {"cam": Block(np.array([[0], [1], [2]]), 3, np.zeros((2, 3)))}
+    with field_file(tmp_path / "bare.vtkhdf", [0.0], blocks, {}, {}):
+        pass
+    with pytest.raises(ResultError, match=r"bare.vtkhdf: no stress field .*p0_hertz_MPa"):
+        field_picture.read_field(tmp_path / "bare.vtkhdf")
 
 
 def test_the_page_carries_both_pictures_within_its_size(built):

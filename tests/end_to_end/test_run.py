@@ -104,8 +104,8 @@ def test_run_folder_holds_what_was_promised(
     assert stages <= set(summary["timings_s"])
     assert summary["input_sha256"] == case.sha256
     assert summary["mesh_quality"]["edges_across_half_width"] >= 7.9
-    for name in ("case.toml", "1_torque.csv", "8_report.html", "fields/contact_worst.vtu",
-                 "fields/bodies_cycle.pvd", "fields/envelope.vtu", "fields/turn.npz",
+    for name in ("case.toml", "1_torque.csv", "8_report.html", "fields/stress.vtkhdf",
+                 "fields/view_stress.py", "fields/turn.npz",
                  "trial_1/5_guides.npz", "scene.html"):  # fmt: skip
         assert (out / name).stat().st_size > 0, name
     assert not [entry.name for entry in out.iterdir() if entry.name.startswith(".")]

@@ -69,6 +69,7 @@ def short_run(
     positions: int | None,
     jobs: int | None,
     resume: bool,
+    fields: str,
     progress: Any,
     depth: Tier,
     report: Callable[[Path], object] | None,
@@ -142,6 +143,7 @@ def test_replace_takes_an_earlier_version_of_the_case_only(
         (("--out", "run", "--positions", "3"), "solver.positions = 3, must be >= 36"),
         (("--out", "run", "--positions", "x"), "--positions"),
         (("--out", "run", "--jobs", "0"), "--jobs = 0, must be >= 1 and <= 256"),
+        (("--out", "run", "--fields", "some"), "one of none, worst, default, all"),
         (("--out", "run", "--speed", "1"), "--speed"),
     ],
 )
@@ -290,3 +292,10 @@ def test_redesign_exits_by_its_points(
     assert ("missing data of these points: shaft" in out) == (code == 3)
     document["points"] = []
     assert command("redesign", case_file)[0] == 1
+
+
+def test_command_names_every_choice_of_cam_angles() -> None:
+    from camwright.pipeline.commands.run_command import FIELDS
+    from camwright.pipeline.results.field_output import Shown
+
+    assert tuple(Shown) == FIELDS

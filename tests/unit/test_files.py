@@ -1,7 +1,5 @@
 """Mesh and field files, read back by the programs they are for."""
 
-import xml.etree.ElementTree as ET
-
 import meshio
 import numpy as np
 import pytest
@@ -9,7 +7,7 @@ import pytest
 from camwright.geometry.errors import MeshError, ResultError
 from camwright.meshes.body_mesh import block_mesh, roller_mesh
 from camwright.meshes.element_size import Sizing
-from camwright.meshes.mesh_files import UNITS, write_msh, write_pvd, write_sheet, write_vtu
+from camwright.meshes.mesh_files import write_msh, write_vtu
 from camwright.meshes.vtu import QUADRATIC_TRIANGLE, Grid, vtu
 
 
@@ -120,25 +118,6 @@ def test_vtu_keeps_what_fills_one_block_or_many(tmp_path, values):
         np.testing.assert_array_equal(next(iter(read.cells_dict.values())), cells)
 
 
-def test_a_sheet_closes_on_itself(tmp_path):
-    import pyvista
-
-    angle = np.linspace(0, 2 * np.pi, 12, endpoint=False)
-    depth = np.array([0.0, 0.001, 0.003])
-    points = np.stack([np.outer(f(angle), 0.02 - depth) for f in (np.cos, np.sin)])
-    field = np.arange(36.0).reshape(12, 3)
-    path = tmp_path / "sheet.vtu"
-    write_sheet(path, points, {"x_MPa": field}, {"turns": 2.0})
-    grid = meshio.read(path)
-    np.testing.assert_array_equal(grid.point_data["x_MPa"], field.ravel())
-    assert grid.field_data[UNITS][0] == 1.0
-    ring = 0.5 * 12 * np.sin(2 * np.pi / 12) * (20.0**2 - 17.0**2)  # of two dodecagons, mm2
-    sizes = pyvista.read(path).compute_cell_sizes()
-    assert sizes.cell_data["Area"].sum() == pytest.approx(ring, rel=1e-12)
-    with pytest.raises(MeshError, match="field 'x_MPa'"):
-        write_sheet(path, points, {"x_MPa": field.T})
-
-
 def test_vtu_refuses_a_field_that_does_not_fit(tmp_path, bodies):
     with pytest.raises(MeshError, match="field 'p_MPa'"):
         write_vtu(tmp_path / "bad.vtu", {"cam": bodies["cam"]}, {"cam": {"p_MPa": np.zeros(3)}})
@@ -153,24 +132,14 @@ def test_vtu_refuses_a_field_that_does_not_fit(tmp_path, bodies):
     assert not list(tmp_path.iterdir())
 
 
-def test_pvd_lists_times_and_files(tmp_path):
-    write_pvd(tmp_path / "cycle.pvd", [(0.0, "cam_000.vtu"), (0.1, "a & b.vtu")])
-    sets = ET.parse(tmp_path / "cycle.pvd").getroot().findall("Collection/DataSet")
-    assert [(float(s.get("timestep")), s.get("file")) for s in sets] == [
-        (0.0, "cam_000.vtu"),
-        (0.1, "a & b.vtu"),
-    ]
-
-
 def write_each(path, bodies):
     return {
         ".msh": lambda: write_msh(path, bodies),
         ".vtu": lambda: write_vtu(path, bodies),
-        ".pvd": lambda: write_pvd(path, [(0.0, "a.vtu")]),
     }[path.suffix]
 
 
-@pytest.mark.parametrize("suffix", [".msh", ".vtu", ".pvd"])
+@pytest.mark.parametrize("suffix", [".msh", ".vtu"])
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, bodies, suffix, monkeypatch):
     path = tmp_path / f"old{suffix}"
     path.write_text("old")
@@ -185,7 +154,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, bodies, s
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
 
 
-@pytest.mark.parametrize("suffix", [".msh", ".vtu", ".pvd"])
+@pytest.mark.parametrize("suffix", [".msh", ".vtu"])
 def test_a_missing_folder_is_named(tmp_path, bodies, suffix):
     with pytest.raises(ResultError, match=r"nowhere.*No such file"):
         write_each(tmp_path / "nowhere" / f"x{suffix}", bodies)()

@@ -6,6 +6,7 @@ from scipy.integrate import quad
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.contact import hertz
+from camwright.pipeline.contact.elasticity.halfplane import point_force_displacement
 from camwright.pipeline.contact.elasticity.plane_stress_measures import shear_in_plane, von_mises
 
 
@@ -100,6 +101,29 @@ def test_surface_carries_pressure_inside_and_nothing_outside():
     expected = -np.sqrt(np.maximum(1 - x**2, 0))
     np.testing.assert_allclose(stress[1], expected, atol=1e-12)
     np.testing.assert_allclose(stress[2], 0, atol=1e-12)
+
+
+def test_displacement_is_that_of_the_point_forces_of_the_pressure():
+    # Gauss-Chebyshev sums of Flamant's solution; exact to round-off from a quarter half-width on.
+    x, depth = np.meshgrid(np.linspace(-5, 5, 21), [0.25, 0.7, 3.0, 40.0])
+    nodes, weights = np.polynomial.chebyshev.chebgauss(300)
+    weights = weights * (1 - nodes**2) * 2 / np.pi
+    away = np.broadcast_to(depth[..., None], (*x.shape, nodes.size))
+    summed = point_force_displacement(x[..., None] - nodes, away, 0.3) @ weights
+    np.testing.assert_allclose(hertz.subsurface_displacement(x, depth, 0.3), summed, atol=1e-13)
+
+
+def test_displacement_of_the_surface_is_a_parabola_under_the_pressure():
+    # Johnson (1985), eq. 4.42: the slope of the settlement is -4 x / (pi a) per P'/E'.
+    x = np.linspace(-1, 1, 9)
+    into = hertz.subsurface_displacement(x, 0.0, 0.3)[1]
+    np.testing.assert_allclose(into - into[4], -2 / np.pi * x**2, atol=1e-9)
+
+
+def test_displacement_above_the_tangent_is_that_of_a_point_force_far_away():
+    x, depth = np.array([-200.0, 60.0, 90.0]), np.array([-9.0, -12.0, -1.0])
+    found = hertz.subsurface_displacement(x, depth, 0.3)
+    np.testing.assert_allclose(found, point_force_displacement(x, depth, 0.3), atol=5e-5)
 
 
 def test_sliding_moves_the_largest_von_mises_to_the_surface_beyond_the_known_friction():

@@ -145,7 +145,7 @@ def test_trials_and_certificate_are_printed(html):
 
 
 def test_a_missing_field_is_told_in_words(html):
-    assert "The stress field is not available: contact_worst.vtu: no such file." in html
+    assert "The stress field is not available: stress.vtkhdf: no such file." in html
 
 
 def test_rebuilding_needs_only_the_folder_and_gives_the_same_page(tmp_path, undrawn):
