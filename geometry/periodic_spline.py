@@ -157,7 +157,9 @@ def _through(values: ArrayLike, degree: int) -> PeriodicPolynomial:
     weights = np.fft.irfft(np.fft.rfft(samples) / np.fft.rfft(at_knots), count)
     shifted = np.stack([np.roll(weights, piece - half - 1) for piece in range(degree + 1)])
     powers = (count / FULL_TURN) ** np.arange(degree + 1.0)
-    return PeriodicPolynomial(powers[:, None] * (_pieces(degree).T @ shifted))
+    coefficients = powers[:, None] * (_pieces(degree).T @ shifted)
+    coefficients[0] = samples  # without the round-off of the convolution
+    return PeriodicPolynomial(coefficients)
 
 
 @cache

@@ -114,7 +114,9 @@ class Torque:
         theta = uniform_cycle(n)
         parts = {name: _periodic(part, theta) for name, part in self.components.items()}
         varying = self.varying_inertia
-        return Torque(theta, parts, None if varying is None else _periodic(varying, theta))
+        if varying is not None:
+            varying = np.maximum(_periodic(varying, theta), 0.0)  # zero at the dead centres
+        return Torque(theta, parts, varying)
 
 
 def uniform_cycle(count: int) -> Array:

@@ -190,3 +190,10 @@ def test_torque_of_a_case_is_kept_between_runs(tmp_path, monkeypatch):
         np.testing.assert_array_equal(torque.total, computed.total)
         np.testing.assert_array_equal(torque.varying_inertia, computed.varying_inertia)
         np.testing.assert_array_equal(torque.theta_crank, computed.theta_crank)
+
+
+@pytest.mark.parametrize("count", [360, 240, 90, 77])
+def test_resampled_inertia_is_not_negative(count):
+    """It vanishes at the dead centres, where a spline may fall below zero by round-off."""
+    varying = torque_from_cylinder(ENGINE, SPEED).resampled(count).varying_inertia
+    assert varying.min() >= 0.0
