@@ -48,9 +48,9 @@ class PeriodicPolynomial:
         if _KEPT_FROM <= angles.size <= _KEPT_TO:
             rows = _kept.get(self, {}).get((angles.shape, angles.tobytes()))
             if derivative == 0 or (rows is not None and len(rows) > derivative):
-                value: Array = self.derivatives(angles, derivative)[derivative]
-                return value
-        value = self._evaluate(angles, derivative, derivative)[0]
+                row: Array = self.derivatives(angles, derivative)[derivative]
+                return row
+        value: Array = self._evaluate(angles, derivative, derivative)[0]
         return value
 
     def derivatives(self, theta: ArrayLike, order: int) -> Array:

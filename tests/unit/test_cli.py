@@ -24,6 +24,8 @@ from camwright.pipeline.results.run_folder import RunFolder
 
 Command = Callable[..., tuple[int, str, str]]
 
+ROOT = Path(__file__).resolve().parents[2]
+
 
 @pytest.fixture
 def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
@@ -263,6 +265,24 @@ def test_version_answers_without_the_heavy_libraries() -> None:
         "try: cli.main()\n"
         "except SystemExit: pass\n"
         "print(sorted({'numpy', 'pydantic', 'pint', 'gmsh', 'pyvista'} & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, env=os.environ
+    )
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_a_case_is_read_without_the_heavy_libraries() -> None:
+    """Modules of the command line and of the preview, and the units of a case file."""
+    script = (
+        "import sys\n"
+        "from camwright.pipeline import cli, preview\n"
+        "from camwright.pipeline.case.case_file import read_case\n"
+        f"read_case({str(ROOT / 'cases' / 'gx120.toml')!r})\n"
+        "heavy = {'dask', 'gmsh', 'h5py', 'matplotlib', 'meshio', 'pandas', 'pint', 'pyvista'}\n"
+        "heavy |= {'scipy.' + name for name in ('interpolate', 'linalg', 'optimize', 'sparse')}\n"
+        "heavy.add('skfem')\n"
+        "print(sorted(heavy & set(sys.modules)))"
     )
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, env=os.environ
