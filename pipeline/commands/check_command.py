@@ -2,20 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
-from camwright.pipeline.commands.terminal import EXIT_CODE, FAILED, say, show, show_json
+from camwright.geometry.errors import CamError, InputError
+from camwright.pipeline.commands.terminal import (
+    ERROR,
+    EXIT_CODE,
+    FAILED,
+    INCOMPLETE,
+    PASSED,
+    say,
+    show,
+    show_json,
+    stdout,
+)
 
 if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
     from camwright.pipeline.results.run_reader import CheckRecord
+
+SEVERITY = (PASSED, INCOMPLETE, FAILED, ERROR)
+"""Exit codes, from the best to the worst."""
 
 
 def check(
-    target: Annotated[Path, typer.Argument(metavar="DIR|CASE", help="Run folder or case file.")],
+    targets: Annotated[
+        list[Path], typer.Argument(metavar="DIR|CASE...", help="Run folders or case files.")
+    ],
     as_json: Annotated[bool, typer.Option("--json", help="Print the checks as JSON.")] = False,
     junit: Annotated[
         Path | None, typer.Option("--junit", metavar="FILE", help="Write the checks as JUnit XML.")
@@ -42,38 +60,107 @@ def check(
         typer.Option("--verify-record", help="Compare the files of the run with signoff.json."),
     ] = False,
 ) -> int:
-    """Print the verdict of a run, or the screen of a preview of a case.
+    """Print the verdict of a run, or the screen of a preview of a case; of several, a table.
 
     Exit code 0: PASS, 1: FAIL, 2: error, 3: INCOMPLETE (data are missing) or OPEN: a preview, or a
-    run below the certified depth, never passes.
+    run below the certified depth, never passes. Of several the worst: error, FAIL, INCOMPLETE.
     """
-    from camwright.pipeline.results.check_report import junit as junit_text
-    from camwright.pipeline.results.check_report import outcome, selected
+    from camwright.pipeline.results.check_report import FAIL_ON
+
+    if fail_on not in FAIL_ON:
+        raise InputError("--fail-on", fail_on, f"one of: {', '.join(FAIL_ON)}")
+    patterns, alone = only or [], len(targets) == 1
+    if alone:
+        if verify_record and not _as_signed(targets[0]):
+            return FAILED
+        judged = [_judged(targets[0], patterns, fail_on, baseline)]
+    elif baseline is not None:
+        raise InputError("--baseline", str(baseline), "stated with one run or case alone")
+    else:
+        judged = [_of_several(each, patterns, fail_on, verify_record) for each in targets]
+    if junit is not None:
+        from camwright.pipeline.base.files import write_atomic
+        from camwright.pipeline.results.check_report import junit as junit_text
+
+        write_atomic(junit, junit_text([each.suite for each in judged]))
+    documents = [each.document for each in judged]
+    if as_json:
+        show_json(documents[0] if alone else {"runs": documents})
+    elif alone:
+        show(documents[0], None if targets[0].is_file() else targets[0])
+    else:
+        from camwright.pipeline.results.check_report import overview
+
+        stdout.print(overview(each.row for each in judged))
+    return max((each.code for each in judged), key=SEVERITY.index)
+
+
+class _Judged(NamedTuple):
+    """Checks of a run or case: JSON document, row of the overview, JUnit suite, exit code."""
+
+    document: dict[str, Any]
+    row: Sequence[str]
+    suite: Element
+    code: int
+
+
+def _judged(
+    target: Path, only: Sequence[str], fail_on: str, baseline: Path | None, suite: str = ""
+) -> _Judged:
+    """Checks of a run folder or of a preview of a case file.
+
+    Parameters
+    ----------
+    suite : str   name of the JUnit suite; "": that of the case
+
+    Raises
+    ------
+    CamError
+        If the run cannot be read, the case solved, or no check fits a pattern.
+    """
+    from camwright.pipeline.results.check_report import (
+        junit_suite,
+        outcome,
+        overview_row,
+        selected,
+    )
     from camwright.pipeline.results.run_reader import VERDICTS, exit_word
 
-    if verify_record and not _as_signed(target):
-        return FAILED
-    is_case = target.is_file()
-    document = _checked_case(target) if is_case else _checked_run(target)
-    document["checks"] = list(selected(document["checks"], only or ()))
+    document = _checked_case(target) if target.is_file() else _checked_run(target)
+    document["checks"] = list(selected(document["checks"], only))
     decided = outcome(document["checks"], fail_on)
     if not only and fail_on != "never":
         decided = max(decided, exit_word(document), key=VERDICTS.index)
     if baseline is not None:
         from camwright.pipeline.results.baseline_comparison import changes
 
-        document["changes"] = changes(_comparable(baseline, only or ()), document["checks"])
-    if junit is not None:
-        from camwright.pipeline.base.files import write_atomic
+        document["changes"] = changes(_comparable(baseline, only), document["checks"])
+    words = {"verdict": document["verdict_line"], "scope": document["scope"]["statement"]}
+    name = suite or document["case"]
+    return _Judged(
+        document,
+        overview_row(str(target), document),
+        junit_suite(document["checks"], name, fail_on, words),
+        EXIT_CODE[decided],
+    )
 
-        words = {"verdict": document["verdict_line"], "scope": document["scope"]["statement"]}
-        text = junit_text(document["checks"], document["case"], fail_on, words)
-        write_atomic(junit, text)
-    if as_json:
-        show_json(document)
-    else:
-        show(document, None if is_case else target)
-    return EXIT_CODE[decided]
+
+def _of_several(target: Path, only: Sequence[str], fail_on: str, verify_record: bool) -> _Judged:
+    """One of several runs and cases; one that cannot be judged does not hide the others."""
+    from camwright.pipeline.results.check_report import unread_suite
+
+    name = str(target)
+    try:
+        if verify_record and not _as_signed(target):
+            message, code, word = "not what was signed", FAILED, "CHANGED"
+        else:
+            judged = _judged(target, only, fail_on, None, name)
+            return judged._replace(document={"target": name, **judged.document})
+    except CamError as error:
+        message, code, word = str(error), ERROR, "ERROR"
+        say(message)
+    document = {"target": name, "error": message}
+    return _Judged(document, (name, "", "", word), unread_suite(name, message), code)
 
 
 def _comparable(folder: Path, only: Iterable[str]) -> list[CheckRecord]:

@@ -7,10 +7,16 @@ import math
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.results.run_reader import AnyCheck, CheckRecord, Finding, judged
+from camwright.pipeline.results.run_reader import (
+    AnyCheck,
+    CheckRecord,
+    Finding,
+    judged,
+    within_depth,
+)
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -22,6 +28,8 @@ any optional check that fails; none."""
 HEADINGS = (
     *("check", "demand", "limit", "unit", "used", "margin", "where", "worst corner", "status"),
 )
+OVERVIEW = ("run", "case", "depth", "result", "failed", "missing", "highest utilisation")
+"""Columns of `overview`."""
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 STYLES = {"pass": "green", "fail": "red", "waived": "yellow", "not_evaluated": "magenta"}
 
@@ -155,6 +163,36 @@ def table(records: Iterable[CheckRecord]) -> Table:
     return made
 
 
+def overview(rows: Iterable[Sequence[str]]) -> Table:
+    """Several runs as a table for the terminal, a row each, by `OVERVIEW`."""
+    from rich.table import Table
+    from rich.text import Text
+
+    made = Table(box=None, pad_edge=False, header_style="")
+    for heading in OVERVIEW:
+        right = heading in ("failed", "missing")
+        made.add_column(
+            heading, justify="right" if right else "left", no_wrap=heading != OVERVIEW[0]
+        )
+    for row in rows:
+        made.add_row(*map(Text, row))
+    return made
+
+
+def overview_row(target: str, document: Mapping[str, Any]) -> tuple[str, ...]:
+    """Run or case as a row of `overview`."""
+    checks: Sequence[CheckRecord] = within_depth(document["checks"])
+    required = [record for record in sorted(checks, key=rank) if record["must_have"]]
+    known = [record for record in required if record["status"] != "not_evaluated"]
+    worst = f"{known[0]['id']} {share(known[0]['utilisation'])}" if known else ""
+    failed = sum(record["status"] == "fail" for record in required)
+    return (
+        *(target, document["case"], document["depth"]),
+        str(document["verdict"] or document["screen"]).upper(),
+        *(str(failed), str(len(required) - len(known)), worst),
+    )
+
+
 def remarks(records: Iterable[CheckRecord]) -> list[str]:
     """Lines below the table: missing data, not proven checks, waivers."""
     records = sorted(records, key=rank)
@@ -223,10 +261,32 @@ def share(value: float | None) -> str:
     return "-" if value is None else f"{value:.0%}"
 
 
-def junit(
+def junit(suites: Sequence[ET.Element]) -> str:
+    """JUnit XML of one suite, or of several in order."""
+    if len(suites) == 1:
+        root = suites[0]
+    else:
+        root = ET.Element("testsuites")
+        for count in ("tests", "failures", "errors", "skipped"):
+            root.set(count, str(sum(int(suite.get(count, "0")) for suite in suites)))
+        root.extend(suites)
+    ET.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, "unicode") + "\n"
+
+
+def unread_suite(name: str, message: str) -> ET.Element:
+    """JUnit suite of a run or case that cannot be read or solved."""
+    counts = {"tests": "1", "failures": "0", "errors": "1", "skipped": "0"}
+    suite = ET.Element("testsuite", {"name": _for_xml(name), **counts})
+    case = ET.SubElement(suite, "testcase", classname=f"camwright.{_for_xml(name)}", name="read")
+    ET.SubElement(case, "error", type="error", message=_for_xml(message))
+    return suite
+
+
+def junit_suite(
     records: Iterable[CheckRecord], name: str, fail_on: str, properties: Mapping[str, str]
-) -> str:
-    """JUnit XML: properties of the run, such as its verdict, and one test case a check.
+) -> ET.Element:
+    """JUnit suite: properties of the run, such as its verdict, and one test case a check.
 
     A check without data is an error where it decides at the level `fail_on`, else skipped.
     """
@@ -237,7 +297,7 @@ def junit(
     skipped = {r["id"] for r in records if r["status"] == "not_evaluated"} - lacking
     suite = ET.Element(
         "testsuite",
-        name=name,
+        name=_for_xml(name),
         tests=str(len(records)),
         failures=str(len(failed)),
         errors=str(len(lacking)),
@@ -247,7 +307,9 @@ def junit(
     for key, value in properties.items():
         ET.SubElement(stated, "property", name=key, value=_for_xml(value))
     for record in records:
-        case = ET.SubElement(suite, "testcase", classname=f"camwright.{name}", name=record["id"])
+        case = ET.SubElement(
+            suite, "testcase", classname=f"camwright.{_for_xml(name)}", name=record["id"]
+        )
         text = _for_xml(
             f"{record['title']}: {number(record['demand'])} against {number(record['limit'])}"
             f" {record['unit']}, {status(record)}; {record['source']}"
@@ -265,8 +327,7 @@ def junit(
             waiver = _for_xml(waiver_words(record))
             words = f"{text}; waiver {waiver}" if waiver else text
             ET.SubElement(case, "system-out").text = words
-    ET.indent(suite)
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(suite, "unicode") + "\n"
+    return suite
 
 
 def _for_xml(text: str) -> str:

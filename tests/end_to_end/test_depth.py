@@ -60,7 +60,7 @@ def test_no_check_above_the_depth_is_better_than_not_evaluated(shallow: Path) ->
 def test_check_never_passes_a_shallow_run(
     shallow: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert check(shallow) == {"fail": 1, "open": 3}[str(read_run(shallow).screen)]
+    assert check([shallow]) == {"fail": 1, "open": 3}[str(read_run(shallow).screen)]
     printed = capsys.readouterr().out
     assert "PASS" not in printed
     assert f"at the depth {shallow.name}: " in printed

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import sys
 import tomllib
@@ -23,6 +24,7 @@ from camwright.pipeline.results.check_report import (
     binding_lines,
     failing,
     junit,
+    junit_suite,
     not_proven,
     outcome,
     remarks,
@@ -159,13 +161,13 @@ def test_a_demand_that_is_not_proven_is_shown_with_its_error_bar(
     assert not_proven(record) == words
     assert f"grip: {words}" in remarks([record])
     assert rows([record])[0][-1] == "fail, not proven"
-    assert words in junit([record], "small", "must", {})
+    assert words in junit([junit_suite([record], "small", "must", {})])
     assert not_proven(check("fail")) == ""
 
 
 def test_junit_counts() -> None:
     said = {"verdict": "FAIL, 1 waived", "scope": "Not covered: \x1b <key>"}
-    suite = ET.fromstring(junit(RECORDS, "small", "must", said))
+    suite = ET.fromstring(junit([junit_suite(RECORDS, "small", "must", said)]))
     counts = {name: suite.get(name) for name in ("tests", "failures", "errors", "skipped")}
     assert counts == {"tests": "6", "failures": "1", "errors": "1", "skipped": "1"}
     for kind, name in (("failure", "a_two"), ("error", "c_must"), ("skipped", "b_open")):
@@ -208,6 +210,41 @@ def test_exit_codes_and_files(run: Path, command: Command, tmp_path: Path) -> No
     code, out, _ = command("check", run, "--json", "--baseline", run, "--only", "a_*,b_*")
     document = json.loads(out)
     assert (code, document["changes"], len(document["checks"])) == (1, [], 4)
+
+
+def test_several_runs_give_one_table_one_file_and_the_worst_code(
+    run: Path, tmp_path: Path, command: Command
+) -> None:
+    good, open_ = write_run(tmp_path / "good"), tmp_path / "open"
+    write_run(open_, status="not_evaluated")
+    gone, file = tmp_path / "gone", tmp_path / "junit.xml"
+    assert command("check", good, good)[0] == 0
+    assert command("check", good, open_)[0] == 3
+    assert command("check", open_, run, good)[0] == 1
+    code, out, err = command("check", good, run, gone, open_, "--junit", file)
+    assert code == 2
+    assert re.findall(r"PASS|FAIL|ERROR|INCOMPLETE", out) == ["PASS", "FAIL", "ERROR", "INCOMPLETE"]
+    assert err == f"camwright: {gone}: no such folder\n"
+    root = ET.parse(file).getroot()
+    assert [suite.get("name") for suite in root] == [str(each) for each in (good, run, gone, open_)]
+    for count, expected in (("tests", 9), ("failures", 1), ("errors", 3), ("skipped", 1)):
+        assert int(root.get(count, "")) == expected
+        assert sum(int(suite.get(count, "")) for suite in root) == expected
+    code, out, _ = command("check", good, gone, "--json")
+    first, second = json.loads(out)["runs"]
+    assert (code, first["verdict"], first["target"]) == (2, "pass", str(good))
+    assert second == {"target": str(gone), "error": f"{gone}: no such folder"}
+
+
+def test_several_runs_and_their_records(run: Path, tmp_path: Path, command: Command) -> None:
+    good, other = write_run(tmp_path / "good"), write_run(tmp_path / "other")
+    assert command("check", good, other, "--verify-record")[0] == 0
+    (other / "trial_1" / "5_cycle.csv").write_text("")
+    code, out, err = command("check", good, other, "--verify-record")
+    assert code == 1
+    assert "CHANGED" in out and "5_cycle.csv: was changed" in err
+    code, _, err = command("check", good, run, "--baseline", good)
+    assert code == 2 and "--baseline" in err
 
 
 def test_a_changed_byte_fails_the_record_and_is_named(run: Path, command: Command) -> None:
