@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.worker_processes import Crew, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques, measurement_record
 from camwright.pipeline.checks.tolerance_corners import corners_record
@@ -26,6 +27,9 @@ from camwright.pipeline.smoothing.required_lift import required_torque
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.solver import certify_trial
 
+START = "start"
+"""Stage before the first: start of the program, imports, case file."""
+
 
 def run_case(
     case: Case,
@@ -37,7 +41,9 @@ def run_case(
     resume: bool = False,
     fields: Shown = Shown.DEFAULT,
     progress: Progress = SILENT,
+    began: float | None = None,
     report: Callable[[Path], object] | None = None,
+    ahead: Callable[[Path, Crew], object] | None = None,
     also: Callable[[Trial], Mapping[str, Any]] = lambda _: {},
 ) -> Run:
     """Trials of a case until a cam passes or the limit that binds is named; writes the run folder.
@@ -49,7 +55,10 @@ def run_case(
     jobs : int           processes for the certificate; None: number of processors, at most 4
     resume : bool        continue an interrupted run
     fields : Shown       cam angles of the stress field
+    began : float        `time.perf_counter` at the start of the program, for the times of the
+                         stages; None: now
     report : callable    writes page and pictures into the run folder; None: none are written
+    ahead : callable     begins pictures in the worker processes while the certificate is solved
     also : callable      final trial -> further entries of ``run.json``
 
     Returns
@@ -63,9 +72,9 @@ def run_case(
     """
     out = Path(out)
     case = case if positions is None else case.with_positions(positions)
-    with RunFolder(out, case, depth=depth, resume=resume) as folder:
-        watch = Stopwatch(progress)
-        summary = _solved(folder, case, depth, jobs, fields, watch, also)
+    with RunFolder(out, case, depth=depth, resume=resume) as folder, crew(jobs) as workers:
+        watch = Stopwatch(progress, began)
+        summary = _solved(folder, case, depth, workers, fields, watch, also, ahead)
         if report is not None:
             watch.stage("report")  # the solution, which takes most of the memory, is released
             folder.write_summary(summary | {"timings_s": watch.read()})
@@ -78,10 +87,11 @@ def _solved(
     folder: RunFolder,
     case: Case,
     depth: Tier,
-    jobs: int | None,
+    workers: Crew,
     fields: Shown,
     watch: Stopwatch,
     also: Callable[[Trial], Mapping[str, Any]],
+    ahead: Callable[[Path, Crew], object] | None,
 ) -> dict[str, Any]:
     """Solve a case and write all files but report and records; the contents of ``run.json``."""
     watch.stage("torque")
@@ -90,20 +100,30 @@ def _solved(
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)
     final, statement = trials_of(case, torques, tier=depth, sink=writer, progress=watch)
-    if depth is Tier.CERTIFIED:
-        failing = _failing(final)
-        final = certify_trial(final, jobs=jobs, progress=watch)
-        statement = restated(statement, failing, _failing(final))
-        writer.judge(final)
     if final.corners:
         folder.write_corners(corners_record(final.case, final.corners))
-    if depth >= Tier.CYCLE:
-        watch.stage("fields")
-        write_fields(folder.fields, final, fields, watch.advance)
-    if final.mesh is not None:  # else the contour is no body to machine
-        watch.stage(WORKSHOP)
-        write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
-    return _summary(folder, torques, statement, final) | dict(also(final))
+    summary = _summary(folder, torques, final) | dict(also(final))
+
+    def rest() -> None:
+        """Files that need no certificate."""
+        if depth >= Tier.CYCLE:
+            watch.stage("fields")
+            write_fields(folder.fields, final, fields, watch.advance)
+        if final.mesh is not None:  # else the contour is no body to machine
+            watch.stage(WORKSHOP)
+            write_workshop(folder.path / WORKSHOP, final.case, final.contour, note=watch.note)
+        if depth is Tier.CERTIFIED and ahead is not None:
+            watch.stage("report")
+            folder.write_summary(summary | _judged(final, statement) | {"timings_s": watch.read()})
+            ahead(folder.path, workers)
+
+    if depth < Tier.CERTIFIED:
+        rest()
+        return summary | _judged(final, statement)
+    failing = _failing(final)
+    certified = certify_trial(final, workers, progress=watch, meanwhile=rest)
+    writer.judge(certified)
+    return summary | _judged(certified, restated(statement, failing, _failing(certified)))
 
 
 def restated(statement: str, before: Sequence[str], after: Sequence[str]) -> str:
@@ -123,10 +143,8 @@ def _failing(trial: Trial) -> list[str]:
     return [one.id for one in trial.checks if one.must_have and one.status == "fail"]
 
 
-def _summary(
-    folder: RunFolder, torques: Mapping[str, Torque], statement: str, final: Trial
-) -> dict[str, Any]:
-    """Contents of ``run.json``; writes ``1_speed.csv``."""
+def _summary(folder: RunFolder, torques: Mapping[str, Torque], final: Trial) -> dict[str, Any]:
+    """Contents of ``run.json`` that no certificate changes; writes ``1_speed.csv``."""
     case, required = final.case, None
     if final.smoothing.strength is not None:
         smoother = Smoother.from_case(case.smoothing).stretched(final.smoothing.strength)
@@ -134,53 +152,64 @@ def _summary(
     crank_speed, columns = crank_speed_record(torques, final, required)
     if columns is not None:
         folder.write_speed(columns)
-    benchmarks = final.solution.benchmarks
     return {
         "trials": final.number,
-        "depth": final.depth.word,
-        "verdict": final.verdict,
-        "screen": final.screen,
-        "binding": list(final.binding),
         "scope": case.scope.as_record(),
-        "statement": statement,
         "headline": headline(torques, final),
         "prices": None if final.synthesis is None else final.synthesis["prices"],
-        "benchmarks": None if benchmarks is None else dict(benchmarks),
         "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
         **crank_speed,
         "measurement": measurement_record(case),
     }
 
 
-@dataclass
-class Stopwatch:
-    """Progress that sums the time of each stage, s, over all trials."""
+def _judged(final: Trial, statement: str) -> dict[str, Any]:
+    """Contents of ``run.json`` that follow from the checks and the certificate."""
+    benchmarks = final.solution.benchmarks
+    return {
+        "depth": final.depth.word,
+        "verdict": final.verdict,
+        "screen": final.screen,
+        "binding": list(final.binding),
+        "statement": statement,
+        "benchmarks": None if benchmarks is None else dict(benchmarks),
+    }
 
-    progress: Progress
-    seconds: dict[str, float] = field(default_factory=dict)
-    _began: float = field(default_factory=time.perf_counter)
-    _running: tuple[str, float] | None = None
+
+class Stopwatch:
+    """Progress that sums the time of each stage, s, over all trials.
+
+    Every moment belongs to one stage, the first to `START`, so that the stages sum to the total.
+
+    Parameters
+    ----------
+    began : float   `time.perf_counter` at the start; None: now
+    """
+
+    def __init__(self, progress: Progress, began: float | None = None) -> None:
+        self._progress = progress
+        self._began = time.perf_counter() if began is None else began
+        self._running, self._since = START, self._began
+        self._seconds: dict[str, float] = {}
 
     def stage(self, name: str) -> None:
         self._close()
-        self._running = name.rpartition(": ")[2], time.perf_counter()
-        self.progress.stage(name)
+        self._running = name.rpartition(": ")[2]
+        self._progress.stage(name)
 
     def advance(self, k: int, total: int) -> None:
-        self.progress.advance(k, total)
+        self._progress.advance(k, total)
 
     def note(self, text: str) -> None:
-        self.progress.note(text)
+        self._progress.note(text)
 
     def read(self) -> dict[str, float]:
         """Time by stage, the current one included, and total, s."""
         self._close()
-        total = time.perf_counter() - self._began
-        return {name: round(s, 3) for name, s in (self.seconds | {"total": total}).items()}
+        times = self._seconds | {"total": self._since - self._began}
+        return {name: round(seconds, 3) for name, seconds in times.items()}
 
     def _close(self) -> None:
-        if self._running is not None:
-            name, start = self._running
-            now = time.perf_counter()
-            self.seconds[name] = self.seconds.get(name, 0.0) + now - start
-            self._running = name, now
+        now = time.perf_counter()
+        self._seconds[self._running] = self._seconds.get(self._running, 0.0) + now - self._since
+        self._since = now

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from camwright.geometry.contour import Contour
 from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.worker_processes import Crew, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.checks.check import Check, in_order
@@ -71,7 +72,8 @@ def solve(
         progress=progress,
     )
     if tier is Tier.CERTIFIED:
-        solved = certified_solution(solved, jobs=jobs, progress=progress)
+        with crew(jobs) as workers:
+            solved = certified_solution(solved, workers, progress=progress)
     progress.stage(CHECKS)
     trial = Trial(1, "", GIVEN_LIFT, solved, all_checks(solved))
     tried = corners and tier > Tier.SCREENING
@@ -90,14 +92,15 @@ def judged_at_corners(trial: Trial, torques: Mapping[str, Torque] | None = None)
     return replace(trial, corners=tried, checks=_judged(trial.solution, tried))
 
 
-def certify_trial(trial: Trial, *, jobs: int | None = None, progress: Progress = SILENT) -> Trial:
-    """Trial with its certificate, checked again.
-
-    Parameters
-    ----------
-    jobs : int   processes; None: number of processors, at most 4
-    """
-    solved = certified_solution(trial.solution, jobs=jobs, progress=progress)
+def certify_trial(
+    trial: Trial,
+    workers: Crew,
+    *,
+    progress: Progress = SILENT,
+    meanwhile: Callable[[], object] = lambda: None,
+) -> Trial:
+    """Trial with its certificate, checked again; see `certified_solution`."""
+    solved = certified_solution(trial.solution, workers, progress=progress, meanwhile=meanwhile)
     return replace(trial, solution=solved, checks=_judged(solved, trial.corners))
 
 

@@ -7,7 +7,9 @@ for colour-blind readers, darkened for contrast on white; dashes distinguish cur
 
 from __future__ import annotations
 
+import hashlib
 import io
+import pickle
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -25,6 +27,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
 from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.reports.analysis_sheet import groups
 from camwright.reports.figures import (
     CAM_AXIS,
@@ -101,10 +104,23 @@ class Drawn:
 @lru_cache(maxsize=1)
 def drawn_groups(material: Material) -> Sequence[tuple[str, Sequence[Drawn]]]:
     """Drawings of the sheet, by group; cached."""
-    return tuple(
-        (title, tuple(Drawn(each, svg_of(each)) for each in figures))
-        for title, figures in groups(material.turn)
-    )
+
+    def drawn(figure: Figure) -> Drawn:
+        task = material.ahead.get(content_key(figure)) if material.ahead else None
+        return Drawn(figure, svg_of(figure) if task is None else task.result())
+
+    return tuple((title, tuple(map(drawn, figures))) for title, figures in groups(material.turn))
+
+
+def begun(material: Material, workers: Crew) -> dict[str, Task]:
+    """Drawings of the sheet handed to worker processes, by the content of each figure."""
+    figures = [figure for _, group in groups(material.turn) for figure in group]
+    return {content_key(figure): workers.submit(svg_of, figure) for figure in figures}
+
+
+def content_key(figure: Figure) -> str:
+    """SHA-256 of a figure; a figure with other data, limits or words has another key."""
+    return hashlib.sha256(pickle.dumps(figure)).hexdigest()
 
 
 def write(material: Material) -> list[Path]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import write_atomic
+from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.reports import (
     field_picture,
     field_raster,
@@ -168,6 +169,25 @@ PICTURES: tuple[Callable[[Material], Sequence[Picture]], ...] = (
     guide_pictures,
 )
 """Pictures of the report, in this order."""
+
+
+def pictures(material: Material) -> list[Picture]:
+    """Pictures of the report, those begun ahead from their worker."""
+    every: list[Picture] = []
+    for draw in PICTURES:
+        task = material.ahead.get(_key(draw, material))
+        every += draw(material) if task is None else task.result()
+    return every
+
+
+def begun(material: Material, workers: Crew) -> dict[str, Task]:
+    """Pictures handed to worker processes, by kind and load case."""
+    return {_key(draw, material): workers.submit(draw, material) for draw in PICTURES}
+
+
+def _key(draw: Callable[[Material], Sequence[Picture]], material: Material) -> str:
+    """Kind of a picture and its load case, on which alone of the checks it depends."""
+    return f"{draw.__name__}: {material.turn.load_case}"
 
 
 def write_pictures(draw: Callable[[Material], Sequence[Picture]], material: Material) -> list[Path]:

@@ -14,7 +14,7 @@ from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_reader import CERTIFIED, TrialRecord
 from camwright.reports import report_tables, verification_tables
 from camwright.reports.figure_svg import Drawn, drawn_groups
-from camwright.reports.picture_list import PICTURES, Picture
+from camwright.reports.picture_list import Picture, pictures
 from camwright.reports.report_data import Material
 from camwright.reports.report_tables import (
     DASH,
@@ -179,7 +179,7 @@ def report_content(material: Material) -> Report:
             _checks(material), _numbers(material), _sheet(material),
             Section(
                 "fields", "Stress fields",
-                (Block(Pictures([picture for draw in PICTURES for picture in draw(material)])),),
+                (Block(Pictures(pictures(material))),),
                 brief="Stress fields",
             ),
             _trials(material), _evidence(material),

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.worker_processes import Task
 from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.reports.report_tables import Record
 from camwright.reports.sheet_turn import Turn
@@ -20,16 +22,18 @@ FIGURES = "figures"
 class Material:
     """A run folder, its contents, and the load case that the sheet draws.
 
-    Compared by identity, so that drawings can be cached by it.
+    Compared by identity, so that drawings can be cached by it. `ahead` are drawings begun before
+    the run was complete, by the key of what they show.
     """
 
     folder: Path
     run: Run
     case: Record
     turn: Turn
+    ahead: Mapping[str, Task] = field(default_factory=dict)
 
 
-def read_material(folder: Path) -> Material:
+def read_material(folder: Path, ahead: Mapping[str, Task] | None = None) -> Material:
     """Data of a run folder.
 
     Raises
@@ -39,7 +43,7 @@ def read_material(folder: Path) -> Material:
     """
     run = read_run(folder)
     case = _case(run)
-    return Material(Path(folder), run, case, governing_turn(run, case))
+    return Material(Path(folder), run, case, governing_turn(run, case), ahead or {})
 
 
 def governing_turn(run: Run, case: Record) -> Turn:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
 from camwright.geometry.errors import InputError, ResultError
+from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.reports import figure_svg, page, pdf, picture_list, scene_page
 from camwright.reports.report_data import FIGURES, Material, read_material
 
@@ -69,8 +70,36 @@ def chosen(names: Iterable[str] = (), *, png: bool = False) -> tuple[Part, ...]:
     )
 
 
-def report(folder: Path, parts: Iterable[Part] | None = None) -> dict[str, Sequence[Path]]:
+@dataclass
+class Ahead:
+    """Report of a run whose drawings begin in worker processes while its certificate is solved.
+
+    A figure that the certificate changes, such as by another governing load case, is drawn again.
+    """
+
+    parts: Sequence[Part]
+    _begun: dict[str, Task] = field(default_factory=dict)
+
+    def begin(self, folder: Path, workers: Crew) -> None:
+        """Begin the drawings of a run folder, unless there is but one process."""
+        if workers.workers > 1:
+            material = read_material(folder)
+            self._begun |= picture_list.begun(material, workers)
+            self._begun |= figure_svg.begun(material, workers)
+
+    def write(self, folder: Path) -> dict[str, Sequence[Path]]:
+        """Write the parts; see `report`."""
+        return report(folder, self.parts, self._begun)
+
+
+def report(
+    folder: Path, parts: Iterable[Part] | None = None, ahead: Mapping[str, Task] | None = None
+) -> dict[str, Sequence[Path]]:
     """Write parts of the report of a finished run; nothing is solved.
+
+    Parameters
+    ----------
+    ahead : mapping   drawings begun before the run was complete
 
     Returns
     -------
@@ -81,7 +110,7 @@ def report(folder: Path, parts: Iterable[Part] | None = None) -> dict[str, Seque
     ResultError
         If the folder does not hold a finished run, or a file cannot be written.
     """
-    material = read_material(Path(folder))
+    material = read_material(Path(folder), ahead)
     try:
         selected = chosen() if parts is None else tuple(parts)
         if any(part.as_png for part in selected):

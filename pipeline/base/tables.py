@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -62,6 +63,10 @@ class Table:
 
     columns: Mapping[str, Array]
     rows_of: Texts | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For a worker process: a read-only mapping cannot be pickled."""
+        return _restored, (dict(self.columns), self.rows_of)
 
     def __getitem__(self, header: str) -> Array:
         if header not in self.columns:
@@ -172,6 +177,12 @@ def _parsed(path: Path, header: str, cells: Iterable[str]) -> Array:
             raise ResultError(f"{path}, line {line}: {header} = {cell[:40]!r}, must be a number")
         values.append(value)
     return readonly(values)
+
+
+def _restored(columns: dict[str, Array], rows_of: Texts | None) -> Table:
+    """A table from another process."""
+    read_only = {header: readonly(values) for header, values in columns.items()}
+    return Table(MappingProxyType(read_only), None if rows_of is None else _fixed_texts(rows_of))
 
 
 def _fixed_texts(values: ArrayLike) -> Texts:

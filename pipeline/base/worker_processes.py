@@ -7,12 +7,15 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from functools import partial
 from multiprocessing.context import SpawnContext, SpawnProcess
 from multiprocessing.popen_spawn_posix import Popen
 from multiprocessing.process import BaseProcess
+from typing import Any, Protocol
 
 _JOBS_MOST = 4
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -72,6 +75,57 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
+
+
+class Task(Protocol):
+    """A call whose result is read later."""
+
+    def result(self) -> Any:
+        """The result; raises what the call raised."""
+        ...
+
+
+@dataclass
+class _Later:
+    """A call made in this process when its result is first read."""
+
+    call: Callable[[], Any]
+    _made: list[Any] = field(default_factory=list)
+
+    def result(self) -> Any:
+        if not self._made:
+            self._made.append(self.call())
+        return self._made[0]
+
+
+class Crew:
+    """Worker processes for the tasks of a run; see `crew`."""
+
+    def __init__(self, workers: int, stack: ExitStack) -> None:
+        self.workers = workers
+        self._stack = stack
+        self._pool: ProcessPoolExecutor | None = None
+
+    def submit(self, function: Callable[..., Any], *arguments: object) -> Task:
+        """Call a function of the package in a worker, or later here with one process."""
+        if self.workers <= 1:
+            return _Later(partial(function, *arguments))
+        if self._pool is None:
+            self._pool = self._stack.enter_context(pool(self.workers))
+        return self._pool.submit(function, *arguments)
+
+
+@contextmanager
+def crew(jobs: int | None) -> Iterator[Crew]:
+    """Processes that start with the first task and are shared by all that follow.
+
+    Parameters
+    ----------
+    jobs : int   processes; None: one a processor, at most 4. With one a task runs in this process
+                 when its result is read
+    """
+    with ExitStack() as stack:
+        yield Crew(workers_for(jobs, _JOBS_MOST if jobs is None else jobs), stack)
 
 
 def _as_worker(parent: int) -> None:

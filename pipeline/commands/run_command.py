@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import nullcontext
-from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -64,6 +63,7 @@ def run(
     no_cache: NoCacheOption = False,
 ) -> int:
     """Run a case and write its run folder."""
+    from camwright.pipeline.base.progress import process_began
     from camwright.pipeline.case.case_file import read_case
     from camwright.pipeline.contact.tiers import Tier
 
@@ -83,6 +83,7 @@ def run(
         from camwright.pipeline.studies.valve_train import valve_record
         from camwright.reports import sections
 
+        drawings = sections.Ahead(sections.chosen(png=png))
         old = set_aside(out, design) if replace else nullcontext()
         with old, progress_shown() as progress:
             run_case(
@@ -94,9 +95,9 @@ def run(
                 resume=resume,
                 fields=Shown(fields),
                 progress=progress,
-                report=None
-                if no_report
-                else partial(sections.report, parts=sections.chosen(png=png)),
+                began=process_began(),
+                report=None if no_report else drawings.write,
+                ahead=None if no_report else drawings.begin,
                 also=valve_record,
             )
     from camwright.pipeline.results.run_reader import read_verdict

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import as_completed
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.base.worker_processes import pool, workers_for
+from camwright.pipeline.base.worker_processes import Crew, Task
 from camwright.pipeline.contact.certificate import (
     EDGES,
     MeshFigures,
@@ -70,49 +70,53 @@ def finest_positions(
     return tuple(by_pressure[:FINEST])
 
 
-def certified(
-    pair: ContactPair,
-    cycles: Sequence[Cycle],
-    chosen: Sequence[tuple[int, int]],
-    jobs: int | None,
-    advance: Callable[[int, int], None],
-) -> tuple[CertificatePoint, ...]:
-    """Certificate points at chosen (load case, position), solved in `jobs` processes.
+@dataclass(frozen=True, eq=False)
+class BegunCertificate:
+    """Certificate whose meshes are being solved.
 
-    The finest mesh is solved at `finest_positions` alone; their orders hold for the others.
+    Parameters
+    ----------
+    chosen : sequence   (load case, position) of each angle
+    finest : sequence   those with the finest mesh; their orders hold for the others
+    tasks : mapping     figures of a mesh by angle and edges per half-width
     """
-    finest = finest_positions(cycles, chosen)
-    tasks = [
-        (at, edges)
-        for edges in reversed(EDGES)  # the longest first
-        for at in chosen
-        if edges != EDGES[-1] or at in finest
-    ]
 
-    def arguments(at: tuple[int, int], edges: float) -> tuple[ContactPair, float, float, float]:
-        case, index = at
-        cycle = cycles[case]
-        force = float(cycle.contact.line_load[index]) * pair.width
-        return pair, float(cycle.theta[index]), force, edges
+    cycles: Sequence[Cycle]
+    chosen: Sequence[tuple[int, int]]
+    finest: Sequence[tuple[int, int]]
+    tasks: Mapping[tuple[tuple[int, int], float], Task]
 
-    solved: dict[tuple[tuple[int, int], float], MeshFigures] = {}
-    workers = workers_for(jobs, len(tasks))
-    if workers <= 1:
-        for task in tasks:
-            solved[task] = mesh_figures(*arguments(*task))
-            advance(len(solved), len(tasks))
-    else:
-        with pool(workers) as fresh:
-            futures = {fresh.submit(mesh_figures, *arguments(*task)): task for task in tasks}
-            for future in as_completed(futures):
-                solved[futures[future]] = future.result()
-                advance(len(solved), len(tasks))
+    def points(self, advance: Callable[[int, int], None]) -> tuple[CertificatePoint, ...]:
+        """Certificate points at the chosen angles, when all meshes are solved."""
+        solved: dict[tuple[tuple[int, int], float], MeshFigures] = {}
+        for key, task in self.tasks.items():
+            solved[key] = task.result()
+            advance(len(solved), len(self.tasks))
 
-    def point(at: tuple[int, int], worst: Sequence[CertificatePoint] = ()) -> CertificatePoint:
-        case, index = at
-        meshes = [solved[at, edges] for edges in EDGES if (at, edges) in solved]
-        theta = float(cycles[case].theta[index])
-        return certificate_point(cycles[case].contact, index, theta, meshes, worst)
+        def point(at: tuple[int, int], worst: Sequence[CertificatePoint] = ()) -> CertificatePoint:
+            case, index = at
+            meshes = [solved[at, edges] for edges in EDGES if (at, edges) in solved]
+            theta = float(self.cycles[case].theta[index])
+            return certificate_point(self.cycles[case].contact, index, theta, meshes, worst)
 
-    worst = {at: point(at) for at in finest}
-    return tuple(worst.get(at) or point(at, tuple(worst.values())) for at in chosen)
+        worst = {at: point(at) for at in self.finest}
+        return tuple(worst.get(at) or point(at, tuple(worst.values())) for at in self.chosen)
+
+
+def begun(
+    pair: ContactPair, cycles: Sequence[Cycle], chosen: Sequence[tuple[int, int]], workers: Crew
+) -> BegunCertificate:
+    """Certificate at chosen (load case, position), its meshes handed to worker processes.
+
+    The finest mesh is solved at `finest_positions` alone.
+    """
+    finest, tasks = finest_positions(cycles, chosen), {}
+    for edges in reversed(EDGES):  # the longest first
+        for at in chosen:
+            if edges == EDGES[-1] and at not in finest:
+                continue
+            cycle, index = cycles[at[0]], at[1]
+            force = float(cycle.contact.line_load[index]) * pair.width
+            theta = float(cycle.theta[index])
+            tasks[at, edges] = workers.submit(mesh_figures, pair, theta, force, edges)
+    return BegunCertificate(cycles, chosen, finest, tasks)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Protocol
@@ -15,6 +15,7 @@ from camwright.geometry.contour import Contour
 from camwright.meshes.body_mesh import BodyMesh
 from camwright.meshes.mesh_quality import Quality, gate, quality
 from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.base.worker_processes import Crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import Machine, machines
@@ -26,7 +27,7 @@ from camwright.pipeline.contact.contact_history import CertificatePoint, Contact
 from camwright.pipeline.contact.contact_pair import ContactPair
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.contact.two_scale import CycleBodies, loaded_cam, two_scale_history
-from camwright.pipeline.cycle.certificate_angles import certified, positions_to_certify
+from camwright.pipeline.cycle.certificate_angles import begun, positions_to_certify
 from camwright.pipeline.cycle.contact_setup import contact_pair
 from camwright.pipeline.cycle.crank_speed import speed_ripple
 from camwright.pipeline.cycle.cycle import Cycle
@@ -281,26 +282,32 @@ def solved_turns(
 
 
 def certified_solution(
-    solved: Solution, *, jobs: int | None = None, progress: Progress = SILENT
+    solved: Solution,
+    workers: Crew,
+    *,
+    progress: Progress = SILENT,
+    meanwhile: Callable[[], object] = lambda: None,
 ) -> Solution:
     """The solution with certificate and benchmarks.
 
     Parameters
     ----------
-    jobs : int   processes; None: one a processor, at most 4
+    workers : Crew         processes that solve the meshes
+    meanwhile : callable   other work of this process while they do
     """
     final = replace(solved, tier=Tier.CERTIFIED)
-    if solved.mesh is None:
-        return final
     chosen = positions_to_certify(solved.cycles, solved.case.solver.certificate_positions)
-    if not chosen:
+    if solved.mesh is None or not chosen:
+        meanwhile()
         return final
-    progress.stage(CERTIFICATE)
     pair = solved.cycles[0].pair
-    points = certified(pair, solved.cycles, chosen, jobs, progress.advance)
+    certificate = begun(pair, solved.cycles, chosen, workers)
     progress.stage(BENCHMARKS)
     known = benchmarks(solved.case.contact_radius)
     error = bore_error(pair, solved.cycles)
+    meanwhile()
+    progress.stage(CERTIFICATE)
+    points = certificate.points(progress.advance)
     return replace(final, certificate=points, benchmarks=known, bore_error=error)
 
 

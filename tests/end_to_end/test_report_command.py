@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import hashlib
+import json
+import pickle
 import subprocess
 import sys
 import webbrowser
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -106,6 +109,54 @@ def test_pictures_come_as_files_when_asked(run: Path) -> None:
     made = {Path(name) for name in set(digests(run)) - set(before)}
     assert {path.stem for path in made if path.suffix == ".png"} >= ALWAYS
     assert Path(page.PAGE) in made
+
+
+class Made:
+    """A task that was made at once."""
+
+    def __init__(self, value: object) -> None:
+        self.value = value
+
+    def result(self) -> object:
+        return self.value
+
+
+class AtOnce:
+    """Two workers that make a task at once; a drawing is what they return of a pickled one."""
+
+    workers = 2
+
+    def submit(self, function: Callable[..., object], *arguments: object) -> Made:
+        restored = pickle.loads(pickle.dumps(arguments))
+        return Made(pickle.loads(pickle.dumps(function(*restored))))
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_page_is_made_of_drawings_begun_ahead(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sections.report(run)
+    alone = (run / page.PAGE).read_bytes()
+    drawings = sections.Ahead(sections.chosen())
+    drawings.begin(run, AtOnce())
+    monkeypatch.setattr(figure_svg, "svg_of", lambda figure: pytest.fail("drawn again"))
+    drawings.write(run)
+    assert (run / page.PAGE).read_bytes() == alone
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_figure_that_has_changed_is_drawn_again(
+    run: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawings = sections.Ahead(sections.chosen())
+    drawings.begin(run, AtOnce())
+    trial = run / "trial_2" / "6_checks.json"
+    records = json.loads(trial.read_text())
+    angle = next(one for one in records if one["id"] == "pressure_angle")
+    angle["limit"] += 1.0
+    trial.write_text(json.dumps(records))
+    drawn: list[str] = []
+    monkeypatch.setattr(figure_svg, "svg_of", lambda figure: drawn.append(figure.id) or "<svg/>")
+    drawings.write(run)
+    assert drawn == ["pressure-angle"]
 
 
 @pytest.mark.usefixtures("quick")

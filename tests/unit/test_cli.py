@@ -73,8 +73,10 @@ def short_run(
     resume: bool,
     fields: str,
     progress: Any,
+    began: float,
     depth: Tier,
     report: Callable[[Path], object] | None,
+    ahead: object,
     also: Callable[[Any], object],
 ) -> None:
     progress.stage("cycle")

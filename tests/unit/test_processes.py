@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from camwright.pipeline.base.worker_processes import pool, workers_for
+from camwright.pipeline.base.worker_processes import crew, pool, workers_for
 
 
 @pytest.mark.parametrize(
@@ -42,3 +42,18 @@ def test_a_script_needs_no_guard(tmp_path):
         [sys.executable, str(script)], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout.split()) == (0, ["begun", "script.py"]), done.stderr
+
+
+def test_a_crew_of_one_works_here_when_the_result_is_read():
+    calls = []
+    with crew(1) as workers:
+        task = workers.submit(lambda value: calls.append(value) or len(calls), 3)
+        assert calls == []
+        assert (task.result(), task.result(), calls) == (1, 1, [3])
+
+
+def test_a_crew_shares_its_processes_and_ends_them():
+    with crew(2) as workers:
+        first, second = workers.submit(os.getpid), workers.submit(os.getpid)
+        assert os.getpid() not in (first.result(), second.result())
+        assert workers.workers == 2

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import io
+import time
 
 import pytest
 from rich.console import Console
 
-from camwright.pipeline.base.progress import Bars, Lines, Silent
+from camwright.pipeline.base.progress import Bars, Lines, Silent, process_began
+from camwright.pipeline.run import START, Stopwatch
 
 
 def test_lines_speak_every_ten_seconds_and_tell_the_rest() -> None:
@@ -51,3 +53,23 @@ def test_silent_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
     silent.advance(1, 2)
     silent.note("text")
     assert capsys.readouterr() == ("", "")
+
+
+def test_the_stages_of_all_trials_sum_to_the_total(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [10.0]
+    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
+    watch = Stopwatch(Silent(), 7.0)
+    for name, seconds in (("trial 1: cycle", 2.0), ("checks", 1.0), ("trial 2: cycle", 4.0)):
+        watch.stage(name)
+        now[0] += seconds
+    assert watch.read() == {START: 3.0, "cycle": 6.0, "checks": 1.0, "total": 10.0}
+    now[0] += 0.5  # of the stage that still runs
+    times = watch.read()
+    assert times["cycle"] == 6.5
+    assert times.pop("total") == pytest.approx(sum(times.values()))
+
+
+def test_a_process_began_before_now() -> None:
+    began = process_began()
+    assert began <= time.perf_counter()
+    assert time.perf_counter() - began < 86400.0
