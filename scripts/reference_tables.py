@@ -25,6 +25,7 @@ from camwright.pipeline.checks.registry import CHECKS, MODULES
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_records import column_table
+from camwright.pipeline.screening.screened_checks import SCREENED
 
 ROOT = Path(__file__).resolve().parents[1]
 BLOCK = re.compile(r"<!-- table: (\w+) -->\n.*?<!-- end -->", re.DOTALL)
@@ -113,6 +114,19 @@ def columns() -> str:
 
 def model_limits() -> str:
     return "\n".join(f"- {each.statement}" for each in MODEL_LIMITS)
+
+
+def screening() -> str:
+    """Checks that screening judges, with the deviation of each from the preview."""
+    titles = {each.id: each.title for each in CHECKS}
+    rows = (
+        (
+            f"`{each.check}`", titles[each.check].format(follower="roller"),
+            f"{100.0 * each.deviation:g} %", "fails only" if each.bound else "passes and fails",
+        )
+        for each in SCREENED
+    )  # fmt: skip
+    return markdown(("check", "title", "deviation", "screening"), rows)
 
 
 def packages() -> str:
@@ -271,6 +285,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "columns": columns,
     "model_limits": model_limits,
     "packages": packages,
+    "screening": screening,
     "keys": keys,
     "renamed_case": lambda: renamed("case"),
     "renamed_results": lambda: renamed("columns", "headline", "files"),

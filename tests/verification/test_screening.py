@@ -31,7 +31,7 @@ from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.solver import solve
 
 CASES = Path(__file__).parents[2] / "cases"
-POSITIONS = 360  # of the preview; twice those of the screening
+FAR = 10.0  # utilisation beyond which the deviation of a demand is of no interest
 # Low and high of each factor, SI.
 RANGES: Mapping[str, Mapping[str, tuple[float, float]]] = {
     "gx120": {
@@ -68,9 +68,7 @@ def previewed(name: str, factors: Mapping[str, Array]) -> Iterator[Trial]:
     for k in range(len(next(iter(factors.values())))):
         own = replaced(case, {key: float(values[k]) for key, values in factors.items()})
         contour = own.contour(_lift(own, energy) if energy is not None else cam_lift(own, torques))
-        yield solve(
-            own, contour, tier=Tier.PREVIEW, torques=torques, positions=POSITIONS, corners=False
-        )
+        yield solve(own, contour, tier=Tier.PREVIEW, torques=torques, corners=False)
 
 
 def _lift(case: Case, energy: Array) -> Lift:
@@ -92,11 +90,12 @@ def compare(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str, f
             check = known.get(screened.check)
             if check is None or check.demand is None or f"{check.id}.demand" not in columns:
                 continue
-            away = _deviation(check, float(columns[f"{check.id}.demand"][k]))
-            worst[check.id] = max(worst[check.id], away)
-            status = columns[f"{check.id}.status"][k]
             used = check.utilisation
-            near = used is not None and abs(1.0 - used) <= 2.0 * screened.deviation
+            if used is None or used <= FAR:
+                away = _deviation(check, float(columns[f"{check.id}.demand"][k]))
+                worst[check.id] = max(worst[check.id], away)
+            status = columns[f"{check.id}.status"][k]
+            near = used is not None and abs(1.0 - used) <= screened.deviation
             if status == "not_evaluated":
                 assert screened.bound or check.status in ("not_evaluated", "pass"), check.id
                 continue
@@ -137,7 +136,7 @@ def require_within(worst: Mapping[str, float]) -> None:
 
 
 def test_a_few_designs_agree_with_their_previews() -> None:
-    worst = compare("gx120", 5, without=("guides.spacing",))
+    worst = compare("gx120", 4, without=("guides.spacing",))
     require_within(worst)
 
 
