@@ -10,9 +10,9 @@ from camwright.geometry.errors import InputError
 class Tier(IntEnum):
     """Depth of a solution; each tier judges more checks than the one before.
 
-    SCREENING: closed forms, guides as point supports, no tolerance corners. PREVIEW: closed forms,
-    guides of length. CYCLE: contact by finite elements over the turn. CERTIFIED: the same with its
-    certificate; it alone has a verdict.
+    SCREENING: closed forms, no tolerance corners; of many designs at once by `screen_designs`.
+    PREVIEW: closed forms, with corners. CYCLE: contact by finite elements over the turn. CERTIFIED:
+    the same with its certificate; it alone has a verdict.
     """
 
     SCREENING = 1

@@ -129,7 +129,22 @@ class _Blocks:
             if not good.all():
                 yield rows[~good], {"screen": "error", "message": words[~good]}
             if good.any():
-                yield rows[good], self._columns({key: each[good] for key, each in values.items()})
+                kept = {key: each[good] for key, each in values.items()}
+                yield from self._solved(rows[good], kept)
+
+    def _solved(
+        self, rows: NDArray[np.intp], values: Mapping[str, Array]
+    ) -> Iterator[tuple[NDArray[np.intp], Mapping[str, Column | str]]]:
+        """Columns of designs; those that cannot be solved are found by halves and say why."""
+        try:
+            yield rows, self._columns(values)
+        except CamError as error:
+            if rows.size == 1:
+                yield rows, {"screen": "error", "message": str(error)}
+                return
+            for half in (slice(None, rows.size // 2), slice(rows.size // 2, None)):
+                own = {key: each[half] for key, each in values.items()}
+                yield from self._solved(rows[half], own)
 
     def _columns(self, values: Mapping[str, Array]) -> dict[str, Column]:
         designs = self._designs(values)

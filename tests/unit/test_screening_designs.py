@@ -9,12 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import quantity_of, replaced, value_of, with_values
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.screening import design_screening
+from camwright.pipeline.screening.design_arrays import Designs, TorqueOfSpeed
 from camwright.pipeline.screening.design_factors import ARRAYS
 from camwright.pipeline.screening.design_screening import screen_designs, utilisations
 
@@ -121,3 +123,31 @@ def test_utilisations_are_those_of_the_checks(sense: str) -> None:
     mine = utilisations(demand, limit, at_most=sense == "at_most")
     for used, (value, allowed) in zip(mine, pairs, strict=True):
         assert used == Check(declared, value, allowed, "", "", "").utilisation
+
+
+def test_a_design_that_cannot_be_solved_is_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    solved = design_screening.judged_columns
+
+    def judged(designs: Designs) -> dict[str, design_screening.Column]:
+        if (designs.value("spring.rate") > 50e3).any():
+            raise GeometryError("no cam")
+        return solved(designs)
+
+    monkeypatch.setattr(design_screening, "judged_columns", judged)
+    columns = screen_designs(case(), {"spring.rate": [20e3, 60e3, 30e3, 40e3, 70e3]})
+    assert list(columns["message"]) == ["", "no cam", "", "", "no cam"]
+    assert list(columns["screen"]) == ["fail", "error", "fail", "fail", "error"]
+    assert np.isnan(columns["pressure_angle.demand"]).tolist() == [False, True, False, False, True]
+
+
+@pytest.mark.slow
+def test_the_torque_between_speeds_is_that_of_the_engine() -> None:
+    """Nine Chebyshev nodes from 1100 to 3900 rpm: 5e-4 of the range of the torque."""
+    speeds = np.linspace(120.0, 410.0, 40)
+    between = TorqueOfSpeed.of(case(), 0, speeds)
+    assert between.interpolated
+    for k in (0, 22):
+        known = TorqueOfSpeed.of(case(), 0, speeds[k : k + 1]).torques[0]
+        np.testing.assert_allclose(
+            between.at(speeds)[k], known, rtol=0.0, atol=5e-4 * np.ptp(known)
+        )
