@@ -111,12 +111,30 @@ def groups(case: Case, factors: Mapping[str, Factor]) -> Iterator[Group]:
         except CamError as error:
             yield Group(None, rows, {}, str(error))
             continue
-        arrays = {
-            key: _numbers(key, quantities[key], factors[key], members)
-            for key in factors
-            if key not in shared
-        }
-        yield Group(own, rows, arrays)
+        arrays = {key: factors[key] for key in factors if key not in shared}
+        unread = {row: words for row in members if (words := _unread(quantities, arrays, row))}
+        for row, words in unread.items():
+            yield Group(None, np.array([row], dtype=np.intp), {}, words)
+        kept = [row for row in members if row not in unread]
+        if kept:
+            columns = {key: _numbers(quantities[key], each, kept) for key, each in arrays.items()}
+            yield Group(own, np.array(kept, dtype=np.intp), columns)
+
+
+def _unread(quantities: Mapping[str, object], arrays: Mapping[str, Factor], row: int) -> str:
+    """Refusal of the first text of a design that is no number with a unit; "" without one."""
+    for key, values in arrays.items():
+        quantity, value = quantities[key], "" if _is_numeric(values) else _plain(values[row])
+        if isinstance(quantity, In) and isinstance(value, str) and value:
+            try:
+                units.parse(value, quantity.unit, key)
+            except InputError as error:
+                return str(error)
+    return ""
+
+
+def _is_numeric(values: Factor) -> bool:
+    return isinstance(values, np.ndarray) and values.dtype.kind in "fiu"
 
 
 def _plain(value: object) -> TomlValue:
@@ -127,12 +145,12 @@ def _plain(value: object) -> TomlValue:
     raise InputError("factors", str(plain)[:80], "text, number, true or false")
 
 
-def _numbers(key: str, quantity: object, values: Factor, rows: Sequence[int]) -> Array:
-    """Values in SI (m,); NaN for text that is no such quantity, refused by `refusals`."""
-    if not isinstance(quantity, In):
-        raise InputError("factor", key, "the key of a number")
-    if isinstance(values, np.ndarray) and values.dtype.kind in "fiu":
+def _numbers(quantity: object, values: Factor, rows: Sequence[int]) -> Array:
+    """Values in SI (m,)."""
+    if isinstance(values, np.ndarray) and _is_numeric(values):
         return np.asarray(values[rows], dtype=float)
+    if not isinstance(quantity, In):
+        raise InputError("factors", str(quantity), "the key of a number")
     return np.array([_number(quantity, _plain(values[row])) for row in rows])
 
 

@@ -30,14 +30,17 @@ def case() -> Case:
 
 def test_refused_designs_are_rows_that_name_field_value_and_limit() -> None:
     factors = {
-        "spring.rate": ["24.2 kN/m", "-1 kN/m", "24.2 kN/m", "24.2 kN/m", "24.2 kN/m"],
-        "roller.radius": [0.008, 0.008, 0.06, 0.008, 0.008],
-        "cam.bore_radius": [0.0085, 0.0085, 0.0085, 0.05, 0.0085],
-        "guides.spacing": [0.08, 0.08, 0.08, 0.08, 0.019],
+        "spring.rate": ["24.2 kN/m", "-1 kN/m", *["24.2 kN/m"] * 3, "5 mm", "24.2 kN/m"],
+        "roller.radius": [0.008, 0.008, 0.06, 0.008, 0.008, 0.008, np.nan],
+        "cam.bore_radius": [0.0085, 0.0085, 0.0085, 0.05, 0.0085, 0.0085, 0.0085],
+        "guides.spacing": [0.08, 0.08, 0.08, 0.08, 0.019, 0.08, 0.08],
     }
     columns = screen_designs(case(), factors)
-    assert list(columns["screen"]) == ["fail", "error", "error", "error", "error"]
-    words = ("", "spring.rate = -1 kN/m, must be > 0", "roller.radius", "cam.", "guides.spacing")
+    assert list(columns["screen"]) == ["fail", *["error"] * 6]
+    words = (
+        "", "spring.rate = -1 kN/m, must be > 0", "roller.radius", "cam.", "guides.spacing",
+        "spring.rate = 5 mm, must be in a unit of", "roller.radius = nan, must be > 0",
+    )  # fmt: skip
     for message, start in zip(columns["message"], words, strict=True):
         assert message.startswith(start)
         assert bool(message) == bool(start)
