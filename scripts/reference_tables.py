@@ -15,6 +15,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from camwright.pipeline.base.quantities import Count, In, Part
+from camwright.pipeline.base.tables import Column
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
@@ -26,6 +27,15 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_records import column_table
 from camwright.pipeline.screening.screened_checks import SCREENED
+from camwright.pipeline.studies.batch.dataset import (
+    FACTOR,
+    FIGURES,
+    FILES,
+    FIXED,
+    HEADLINE,
+    MESH,
+    is_text,
+)
 
 ROOT = Path(__file__).resolve().parents[1]
 BLOCK = re.compile(r"<!-- table: (\w+) -->\n.*?<!-- end -->", re.DOTALL)
@@ -127,6 +137,28 @@ def screening() -> str:
         for each in SCREENED
     )  # fmt: skip
     return markdown(("check", "title", "deviation", "screening"), rows)
+
+
+def dataset() -> str:
+    """Columns of a dataset, the groups by an example of their name."""
+    rows = [(f"`{each.name}`", _type(each), "", each.meaning) for each in FIXED]
+    rows.append((f"`{FACTOR}KEY`", "double or string", "of the study file", "value of a factor"))
+    rows.append((f"`{HEADLINE}KEY`", "double", "by the suffix of KEY", "headline of `run.json`"))
+    rows.append((f"`{MESH}KEY`", "double", "by the suffix of KEY", "mesh of a row by elements"))
+    for figure, words in FIGURES.items():
+        number = figure not in ("utilisation", "status")
+        kind, unit = "string" if figure == "status" else "double", "of the check" if number else ""
+        rows.append((f"`CHECK.{figure}`", kind, unit, words[0].lower() + words[1:]))
+    return markdown(("column", "type", "unit", "meaning"), rows)
+
+
+def _type(column: Column) -> str:
+    return "string" if is_text(column.name, {}) else "int64"
+
+
+def study_files() -> str:
+    rows = ((f"`{name}`", words) for name, words in FILES.items())
+    return markdown(("file", "contents"), rows)
 
 
 def packages() -> str:
@@ -284,6 +316,8 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "checks": checks,
     "columns": columns,
     "model_limits": model_limits,
+    "dataset": dataset,
+    "study_files": study_files,
     "packages": packages,
     "screening": screening,
     "keys": keys,

@@ -12,6 +12,7 @@ In the order of the calculation:
 | `valve_train`            | record of the machine motion in ``run.json``  |                     |
 | `redesign`               | Pareto front over the catalogues              |                     |
 | `papers`                 | published values, recomputed                  |                     |
+| `batch`                  | studies of many designs                       |                     |
 
 Imported by `commands`; the valve cam by `papers` as well.
 """

@@ -1,0 +1,257 @@
+"""Dataset of a study: columns with unit and meaning, shards, and the table of all rows.
+
+One row per design. A column that no row of the study has is left out; a value that a design does
+not have is null.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.tables import Column
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+STUDY, SUMMARY, DATASET = "study.toml", "study.json", "dataset.parquet"
+SHARDS, TIMINGS, RUNS, CASES = "shards", "timings", "runs", "cases"
+FILES: Mapping[str, str] = {
+    STUDY: "copy of the study file",
+    f"{CASES}/": "copies of the case files, with the files that they include",
+    SUMMARY: "counts by depth, `screen` and verdict, messages, versions, hashes; no clock figure",
+    DATASET: "all rows in the order of the designs",
+    f"{SHARDS}/<hash>.parquet": "rows of one task, by the hash of its contents; without `design`",
+    f"{TIMINGS}/<hash>.parquet": "clock figures of the rows of a shard: `id`, `depth`, `wall_s`",
+    f"{RUNS}/<id>/": "run folder of a design that `keep` names",
+}
+"""Files of a study folder."""
+
+DESIGN = Column("design", "", "Number of the design, from 0, in the order of the sampling")
+ID = Column("id", "", "Content hash of case and factors; equal designs have one id")
+DEPTH = Column("depth", "", "Depth of the row: screening, preview, cycle or certified")
+SCREEN = Column("screen", "", "fail: an evaluated must-have fails; open: none; error: no result")
+VERDICT = Column("verdict", "", "pass, incomplete or fail; null below certified")
+GOVERNING = Column("governing", "", "Must-have check of the greatest utilisation")
+MESSAGE = Column("message", "", "Reason of a design without result; else null")
+FIXED: tuple[Column, ...] = (DESIGN, ID, DEPTH, SCREEN, VERDICT, GOVERNING, MESSAGE)
+"""Columns of every dataset, in their order."""
+_TEXTS = frozenset(each.name for each in FIXED if each is not DESIGN)
+
+FACTOR, HEADLINE, MESH = "factor.", "headline.", "mesh."
+FIGURES: Mapping[str, str] = {
+    "demand": "Worst demand, tolerance corners included",
+    "limit": "Limit",
+    "utilisation": "Demand over limit, or limit over demand for a minimum; null if infinite",
+    "status": "pass, fail, not_evaluated or waived",
+    "error": "Half of the error bar of the nominal demand",
+}
+"""Columns of each check, ``ID.FIGURE``."""
+STATUS = ".status"
+_SUFFIXES = (
+    ("_J_per_cam_turn", "J"), ("_Nm", "N m"), ("_MPa", "MPa"), ("_percent", "%"), ("_mm", "mm"),
+    ("_deg", "deg"), ("_N", "N"),
+)  # fmt: skip
+
+Values = NDArray[np.float64] | Sequence[float | str | None]
+Rows = Mapping[str, Values]
+"""Values (n,) by column name, in the unit of the column."""
+
+
+def is_text(name: str, units: Mapping[str, str | None]) -> bool:
+    """Whether a column holds text; `units` as in `column_of`."""
+    if name.startswith(FACTOR):
+        return units.get(name.removeprefix(FACTOR), "") is None
+    return name in _TEXTS or name.endswith(STATUS)
+
+
+def column_of(name: str, units: Mapping[str, str | None]) -> Column:
+    """Unit and meaning of a column of a dataset.
+
+    Parameters
+    ----------
+    units : mapping   unit of each factor by dotted key; None: its values are text
+
+    Raises
+    ------
+    ResultError
+        If no dataset has such a column.
+    """
+    fixed = {each.name: each for each in FIXED}
+    if name in fixed:
+        return fixed[name]
+    if name.startswith(FACTOR):
+        key = name.removeprefix(FACTOR)
+        return Column(name, units.get(key) or "", f"Factor {key}")
+    if name.startswith((HEADLINE, MESH)):
+        kind, _, key = name.partition(".")
+        unit = next((unit for suffix, unit in _SUFFIXES if key.endswith(suffix)), "")
+        words = "Headline of run.json" if kind == "headline" else "Mesh at the greatest pressure"
+        return Column(name, unit, f"{words}: {key}")
+    check, _, figure = name.rpartition(".")
+    declared = _checks().get(check)
+    if declared is None or figure not in FIGURES:
+        raise ResultError(f"column {name} is unknown")
+    title, unit = declared
+    unit = "" if figure in ("utilisation", "status") or unit == "-" else unit
+    return Column(name, unit, f"{title}: {FIGURES[figure]}")
+
+
+@cache
+def _checks() -> Mapping[str, tuple[str, str]]:
+    """Title and unit of each check by id, in the order of the registry."""
+    from camwright.pipeline.checks import registry
+    from camwright.pipeline.checks.check import Declaration
+
+    others = (each for each in vars(registry).values() if isinstance(each, Declaration))
+    known = (*registry.CHECKS, *others)
+    return {each.id: (each.title.format(follower="follower"), each.unit) for each in known}
+
+
+def in_order(names: Sequence[str]) -> list[str]:
+    """Column names in the order of a dataset: fixed, factors, headline, mesh, checks."""
+    fixed = [each.name for each in FIXED]
+    checks = {check: place for place, check in enumerate(_checks())}
+    figures = list(FIGURES)
+
+    def place(name: str) -> tuple[int, int, int, str]:
+        if name in fixed:
+            return 0, fixed.index(name), 0, ""
+        for rank, prefix in enumerate((FACTOR, HEADLINE, MESH), start=1):
+            if name.startswith(prefix):
+                return rank, 0, 0, "" if prefix == FACTOR else name
+        check, _, figure = name.rpartition(".")
+        return 4, checks[check], figures.index(figure), ""
+
+    return sorted(dict.fromkeys(names), key=place)  # stable: factors as in the study file
+
+
+def table_of(rows: Rows, units: Mapping[str, str | None]) -> pa.Table:
+    """Rows as an Arrow table: columns in order, unit and meaning in the metadata of each field.
+
+    Columns without a value are left out, but for the fixed ones; NaN and infinity become null.
+    """
+    import pyarrow as pa
+
+    fields, arrays = [], []
+    always = {each.name for each in FIXED}
+    for name in in_order(list(rows)):
+        values, column = rows[name], column_of(name, units)
+        if is_text(name, units):
+            array = pa.array([None if each in (None, "") else str(each) for each in values])
+            array = array.cast(pa.string())
+        elif name == DESIGN.name:
+            array = pa.array(np.asarray(values, dtype=np.int64))
+        else:
+            numbers = np.array([np.nan if v is None else v for v in values], dtype=float)
+            array = pa.array(numbers, mask=~np.isfinite(numbers))
+        if array.null_count == len(array) and name not in always and not name.startswith(FACTOR):
+            continue
+        metadata = {"unit": column.unit, "meaning": column.meaning}
+        fields.append(pa.field(name, array.type, metadata=metadata))
+        arrays.append(array)
+    return pa.Table.from_arrays(arrays, schema=pa.schema(fields))
+
+
+def parquet_bytes(table: pa.Table) -> bytes:
+    """A table as a Parquet file; the same bytes for the same rows."""
+    import pyarrow.parquet as pq
+
+    buffer = io.BytesIO()
+    pq.write_table(table, buffer, **_WRITING)
+    return buffer.getvalue()
+
+
+_WRITING: Mapping[str, Any] = {
+    "compression": "zstd", "compression_level": 1, "store_schema": True,
+    "write_statistics": False, "use_dictionary": True,
+}  # fmt: skip
+
+
+def read_parquet(path: Path) -> pa.Table:
+    """The table of a Parquet file.
+
+    Raises
+    ------
+    ResultError
+        If it is none, or damaged.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        return pq.read_table(io.BytesIO(path.read_bytes()))
+    except (OSError, pa.ArrowException) as error:
+        raise ResultError(f"{path}: {' '.join(str(error).split())[:200]}") from None
+
+
+@dataclass(frozen=True, eq=False)
+class Dataset:
+    """Columns of a dataset: numbers (n,) with NaN for null, texts (n,) with "" for null.
+
+    Parameters
+    ----------
+    columns : mapping   values by column name, in the order of the file
+    units : mapping     unit by column name; "": pure number or text
+    meanings : mapping  meaning by column name
+    """
+
+    columns: Mapping[str, NDArray[Any]]
+    units: Mapping[str, str]
+    meanings: Mapping[str, str]
+
+    def __len__(self) -> int:
+        return len(self.columns[DESIGN.name])
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        if name not in self.columns:
+            raise ResultError(f"column {name} is missing; there is {', '.join(self.columns)}")
+        return self.columns[name]
+
+    @property
+    def factors(self) -> tuple[str, ...]:
+        """Dotted keys of the factors, in the order of the study file."""
+        return tuple(name.removeprefix(FACTOR) for name in self.columns if name.startswith(FACTOR))
+
+    @property
+    def checks(self) -> tuple[str, ...]:
+        """Ids of the checks with a status, in the order of the registry."""
+        return tuple(name.removesuffix(STATUS) for name in self.columns if name.endswith(STATUS))
+
+
+def read_dataset(folder: Path) -> Dataset:
+    """The dataset of a study folder.
+
+    Raises
+    ------
+    ResultError
+        If the folder has none, or it is damaged.
+    """
+    table = read_parquet(folder / DATASET)
+    columns: dict[str, NDArray[Any]] = {}
+    units: dict[str, str] = {}
+    meanings: dict[str, str] = {}
+    for field in table.schema:
+        columns[field.name] = values_of(table[field.name])
+        marks = {key.decode(): text.decode() for key, text in (field.metadata or {}).items()}
+        units[field.name], meanings[field.name] = marks.get("unit", ""), marks.get("meaning", "")
+    if DESIGN.name not in columns:
+        raise ResultError(f"{folder / DATASET}: column {DESIGN.name} is missing")
+    return Dataset(columns, units, meanings)
+
+
+def values_of(column: pa.ChunkedArray) -> NDArray[Any]:
+    """Numbers with NaN for null, texts with "" for null."""
+    import pyarrow as pa
+
+    if pa.types.is_string(column.type):
+        return np.array([each or "" for each in column.to_pylist()], dtype=np.str_)
+    return np.asarray(column.to_numpy())
