@@ -27,8 +27,8 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `studies`            | inspection, comparisons, valve cam                   |                    |
 | `studies.redesign`   | Pareto front over the catalogues                     |                    |
 | `studies.papers`     | published values, recomputed                         |                    |
-| `studies.batch`      | studies of many designs                              |                    |
 | `reports`            | report and pictures from a run folder                |                    |
+| `studies.batch`      | studies of many designs                              |                    |
 | `commands`           | one function per command                             |                    |
 | `cli`                | command line                                         |                    |
 

@@ -20,6 +20,7 @@ from camwright.pipeline.commands import (
     inspect_command,
     redesign_command,
     run_command,
+    study_command,
 )
 from camwright.pipeline.commands.terminal import ERROR, INTERRUPTED, PASSED, say, stdout
 
@@ -41,6 +42,7 @@ for _command in (
     run_command.init,
     comparison_commands.compare,
     redesign_command.redesign,
+    study_command.study,
     contact_command.contact,
     comparison_commands.validate,
     comparison_commands.compare_mechanisms,
@@ -51,6 +53,7 @@ for _command in (
 
 _RESUMED_BY = {
     "run": "; run the command again with --resume to resume",
+    "study": "; run the command again with --resume to resume",
     "redesign": "; run the command again to resume",
 }
 

@@ -18,7 +18,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any, Protocol
 
 _JOBS_MOST = 4
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _LOOK_EVERY_S = 1.0
 
 
@@ -58,10 +58,10 @@ def pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     faster than few of many. Workers ignore the keyboard interrupt, which the parent handles, and
     end by themselves where the parent is killed.
     """
-    before = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
     workers_pool = ProcessPoolExecutor(
-        workers, mp_context=_Context(), initializer=_as_worker, initargs=(os.getpid(),)
+        workers, mp_context=_Context(), initializer=as_worker, initargs=(os.getpid(),)
     )
     try:
         yield workers_pool
@@ -128,7 +128,8 @@ def crew(jobs: int | None) -> Iterator[Crew]:
         yield Crew(workers_for(jobs, _JOBS_MOST if jobs is None else jobs), stack)
 
 
-def _as_worker(parent: int) -> None:
+def as_worker(parent: int) -> None:
+    """Make this process a worker: it ignores the interrupt, and ends after its parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_leave_with, args=(parent,), daemon=True).start()
 

@@ -35,8 +35,8 @@ ORDER = (
     "pipeline.studies",
     "pipeline.studies.redesign",
     "pipeline.studies.papers",
-    "pipeline.studies.batch",
     "reports",
+    "pipeline.studies.batch",
     "pipeline.commands",
     "pipeline.cli",
 )
@@ -45,7 +45,6 @@ RANK = {name: place for place, name in enumerate(ORDER)} | {
     "pipeline.case.cards": ORDER.index("pipeline.case"),
     "pipeline.studies.redesign": ORDER.index("pipeline.studies"),
     "pipeline.studies.papers": ORDER.index("pipeline.studies"),
-    "pipeline.studies.batch": ORDER.index("pipeline.studies"),
 }
 FLAT_MAX, PACKAGE_MAX = 6, 26
 NAMED_AS_TEXT = re.compile(r"(?:camwright\.)?(?:geometry|meshes|pipeline|reports)(?:\.[a-z_0-9]+)+")

@@ -1,0 +1,49 @@
+"""Part of a Dask worker: keeps the templates, and solves one shard after another.
+
+Imported where Dask is, by `task_scheduler` and by the workers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, cast
+
+from distributed import WorkerPlugin, get_worker
+
+from camwright.pipeline.studies.batch.case_template import Template
+from camwright.pipeline.studies.batch.dataset import parquet_bytes, table_of, timings_of
+from camwright.pipeline.studies.batch.design_plan import Settings, Task
+from camwright.pipeline.studies.batch.design_rows import completed
+from camwright.pipeline.studies.batch.solver_process import SolverProcess
+
+Shard = tuple[bytes, bytes]
+"""Rows and clock figures of a task as Parquet files."""
+
+
+class StudyPlugin(WorkerPlugin):
+    """The templates on a worker: sent once, to later workers as well."""
+
+    def __init__(self, name: str, templates: Sequence[Template], settings: Settings) -> None:
+        self.name, self.templates, self.settings = name, tuple(templates), settings
+
+    def setup(self, worker: Any) -> None:  # noqa: ARG002 - signature of Dask
+        """Start of the worker."""
+        self.process = SolverProcess(self.templates, self.settings)
+
+    def teardown(self, worker: Any) -> None:  # noqa: ARG002
+        """End of the worker."""
+        self.process.close()
+
+
+def solve_shard(task: Task, plugin: str) -> Shard:
+    """Rows of a task, in the process of this worker."""
+    study = cast(StudyPlugin, get_worker().plugins[plugin])
+    columns, walls = study.process.rows(task)
+    rows = completed(task, columns, study.settings.outputs)
+    return parquet_bytes(table_of(rows, task.units)), parquet_bytes(timings_of(rows, walls))
+
+
+def solve_run(task: Task, plugin: str) -> dict[str, bytes]:
+    """Files of the run folder of the one design of a task."""
+    study = cast(StudyPlugin, get_worker().plugins[plugin])
+    return study.process.run_folder(task, 0)

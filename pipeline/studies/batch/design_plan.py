@@ -1,0 +1,184 @@
+"""Plan of a study: content hash of each design, tasks of one shard each."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.metadata
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.results.run_folder import versions
+from camwright.pipeline.studies.batch.factor_axes import Levels
+from camwright.pipeline.studies.batch.sampling import Designs
+
+SHARD_OF: Mapping[Tier, int] = {
+    Tier.SCREENING: 500, Tier.PREVIEW: 10, Tier.CYCLE: 5, Tier.CERTIFIED: 1,
+}  # fmt: skip
+"""Designs of a shard: a second or more of work, so that the scheduler's milliseconds are few."""
+_ID = 24  # hex digits: 96 bits
+CASE = "case"
+"""Factor that names the case, in a study of several."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the rows depend on besides the designs.
+
+    templates: hash by case name; versions: of the program and its libraries.
+    """
+
+    templates: Mapping[str, str]
+    versions: Mapping[str, str]
+    cam: str
+    positions: int | None
+    corners: bool
+    outputs: tuple[str, ...]
+    seconds: float
+    bytes: int
+
+    @property
+    def sha256(self) -> str:
+        """Hash of all settings."""
+        text = json.dumps(vars(self), sort_keys=True, default=dict)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """Designs of one case at one depth, solved together: one shard.
+
+    Parameters
+    ----------
+    name : str          content hash, the name of the shard
+    case : str          name of the case
+    tier : Tier
+    ids : tuple         of the designs
+    values : mapping    by key, SI, (n,)
+    shown : mapping     by key, in the unit of the study file, (n,)
+    units : mapping     by key; None: names
+    """
+
+    name: str
+    case: str
+    tier: Tier
+    ids: tuple[str, ...]
+    values: Mapping[str, Array | Levels]
+    shown: Mapping[str, Array | Levels]
+    units: Mapping[str, str | None]
+
+    def alone(self, row: int) -> Task:
+        """The task of one of its designs."""
+
+        def one(columns: Mapping[str, Array | Levels]) -> dict[str, Array | Levels]:
+            return {key: values[row : row + 1] for key, values in columns.items()}
+
+        return Task(
+            self.name, self.case, self.tier, self.ids[row : row + 1],
+            one(self.values), one(self.shown), self.units,
+        )  # fmt: skip
+
+    def value_of(self, row: int) -> dict[str, str | bool | int | float]:
+        """Values of one design by key, SI."""
+        return {key: _scalar(values[row]) for key, values in self.values.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Designs of a study by number, and the unique ones among them.
+
+    Parameters
+    ----------
+    cases : tuple        names, one block of designs each
+    designs : Designs    of each case; None: the cases are the designs
+    ids : tuple          of the unique designs, in order of their first number
+    place : array (n,)   unique design of each number
+    """
+
+    cases: tuple[str, ...]
+    designs: Designs | None
+    ids: tuple[str, ...]
+    place: NDArray[np.intp]
+    settings: Settings
+    _first: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, cases: Sequence[str], designs: Designs | None, settings: Settings) -> Plan:
+        """Plan of cases with their designs."""
+        count = 1 if designs is None else designs.count
+        columns = {} if designs is None else designs.si()
+        keys = sorted(columns)
+        lists = [_list(columns[key]) for key in keys]
+        known: dict[str, int] = {}
+        first: list[int] = []
+        place = np.empty(count * len(cases), dtype=np.intp)
+        for block, case in enumerate(cases):
+            head = f"{settings.templates[case]}\0{settings.cam}"
+            for row in range(count):
+                words = [f"\0{key}={each[row]!r}" for key, each in zip(keys, lists, strict=True)]
+                text = "".join([head, *words])
+                name = hashlib.sha256(text.encode()).hexdigest()[:_ID]
+                number = block * count + row
+                place[number] = known.setdefault(name, len(known))
+                if len(known) > len(first):
+                    first.append(number)
+        return cls(
+            tuple(cases), designs, tuple(known), place, settings, np.array(first, dtype=np.intp)
+        )
+
+    @property
+    def units(self) -> dict[str, str | None]:
+        """Unit of each factor by key; None: names."""
+        several: dict[str, str | None] = {CASE: None} if len(self.cases) > 1 else {}
+        return several | ({} if self.designs is None else self.designs.units)
+
+    def tasks(self, tier: Tier, chosen: Sequence[int] | None = None) -> Iterator[Task]:
+        """Tasks of all unique designs, or of those chosen, at a depth; in order."""
+        places = range(len(self.ids)) if chosen is None else chosen
+        count = 1 if self.designs is None else self.designs.count
+        blocks: dict[int, list[int]] = {}
+        for unique in places:
+            blocks.setdefault(int(self._first[unique]) // count, []).append(unique)
+        for block, members in blocks.items():
+            for start in range(0, len(members), SHARD_OF[tier]):
+                yield self._task(tier, block, members[start : start + SHARD_OF[tier]])
+
+    def _task(self, tier: Tier, block: int, members: Sequence[int]) -> Task:
+        case, units = self.cases[block], self.units
+        ids = tuple(self.ids[unique] for unique in members)
+        values: dict[str, Array | Levels] = {}
+        shown: dict[str, Array | Levels] = {}
+        if CASE in units:
+            shown[CASE] = (case,) * len(ids)
+        if self.designs is not None:
+            rows = self._first[np.array(members, dtype=np.intp)] - block * self.designs.count
+            taken = {key: _taken(column, rows) for key, column in self.designs.columns.items()}
+            shown |= taken
+            values = Designs(self.designs.axes, taken, len(ids)).si()
+        text = "\0".join((self.settings.sha256, tier.word, *units, *ids))
+        name = hashlib.sha256(text.encode()).hexdigest()[:32]
+        return Task(name, case, tier, ids, values, shown, units)
+
+
+def study_versions() -> dict[str, str]:
+    """Versions of the program and of the libraries that the rows and their bytes depend on."""
+    return versions() | {"pyarrow": importlib.metadata.version("pyarrow")}
+
+
+def _taken(column: Array | Levels, rows: NDArray[np.intp]) -> Array | Levels:
+    if isinstance(column, np.ndarray):
+        return np.asarray(column[rows])
+    return tuple(column[row] for row in rows)
+
+
+def _list(column: Array | Levels) -> list[str | bool | int | float]:
+    return column.tolist() if isinstance(column, np.ndarray) else list(column)
+
+
+def _scalar(value: str | bool | int | float) -> str | bool | int | float:
+    return value.item() if isinstance(value, np.generic) else value

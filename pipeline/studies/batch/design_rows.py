@@ -1,0 +1,283 @@
+"""Rows of designs: one solved at its depth, thousands screened as arrays; refusals as rows."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from camwright.geometry.errors import CamError
+from camwright.geometry.lift import Lift
+from camwright.pipeline.base.files import files_in, json_text, read_json, write_atomic
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import with_values
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.checks.check import Check, screen
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.studies.batch.case_template import Template, UnpackedTemplates
+from camwright.pipeline.studies.batch.dataset import (
+    DEPTH,
+    FACTOR,
+    FIXED,
+    GOVERNING,
+    HEADLINE,
+    ID,
+    MESH,
+    MESSAGE,
+    SCREEN,
+    VERDICT,
+)
+from camwright.pipeline.studies.batch.design_plan import Settings, Task
+
+Cell = float | str | None
+Row = dict[str, Cell]
+FAILED, NO_RESULT = "fail", "error"
+OUT_OF_TIME = "not solved within {seconds:g} s"
+OUT_OF_MEMORY = "not solved within {megabytes:.0f} MB of memory"
+DIED = "the process of the solution died {times} times"
+CLOCK = "timings.json"
+UNEXPECTED = "unexpected {kind}: {text}"
+
+
+def lost(message: str) -> Row:
+    """Cells of a design without a result: refused, or not solved."""
+    return {SCREEN.name: NO_RESULT, MESSAGE.name: message}
+
+
+def out_of_time(settings: Settings) -> Row:
+    return lost(OUT_OF_TIME.format(seconds=settings.seconds))
+
+
+def out_of_memory(settings: Settings) -> Row:
+    return lost(OUT_OF_MEMORY.format(megabytes=settings.bytes / 1e6))
+
+
+def died(times: int) -> Row:
+    return lost(DIED.format(times=times))
+
+
+def row_of(trial: Trial, headline: Mapping[str, float | None]) -> Row:
+    """Cells of a solved design, in the units of the records."""
+    row: Row = {
+        SCREEN.name: screen(trial.checks),
+        VERDICT.name: trial.verdict,
+        GOVERNING.name: governing(trial.checks),
+    }
+    row |= {HEADLINE + key: value for key, value in headline.items()}
+    if trial.mesh is not None:
+        row |= {MESH + key: float(v) for key, v in asdict(trial.mesh.quality).items()}
+    for one in trial.checks:
+        unit = one.unit
+        row |= {
+            f"{one.id}.demand": _number(one.worst, unit),
+            f"{one.id}.limit": _number(one.limit, unit),
+            f"{one.id}.utilisation": _number(one.utilisation),
+            f"{one.id}.status": one.status,
+            f"{one.id}.error": _number(one.error, unit),
+        }
+    return row
+
+
+def governing(checks: Iterable[Check]) -> str | None:
+    """Id of the must-have check of the greatest utilisation; None without one."""
+    used = [(one.utilisation, one.id) for one in checks if one.must_have]
+    known = [(use, name) for use, name in used if use is not None]
+    return min(known, key=lambda each: (-each[0], each[1]))[1] if known else None
+
+
+def _number(value: float | None, unit: str = "") -> float | None:
+    if value is None or not math.isfinite(value):
+        return None
+    return float(f"{in_unit(value, unit):.15g}")
+
+
+@dataclass
+class DesignSolver:
+    """Solves designs of the templates of a study; one in each process.
+
+    Parameters
+    ----------
+    templates : sequence   base cases
+    settings : Settings    of the study
+    """
+
+    templates: Sequence[Template]
+    settings: Settings
+    _cases: UnpackedTemplates = field(init=False)
+    _bases: dict[str, tuple[Case, Lift]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._cases = UnpackedTemplates(self.templates)
+
+    def screened(self, task: Task) -> dict[str, Any]:
+        """Columns (n,) of the designs of a task by arrays; see `screen_designs`."""
+        from camwright.pipeline.screening.design_screening import screen_designs
+
+        case = self._cases[task.case]
+        if task.values:
+            return dict(screen_designs(case, task.values, positions=self._positions(case)))
+        name = "spring.preload"  # a case that is itself the design
+        return dict(
+            screen_designs(
+                case, {name: np.array([case.spring.preload])}, positions=self._positions(case)
+            )
+        )
+
+    def _positions(self, case: Case) -> int:
+        return self.settings.positions or case.solver.positions
+
+    def solved(self, task: Task, row: int) -> Row:
+        """Cells of one design; its refusal is a row with the message."""
+        try:
+            return self._solved(task, row)
+        except CamError as error:
+            return lost(str(error))
+        except MemoryError:
+            return out_of_memory(self.settings)
+        except Exception as error:  # noqa: BLE001 - a row must come of every design
+            text = " ".join(str(error).split())[:200]
+            return lost(UNEXPECTED.format(kind=type(error).__name__, text=text))
+
+    def _solved(self, task: Task, row: int) -> Row:
+        from camwright.pipeline.results.run_records import headline
+
+        if task.tier is Tier.SCREENING:
+            columns = self.screened(task.alone(row))
+            return {name: _cell(values[0]) for name, values in columns.items()}
+        case, lift = self.design(task, row)
+        torques = engine_torques(case)
+        trial = trial_at(case, task.tier, lift, corners=self.settings.corners)
+        return row_of(trial, headline(torques, trial))
+
+    def design(self, task: Task, row: int) -> tuple[Case, Lift | None]:
+        """Case of one design, and its lift where the study has one cam for all.
+
+        Raises
+        ------
+        CamError
+            If the values are refused, or the base case has no cam.
+        """
+        case, lift = self._cases[task.case], None
+        if self.settings.cam == "base":
+            case, lift = self._base(task.case)
+        if task.values:
+            case = with_values(case, task.value_of(row))
+        if task.tier is not Tier.CERTIFIED and self.settings.positions is not None:
+            case = case.with_positions(self.settings.positions)
+        if case.smoothing.kind != "constrained":  # else a wider smoother would be another design
+            solver = case.solver.model_copy(update={"max_trials": 1})
+            case = case.model_copy(update={"solver": solver})
+        return case, lift
+
+    def _base(self, name: str) -> tuple[Case, Lift]:
+        """Base case with the spring and prime radius of its synthesis, and its lift."""
+        from camwright.pipeline.iteration import synthesize
+
+        if name not in self._bases:
+            made = synthesize(self._cases[name])
+            self._bases[name] = made.case, made.contour.pitch.lift
+        return self._bases[name]
+
+    def run_folder(self, task: Task, row: int) -> dict[str, bytes]:
+        """Files of the run of one design, by relative name; its clock figures as `CLOCK`.
+
+        Raises
+        ------
+        CamError
+            If the design is refused.
+        """
+        from camwright.pipeline.run import run_case
+        from camwright.reports.sections import report
+
+        case, _ = self.design(task, row)
+        home = Path(tempfile.mkdtemp(prefix="camwright-run-"))
+        path = home / "run"
+
+        def presented(folder: Path) -> None:
+            _without_clock(folder)
+            report(folder)
+
+        try:
+            run_case(case, path, depth=task.tier, jobs=1, report=presented)
+            clock = _without_clock(path)
+            files = {name: file.read_bytes() for name, file in files_in(path)}
+        finally:
+            shutil.rmtree(home, ignore_errors=True)
+        return files | {CLOCK: clock}
+
+
+def _without_clock(folder: Path) -> bytes:
+    """Take the clock figures out of ``run.json``; they are returned as JSON."""
+    summary = read_json(folder / "run.json")
+    clock, summary["timings_s"] = summary["timings_s"], {}
+    write_atomic(folder / "run.json", json_text(summary) + "\n")
+    return f"{json_text(clock)}\n".encode()
+
+
+def trial_at(case: Case, tier: Tier, lift: Lift | None, *, corners: bool) -> Trial:
+    """Trial of a case at a depth, of its own cam or of a lift.
+
+    Raises
+    ------
+    CamError
+        If the case has no such cam, or it cannot be solved.
+    """
+    from camwright.pipeline.iteration import trials_of
+    from camwright.pipeline.preview import preview_case
+    from camwright.pipeline.solver import certify_trial, solve
+
+    if lift is not None:
+        return solve(case, case.contour(lift), tier=tier, corners=corners)
+    if tier <= Tier.PREVIEW:
+        return preview_case(case, corners=corners)
+    trial, _ = trials_of(case, engine_torques(case), tier=tier)
+    return certify_trial(trial, jobs=1) if tier is Tier.CERTIFIED else trial
+
+
+def _cell(value: Any) -> Cell:
+    plain = value.item() if isinstance(value, np.generic) else value
+    return plain if isinstance(plain, (str, float)) or plain is None else float(plain)
+
+
+def columns_of(rows: Sequence[Row]) -> dict[str, list[Any]]:
+    """Columns of a shard from the rows of its designs."""
+    names = dict.fromkeys(name for row in rows for name in row)
+    return {name: [row.get(name) for row in rows] for name in names}
+
+
+def completed(
+    task: Task, columns: Mapping[str, Sequence[Any]], outputs: Sequence[str]
+) -> dict[str, Any]:
+    """Columns of a shard with id, depth and factors; only those that `outputs` names, if any.
+
+    Raises
+    ------
+    ResultError
+        Of `table_of`, for a column that no dataset has.
+    """
+    count = len(task.ids)
+    fixed = {each.name for each in FIXED}
+    wanted = {
+        name: values
+        for name, values in columns.items()
+        if name in fixed or not outputs or any(fnmatchcase(name, each) for each in outputs)
+    }
+    if GOVERNING.name in columns:  # by which borderline designs are ranked
+        for name in {f"{each}.utilisation" for each in columns[GOVERNING.name] if each}:
+            wanted.setdefault(name, columns[name])
+    return {
+        **{each.name: [None] * count for each in FIXED if each.name != "design"},
+        ID.name: list(task.ids),
+        DEPTH.name: [task.tier.word] * count,
+        **{FACTOR + key: values for key, values in task.shown.items()},
+        **wanted,
+    }

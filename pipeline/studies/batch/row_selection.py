@@ -1,0 +1,159 @@
+"""Designs that a study takes deeper or keeps: the best, the borderline, the front, the failed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.files import Json
+from camwright.pipeline.studies.batch.dataset import (
+    DEPTH,
+    GOVERNING,
+    ID,
+    MESSAGE,
+    SCREEN,
+    VERDICT,
+    values_of,
+)
+from camwright.pipeline.studies.batch.design_rows import FAILED, NO_RESULT
+from camwright.pipeline.studies.batch.study_file import Objective
+from camwright.pipeline.studies.redesign.pareto_front import front
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+_MESSAGES_MOST = 50
+_TIGHT = 1.959963984540054
+"""97.5 % point of the standard normal distribution."""
+
+
+@dataclass
+class Figures:
+    """What the selection needs of the rows seen so far, by id of the design.
+
+    A later row of a design, of a deeper stage, replaces the earlier one.
+    """
+
+    objectives: Sequence[Objective]
+    _rows: dict[str, tuple[str, str, str, str, float, tuple[float, ...]]] = field(
+        default_factory=dict
+    )
+
+    def add(self, table: pa.Table) -> None:
+        """Take in the rows of a shard.
+
+        Raises
+        ------
+        InputError
+            If an objective is no column of numbers.
+        """
+        names = set(table.column_names)
+        texts = {
+            each.name: [text or "" for text in table[each.name].to_pylist()]
+            for each in (ID, DEPTH, SCREEN, VERDICT, GOVERNING, MESSAGE)
+        }
+        used = {
+            name: values_of(table[f"{name}.utilisation"])
+            for name in set(texts[GOVERNING.name])
+            if f"{name}.utilisation" in names
+        }
+        wanted = []
+        for each in self.objectives:
+            values = values_of(table[each.column]) if each.column in names else None
+            if values is not None and values.dtype.kind not in "fi":
+                raise InputError("objective.column", each.column, "a column of numbers")
+            sign = 1.0 if each.goal == "min" else -1.0
+            wanted.append(np.full(len(table), np.nan) if values is None else sign * values)
+        for row, name in enumerate(texts[ID.name]):
+            ruling = texts[GOVERNING.name][row]
+            use = float(used[ruling][row]) if ruling in used else np.nan
+            self._rows[name] = (
+                texts[DEPTH.name][row], texts[SCREEN.name][row], texts[VERDICT.name][row],
+                texts[MESSAGE.name][row], use, tuple(float(each[row]) for each in wanted),
+            )  # fmt: skip
+
+    def keep(self, ids: set[str]) -> None:
+        """Forget all designs but these."""
+        self._rows = {name: row for name, row in self._rows.items() if name in ids}
+
+    def best(self, count: int) -> list[str]:
+        """Ids of the best designs that do not fail, by the first objective."""
+        ranked = sorted((row[5][0], name) for name, row in self._rows.items() if _in(row))
+        return [name for _, name in ranked[:count]]
+
+    def borderline(self, count: int) -> list[str]:
+        """Ids of the designs whose governing utilisation is nearest to one."""
+        ranked = sorted(
+            (abs(row[4] - 1.0), name) for name, row in self._rows.items() if np.isfinite(row[4])
+        )
+        return [name for _, name in ranked[:count]]
+
+    def front(self) -> list[str]:
+        """Ids of the Pareto front of the first two objectives, of designs that do not fail."""
+        rows = [(name, row[5]) for name, row in self._rows.items() if _in(row)]
+        pairs = [(each[0], each[min(1, len(each) - 1)]) for _, each in rows]
+        known = [k for k, pair in enumerate(pairs) if np.isfinite(pair).all()]
+        return [rows[known[k]][0] for k in front([pairs[k] for k in known])]
+
+    def failed(self) -> list[str]:
+        """Ids of the designs that fail or have no result."""
+        return [name for name, row in self._rows.items() if row[1] in (FAILED, NO_RESULT)]
+
+    def kept(self, kind: str, count: int) -> list[str]:
+        """Ids of the designs that `Study.keep` names."""
+        if kind == "best":
+            return self.best(count)
+        return self.front() if kind == "pareto" else self.failed() if kind == "failed" else []
+
+    def record(self) -> dict[str, Json]:
+        """Counts of the unique designs for ``study.json``."""
+        rows = list(self._rows.values())
+        words = Counter(row[3] for row in rows if row[3])
+        ranked = sorted(words.items(), key=lambda each: (-each[1], each[0]))
+        return {
+            "depth": _counts(row[0] for row in rows),
+            "screen": _counts(row[1] for row in rows),
+            "verdict": _counts(row[2] for row in rows if row[2]),
+            "messages": [
+                {"message": text, "count": count} for text, count in ranked[:_MESSAGES_MOST]
+            ],
+        }
+
+    @property
+    def fails(self) -> tuple[int, int]:
+        """Designs that fail, and those without a result."""
+        counted = Counter(row[1] for row in self._rows.values())
+        return counted[FAILED], counted[NO_RESULT]
+
+
+def _in(row: tuple[str, str, str, str, float, tuple[float, ...]]) -> bool:
+    return row[1] not in (FAILED, NO_RESULT) and bool(np.isfinite(row[5][0]))
+
+
+def _counts(words: Iterable[str]) -> dict[str, Json]:
+    return dict(sorted(Counter(words).items()))
+
+
+def passes_in(table: pa.Table) -> int:
+    """Rows of a shard that pass: by their verdict, below certified by `screen`."""
+    pairs = zip(table[VERDICT.name].to_pylist(), table[SCREEN.name].to_pylist(), strict=True)
+    return sum((verdict == "pass") if verdict else screen == "open" for verdict, screen in pairs)
+
+
+def interval_width(passes: int, count: int) -> float:
+    """Width of the 95 % interval of a yield; 1 without designs.
+
+    References
+    ----------
+    Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
+    """
+    if count == 0:
+        return 1.0
+    share, z2 = passes / count, _TIGHT**2
+    root = share * (1.0 - share) / count + z2 / (4.0 * count**2)
+    return float(2.0 * _TIGHT * np.sqrt(root) / (1.0 + z2 / count))

@@ -1,0 +1,152 @@
+"""Designs of a study: values of every factor by grid, list or samples of the unit cube."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.errors import InputError
+from camwright.pipeline.studies.batch.factor_axes import Axis, Levels
+from camwright.pipeline.studies.batch.study_file import DESIGNS_MAX, Correlation, Sampling
+
+_EDGE = 2.0**-53  # a share of 0 or 1 has no normal value
+
+
+@dataclass(frozen=True, eq=False)
+class Designs:
+    """Factor values of the designs of one case.
+
+    Parameters
+    ----------
+    axes : tuple       of the factors, in the order of the study file
+    columns : mapping  values (n,) by key: array in the unit of the axis, else names
+    count : int        n
+    """
+
+    axes: tuple[Axis, ...]
+    columns: Mapping[str, Array | Levels]
+    count: int
+
+    @property
+    def units(self) -> dict[str, str | None]:
+        """Unit of each factor by key; None: names."""
+        return {axis.key: axis.unit for axis in self.axes}
+
+    def si(self) -> dict[str, Array | Levels]:
+        """Values (n,) by key in SI; whole numbers and names as in the study file."""
+        return {axis.key: _plain(axis, self.columns[axis.key]) for axis in self.axes}
+
+
+def _plain(axis: Axis, values: Array | Levels) -> Array | Levels:
+    if not isinstance(values, np.ndarray):
+        return values
+    if axis.levels and all(isinstance(each, int) for each in axis.levels):
+        return tuple(int(each) for each in values.tolist())
+    return axis.si(values)
+
+
+def designs_of(
+    axes: Sequence[Axis], sampling: Sampling, correlations: Sequence[Correlation] = ()
+) -> Designs:
+    """Designs of a study; the same for the same seed.
+
+    Raises
+    ------
+    InputError
+        If the method does not fit a factor, the lists differ in length, there are too many designs,
+        or the correlations contradict one another.
+    """
+    if sampling.method in ("grid", "list"):
+        picked = _picked([axis.factorial for axis in axes], sampling.method)
+        columns = {
+            axis.key: _column(axis, [axis.levels[k] for k in places])
+            for axis, places in zip(axes, picked, strict=True)
+        }
+        return Designs(tuple(axes), columns, len(picked[0]))
+    shares = _correlated(unit_cube(len(axes), sampling), axes, correlations)
+    columns = {}
+    for axis, share in zip(axes, shares.T, strict=True):
+        if axis.levels:
+            places = np.minimum((share * len(axis.levels)).astype(int), len(axis.levels) - 1)
+            columns[axis.key] = _column(axis, [axis.levels[k] for k in places])
+        else:
+            columns[axis.key] = axis.at(np.clip(share, _EDGE, 1.0 - _EDGE))
+    return Designs(tuple(axes), columns, len(shares))
+
+
+def unit_cube(dimensions: int, sampling: Sampling) -> Array:
+    """Points of the unit cube (n, dimensions).
+
+    References
+    ----------
+    Saltelli et al., Comput. Phys. Commun. 181 (2010) 259, for the rows of ``sobol_indices``.
+    """
+    count = sampling.count or 0
+    if sampling.method == "random":
+        return np.random.default_rng(sampling.seed).random((count, dimensions))
+    if sampling.method == "sobol_indices":
+        from SALib.sample import sobol
+
+        problem = {
+            "num_vars": dimensions,
+            "names": [str(k) for k in range(dimensions)],
+            "bounds": [[0.0, 1.0]] * dimensions,
+        }
+        whole = 1 << (count - 1).bit_length()
+        if whole != count:
+            raise InputError("sampling.count", count, f"a power of two, such as {whole}")
+        return np.asarray(sobol.sample(problem, count, calc_second_order=False, seed=sampling.seed))
+    from scipy.stats import qmc
+
+    if sampling.method == "latin_hypercube":
+        points = qmc.LatinHypercube(dimensions, rng=np.random.default_rng(sampling.seed))
+        return np.asarray(points.random(count))
+    sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(sampling.seed))
+    # whole powers of two are balanced; the first `count` of them
+    return np.asarray(sequence.random_base2((count - 1).bit_length()))[:count]
+
+
+def _picked(levels: Sequence[Levels], method: str) -> list[Sequence[int]]:
+    """Places of the levels of each factor; the last factor of a grid varies fastest."""
+    counts = [len(each) for each in levels]
+    if method == "list":
+        if len(set(counts)) != 1:
+            raise InputError("factor.list", str(counts)[:80], "lists of one length")
+        return [range(counts[0])] * len(counts)
+    total = int(np.prod(np.array(counts, dtype=float)))
+    if total > DESIGNS_MAX:
+        raise InputError("sampling.method", f"grid of {total} designs", f"<= {DESIGNS_MAX}")
+    return list(zip(*itertools.product(*map(range, counts)), strict=True))
+
+
+def _column(axis: Axis, values: Sequence[str | bool | int | float]) -> Array | Levels:
+    return tuple(values) if axis.unit is None else np.array(values, dtype=float)
+
+
+def _correlated(shares: Array, axes: Sequence[Axis], correlations: Sequence[Correlation]) -> Array:
+    """Shares (n, d) with the correlations of a Gaussian copula.
+
+    References
+    ----------
+    Nelsen, An Introduction to Copulas (2006), sec. 2.3.
+    """
+    if not correlations:
+        return shares
+    from scipy.special import ndtr, ndtri
+
+    place = {axis.key: k for k, axis in enumerate(axes)}
+    matrix = np.eye(len(axes))
+    for each in correlations:
+        one, other = (place[key] for key in each.between)
+        matrix[one, other] = matrix[other, one] = each.value
+    try:
+        root = np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        words = ", ".join(f"{each.value:g}" for each in correlations)
+        raise InputError("correlation.value", words, "a positive definite matrix") from None
+    normal = ndtri(np.clip(shares, _EDGE, 1.0 - _EDGE))
+    return np.asarray(ndtr(normal @ root.T))

@@ -1,0 +1,201 @@
+"""Process that solves designs, and its supervision: time, memory, death.
+
+A worker of the cluster supervises one such process. What a design does to it, by a hang in gmsh, a
+crash or all of the memory, is a row of the dataset, and the worker lives on.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection, Pipe
+from pathlib import Path
+from typing import Any
+
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.worker_processes import THREADS, as_worker
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.studies.batch import design_rows
+from camwright.pipeline.studies.batch.case_template import Template
+from camwright.pipeline.studies.batch.design_plan import Settings, Task, study_versions
+from camwright.pipeline.studies.batch.design_rows import Row
+
+DEATHS_MAX = 3
+"""Deaths of the process after which a design is a row."""
+_LOOK_EVERY_S = 0.05
+_START_S = 120.0
+_PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
+
+
+class _OutOfTimeError(Exception):
+    pass
+
+
+class _OutOfMemoryError(Exception):
+    pass
+
+
+class _DiedError(Exception):
+    pass
+
+
+@dataclass
+class SolverProcess:
+    """A supervised process; restarted after a death.
+
+    Parameters
+    ----------
+    templates : sequence
+    settings : Settings   with the bounds of time and memory of one design
+    """
+
+    templates: Sequence[Template]
+    settings: Settings
+    _process: subprocess.Popen[bytes] | None = None
+    _pipe: Connection | None = None
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def rows(self, task: Task) -> tuple[dict[str, Any], list[float]]:
+        """Columns of a task, and the wall time of each design, s."""
+        with self._lock:
+            if task.tier is Tier.SCREENING:
+                with contextlib.suppress(_OutOfTimeError, _OutOfMemoryError, _DiedError):
+                    start = time.perf_counter()
+                    reply = self._asked("screened", task)
+                    share = (time.perf_counter() - start) / len(task.ids)
+                    if reply is not None:
+                        return reply, [share] * len(task.ids)
+            made, walls = [], []
+            for row in range(len(task.ids)):
+                start = time.perf_counter()
+                made.append(self._row(task, row))
+                walls.append(time.perf_counter() - start)
+            return design_rows.columns_of(made), walls
+
+    def run_folder(self, task: Task, row: int) -> dict[str, bytes]:
+        """Files of the run of a design; none where it has no result."""
+        with self._lock:
+            try:
+                files: dict[str, bytes] = self._asked("run_folder", task, row)
+            except (_OutOfTimeError, _OutOfMemoryError, _DiedError):
+                return {}
+            return files
+
+    def close(self) -> None:
+        """End the process."""
+        if self._pipe is not None:
+            self._pipe.close()
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+        self._process = self._pipe = None
+
+    def _row(self, task: Task, row: int) -> Row:
+        for _ in range(DEATHS_MAX):
+            try:
+                solved: Row = self._asked("solved", task, row)
+            except _OutOfTimeError:
+                return design_rows.out_of_time(self.settings)
+            except _OutOfMemoryError:
+                return design_rows.out_of_memory(self.settings)
+            except _DiedError:
+                continue
+            return solved
+        return design_rows.died(DEATHS_MAX)
+
+    def _asked(self, method: str, *arguments: Any) -> Any:
+        """Reply of the process, within time and memory."""
+        pipe, process = self._started()
+        try:
+            pipe.send((method, arguments))
+            deadline = time.monotonic() + self.settings.seconds
+            while not pipe.poll(_LOOK_EVERY_S):
+                if time.monotonic() > deadline:
+                    raise _OutOfTimeError
+                if resident(process.pid) > self.settings.bytes:
+                    raise _OutOfMemoryError
+            return pipe.recv()
+        except (EOFError, OSError):
+            self.close()
+            raise _DiedError from None
+        except (_OutOfTimeError, _OutOfMemoryError):
+            self.close()
+            raise
+
+    def _started(self) -> tuple[Connection, subprocess.Popen[bytes]]:
+        if self._process is not None and self._pipe is not None and self._process.poll() is None:
+            return self._pipe, self._process
+        self.close()
+        ours, theirs = Pipe()
+        environment = os.environ | dict.fromkeys(THREADS, "1")
+        with theirs:
+            self._process = subprocess.Popen(  # noqa: S603 - this interpreter, this module
+                [sys.executable, "-m", __name__, str(theirs.fileno())],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                env=environment,
+            )
+        self._pipe = ours
+        try:
+            ours.send((self.templates, self.settings))
+            if not ours.poll(_START_S):
+                raise EOFError
+            self._require(ours.recv())
+        except (EOFError, OSError):
+            self.close()
+            raise _DiedError from None
+        return ours, self._process
+
+    def _require(self, here: Mapping[str, str]) -> None:
+        """Refuse a worker of other versions, whose rows would differ."""
+        for name, version in self.settings.versions.items():
+            if here.get(name) != version:
+                self.close()
+                words = f"{name} {here.get(name, 'missing')} on {socket.gethostname()}"
+                raise ResultError(f"worker: {words}, must be {version}")
+
+
+def resident(pid: int) -> int:
+    """Resident memory of a process, bytes; 0 where the system does not state it."""
+    try:
+        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * _PAGE
+    except (OSError, ValueError, IndexError):
+        return 0
+
+
+def serve(pipe: Connection) -> None:
+    """Solve what comes through the pipe until its other end closes."""
+    templates, settings = pipe.recv()
+    solver = design_rows.DesignSolver(templates, settings)
+    pipe.send(study_versions())
+    while True:
+        method, arguments = pipe.recv()
+        pipe.send(_answer(getattr(solver, method), arguments))
+
+
+def _answer(method: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+    """Result of a method; None of an array solution that fails as a whole, {} of a run."""
+    try:
+        return method(*arguments)
+    except Exception:  # noqa: BLE001 - each design is then solved alone, where it is a row
+        return {} if method.__name__ == "run_folder" else None
+
+
+def main() -> None:
+    """Entry of the process: the number of its end of the pipe is the argument."""
+    as_worker(os.getppid())
+    with contextlib.suppress(EOFError, OSError):
+        serve(Connection(int(sys.argv[1])))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,367 @@
+"""Study file: base cases, factors with their distributions, sampling, depth, what is kept."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path, PurePosixPath
+from typing import Annotated, Literal, Self
+
+import tomli_w
+from pydantic import Field, ValidationError, model_validator
+
+from camwright.geometry.errors import InputError
+from camwright.pipeline.base.quantities import Characters, In
+from camwright.pipeline.case.error_text import first_error
+from camwright.pipeline.case.section import Name, Section, Text
+from camwright.pipeline.contact.tiers import Tier
+
+STUDY_BYTES = 16 * 1024 * 1024
+DESIGNS_MAX = 10_000_000
+SCHEMA_VERSION = 1
+_BITS = 8.0  # a byte; the SI value of "1 MB" is in bits
+Value = Annotated[str, Characters(1, 200)] | bool | int | float
+"""A value as in a case file: text with a unit, a number, a name, true or false."""
+Key = Annotated[str, Characters(1, 120)]
+DepthWord = Literal["screening", "preview", "cycle", "certified"]
+
+
+class Grid(Section):
+    """Equally spaced levels, both ends included."""
+
+    low: Value
+    high: Value
+    count: Annotated[int, Field(ge=2, le=100_000)]
+
+
+class Range(Section):
+    """Uniform between two ends."""
+
+    low: Value
+    high: Value
+
+
+class Normal(Section):
+    """Normal distribution; a tolerance is three standard deviations."""
+
+    mean: Value | None = None
+    std: Value | None = None
+    tolerance: Value | None = None
+
+    @model_validator(mode="after")
+    def _has_one_width(self) -> Self:
+        if (self.std is None) == (self.tolerance is None):
+            count = "neither" if self.std is None else "both"
+            raise InputError("std, tolerance", count, "exactly one of the two")
+        return self
+
+
+class Uniform(Section):
+    """Uniform within mean - tolerance to mean + tolerance."""
+
+    mean: Value | None = None
+    tolerance: Value
+
+
+class Triangular(Section):
+    """Symmetric triangular within mean - tolerance to mean + tolerance."""
+
+    mean: Value | None = None
+    tolerance: Value
+
+
+class Factor(Section):
+    """A value of the case that differs between designs, by its dotted key.
+
+    Exactly one of levels, grid, range, normal, uniform, triangular. A mean that is left out is the
+    value of the base case; a tolerance or std may be a share of the mean, such as ``"5 %"``.
+    """
+
+    key: Key
+    levels: Annotated[
+        tuple[Value, ...] | None,
+        Field(alias="list", strict=False, min_length=1, max_length=100_000),
+    ] = None
+    grid: Grid | None = None
+    range: Range | None = None
+    normal: Normal | None = None
+    uniform: Uniform | None = None
+    triangular: Triangular | None = None
+
+    @property
+    def spread(self) -> tuple[Value, ...] | Grid | Range | Normal | Uniform | Triangular:
+        """The one entry that is given."""
+        return self._given[0]
+
+    @property
+    def _given(self) -> list[tuple[Value, ...] | Grid | Range | Normal | Uniform | Triangular]:
+        entries = (
+            self.levels, self.grid, self.range, self.normal, self.uniform, self.triangular
+        )  # fmt: skip
+        return [each for each in entries if each is not None]
+
+    @model_validator(mode="after")
+    def _has_one_entry(self) -> Self:
+        if len(self._given) != 1:
+            kinds = "list, grid, range, normal, uniform, triangular"
+            raise InputError(self.key, f"{len(self._given)} entries", f"exactly one of: {kinds}")
+        return self
+
+
+class Correlation(Section):
+    """Correlation of two factors: that of the Gaussian copula."""
+
+    between: Annotated[tuple[Key, Key], Field(strict=False)]
+    value: Annotated[float, In(above=-1, below=1)]
+
+
+class Sampling(Section):
+    """Method of the sampling; `count` designs, but for grid and list.
+
+    For ``sobol_indices`` there are count * (factors + 2) designs.
+    """
+
+    method: Literal["grid", "list", "latin_hypercube", "sobol", "random", "sobol_indices"]
+    seed: Annotated[int, Field(ge=0, le=2**31)] = 1
+    count: Annotated[int, Field(ge=1, le=DESIGNS_MAX)] | None = None
+
+    @model_validator(mode="after")
+    def _has_a_count(self) -> Self:
+        discrete = self.method in ("grid", "list")
+        if discrete != (self.count is None):
+            word = "missing" if self.count is None else self.count
+            limit = f"{'left out' if discrete else 'given'} with sampling.method = {self.method}"
+            raise InputError("sampling.count", word, limit)
+        return self
+
+
+class Objective(Section):
+    """A column to minimise or maximise; the first one ranks the designs."""
+
+    column: Annotated[str, Characters(1, 120)]
+    goal: Literal["min", "max"] = "min"
+
+
+class Deeper(Section):
+    """Second stage: the best, or those nearest to a limit, at a deeper depth."""
+
+    depth: DepthWord
+    take: Literal["best", "borderline"] = "best"
+    count: Annotated[int, Field(ge=1, le=1_000_000)]
+
+
+class Stop(Section):
+    """Ends the first stage: after a time, or at a width of the 95 % interval of the yield.
+
+    The rows of the tasks that are complete in their order stay.
+    """
+
+    time: Annotated[float, In("s", above=0, at_most=1e9)] | None = None
+    interval: Annotated[float, In(above=0, below=1)] | None = None
+
+
+class DesignLimits(Section):
+    """Bounds of time and memory for the solution of one design."""
+
+    time: Annotated[float, In("s", at_least=0.1, at_most=1e6)] = 600.0
+    memory: Annotated[float, In("MB", at_least=10, at_most=1e6)] = _BITS * 1e9
+
+    @property
+    def bytes(self) -> int:
+        """Memory in bytes."""
+        return int(self.memory / _BITS)
+
+
+class Study(Section):
+    """A study: base cases, factors, sampling, depth; see docs/studies.md."""
+
+    schema_version: Literal[1] = 1
+    name: Name
+    title: Text = ""
+    cases: Annotated[
+        tuple[Annotated[str, Characters(1, 1000)], ...],
+        Field(alias="case", strict=False, min_length=1, max_length=1_000_000),
+    ]
+    cam: Literal["own", "base"] = "own"
+    depth: DepthWord = "screening"
+    positions: Annotated[int, Field(ge=36, le=7200)] | None = 180
+    corners: bool = True
+    factors: Annotated[
+        tuple[Factor, ...], Field(alias="factor", strict=False, max_length=1000)
+    ] = ()
+    correlations: Annotated[
+        tuple[Correlation, ...], Field(alias="correlation", strict=False, max_length=10_000)
+    ] = ()
+    sampling: Sampling | None = None
+    outputs: Annotated[
+        tuple[Annotated[str, Characters(1, 120)], ...], Field(strict=False, max_length=1000)
+    ] = ()
+    objectives: Annotated[
+        tuple[Objective, ...], Field(alias="objective", strict=False, max_length=8)
+    ] = ()
+    deeper: Deeper | None = None
+    stop: Stop | None = None
+    keep: Annotated[str, Characters(0, 40)] = ""
+    limits: Annotated[DesignLimits, Field(alias="design")] = DesignLimits()
+
+    @model_validator(mode="after")
+    def _agrees(self) -> Self:
+        keys = [each.key for each in self.factors]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise InputError("factor.key", key, "once")
+        if bool(keys) != (self.sampling is not None):
+            word = "a table" if self.sampling else "missing"
+            raise InputError("sampling", word, "given with factors, left out without")
+        for each in self.correlations:
+            for key in each.between:
+                if key not in keys or each.between[0] == each.between[1]:
+                    raise InputError("correlation.between", key, "two different factors")
+        if self.correlations and self.sampling is not None:
+            method = self.sampling.method
+            if method in ("grid", "list", "sobol_indices"):
+                limit = 'with sampling.method = "latin_hypercube", "sobol" or "random"'
+                raise InputError("correlation", method, limit)
+        if self.cam == "base" and self.tier is Tier.SCREENING:
+            raise InputError("depth", self.depth, 'preview or deeper with cam = "base"')
+        if self.deeper is not None:
+            if Tier.of(self.deeper.depth, "deeper.depth") <= self.tier:
+                raise InputError("deeper.depth", self.deeper.depth, f"deeper than {self.depth}")
+            if self.deeper.take == "best" and not self.objectives:
+                raise InputError("objective", "missing", 'given with deeper.take = "best"')
+        self._check_keep()
+        return self
+
+    def _check_keep(self) -> None:
+        kind, count = self.kept
+        if kind in ("best", "pareto") and not self.objectives:
+            raise InputError("objective", "missing", f'given with keep = "{self.keep}"')
+        if kind not in ("", "failed", "pareto", "best") or (kind == "best") != (count > 0):
+            raise InputError("keep", self.keep, 'failed, pareto, or best:N such as "best:10"')
+
+    @property
+    def kept(self) -> tuple[str, int]:
+        """Kind of the designs with a run folder, and their number for ``best``."""
+        kind, _, count = self.keep.partition(":")
+        return kind, int(count) if count.isdecimal() and len(count) < 8 else 0
+
+    @property
+    def tier(self) -> Tier:
+        """Depth of the first stage."""
+        return Tier.of(self.depth, "depth")
+
+
+def read_study(path: Path) -> Study:
+    """Read and check a study file; the cases are not read.
+
+    Raises
+    ------
+    InputError
+        For the first error, by its dotted name.
+    """
+    tables = read_study_tables(path)
+    version = tables.get("schema_version", SCHEMA_VERSION)
+    if version != SCHEMA_VERSION:
+        limit = f"{SCHEMA_VERSION}, the version of this program"
+        raise InputError("schema_version", str(version)[:40], limit)
+    if isinstance(tables.get("case"), str):
+        tables["case"] = [tables["case"]]
+    return study_of(tables)
+
+
+def study_of(tables: dict[str, object]) -> Study:
+    """A study from its tables.
+
+    Raises
+    ------
+    InputError
+        For the first error, by its dotted name.
+    """
+    try:
+        return Study.model_validate(tables)
+    except ValidationError as error:
+        raise first_error(error) from None
+
+
+def read_study_tables(path: Path) -> dict[str, object]:
+    """Tables of a study or case file.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            content = file.read(STUDY_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError("study", f"{path} ({reason})", "a readable file") from None
+    if len(content) > STUDY_BYTES:
+        raise InputError("study", f"{path} is larger", f"at most {STUDY_BYTES // 1024} KiB")
+    try:
+        return tomllib.loads(content.decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        words = "nested too deeply" if isinstance(error, RecursionError) else error
+        reason = " ".join(str(words).split())
+        raise InputError("study", f"{path} ({reason})", "UTF-8 text in TOML") from None
+
+
+def case_path(folder: Path, name: str) -> Path:
+    """Path of a case, relative to the folder of the study file.
+
+    Raises
+    ------
+    InputError
+        If the name is absolute, or is no file.
+    """
+    if PurePosixPath(name).is_absolute() or "\\" in name or ":" in name or "\0" in name:
+        raise InputError("case", name, "a path relative to the study file")
+    try:
+        path = (folder / name).resolve()
+        readable = path.is_file()
+    except (OSError, RuntimeError):
+        readable = False
+    if not readable:
+        raise InputError("case", name, "an existing file")
+    return path
+
+
+def chosen_study(files: Sequence[Path], depth: str | None) -> tuple[Study, str, Path]:
+    """Study of the arguments of the command: its file, or one made of case files.
+
+    Parameters
+    ----------
+    files : sequence   one study file, or case files
+    depth : str        of case files; None: preview
+
+    Returns
+    -------
+    study : Study
+    text : str      of the study file
+    folder : Path   from which its cases are read
+
+    Raises
+    ------
+    InputError
+        If there are several files and one is a study, or the study is refused.
+    """
+    studies = [path for path in files if "case" in read_study_tables(path)]
+    if not studies:
+        return _of_cases(files, depth or "preview")
+    if len(files) > 1:
+        raise InputError("FILE", str(studies[0]), "one study file, or case files")
+    if depth is not None:
+        raise InputError("--depth", depth, "left out, as the study file states it")
+    path = studies[0]
+    study = read_study(path)
+    return study, path.read_text(encoding="utf-8-sig"), path.resolve().parent
+
+
+def _of_cases(files: Sequence[Path], depth: str) -> tuple[Study, str, Path]:
+    paths = [path.resolve() for path in files]
+    folder = Path(os.path.commonpath([path.parent for path in paths]))
+    names = [path.relative_to(folder).as_posix() for path in paths]
+    tables: dict[str, object] = {"name": "cases", "case": names, "depth": depth}
+    return study_of(tables), tomli_w.dumps(tables), folder

@@ -1,0 +1,272 @@
+"""Study folder: shards, dataset and records, each written in one step; one process at a time."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.base.files import Json, json_text, read_json, write_atomic
+from camwright.pipeline.studies.batch.case_template import Template
+from camwright.pipeline.studies.batch.dataset import (
+    CASES,
+    DATASET,
+    DESIGN,
+    ID,
+    RUNS,
+    SHARDS,
+    STUDY,
+    SUMMARY,
+    TIMINGS,
+    WRITING,
+    in_order,
+    read_parquet,
+)
+from camwright.pipeline.studies.batch.design_rows import CLOCK
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+_LOCK = ".lock"
+_OURS = (STUDY, SUMMARY, DATASET, SHARDS, TIMINGS, RUNS, CASES, _LOCK)
+_BLOCK = 2000
+"""Rows of a row group of the dataset; bounds the memory of its writing."""
+
+
+@dataclass(frozen=True)
+class Shard:
+    """A shard of the folder: name, and ids of its rows."""
+
+    name: str
+    ids: tuple[str, ...]
+
+
+class StudyFolder:
+    """The folder of a study while it is written; a context manager.
+
+    Parameters
+    ----------
+    out : Path
+    resume : bool   complete an earlier study in it
+
+    Raises
+    ------
+    ResultError
+        If the folder holds anything but a study, holds one without `resume`, or another process
+        writes to it.
+    """
+
+    def __init__(self, out: Path, *, resume: bool) -> None:
+        self.path, self._resume = out, resume
+        self._lock: IO[str] | None = None
+
+    def __enter__(self) -> StudyFolder:
+        if self.path.is_symlink() or (self.path.exists() and not self.path.is_dir()):
+            raise ResultError(f"{self.path}: in the way, and not a folder")
+        present = [each.name for each in self.path.iterdir()] if self.path.is_dir() else []
+        present = [name for name in present if not name.endswith(".tmp")]
+        foreign = sorted(set(present) - set(_OURS))
+        if foreign:
+            raise ResultError(f"{self.path}: holds {foreign[0]}, which is not of a study")
+        if set(present) - {_LOCK} and not self._resume:
+            raise ResultError(f"{self.path}: holds a study; --resume completes it")
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            self._take_lock()
+            for each in self.path.rglob(".*.tmp"):  # of a process that was killed
+                shutil.rmtree(each) if each.is_dir() else each.unlink()
+        except OSError as error:
+            raise ResultError(f"{self.path}: {error.strerror or error}") from None
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._lock is not None:
+            self._lock.close()
+            (self.path / _LOCK).unlink(missing_ok=True)
+
+    def _take_lock(self) -> None:
+        """Lock the folder for this process; the system unlocks it when the process ends."""
+        try:
+            import fcntl
+        except ImportError:  # Windows has no such lock
+            return
+        lock = (self.path / _LOCK).open("w")
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            lock.close()
+            raise ResultError(f"{self.path}: another study is writing to it") from None
+        self._lock = lock
+
+    def write_inputs(self, text: str, templates: Sequence[Template]) -> None:
+        """Write the study file and the cases; those of an earlier study are replaced."""
+        earlier = self.path / STUDY
+        if earlier.is_file() and earlier.read_bytes() != text.encode():
+            shutil.rmtree(self.path / RUNS, ignore_errors=True)
+        write_atomic(earlier, text)
+        shutil.rmtree(self.path / CASES, ignore_errors=True)
+        for each in templates:
+            for name, content in each.files.items():
+                write_atomic(self.path / CASES / each.name / name, content)
+
+    def holds(self, shard: Shard) -> bool:
+        """Whether the shard is there and whole; a damaged one is deleted."""
+        path = self._shard(shard.name)
+        if not path.is_file():
+            return False
+        try:
+            table = read_parquet(path)
+            whole = table[ID.name].to_pylist() == list(shard.ids)
+        except (ResultError, KeyError):
+            whole = False
+        if not whole:
+            path.unlink()
+        return whole
+
+    def write_shard(self, name: str, rows: bytes, clock: bytes) -> None:
+        """Write the rows of a task and their clock figures."""
+        write_atomic(self.path / TIMINGS / f"{name}.parquet", clock)
+        write_atomic(self._shard(name), rows)
+
+    def read_shard(self, name: str) -> pa.Table:
+        """Rows of a shard."""
+        return read_parquet(self._shard(name))
+
+    def forget_others(self, shards: Sequence[Shard], runs: Sequence[str]) -> None:
+        """Delete shards and runs of an earlier study."""
+        kept = {f"{shard.name}.parquet" for shard in shards} | {f"{each}.json" for each in runs}
+        for folder in (SHARDS, TIMINGS):
+            for each in sorted((self.path / folder).glob("*")):
+                if each.name not in kept:
+                    each.unlink()
+        for each in sorted((self.path / RUNS).glob("*")):
+            if each.name not in runs:
+                shutil.rmtree(each)
+
+    def holds_run(self, name: str, depth: str, versions: Mapping[str, str]) -> bool:
+        """Whether the run folder of a design is there, of this depth and these versions."""
+        try:
+            summary = read_json(self.path / RUNS / name / "run.json")
+        except ResultError:
+            return False
+        same = summary["versions"].items() <= versions.items()
+        return bool(same and summary["depth"] == depth)
+
+    def write_run(self, name: str, files: Mapping[str, bytes]) -> None:
+        """Write the run folder of a design; a design without result has an empty one."""
+        final = self.path / RUNS / name
+        aside = final.with_name(f".{name}.tmp")
+        shutil.rmtree(aside, ignore_errors=True)
+        try:
+            aside.mkdir(parents=True)
+            for each, content in files.items():
+                if each != CLOCK:
+                    write_atomic(aside / each, content)
+            if CLOCK in files:
+                write_atomic(self.path / TIMINGS / f"{name}.json", files[CLOCK])
+            shutil.rmtree(final, ignore_errors=True)
+            aside.replace(final)
+        except OSError as error:
+            raise ResultError(f"{final}: {error.strerror or error}") from None
+
+    def write_summary(self, record: Mapping[str, Json]) -> None:
+        """Write the record of the study; last, as it tells a finished one."""
+        write_atomic(self.path / SUMMARY, json_text(record) + "\n")
+
+    def _shard(self, name: str) -> Path:
+        return self.path / SHARDS / f"{name}.parquet"
+
+    def write_dataset(
+        self,
+        place: NDArray[np.intp],
+        shards: Sequence[Shard],
+        deeper: Sequence[Shard],
+        ids: Sequence[str],
+    ) -> None:
+        """Write the rows of all designs in their order, block by block.
+
+        Parameters
+        ----------
+        place : array (n,)   unique design of each number; rows of shards that are not there, of a
+                             study that stopped early, are left out
+        shards : sequence    of the first stage: together the unique designs, in order
+        deeper : sequence    of the second stage; their rows replace those of the first
+        ids : sequence       of the unique designs
+        """
+        import pyarrow.parquet as pq
+
+        starts = np.cumsum([0, *(len(shard.ids) for shard in shards)])
+        place = place[place < starts[-1]] if len(shards) else place[:0]
+        order = {name: k for k, name in enumerate(ids)}
+        second = [self.read_shard(shard.name) for shard in deeper]
+        replaced = {order[name]: k for k, name in enumerate(n for s in deeper for n in s.ids)}
+        schema = self._schema([*shards, *deeper])
+        final = self.path / DATASET
+        aside = final.with_name(f".{DATASET}.tmp")
+        recent: dict[int, pa.Table] = {}
+        try:
+            with aside.open("wb") as file, pq.ParquetWriter(file, schema, **WRITING) as writer:
+                for start in range(0, max(len(place), 1), _BLOCK):
+                    unique = place[start : start + _BLOCK]
+                    owners = np.searchsorted(starts, unique, side="right") - 1
+                    wanted = sorted(set(owners.tolist()))
+                    recent = {
+                        k: recent[k] if k in recent else self.read_shard(shards[k].name)
+                        for k in wanted
+                    }
+                    parts = [*(recent[k] for k in wanted), *second]
+                    heads = np.cumsum([0, *(len(part) for part in parts)])
+                    rows = heads[np.searchsorted(wanted, owners)] + unique - starts[owners]
+                    for k, each in enumerate(unique.tolist()):
+                        if each in replaced:
+                            rows[k] = heads[len(wanted)] + replaced[each]
+                    writer.write_table(_block(schema, parts, rows, start))
+                file.flush()
+                os.fsync(file.fileno())
+            aside.replace(final)
+        except OSError as error:
+            raise ResultError(f"{final}: {error.strerror or error}") from None
+        finally:
+            with contextlib.suppress(OSError):
+                aside.unlink(missing_ok=True)
+
+    def _schema(self, shards: Sequence[Shard]) -> pa.Schema:
+        """Columns of all shards, in order."""
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        meaning = {"unit": DESIGN.unit, "meaning": DESIGN.meaning}
+        fields = {DESIGN.name: pa.field(DESIGN.name, pa.int64(), metadata=meaning)}
+        for shard in shards:
+            for field in pq.read_schema(self._shard(shard.name)):
+                fields.setdefault(field.name, field)
+        return pa.schema([fields[name] for name in in_order(list(fields))])
+
+
+def _block(
+    schema: pa.Schema, parts: Sequence[pa.Table], rows: NDArray[np.intp], start: int
+) -> pa.Table:
+    """Rows of the parts, numbered from `start`, with all columns of the schema."""
+    import pyarrow as pa
+
+    if not parts:
+        return schema.empty_table()
+    below = pa.concat_tables(parts, promote_options="default").take(pa.array(rows))
+    count = len(rows)
+    columns = []
+    for field in schema:
+        if field.name == DESIGN.name:
+            columns.append(pa.array(np.arange(start, start + count)))
+        elif field.name in below.column_names:
+            columns.append(below[field.name].combine_chunks())
+        else:
+            columns.append(pa.nulls(count, field.type))
+    return pa.Table.from_arrays(columns, schema=schema)

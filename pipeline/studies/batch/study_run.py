@@ -1,0 +1,283 @@
+"""Run of a study: plan, shards on a cluster, deeper stage, dataset, kept runs, summary."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from camwright.pipeline.base.files import Json, sha256_of
+from camwright.pipeline.base.progress import SILENT, Progress
+from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.studies.batch.case_template import (
+    Template,
+    UnpackedTemplates,
+    read_templates,
+)
+from camwright.pipeline.studies.batch.dataset import DATASET
+from camwright.pipeline.studies.batch.design_plan import Plan, Settings, Task, study_versions
+from camwright.pipeline.studies.batch.factor_axes import axis_of
+from camwright.pipeline.studies.batch.row_selection import Figures, interval_width, passes_in
+from camwright.pipeline.studies.batch.sampling import Designs, designs_of
+from camwright.pipeline.studies.batch.study_file import Stop, Study
+from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
+from camwright.pipeline.studies.batch.task_scheduler import TaskScheduler, cluster
+
+_NOTE_EVERY_S = 10.0
+
+
+def run_study(
+    study: Study,
+    text: str,
+    folder: Path,
+    out: Path,
+    *,
+    jobs: int = 1,
+    scheduler: str | None = None,
+    resume: bool = False,
+    progress: Progress = SILENT,
+) -> dict[str, Json]:
+    """Solve the designs of a study and write its folder.
+
+    Parameters
+    ----------
+    study, text : Study, str   study file, read and as text
+    folder : Path              of the study file, from which the cases are read
+    out : Path                 study folder
+    jobs : int                 local processes
+    scheduler : str            address of a running Dask cluster; None: local processes
+    resume : bool              complete an earlier study in `out`
+
+    Returns
+    -------
+    dict   contents of ``study.json``
+
+    Raises
+    ------
+    CamError
+        If the study, a case or the folder is refused, or the cluster is lost.
+    """
+    progress.stage("designs")
+    templates = read_templates(folder, study.cases)
+    plan = planned(study, templates)
+    with StudyFolder(out, resume=resume) as home:
+        home.write_inputs(text, templates)
+        with ExitStack() as stack:
+            run = _Run(study, plan, templates, home, jobs, scheduler, stack, progress)
+            return run.finish()
+
+
+def planned(study: Study, templates: Sequence[Template]) -> Plan:
+    """Designs of a study with their tasks.
+
+    Raises
+    ------
+    InputError
+        If a factor does not fit the first case, or the sampling does not fit the factors.
+    """
+    designs: Designs | None = None
+    if study.sampling is not None:
+        base = UnpackedTemplates(templates)[templates[0].name]
+        axes = [axis_of(factor, base) for factor in study.factors]
+        designs = designs_of(axes, study.sampling, study.correlations)
+    settings = Settings(
+        templates={each.name: each.sha256 for each in templates},
+        versions=study_versions(),
+        cam=study.cam,
+        positions=study.positions,
+        corners=study.corners,
+        outputs=study.outputs,
+        seconds=study.limits.time,
+        bytes=study.limits.bytes,
+    )
+    return Plan.of([each.name for each in templates], designs, settings)
+
+
+@dataclass(eq=False)
+class _Run:
+    """A study while it is solved; the cluster starts with the first task that is not solved."""
+
+    study: Study
+    plan: Plan
+    templates: Sequence[Template]
+    home: StudyFolder
+    jobs: int
+    address: str | None
+    stack: ExitStack
+    progress: Progress
+    stopped: str | None = None
+    figures: Figures = field(init=False)
+    _scheduler: TaskScheduler | None = None
+
+    def __post_init__(self) -> None:
+        self.figures = Figures(self.study.objectives)
+
+    def finish(self) -> dict[str, Json]:
+        """Solve both stages, write all files; the contents of ``study.json``."""
+        study, plan, home = self.study, self.plan, self.home
+        first = self._stage(study.tier, plan.tasks(study.tier), len(plan.ids), stop=True)
+        deeper: list[Shard] = []
+        if study.deeper is not None:
+            rule = study.deeper
+            chosen = (
+                self.figures.best(rule.count)
+                if rule.take == "best"
+                else self.figures.borderline(rule.count)
+            )
+            tasks = self._tasks_of(self._second, chosen)
+            deeper = self._stage(self._second, tasks, len(chosen), stop=False)
+        self.progress.stage("dataset")
+        home.write_dataset(plan.place, first, deeper, plan.ids)
+        kept = sorted(self.figures.kept(*study.kept))
+        home.forget_others([*first, *deeper], kept)
+        self._keep(kept, {name for shard in deeper for name in shard.ids})
+        record = self._record(kept, first)
+        home.write_summary(record)
+        return record
+
+    def _tasks_of(self, tier: Tier, ids: Sequence[str]) -> Iterator[Task]:
+        order = {name: k for k, name in enumerate(self.plan.ids)}
+        return self.plan.tasks(tier, sorted(order[name] for name in ids))
+
+    def _stage(self, tier: Tier, tasks: Iterable[Task], count: int, *, stop: bool) -> list[Shard]:
+        """Solve the tasks of a depth that no shard holds; all their shards in order."""
+        self.progress.stage(f"{tier.word}: {count} designs")
+        watch = _Watch(self, count, self.study.stop if stop else None)
+
+        def missing() -> Iterator[Task]:
+            for task in tasks:
+                if watch.stopped:
+                    return
+                shard = Shard(task.name, task.ids)
+                watch.expect(shard)
+                if self.home.holds(shard):
+                    watch.take(shard)
+                else:
+                    yield task
+
+        pending = missing()
+        start = next(pending, None)
+        if start is not None:
+            for task, (rows, clock) in self._cluster().shards(_after(start, pending)):
+                self.home.write_shard(task.name, rows, clock)
+                watch.take(Shard(task.name, task.ids))
+                if watch.stopped:
+                    break
+        shards = watch.shards()
+        if watch.stopped:
+            self.stopped = watch.stopped
+            self.figures.keep({name for shard in shards for name in shard.ids})
+        return shards
+
+    def _cluster(self) -> TaskScheduler:
+        if self._scheduler is None:
+            client = self.stack.enter_context(cluster(self.jobs, self.address))
+            self._scheduler = TaskScheduler(client, self.templates, self.plan.settings)
+        return self._scheduler
+
+    def _keep(self, kept: Sequence[str], deeper: set[str]) -> None:
+        """Write the run folders of the designs kept, at the depth of their rows."""
+        tasks: list[Task] = []
+        for tier, ids in (
+            (self.study.tier, [name for name in kept if name not in deeper]),
+            (self._second, [name for name in kept if name in deeper]),
+        ):
+            for task in self._tasks_of(tier, ids):
+                tasks += [task.alone(row) for row in range(len(task.ids))]
+        missing = [
+            task
+            for task in tasks
+            if not self.home.holds_run(task.ids[0], task.tier.word, self.plan.settings.versions)
+        ]
+        if not missing:
+            return
+        self.progress.stage(f"runs: {len(missing)} designs")
+        for k, (task, files) in enumerate(self._cluster().runs(missing), start=1):
+            self.home.write_run(task.ids[0], files)
+            self.progress.advance(k, len(missing))
+
+    @property
+    def _second(self) -> Tier:
+        """Depth of the second stage; that of the first without one."""
+        rule = self.study.deeper
+        return self.study.tier if rule is None else Tier.of(rule.depth, "deeper.depth")
+
+    def _record(self, kept: Sequence[str], first: Sequence[Shard]) -> dict[str, Json]:
+        study, plan = self.study, self.plan
+        solved = sum(len(shard.ids) for shard in first)
+        return {
+            "name": study.name,
+            "title": study.title,
+            "designs": int((plan.place < solved).sum()),
+            "planned": len(plan.place),
+            "unique": solved,
+            "stopped": self.stopped,
+            **self.figures.record(),
+            "kept": list(kept),
+            "dataset_sha256": sha256_of(self.home.path / DATASET),
+            "templates": dict(plan.settings.templates),
+            "versions": dict(plan.settings.versions),
+        }
+
+
+def _after(first: Task, others: Iterator[Task]) -> Iterator[Task]:
+    yield first
+    yield from others
+
+
+class _Watch:
+    """Progress of a stage, and its stop rule on the shards that are complete in their order.
+
+    The width of the interval is that of the same rows whatever the number of processes: those
+    before the first shard that is not complete.
+    """
+
+    def __init__(self, run: _Run, count: int, rule: Stop | None) -> None:
+        self._run, self._count, self._rule = run, count, rule
+        self._order: list[Shard] = []
+        self._ready: dict[str, int] = {}
+        self._solved = self._whole = self._passes = self._judged = 0
+        self._began = self._spoke = time.monotonic()
+        self.stopped = ""
+
+    def expect(self, shard: Shard) -> None:
+        """The next shard in order."""
+        self._order.append(shard)
+
+    def take(self, shard: Shard) -> None:
+        """A shard is complete."""
+        table = self._run.home.read_shard(shard.name)
+        self._run.figures.add(table)
+        self._ready[shard.name] = passes_in(table)
+        self._solved += len(shard.ids)
+        self._run.progress.advance(self._solved, self._count)
+        now = time.monotonic()
+        if now - self._spoke >= _NOTE_EVERY_S:
+            self._spoke = now
+            fails, lost = self._run.figures.fails
+            rate = self._solved / (now - self._began)
+            words = f"{fails} of {self._solved} fail, {lost} without result"
+            self._run.progress.note(f"{words}, {rate:.3g} designs a second")
+        self._judge(now - self._began)
+
+    def _judge(self, seconds: float) -> None:
+        """Apply the stop rule."""
+        rule = self._rule
+        while not self.stopped and self._whole < len(self._order):
+            shard = self._order[self._whole]
+            if shard.name not in self._ready:
+                break
+            self._whole += 1
+            self._passes += self._ready[shard.name]
+            self._judged += len(shard.ids)
+            if rule is not None and rule.interval is not None:
+                width = interval_width(self._passes, self._judged)
+                self.stopped = "interval" if width <= rule.interval else ""
+        if rule is not None and rule.time is not None and seconds >= rule.time:
+            self.stopped = self.stopped or "time"
+
+    def shards(self) -> list[Shard]:
+        """Shards of the stage: all, or those before the stop."""
+        return self._order[: self._whole]
