@@ -235,10 +235,10 @@ class Study(Section):
 
     def _check_keep(self) -> None:
         kind, count = self.kept
-        if kind in ("best", "pareto") and not self.objectives:
-            raise InputError("objective", "missing", f'given with keep = "{self.keep}"')
         if kind not in ("", "failed", "pareto", "best") or (kind == "best") != (count > 0):
             raise InputError("keep", self.keep, 'failed, pareto, or best:N such as "best:10"')
+        if kind in ("best", "pareto") and not self.objectives:
+            raise InputError("objective", "missing", f'given with keep = "{self.keep}"')
 
     @property
     def kept(self) -> tuple[str, int]:

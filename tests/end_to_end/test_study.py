@@ -1,0 +1,304 @@
+"""`camwright study`: the same bytes whatever the processes, after kills, on a running cluster."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import psutil
+import pytest
+
+from camwright.pipeline.base.files import file_hashes
+from camwright.pipeline.studies.batch.dataset import read_dataset
+
+ROOT = Path(__file__).resolve().parents[2]
+SECONDS = 300.0
+STUDY = """
+name = "eccentric"
+case = "eccentric.toml"
+depth = "preview"
+positions = 36
+corners = false
+{more}
+[[factor]]
+key = "spring.preload"
+range = {{ low = "40 N", high = "60 N" }}
+[sampling]
+method = "random"
+count = {count}
+"""
+
+
+def command(*arguments: str) -> list[str]:
+    return [sys.executable, "-m", "camwright", "study", *arguments]
+
+
+def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command(*arguments), cwd=folder, capture_output=True, text=True, check=False,
+        timeout=SECONDS,
+    )  # fmt: skip
+
+
+def contents(folder: Path) -> dict[str, str]:
+    """Hashes of all files but the clock figures."""
+    return file_hashes(folder, lambda name: not name.startswith("timings/"))
+
+
+def written(folder: Path, count: int, more: str = "", name: str = "study.toml") -> Path:
+    text = (ROOT / "cases" / "papers" / "eccentric.toml").read_text()
+    (folder / "eccentric.toml").write_text(text)
+    (folder / name).write_text(STUDY.format(count=count, more=more))
+    return folder / name
+
+
+def processes_of(parent: psutil.Process) -> list[psutil.Process]:
+    """Workers of a study, and the processes that solve for them."""
+    try:
+        return [
+            each
+            for each in parent.children(recursive=True)
+            if any(word in " ".join(each.cmdline()) for word in ("spawn_main", "solver_process"))
+        ]
+    except psutil.Error:
+        return []
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study of four shards, solved in one process into ``one``."""
+    folder = tmp_path_factory.mktemp("study")
+    written(folder, 31)
+    made = run(folder, "study.toml", "--out", "one", "--jobs", "1")
+    assert made.returncode == 0, made.stderr
+    assert "31 designs" in made.stdout and "screen: fail 31" in made.stdout
+    return folder
+
+
+def test_the_dataset_has_a_row_for_each_design(folder: Path) -> None:
+    data = read_dataset(folder / "one")
+    assert len(data) == 31 == len(set(data["id"]))
+    assert data.units["factor.spring.preload"] == "N"
+    assert data["factor.spring.preload"].min() >= 40.0
+    assert data["message"].tolist() == [""] * 31
+    assert len(list((folder / "one" / "shards").iterdir())) == 4
+    assert len(list((folder / "one" / "timings").iterdir())) == 4
+
+
+def test_killed_damaged_and_resumed_it_is_the_same(folder: Path) -> None:
+    """SIGKILL of a process that solves, then of the main process; then a damaged shard."""
+    main = subprocess.Popen(
+        command("study.toml", "--out", "two", "--jobs", "2"),
+        cwd=folder, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+    )  # fmt: skip
+    shards = folder / "two" / "shards"
+    killed = False
+    deadline = time.monotonic() + SECONDS
+    while main.poll() is None and time.monotonic() < deadline:
+        solving = [
+            p for p in processes_of(psutil.Process(main.pid)) if "solver" in str(p.cmdline())
+        ]
+        if solving and not killed:
+            solving[0].kill()
+            killed = True
+        if shards.is_dir() and any(shards.glob("*.parquet")):
+            main.kill()
+        time.sleep(0.02)
+    main.wait()
+    assert killed
+    for damaged in list(shards.glob("*.parquet"))[:1]:
+        damaged.write_bytes(damaged.read_bytes()[:-100])
+    refused = run(folder, "study.toml", "--out", "two")
+    assert refused.returncode == 2 and "--resume" in refused.stderr
+    again = run(folder, "study.toml", "--out", "two", "--jobs", "1", "--resume")
+    assert again.returncode == 0, again.stderr
+    assert contents(folder / "two") == contents(folder / "one")
+
+
+def test_a_finished_study_is_resumed_without_a_cluster(folder: Path) -> None:
+    before = contents(folder / "one")
+    again = run(
+        folder, "study.toml", "--out", "one", "--scheduler", "tcp://127.0.0.1:1", "--resume"
+    )
+    assert again.returncode == 0, again.stderr
+    assert contents(folder / "one") == before
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_in_one_line(folder: Path, number: signal.Signals) -> None:
+    out = f"signal{number}"
+    main = subprocess.Popen(
+        command("study.toml", "--out", out, "--jobs", "2"),
+        cwd=folder, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    shards = folder / out / "shards"
+    while main.poll() is None and not (shards.is_dir() and any(shards.glob("*.parquet"))):
+        time.sleep(0.02)
+    children = processes_of(psutil.Process(main.pid))
+    main.send_signal(number)
+    _, errors = main.communicate(timeout=60)
+    assert main.returncode == 130
+    assert "interrupted; run the command again with --resume" in errors
+    assert "Traceback" not in errors
+    psutil.wait_procs(children, timeout=10)
+    assert not [each for each in children if each.is_running()]
+    assert run(folder, "study.toml", "--out", out, "--resume").returncode == 0
+    assert contents(folder / out) == contents(folder / "one")
+
+
+@pytest.mark.slow
+def test_twenty_seeded_kills_lose_and_double_no_row(tmp_path: Path) -> None:
+    """SIGKILL of workers, of their solving processes and of the main process."""
+    written(tmp_path, 120)
+    assert run(tmp_path, "study.toml", "--out", "whole", "--jobs", "1").returncode == 0
+    draw = random.Random(16)
+    kills = 0
+    arguments = ("study.toml", "--out", "killed", "--jobs", "2", "--resume")
+    while kills < 20:
+        main = subprocess.Popen(
+            command(*arguments), cwd=tmp_path, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
+        )
+        while main.poll() is None and kills < 20:
+            time.sleep(draw.uniform(0.5, 3.0))
+            if main.poll() is not None:
+                break
+            others = sorted(processes_of(psutil.Process(main.pid)), key=lambda each: each.pid)
+            target = draw.choice([psutil.Process(main.pid), *others, *others])
+            with_target = target.is_running()
+            if with_target:
+                target.kill()
+                kills += 1
+        if main.poll() is not None and main.returncode == 0 and kills < 20:
+            # finished before the twentieth kill: one shard is taken away
+            shard = draw.choice(sorted((tmp_path / "killed" / "shards").iterdir()))
+            shard.unlink()
+        main.wait(timeout=SECONDS)
+    assert run(tmp_path, *arguments).returncode == 0
+    assert contents(tmp_path / "killed") == contents(tmp_path / "whole")
+
+
+@pytest.fixture
+def address(tmp_path: Path) -> Iterator[str]:
+    """A scheduler and two workers as processes of their own, on loopback."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    place = f"tcp://127.0.0.1:{port}"
+    dask = [sys.executable, "-m", "dask"]
+    loopback = ["--host", "127.0.0.1", "--no-dashboard"]
+    lines = [
+        [*dask, "scheduler", "--port", str(port), *loopback],
+        *[[*dask, "worker", place, "--nthreads", "1", *loopback] for _ in range(2)],
+    ]
+    running = [
+        subprocess.Popen(
+            line, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
+        )
+        for line in lines
+    ]  # fmt: skip
+    try:
+        yield place
+    finally:
+        for each in reversed(running):
+            each.terminate()
+        for each in running:
+            each.wait(timeout=30)
+
+
+@pytest.mark.slow
+def test_a_running_scheduler_gives_the_same_bytes(folder: Path, address: str) -> None:
+    made = run(folder, "study.toml", "--out", "remote", "--scheduler", address)
+    assert made.returncode == 0, made.stderr
+    assert contents(folder / "remote") == contents(folder / "one")
+
+
+@pytest.mark.slow
+def test_a_lost_scheduler_is_one_line_and_resumed(folder: Path, address: str) -> None:
+    main = subprocess.Popen(
+        command("study.toml", "--out", "lost", "--scheduler", address),
+        cwd=folder, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    shards = folder / "lost" / "shards"
+    while main.poll() is None and not (shards.is_dir() and any(shards.glob("*.parquet"))):
+        time.sleep(0.02)
+    (scheduler,) = (
+        each
+        for each in psutil.Process().children()
+        if "scheduler" in each.cmdline() and "dask" in each.cmdline()
+    )
+    scheduler.kill()
+    _, errors = main.communicate(timeout=120)
+    assert main.returncode == 2 and "Traceback" not in errors, errors
+    assert run(folder, "study.toml", "--out", "lost", "--resume").returncode == 0
+    assert contents(folder / "lost") == contents(folder / "one")
+
+
+def test_an_address_without_scheduler_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from camwright.geometry.errors import InputError
+    from camwright.pipeline.studies.batch import task_scheduler
+
+    monkeypatch.setattr(task_scheduler, "_CONNECT_S", 1)
+    with (
+        pytest.raises(InputError, match=r"--scheduler = tcp://127\.0\.0\.1:1 "),
+        task_scheduler.cluster(1, "tcp://127.0.0.1:1"),
+    ):
+        pass
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ('design = { time = "0.1 s" }', "not solved within 0.1 s"),
+        ('design = { memory = "20 MB" }', "not solved within 20 MB of memory"),
+    ],
+)
+def test_a_design_out_of_time_or_memory_is_a_row(tmp_path: Path, more: str, message: str) -> None:
+    written(tmp_path, 2, more)
+    made = run(tmp_path, "study.toml", "--out", "out", "--jobs", "1")
+    assert made.returncode == 0, made.stderr
+    data = read_dataset(tmp_path / "out")
+    assert data["message"].tolist() == [message] * 2
+    assert data["screen"].tolist() == ["error"] * 2
+
+
+def test_a_design_that_kills_its_process_is_a_row(folder: Path) -> None:
+    """The process that solves is killed each time it starts."""
+    from camwright.pipeline.studies.batch.case_template import read_templates
+    from camwright.pipeline.studies.batch.solver_process import SolverProcess
+    from camwright.pipeline.studies.batch.study_file import read_study
+    from camwright.pipeline.studies.batch.study_run import planned
+
+    study = read_study(folder / "study.toml")
+    templates = read_templates(folder, study.cases)
+    plan = planned(study, templates)
+    task = next(plan.tasks(study.tier)).alone(0)
+    solver = SolverProcess(templates, plan.settings)
+    finished = threading.Event()
+
+    def killer() -> None:
+        while not finished.wait(0.05):
+            for each in psutil.Process().children():
+                if "solver_process" in " ".join(each.cmdline()):
+                    each.kill()
+
+    thread = threading.Thread(target=killer)
+    thread.start()
+    columns, walls = solver.rows(task)
+    finished.set()
+    thread.join()
+    assert columns["message"] == ["the process of the solution died 3 times"]
+    assert columns["screen"] == ["error"] and len(walls) == 1
+    solver.close()

@@ -1,0 +1,188 @@
+"""Dataset of a study: schema, nulls, damaged shards, order of the rows, selection."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from camwright.geometry.errors import ResultError
+from camwright.pipeline.studies.batch.dataset import (
+    DATASET,
+    column_of,
+    joined,
+    parquet_bytes,
+    read_dataset,
+    table_from,
+    table_of,
+)
+from camwright.pipeline.studies.batch.row_selection import Figures, interval_width
+from camwright.pipeline.studies.batch.study_file import Objective
+from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
+
+UNITS = {"spring.rate": "kN/m", "cam.material": None}
+
+
+def rows(ids: str, **columns: Any) -> dict[str, Any]:
+    """Rows of designs of one letter each."""
+    count = len(ids)
+    fixed = {"depth": ["preview"] * count, "screen": ["open"] * count}
+    empty = {name: [None] * count for name in ("verdict", "governing", "message")}
+    return {"id": list(ids), **empty, **fixed, **columns}
+
+
+def test_columns_have_unit_meaning_and_order() -> None:
+    made = rows(
+        "ab",
+        **{
+            "contact_pressure.status": ["pass", "fail"],
+            "contact_pressure.demand": [1.0, np.inf],
+            "headline.p0_max_MPa": [None, np.nan],
+            "factor.cam.material": ["c45", "s355"],
+            "factor.spring.rate": np.array([24.2, 25.0]),
+        },
+    )
+    table = table_of(made, UNITS)
+    assert table.column_names == [
+        "id", "depth", "screen", "verdict", "governing", "message",
+        "factor.cam.material", "factor.spring.rate",
+        "contact_pressure.demand", "contact_pressure.status",
+    ]  # fmt: skip
+    field = table.schema.field("factor.spring.rate")
+    assert field.metadata[b"unit"] == b"kN/m"
+    assert table["contact_pressure.demand"].to_pylist() == [1.0, None]
+    assert parquet_bytes(table) == parquet_bytes(table_of(made, UNITS))
+    with pytest.raises(ResultError, match="unknown"):
+        column_of("no_check.demand", {})
+
+
+def test_shards_below_one_another_are_one_shard() -> None:
+    both = rows("ab", **{"headline.lift_max_mm": [1.0, 2.0], "mesh.nodes": [None, 3.0]})
+    first = rows("a", **{"headline.lift_max_mm": [1.0], "mesh.nodes": [None]})
+    second = rows("b", **{"headline.lift_max_mm": [2.0], "mesh.nodes": [3.0]})
+    parts = [table_from(parquet_bytes(table_of(each, UNITS))) for each in (first, second)]
+    assert parquet_bytes(joined(parts)) == parquet_bytes(table_of(both, UNITS))
+
+
+def _folder(path: Path) -> tuple[StudyFolder, list[Shard]]:
+    home = StudyFolder(path, resume=True)
+    shards = [Shard("one", ("a", "b")), Shard("two", ("c",))]
+    for shard, lift in zip(shards, ([1.0, 2.0], [3.0]), strict=True):
+        table = table_of(rows("".join(shard.ids), **{"headline.lift_max_mm": lift}), UNITS)
+        home.write_shard(shard.name, parquet_bytes(table), b"")
+    return home, shards
+
+
+def test_the_dataset_has_the_rows_of_all_designs_in_their_order(tmp_path: Path) -> None:
+    home, shards = _folder(tmp_path)
+    deeper = [Shard("three", ("b",))]
+    made = rows("b", depth=["cycle"], **{"mesh.nodes": [7.0]})
+    home.write_shard("three", parquet_bytes(table_of(made, UNITS)), b"")
+    home.write_dataset(np.array([2, 0, 1, 1, 0]), shards, deeper, ("a", "b", "c"))
+    data = read_dataset(tmp_path)
+    assert "".join(data["id"]) == "cabba"
+    assert data["design"].tolist() == [0, 1, 2, 3, 4]
+    assert data["depth"].tolist() == ["preview", "preview", "cycle", "cycle", "preview"]
+    np.testing.assert_array_equal(data["headline.lift_max_mm"], [3.0, 1.0, np.nan, np.nan, 1.0])
+    np.testing.assert_array_equal(data["mesh.nodes"], [np.nan, np.nan, 7.0, 7.0, np.nan])
+    with pytest.raises(ResultError, match=r"column cake is missing"):
+        data["cake"]
+
+
+def test_blocks_of_rows_are_as_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from camwright.pipeline.studies.batch import study_folder
+
+    home, shards = _folder(tmp_path)
+    monkeypatch.setattr(study_folder, "_BLOCK", 2)
+    home.write_dataset(np.array([2, 0, 1, 1, 0]), shards, [], ("a", "b", "c"))
+    assert "".join(read_dataset(tmp_path)["id"]) == "cabba"
+    home.write_dataset(np.array([2, 0, 1]), shards[:1], [], ("a", "b", "c"))
+    assert "".join(read_dataset(tmp_path)["id"]) == "ab"  # of a study that stopped
+
+
+@pytest.mark.parametrize("damage", ["bit", "cut", "other", "text"])
+def test_a_damaged_shard_is_not_taken(tmp_path: Path, damage: str) -> None:
+    home, shards = _folder(tmp_path)
+    assert home.holds(shards[0])
+    path = tmp_path / "shards" / "one.parquet"
+    content = bytearray(path.read_bytes())
+    if damage == "bit":
+        content[len(content) // 8] ^= 1
+    elif damage == "cut":
+        del content[len(content) // 2 :]
+    elif damage == "text":
+        content[:] = b"no Parquet"
+    else:
+        content[:] = (tmp_path / "shards" / "two.parquet").read_bytes()
+    path.write_bytes(content)
+    assert not home.holds(shards[0])
+    assert not path.exists()
+
+
+def test_a_folder_is_written_by_one_study_at_a_time(tmp_path: Path) -> None:
+    with StudyFolder(tmp_path / "s", resume=False) as home:
+        home.write_inputs("x = 1\n", ())
+        with (
+            pytest.raises(ResultError, match="another study"),
+            StudyFolder(tmp_path / "s", resume=True),
+        ):
+            pass
+    with pytest.raises(ResultError, match="--resume"), StudyFolder(tmp_path / "s", resume=False):
+        pass
+    (tmp_path / "f").mkdir()
+    (tmp_path / "f" / "thesis.doc").write_text("mine")
+    with pytest.raises(ResultError, match=r"thesis\.doc"), StudyFolder(tmp_path / "f", resume=True):
+        pass
+
+
+def test_a_full_disk_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    home, shards = _folder(tmp_path)
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(ResultError, match="No space left"):
+        home.write_dataset(np.array([0]), shards, [], ("a", "b", "c"))
+    with pytest.raises(ResultError, match="No space left"):
+        home.write_shard("four", b"rows", b"clock")
+    assert not (tmp_path / DATASET).exists() and not list(tmp_path.rglob("*.tmp"))
+
+
+def test_selection() -> None:
+    goals = (Objective(column="headline.lift_max_mm"), Objective(column="mesh.nodes", goal="max"))
+    figures = Figures(goals)
+    figures.add(
+        table_of(
+            rows(
+                "abcde",
+                screen=["open", "open", "fail", "open", "error"],
+                governing=["pressure_angle"] * 3 + [None, None],
+                **{
+                    "headline.lift_max_mm": [3.0, 1.0, 0.0, 2.0, None],
+                    "mesh.nodes": [9.0, 1.0, 9.0, 0.5, None],
+                    "pressure_angle.utilisation": [0.5, 0.9, 1.05, None, None],
+                },
+            ),
+            UNITS,
+        )
+    )
+    assert figures.best(2) == ["b", "d"]
+    assert figures.borderline(2) == ["c", "b"]
+    assert figures.front() == ["b", "a"]
+    assert figures.failed() == ["c", "e"] == figures.kept("failed", 0)
+    assert figures.record()["screen"] == {"error": 1, "fail": 1, "open": 3}
+    assert figures.fails == (1, 1)
+    figures.keep({"a"})
+    assert figures.best(2) == ["a"]
+
+
+def test_width_of_the_yield_interval() -> None:
+    """Against scipy's Wilson interval."""
+    from scipy.stats import binomtest
+
+    interval = binomtest(7, 40).proportion_ci(method="wilson")
+    assert interval_width(7, 40) == pytest.approx(interval.high - interval.low, rel=1e-12)
+    assert interval_width(0, 0) == 1.0
