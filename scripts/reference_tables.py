@@ -36,6 +36,7 @@ from camwright.pipeline.studies.batch.dataset import (
     MESH,
     is_text,
 )
+from camwright.pipeline.studies.batch.study_file import Study
 
 ROOT = Path(__file__).resolve().parents[1]
 BLOCK = re.compile(r"<!-- table: (\w+) -->\n.*?<!-- end -->", re.DOTALL)
@@ -188,10 +189,10 @@ def renamed(*tables: str) -> str:
     return markdown(("earlier", "now"), rows)
 
 
-def keys() -> str:
-    """A table of keys for each section of a case file."""
+def keys(root: type[Section]) -> str:
+    """A table of keys for each section of a case or study file."""
     parts = []
-    for title, section in sections(Case, ""):
+    for title, section in sections(root, ""):
         rows = [
             (
                 f"`{field.alias or name}`",
@@ -320,7 +321,8 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "study_files": study_files,
     "packages": packages,
     "screening": screening,
-    "keys": keys,
+    "keys": lambda: keys(Case),
+    "study_keys": lambda: keys(Study),
     "renamed_case": lambda: renamed("case"),
     "renamed_results": lambda: renamed("columns", "headline", "files"),
     "renamed_checks": lambda: renamed("checks"),

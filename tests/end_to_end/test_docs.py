@@ -21,7 +21,7 @@ import pytest
 from camwright.geometry import motion_laws
 from camwright.pipeline.base.tables import table
 from camwright.pipeline.case import limits
-from camwright.pipeline.case.case_file import case_of
+from camwright.pipeline.case.case_file import case_of, read_case
 from camwright.pipeline.case.renamed_keys import with_new_keys
 from camwright.pipeline.case.template import template
 from camwright.pipeline.checks import cam_shape
@@ -29,6 +29,9 @@ from camwright.pipeline.cli import app
 from camwright.pipeline.cycle import cycle
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing import constraints
+from camwright.pipeline.studies.batch.factor_axes import axis_of
+from camwright.pipeline.studies.batch.sampling import designs_of
+from camwright.pipeline.studies.batch.study_file import study_of
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = {
@@ -36,6 +39,7 @@ PAGES = {
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
 }
 SECONDS = 540.0
+STUDIES = "docs/studies.md"
 
 
 def blocks(page: str, language: str) -> list[str]:
@@ -65,7 +69,8 @@ def shell(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder in which the commands of README and tutorial have run in their order, once each."""
     folder = tmp_path_factory.mktemp("docs")
-    shutil.copytree(ROOT / "cases", folder / "cases")
+    for name in ("cases", "studies"):
+        shutil.copytree(ROOT / name, folder / name)
     lines = [
         line for page in ("README.md", "docs/tutorial.md") for line in commands(page, "camwright")
     ]
@@ -160,7 +165,8 @@ def test_readme_lists_every_command() -> None:
 
 
 @pytest.mark.parametrize(
-    ("page", "block"), [(page, block) for page in PAGES for block in blocks(page, "toml")]
+    ("page", "block"),
+    [(page, block) for page in PAGES if page != STUDIES for block in blocks(page, "toml")],
 )
 def test_toml_snippets_fit_into_a_case(page: str, block: str) -> None:
     given = tomllib.loads(block)
@@ -171,6 +177,15 @@ def test_toml_snippets_fit_into_a_case(page: str, block: str) -> None:
         del case["roller"]
     assert with_new_keys(case) == case  # present names: case_of reads those of version 0.1 too
     assert case_of(case)
+
+
+def test_the_study_of_the_page_is_a_study() -> None:
+    (block,) = blocks(STUDIES, "toml")
+    study = study_of(tomllib.loads(block) | {"case": ["gx120.toml"]})
+    case = read_case(ROOT / "cases" / "gx120.toml")
+    axes = [axis_of(factor, case) for factor in study.factors]
+    assert study.sampling is not None
+    assert designs_of(axes, study.sampling, study.correlations).count == 500
 
 
 def test_error_lines_are_the_real_ones(tmp_path: Path) -> None:
