@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import tempfile
+from asyncio import CancelledError
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -142,22 +143,23 @@ class TaskScheduler:
             submit()
         try:
             while running:
-                future = next(finished)
-                task = running.pop(future)
                 try:
+                    future = next(finished)
+                    task = running.pop(future)
                     result = future.result()
                 except KilledWorker:
                     result = killed(task)
                 except CamError:
                     raise
-                except Exception as error:  # noqa: BLE001 - of the cluster: many kinds
+                except (Exception, CancelledError) as error:  # of the cluster: many kinds
                     words = " ".join(str(error).split())[:200]
                     raise ResultError(f"cluster: {type(error).__name__} {words}") from None
                 future.release()
                 submit()
                 yield task, result
         finally:
-            self._client.cancel(list(running), force=True)
+            with contextlib.suppress(Exception):  # a cluster that is lost
+                self._client.cancel(list(running), force=True)
 
     def _apart(self, task: Task) -> Shard:
         """Shard of a task that ended its worker too often: each design on its own."""

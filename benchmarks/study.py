@@ -1,0 +1,116 @@
+"""Cost of a study beside what it may cost: python benchmarks/study.py
+
+Screening of 10,000 designs all in (cluster, Parquet, dataset) as a ratio to the arrays alone;
+memory against 1,000 designs; previews by two processes against one. Each is a ratio of two figures
+of this run; the wall time is that of a machine with nothing else to do, whose load is printed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import psutil
+
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.screening.design_screening import screen_designs
+
+ROOT = Path(__file__).resolve().parent.parent
+SECONDS, ALL_IN, MEMORY, EFFICIENCY = 20.0, 4.0, 1.10, 0.85
+DESIGNS = 10_000
+STUDY = """
+name = "benchmark"
+case = "case.toml"
+depth = "{depth}"
+corners = false
+[[factor]]
+key = "spring.rate"
+range = {{ low = "20 kN/m", high = "30 kN/m" }}
+[[factor]]
+key = "cam.prime_radius"
+range = {{ low = "45 mm", high = "55 mm" }}
+[sampling]
+method = "sobol"
+count = {count}
+"""
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "case.toml").write_bytes((ROOT / "cases" / "gx120.toml").read_bytes())
+        alone = arrays(DESIGNS)
+        few = studied(folder, "screening", DESIGNS // 10, jobs=2)
+        many = studied(folder, "screening", DESIGNS, jobs=2)
+        print(f"{'others waiting':>24} {max(os.getloadavg()[0] - 2, 0):8.1f} processes")
+        told(f"{DESIGNS} designs, wall", many.wall, "s", SECONDS)
+        told("computing over arrays", many.cpu / alone, "", ALL_IN)
+        told("memory over a tenth", many.memory / few.memory, "", MEMORY)
+        one, two = (studied(folder, "preview", 120, jobs=jobs) for jobs in (1, 2))
+        share = one.wall / (2.0 * two.wall)
+        print(f"{'efficiency of two':>24} {share:8.2f}      at least {EFFICIENCY:g}")
+
+
+def arrays(count: int) -> float:
+    """CPU time of the arrays of a screening, s."""
+    case = read_case(ROOT / "cases" / "gx120.toml")
+    draw = np.random.default_rng(1)
+    factors = {
+        "spring.rate": draw.uniform(2e4, 3e4, count),
+        "cam.prime_radius": draw.uniform(0.045, 0.055, count),
+    }
+    start = time.process_time()
+    screen_designs(case, factors)
+    return time.process_time() - start
+
+
+class Cost:
+    """Wall and CPU time, s, and sum of the greatest memory of each process, bytes."""
+
+    def __init__(self, wall: float, cpu: float, memory: float) -> None:
+        self.wall, self.cpu, self.memory = wall, cpu, memory
+
+
+def studied(folder: Path, depth: str, count: int, jobs: int) -> Cost:
+    """Cost of a study, all in."""
+    name = f"{depth}_{count}_{jobs}"
+    (folder / f"{name}.toml").write_text(STUDY.format(depth=depth, count=count))
+    arguments = ["study", f"{name}.toml", "--out", name, "--jobs", str(jobs)]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    start = time.perf_counter()
+    peaks: dict[int, int] = {}
+    with subprocess.Popen(
+        [sys.executable, "-m", "camwright", *arguments],
+        cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    ) as process:  # fmt: skip
+        watched = psutil.Process(process.pid)
+        while process.poll() is None:
+            note_memory(watched, peaks)
+            time.sleep(0.02)
+    wall = time.perf_counter() - start
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert process.returncode == 0
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Cost(wall, cpu, sum(peaks.values()))
+
+
+def note_memory(process: psutil.Process, peaks: dict[int, int]) -> None:
+    """Greatest memory so far of a process and those below it, bytes by number."""
+    with contextlib.suppress(psutil.Error):
+        for each in (process, *process.children(recursive=True)):
+            peaks[each.pid] = max(peaks.get(each.pid, 0), each.memory_info().rss)
+
+
+def told(name: str, value: float, unit: str, budget: float) -> None:
+    print(f"{name:>24} {value:8.2f} {unit:<4} {value / budget:6.0%} of {budget:g} {unit}")
+
+
+if __name__ == "__main__":
+    main()
