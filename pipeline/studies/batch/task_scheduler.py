@@ -53,7 +53,6 @@ def cluster(jobs: int, address: str | None) -> Iterator[Client]:
         import pyarrow as pa  # noqa: F401 - needed by the workers and for the dataset
     except ImportError:
         raise ResultError(MISSING) from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
     options = {
         "distributed.scheduler.allowed-failures": DEATHS_MAX - 1,
         "distributed.comm.timeouts.connect": f"{_CONNECT_S}s",
@@ -62,6 +61,8 @@ def cluster(jobs: int, address: str | None) -> Iterator[Client]:
     }
     with contextlib.ExitStack() as stack:
         stack.enter_context(dask.config.set(options))
+        stack.callback(logging.disable, logging.root.manager.disable)
+        logging.disable(logging.CRITICAL)  # Dask logs what is one line here
         if address is None:
             scratch = stack.enter_context(tempfile.TemporaryDirectory(prefix="camwright-dask-"))
             local = distributed.LocalCluster(
@@ -151,9 +152,11 @@ class TaskScheduler:
                     result = killed(task)
                 except CamError:
                     raise
-                except (Exception, CancelledError) as error:  # of the cluster: many kinds
+                except (Exception, CancelledError) as error:  # noqa: BLE001 - of the cluster: many
                     words = " ".join(str(error).split())[:200]
-                    raise ResultError(f"cluster: {type(error).__name__} {words}") from None
+                    lost = "scheduler-connection-lost" in words
+                    reason = "lost" if lost else f"{type(error).__name__} {words}"
+                    raise ResultError(f"cluster: {reason}; --resume completes the study") from None
                 future.release()
                 submit()
                 yield task, result
