@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from types import ModuleType
 
@@ -91,6 +91,10 @@ TOLERANCE_CORNERS = check(
     evidence=True,
     tier=Tier.PREVIEW,
 )(made_from_others)
+DECLARED: Mapping[str, Declaration] = {
+    each.id: each for each in (*CHECKS, WAIVERS_WITHOUT_EFFECT, TOLERANCE_CORNERS)
+}
+"""Every declaration by id, in the order of the calculation."""
 
 
 def checks_of(

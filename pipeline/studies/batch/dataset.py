@@ -23,12 +23,15 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 STUDY, SUMMARY, DATASET = "study.toml", "study.json", "dataset.parquet"
+ANSWERS, PAGE = "answers.json", "study.html"
 SHARDS, TIMINGS, RUNS, CASES = "shards", "timings", "runs", "cases"
 FILES: Mapping[str, str] = {
     STUDY: "copy of the study file",
     f"{CASES}/": "copies of the case files, with the files that they include",
     SUMMARY: "counts by depth, `screen` and verdict, messages, versions, hashes; no clock figure",
     DATASET: "all rows in the order of the designs",
+    ANSWERS: "yield, failures, effects of the factors, front, extremes",
+    PAGE: "the answers as a page, with the designs",
     f"{SHARDS}/<hash>.parquet": "rows of one task, by the hash of its contents; without `design`",
     f"{TIMINGS}/<hash>.parquet": "clock figures of the rows of a shard: `id`, `depth`, `wall_s`",
     f"{RUNS}/<id>/": "run folder of a design that `keep` names",
@@ -108,11 +111,9 @@ def column_of(name: str, units: Mapping[str, str | None]) -> Column:
 @cache
 def _checks() -> Mapping[str, tuple[str, str]]:
     """Title and unit of each check by id, in the order of the registry."""
-    from camwright.pipeline.checks import registry
-    from camwright.pipeline.checks.check import Declaration
+    from camwright.pipeline.checks.registry import DECLARED
 
-    others = (each for each in vars(registry).values() if isinstance(each, Declaration))
-    known = (*registry.CHECKS, *others)
+    known = DECLARED.values()
     return {each.id: (each.title.format(follower="follower"), each.unit) for each in known}
 
 
