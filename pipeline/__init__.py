@@ -28,6 +28,7 @@ verdict; a failed trial is smoothed again. `results` writes the run folder, `rep
 | `studies.redesign`   | Pareto front over the catalogues                     |                    |
 | `studies.papers`     | published values, recomputed                         |                    |
 | `reports`            | report and pictures from a run folder                |                    |
+| `reports.study`      | page of a study                                      |                    |
 | `studies.batch`      | studies of many designs                              |                    |
 | `commands`           | one function per command                             |                    |
 | `cli`                | command line                                         |                    |

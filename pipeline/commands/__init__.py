@@ -9,7 +9,7 @@
 | `contact_command`     | `contact`, `deck`                                       |
 | `inspect_command`     | `inspect`: measured cam                                 |
 | `redesign_command`    | `redesign`: search of the catalogues                    |
-| `study_command`       | `study`: many designs on a cluster, one dataset         |
+| `study_command`       | `study`: many designs on a cluster; answers and page    |
 
 Imports every other package.
 """

@@ -36,6 +36,7 @@ ORDER = (
     "pipeline.studies.redesign",
     "pipeline.studies.papers",
     "reports",
+    "reports.study",
     "pipeline.studies.batch",
     "pipeline.commands",
     "pipeline.cli",

@@ -17,10 +17,12 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json, json_text, read_json, write_atomic
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.dataset import (
+    ANSWERS,
     CASES,
     DATASET,
     DESIGN,
     ID,
+    PAGE,
     RUNS,
     SHARDS,
     STUDY,
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 _LOCK = ".lock"
-_OURS = (STUDY, SUMMARY, DATASET, SHARDS, TIMINGS, RUNS, CASES, _LOCK)
+_OURS = (ANSWERS, PAGE, STUDY, SUMMARY, DATASET, SHARDS, TIMINGS, RUNS, CASES, _LOCK)
 _BLOCK = 2000
 """Rows of a row group of the dataset; bounds the memory of its writing."""
 

@@ -1,0 +1,11 @@
+"""Page of a study, from its answers and designs. Nothing is solved.
+
+In the order of use:
+
+| module           | responsibility                                               |
+| ---------------- | ------------------------------------------------------------ |
+| `study_contents` | yield, failures, effects, front and inputs as text and bars  |
+| `study_page`     | ``study.html``: contents, designs with linked selection      |
+
+Imported by `commands`.
+"""
