@@ -18,7 +18,7 @@ from camwright.pipeline.studies.batch.dataset import (
     table_from,
     table_of,
 )
-from camwright.pipeline.studies.batch.row_selection import Figures, interval_width
+from camwright.pipeline.studies.batch.row_selection import Figures
 from camwright.pipeline.studies.batch.study_file import Objective
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
 
@@ -177,12 +177,3 @@ def test_selection() -> None:
     assert figures.fails == (1, 1)
     figures.keep({"a"})
     assert figures.best(2) == ["a"]
-
-
-def test_width_of_the_yield_interval() -> None:
-    """Against scipy's Wilson interval."""
-    from scipy.stats import binomtest
-
-    interval = binomtest(7, 40).proportion_ci(method="wilson")
-    assert interval_width(7, 40) == pytest.approx(interval.high - interval.low, rel=1e-12)
-    assert interval_width(0, 0) == 1.0

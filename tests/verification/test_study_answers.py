@@ -145,6 +145,7 @@ def test_interval_of_the_yield_against_the_binomial_distribution(passed: int, co
         assert stats.binom.cdf(passed, count, high) == pytest.approx(0.025, rel=1e-9)
     else:
         assert high == 1.0
+    assert Yield(passed, count).width == high - low
 
 
 def test_the_front_against_every_pair() -> None:

@@ -14,10 +14,10 @@ In the order of the calculation:
 | `solver_process`      | supervised process: time, memory, death         | s; B                |
 | `cluster_worker`      | part of a Dask worker                           |                     |
 | `task_scheduler`      | tasks on a local or running cluster             |                     |
+| `answers_yield`       | yield with its confidence interval              | share, -            |
 | `row_selection`       | best, borderline, front, failed designs         | utilisation, -      |
 | `study_folder`        | files of a study, written in one step           |                     |
 | `study_run`           | both stages, dataset, kept runs, summary        |                     |
-| `answers_yield`       | yield with its confidence interval              | share, -            |
 | `answers_sensitivity` | main effects and Sobol indices of the factors   | share, -            |
 | `answers`             | answers to a study from its dataset             | unit of each column |
 

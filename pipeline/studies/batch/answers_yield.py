@@ -49,3 +49,9 @@ class Yield:
         lower = float(betaincinv(self.passed, failed + 1, tail)) if self.passed else 0.0
         upper = float(betaincinv(self.passed + 1, failed, 1.0 - tail)) if failed else 1.0
         return lower, upper
+
+    @property
+    def width(self) -> float:
+        """Width of the interval; 1 without designs."""
+        lower, upper = self.interval()
+        return upper - lower

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 _MESSAGES_MOST = 50
-_TIGHT = 1.959963984540054
-"""97.5 % point of the standard normal distribution."""
 
 
 @dataclass
@@ -143,17 +141,3 @@ def passes_in(table: pa.Table) -> int:
     """Rows of a shard that pass: by their verdict, below certified by `screen`."""
     pairs = zip(table[VERDICT.name].to_pylist(), table[SCREEN.name].to_pylist(), strict=True)
     return sum((verdict == "pass") if verdict else screen == "open" for verdict, screen in pairs)
-
-
-def interval_width(passes: int, count: int) -> float:
-    """Width of the 95 % interval of a yield; 1 without designs.
-
-    References
-    ----------
-    Wilson, J. Am. Stat. Assoc. 22 (1927) 209.
-    """
-    if count == 0:
-        return 1.0
-    share, z2 = passes / count, _TIGHT**2
-    root = share * (1.0 - share) / count + z2 / (4.0 * count**2)
-    return float(2.0 * _TIGHT * np.sqrt(root) / (1.0 + z2 / count))

@@ -11,6 +11,7 @@ from pathlib import Path
 from camwright.pipeline.base.files import Json, sha256_of
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.studies.batch.answers_yield import Yield
 from camwright.pipeline.studies.batch.case_template import (
     Template,
     UnpackedTemplates,
@@ -19,7 +20,7 @@ from camwright.pipeline.studies.batch.case_template import (
 from camwright.pipeline.studies.batch.dataset import DATASET
 from camwright.pipeline.studies.batch.design_plan import Plan, Settings, Task, study_versions
 from camwright.pipeline.studies.batch.factor_axes import axis_of
-from camwright.pipeline.studies.batch.row_selection import Figures, interval_width, passes_in
+from camwright.pipeline.studies.batch.row_selection import Figures, passes_in
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of
 from camwright.pipeline.studies.batch.study_file import Stop, Study
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
@@ -273,7 +274,7 @@ class _Watch:
             self._passes += self._ready[shard.name]
             self._judged += len(shard.ids)
             if rule is not None and rule.interval is not None:
-                width = interval_width(self._passes, self._judged)
+                width = Yield(self._passes, self._judged).width
                 self.stopped = "interval" if width <= rule.interval else ""
         if rule is not None and rule.time is not None and seconds >= rule.time:
             self.stopped = self.stopped or "time"
