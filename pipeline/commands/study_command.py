@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from camwright.geometry.errors import InputError
+from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.commands.terminal import PASSED, progress_shown, stdout
 
 if TYPE_CHECKING:
@@ -93,6 +93,8 @@ def write_study_report(folder: Path) -> Path:
     InputError, ResultError
         If the study file or the dataset cannot be read, or they contradict each other.
     """
+    from importlib.util import find_spec
+
     from camwright.pipeline.base.files import json_text, write_atomic
     from camwright.pipeline.studies.batch import answers
     from camwright.pipeline.studies.batch.dataset import (
@@ -107,6 +109,11 @@ def write_study_report(folder: Path) -> Path:
     from camwright.reports import page
     from camwright.reports.study import study_page
 
+    for library in ("pyarrow", "SALib"):
+        if find_spec(library) is None:
+            raise ResultError(
+                f'{library} is missing; install it with: pip install "camwright[study]"'
+            )
     study = read_study(folder / STUDY)
     data = read_dataset(folder)
     record = answers.answered(data, study)

@@ -151,6 +151,12 @@ def test_a_folder_that_is_no_study_is_refused(tmp_path: Path) -> None:
     assert not (tmp_path / ANSWERS).exists()
 
 
+def test_a_missing_library_is_named(made: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    with pytest.raises(ResultError, match=r"pip install .camwright\[study\]"):
+        write_study_report(made)
+
+
 @pytest.fixture(scope="module")
 def tab() -> Iterator[Tab]:
     with chromium() as opened:
