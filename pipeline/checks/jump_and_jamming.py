@@ -27,7 +27,7 @@ from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, highest_speed
 
 NO_OVERSPEED = "no limits.overspeed is given"
-_TIE = 1e-9  # relative difference up to which two forces are equal
+_TIE = 1e-9  # relative difference up to which two forces are equal, and one is none
 
 
 @check(
@@ -299,7 +299,7 @@ def _flights(histories: list[ElasticHistory]) -> str:
 def _jump_speed(cycle: Cycle) -> Array:
     """Crank speed of follower jump by cam angle (n,), rad/s; NaN where not known."""
     pull = -cycle.loads.inertia_force
-    slows = pull > 0
+    slows = pull > _TIE * np.abs(pull).max()  # in a dwell the acceleration is round-off
     ratio = np.sqrt(cycle.loads.spring_force / np.where(slows, pull, 1.0))
     free = np.where(np.isnan(pull), np.nan, np.inf)
     return np.where(slows, cycle.machine.crank_speed * ratio, free)
