@@ -17,6 +17,7 @@ from camwright.geometry.errors import CamError
 from camwright.geometry.lift import Lift
 from camwright.pipeline.base.files import files_in, json_text, read_json, write_atomic
 from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.base.worker_processes import crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import with_values
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -240,7 +241,10 @@ def trial_at(case: Case, tier: Tier, lift: Lift | None, *, corners: bool) -> Tri
     if tier <= Tier.PREVIEW:
         return preview_case(case, corners=corners)
     trial, _ = trials_of(case, engine_torques(case), tier=tier)
-    return certify_trial(trial, jobs=1) if tier is Tier.CERTIFIED else trial
+    if tier < Tier.CERTIFIED:
+        return trial
+    with crew(1) as workers:
+        return certify_trial(trial, workers)
 
 
 def _cell(value: Any) -> Cell:
