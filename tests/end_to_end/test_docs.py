@@ -92,7 +92,13 @@ def test_the_run_folder_holds_what_is_listed(folder: Path) -> None:
         r"^\| `([^`]+)` \|", PAGES["docs/run-folder.md"].split("## Columns")[0], re.M
     )
     assert len(listed) >= 24
-    some_cases_only = {"trial_2/", "1_speed.csv", "corners.json", "trial_1/2_limits.csv"}
+    some_cases_only = {
+        "trial_2/",
+        "1_speed.csv",
+        "corners.json",
+        "trial_1/2_limits.csv",
+        "figures/",
+    }
     for name in listed:
         assert (folder / "runs" / "demo" / name).exists() or name in some_cases_only, name
 
