@@ -99,11 +99,11 @@
     drawn(entry.target.querySelector(".live"));
   }), { rootMargin: "400px" });
   places.forEach((place) => watcher.observe(place.parentNode));
-  const idle = window.requestIdleCallback || ((work) => setTimeout(work, 60));
+  /* One figure a task: a key or click comes between two. An idle callback would wait for a frame. */
   const rest = [...places];
   (function next() {
     const place = rest.shift();
-    if (place) idle(() => { drawn(place); next(); });
+    if (place) setTimeout(() => { drawn(place); next(); }, 0);
   })();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
     places.filter((place) => place.dataset.drawn === "done").forEach((place) => {
