@@ -13,10 +13,12 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import psutil
 import pytest
 
 from camwright.pipeline.base.files import file_hashes
+from camwright.pipeline.results.run_reader import read_run, read_verdict
 from camwright.pipeline.studies.batch.dataset import read_dataset
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -153,6 +155,31 @@ def test_a_signal_ends_in_one_line(folder: Path, number: signal.Signals) -> None
     assert not [each for each in children if each.is_running()]
     assert run(folder, "study.toml", "--out", out, "--resume").returncode == 0
     assert contents(folder / out) == contents(folder / "one")
+
+
+@pytest.mark.slow
+def test_second_stage_and_kept_runs_are_the_same_with_two_processes(tmp_path: Path) -> None:
+    more = 'keep = "failed"\ndeeper = { depth = "cycle", take = "borderline", count = 1 }'
+    study = written(tmp_path, 2, more)
+    study.write_text(study.read_text().replace("40 N", "230 N").replace("60 N", "250 N"))
+    (tmp_path / "eccentric.toml").write_text((ROOT / "cases" / "gx120.toml").read_text())
+    for jobs in ("1", "2"):
+        made = run(tmp_path, "study.toml", "--out", f"jobs{jobs}", "--jobs", jobs)
+        assert made.returncode == 0, made.stderr
+    assert contents(tmp_path / "jobs1") == contents(tmp_path / "jobs2")
+    data = read_dataset(tmp_path / "jobs1")
+    assert sorted(data["depth"].tolist()) == ["cycle", "preview"]
+    runs = tmp_path / "jobs1" / "runs"
+    for name, depth in zip(data["id"], data["depth"], strict=True):
+        kept = read_run(runs / name)
+        rows = {each["id"]: each for each in read_verdict(runs / name)["checks"]}
+        (row,) = np.flatnonzero(data["id"] == name)
+        assert kept.summary["depth"] == depth and kept.summary["timings_s"] == {}
+        for check in ("pressure_angle", "contact_force_margin"):
+            limit = data[f"{check}.limit"][row]
+            assert rows[check]["limit"] == pytest.approx(limit, rel=1e-12)
+        used = data["pressure_angle.utilisation"][row]
+        assert rows["pressure_angle"]["utilisation"] == pytest.approx(used, rel=1e-9)
 
 
 @pytest.mark.slow

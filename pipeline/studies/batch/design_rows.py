@@ -196,6 +196,7 @@ class DesignSolver:
         CamError
             If the design is refused.
         """
+        from camwright.pipeline.results import signoff
         from camwright.pipeline.run import run_case
         from camwright.reports.sections import report
 
@@ -210,6 +211,7 @@ class DesignSolver:
         try:
             run_case(case, path, depth=task.tier, jobs=1, report=presented)
             clock = _without_clock(path)
+            signoff.write(path)  # has the hash of run.json
             files = {name: file.read_bytes() for name, file in files_in(path)}
         finally:
             shutil.rmtree(home, ignore_errors=True)
