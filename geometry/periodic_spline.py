@@ -152,9 +152,14 @@ def _through(values: ArrayLike, degree: int) -> PeriodicPolynomial:
     samples = np.asarray(values, dtype=float)
     count, half = samples.size, degree // 2
     # The splines of equal knots are shifts of one another: a cyclic convolution, solved by FFT.
-    at_knots = np.zeros(count)
-    at_knots[np.arange(-half, half + 1)] = _pieces(degree)[1:, 0]
-    weights = np.fft.irfft(np.fft.rfft(samples) / np.fft.rfft(at_knots), count)
+    shifts, at_knots = np.arange(-half, half + 1), np.zeros(count)
+    at_knots[shifts] = _pieces(degree)[1:, 0]
+    response = np.fft.rfft(at_knots)
+    weights = np.fft.irfft(np.fft.rfft(samples) / response, count)
+    # The FFT spreads its round-off over the turn; the residual, taken locally, keeps it out of a
+    # dwell, where derivatives are differences of equal weights.
+    residual = samples - sum(at_knots[k] * np.roll(weights, k) for k in shifts)
+    weights += np.fft.irfft(np.fft.rfft(residual) / response, count)
     shifted = np.stack([np.roll(weights, piece - half - 1) for piece in range(degree + 1)])
     powers = (count / FULL_TURN) ** np.arange(degree + 1.0)
     coefficients = powers[:, None] * (_pieces(degree).T @ shifted)

@@ -22,6 +22,7 @@ from camwright.reports import pdf as printing
 ROOT = Path(__file__).parents[2]
 NEEDED = (
     "camwright.geometry",
+    "camwright.meshes",
     "camwright.pipeline.base",
     "camwright.pipeline.cli",
     "camwright.pipeline.commands",
