@@ -155,6 +155,7 @@ def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float
     import ezdxf
 
     polyline = chords(outline.contour, error)
+    ezdxf.options.write_fixed_meta_data_for_testing = True  # no date, no random identifier
     document = ezdxf.new("R2010", units=_METRIC)
     for colour, layer in enumerate(LAYERS, start=1):
         document.layers.add(layer, color=colour)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -19,6 +20,8 @@ from camwright.meshes.element_size import MILLIMETRE
 from camwright.meshes.gmsh_mesher import session
 
 _STEP_ERROR = 1e-8  # m; a smaller one only enlarges the file
+_DATE = re.compile(rb"(FILE_NAME\('[^']*',\s*)'[^']*'")
+"""Date of the header; a fixed one, so that the same cam gives the same bytes."""
 _PIECES = 8
 """Splines of the contour; on longer ones the areas of the CAD kernel err by more than 1e-6."""
 
@@ -61,6 +64,7 @@ def write_step(path: Path, outline: Outline, width: float) -> None:
         ) from error
     if not path.is_file() or b"END-ISO-10303-21" not in path.read_bytes()[-200:]:
         raise ResultError(f"{path}: incomplete file")
+    path.write_bytes(_DATE.sub(rb"\g<1>'1970-01-01T00:00:00'", path.read_bytes(), count=1))
 
 
 def _contour_curves(occ: ModuleType, outline: Outline) -> list[int]:
