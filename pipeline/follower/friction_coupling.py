@@ -147,8 +147,8 @@ def guided_strokes(
     high = np.where(outward, force / JAM_FLOOR, force)
     on_points = np.concatenate([each.axial_force for each in points])
     low, start = np.where(outward, force, 0.0), np.where(outward, force, on_points)
-    push, rounds = balanced(mapping, low, high, start)
-    a, b = bores.factors(push, np.arange(push.size))
+    _, rounds = balanced(mapping, low, high, start)
+    a, b = bores.last_factors
     ends = np.cumsum([0, *sizes])
     spans = [slice(*span) for span in pairwise(ends)]
     loads = [
@@ -184,7 +184,7 @@ def _guided(
         raise ContactError(
             f"friction: residual = {residual.max():.3g}, must be <= {RESIDUAL:g} of the axial force"
         )
-    return Guided(loads, reactions, residual, rounds + 2)
+    return Guided(loads, reactions, residual, rounds + 1)
 
 
 def _joined(ways: Sequence[Push]) -> Push:
@@ -250,8 +250,9 @@ class _Bores:
     ) -> None:
         self.line, _, half_a = bearing_line(stem, guides, knots)
         self.reach = np.concatenate([each.overhang for each in points]) - half_a
-        self.rubbing_a = np.concatenate([each.rubbing_a for each in points])
-        self.rubbing_b = np.concatenate([each.rubbing_b for each in points])
+        on_points = [(each.rubbing_a, each.rubbing_b) for each in points]
+        self.on_points = np.concatenate(on_points, axis=1)
+        self.last_factors = self.on_points.copy()
         self.knots, self.way = knots, way
         count, size = self.reach.size, self.line.positions.size
         self.pushes, self.rigid = np.zeros((size, count)), np.zeros((2, count))
@@ -262,23 +263,18 @@ class _Bores:
         """Last solution at every position, to start another."""
         return self.pushes, self.rigid
 
-    def factors(self, push: Array, at: NDArray[np.intp]) -> tuple[Array, Array]:
-        """Rubbing load over axial force and side-load factor (k,); unloaded: of point supports."""
+    def factors(self, push: Array, at: NDArray[np.intp]) -> Array:
+        """Rubbing loads (2, k) over axial force and side-load factor; unloaded: point supports."""
         start = (self.pushes[:, at], self.rigid[:, at]) if self.started else None
         side, moment = push * self.way.side[at], push * self.way.arm[at]
         pushes, rigid = settle(self.line, side, moment - side * self.reach[at], start)
         self.pushes[:, at], self.rigid[:, at] = pushes, rigid
         self.started = True
-        rubbed = np.abs(pushes[: self.knots]).sum(axis=0), np.abs(pushes[self.knots :]).sum(axis=0)
-        size, on_points = (
-            push * self.way.side_factor[at],
-            (self.rubbing_a[at], self.rubbing_b[at]),
-        )
-        a, b = (
-            np.divide(load, size, out=share.copy(), where=size > 0.0)
-            for load, share in zip(rubbed, on_points, strict=True)
-        )
-        return a, b
+        rubbed = np.abs(pushes).reshape(2, self.knots, -1).sum(axis=1)
+        size = push * self.way.side_factor[at]
+        factors: Array = np.divide(rubbed, size, out=self.on_points[:, at], where=size > 0.0)
+        self.last_factors[:, at] = factors
+        return factors
 
 
 def _residual(

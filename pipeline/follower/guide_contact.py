@@ -16,7 +16,11 @@ MAX_STEPS = 60
 TOLERANCE = 1e-10  # of the contact law, over the maximum indentation
 _ROUND_OFF = 1e-14
 _LEAST_DENT = 1e-12  # indentation over slack below which a load is scaled up
+_LEAST_GUESSED = 1e-7  # indentation over slack from which solutions are interpolated
 _LEAST_LENGTH = 1e-15  # lower bound of a step length
+_FEW = 500  # loads solved from the rigid beam each
+_SPACING = 16  # loads between those solved from the rigid beam
+_DIRECTIONS = 20  # of loads, per rad
 _TOUCH = 1e-9  # initial indentation of a rigid beam over the clearance
 
 
@@ -86,16 +90,29 @@ class BearingLine:
         allowed = TOLERANCE * depth + _ROUND_OFF * terms.max(axis=0)
         return np.asarray(self.law_miss(self.deflection(push, rigid), push) <= allowed)
 
+    def size(self, load: Array) -> Array:
+        """Size (n,), N, of loads (2, n): force and couple of moment over length."""
+        return np.asarray(np.abs(load[0]) + np.abs(load[1]) / self.positions[-1])
+
+    @cached_property
+    def slack(self) -> float:
+        """Greatest deflection, m, of the rigid beam in contact with two edges; 0: tight in one."""
+        return float(np.abs(self.rigid_modes[self.edges] @ self.slack_corners).max())
+
     def enlargement(self, load: Array) -> Array:
         """Factor (n,) that scales a load up to an indentation above round-off of the slack.
 
         A beam without slack, tight in one guide, moves in proportion to a small load: none is
         scaled.
         """
-        size = np.abs(load[0]) + np.abs(load[1]) / self.positions[-1]
-        slack = np.abs(self.rigid_modes[self.edges] @ self.slack_corners).max()
-        least = _LEAST_DENT * self.stiffness.min() * slack
-        return np.where((size > 0.0) & (size < least), least / np.where(size > 0.0, size, 1.0), 1.0)
+        size, least = self.size(load), _LEAST_DENT * self.stiffness.min() * self.slack
+        small = (size > 0.0) & (size < least)
+        return np.asarray(np.divide(least, size, out=np.ones_like(size), where=small))
+
+    def edge_contact(self, load: Array) -> Array:
+        """End motions (2, n) of a rigid beam that loads (2, n) hold against two edges."""
+        corners = self.slack_corners
+        return np.asarray(corners[:, np.argmax(corners.T @ load, axis=0)])
 
     @cached_property
     def slack_corners(self) -> Array:
@@ -121,8 +138,8 @@ def settle(
     The energy of beam and bores is convex and piecewise quadratic in the bore forces p and the end
     motion r:  p G p/2 + sum K depth^2/2 - load r. Each step solves the linear problem of the knots
     in contact and takes the step length of minimum energy, so that it cannot cycle; it ends when
-    the set of knots in contact is unchanged. Initial guess: the rigid beam in contact with two
-    edges, or a given solution of similar loads.
+    the set of knots in contact is unchanged. Initial guess: a given solution of similar loads, or
+    the rigid beam in contact with two edges for some loads and an interpolation for those between.
 
     Parameters
     ----------
@@ -144,37 +161,68 @@ def settle(
     enlargement = line.enlargement(load)
     load = load * enlargement
     if start is None:
-        push = np.zeros((len(line.positions), load.shape[1]))
-        corners = line.slack_corners
-        rigid = corners[:, np.argmax(corners.T @ load, axis=0)]
+        push, rigid = _first_guess(line, load)
     else:
         push, rigid = start[0] * enlargement, start[1].copy()
     idle = np.abs(load).max(axis=0) == 0.0
     push[:, idle], rigid[:, idle] = 0.0, 0.0
-    unsettled = np.flatnonzero(~idle)
+    unsettled, guessed = np.flatnonzero(~idle), np.ones(idle.shape, dtype=bool)
     for _ in range(MAX_STEPS):
         if not len(unsettled):
             return push / enlargement, rigid
         now, at, on = push[:, unsettled], rigid[:, unsettled], load[:, unsettled]
-        next_push, next_rigid = _linear_step(line, now, at, on)
-        settled = line.settled(next_push, next_rigid)
+        next_push, next_rigid, knots = _linear_step(line, now, at, on)
+        # A guess that has lost the bores is not in equilibrium and may never touch them again.
+        lost = guessed[unsettled] & (knots < 2)
+        settled = line.settled(next_push, next_rigid) & ~lost
         push[:, unsettled[settled]] = next_push[:, settled]
         rigid[:, unsettled[settled]] = next_rigid[:, settled]
-        rest = np.flatnonzero(~settled)
-        unsettled = unsettled[rest]
+        if lost.any():
+            push[:, unsettled[lost]] = 0.0
+            rigid[:, unsettled[lost]] = line.edge_contact(on[:, lost])
+            guessed[unsettled[lost]] = False
+        rest = np.flatnonzero(~settled & ~lost)
+        going = unsettled[rest]
         now, at, on = now[:, rest], at[:, rest], on[:, rest]
         push_step, rigid_step = next_push[:, rest] - now, next_rigid[:, rest] - at
         length = _best_length(line, now, at, push_step, rigid_step, on)
-        push[:, unsettled] = now + length * push_step
-        rigid[:, unsettled] = at + length * rigid_step
+        push[:, going] = now + length * push_step
+        rigid[:, going] = at + length * rigid_step
+        unsettled = unsettled[~settled]
     raise ContactError(f"guides: {len(unsettled)} positions not converged in {MAX_STEPS} steps")
 
 
-def _linear_step(line: BearingLine, push: Array, rigid: Array, load: Array) -> tuple[Array, Array]:
+def _first_guess(line: BearingLine, load: Array) -> tuple[Array, Array]:
+    """Bore forces and end motion near those of loads (2, n).
+
+    Some loads in the order of direction and size are solved, and those between interpolated.
+    """
+    count = load.shape[1]
+    push, rigid = np.zeros((len(line.positions), count)), line.edge_contact(load)
+    if count <= _FEW:
+        return push, rigid
+    size = line.size(load)
+    direction = np.round(np.arctan2(load[1] / line.positions[-1], load[0]) * _DIRECTIONS)
+    order = np.lexsort((size, direction))
+    known = np.append(np.arange(0, count - 1, _SPACING), count - 1)
+    solved = settle(line, *load[:, order[known]])
+    place = np.interp(np.arange(count), known, np.arange(known.size))
+    low = np.minimum(place.astype(np.intp), known.size - 2)
+    between = [values[:, low] + (place - low) * np.diff(values)[:, low] for values in solved]
+    # Of a small load the round-off of the slack, which is in the guess, would be in the solution.
+    large = size[order] >= _LEAST_GUESSED * line.stiffness.max() * line.slack
+    push[:, order[large]], rigid[:, order[large]] = (values[:, large] for values in between)
+    return push, rigid
+
+
+def _linear_step(
+    line: BearingLine, push: Array, rigid: Array, load: Array
+) -> tuple[Array, Array, NDArray[np.intp]]:
     """Equilibrium with the knots in contact bound to the bore and the others free.
 
-    Positions with the same knots in contact share one factorisation. The unknown is the change of
-    the end motion: small loads would be lost in the round-off of the clearance.
+    Also the number of knots in contact (n,). Positions with the same knots in contact share one
+    factorisation. The unknown is the change of the end motion: small loads would be lost in the
+    round-off of the clearance.
     """
     deflection = line.deflection(push, rigid)
     touch = np.abs(deflection) >= line.play[:, None]
@@ -185,7 +233,7 @@ def _linear_step(line: BearingLine, push: Array, rigid: Array, load: Array) -> t
         solution = _bound(line, knots, offset[np.ix_(knots, here)], load[:, here])
         push[np.ix_(knots, here)] = solution[:-2]
         rigid[:, here] += solution[-2:]
-    return push, rigid
+    return push, rigid, touch.sum(axis=0)
 
 
 def _bound(line: BearingLine, knots: NDArray[np.intp], offset: Array, load: Array) -> Array:
@@ -196,7 +244,7 @@ def _bound(line: BearingLine, knots: NDArray[np.intp], offset: Array, load: Arra
     """
     modes = line.rigid_modes[knots] / np.array([1.0, line.positions[-1]])
     softness = line.compliance[np.ix_(knots, knots)] + np.diag(1.0 / line.stiffness[knots])
-    scale = float(softness.diagonal().max())
+    scale = float(softness.diagonal().max(initial=0.0)) or 1.0  # no knot: a step without meaning
     system = np.zeros((len(knots) + 2, len(knots) + 2))
     system[:-2, :-2], system[:-2, -2:], system[-2:, :-2] = softness / scale, -modes, modes.T
     if len(knots) < 2:  # the beam could rotate: weak support

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
@@ -464,6 +464,7 @@ def bearing_line(stem: Stem, guides: GuidePair, knots: int) -> tuple[BearingLine
     return line, readonly(slopes), half_a
 
 
+@cache
 def lobatto(count: int) -> tuple[Array, Array]:
     """Knots and weights (count,) of Gauss-Lobatto quadrature on [-1, 1].
 
@@ -474,7 +475,7 @@ def lobatto(count: int) -> tuple[Array, Array]:
     highest = Legendre.basis(count - 1)
     inner = np.sort(highest.deriv().roots().real)
     knots = np.r_[-1.0, inner, 1.0]
-    return knots, 2.0 / (count * (count - 1) * highest(knots) ** 2)
+    return readonly(knots), readonly(2.0 / (count * (count - 1) * highest(knots) ** 2))
 
 
 def _relative(error: Array, scale: Array) -> Array:
