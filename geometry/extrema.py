@@ -11,9 +11,9 @@ from camwright.geometry.arrays import FULL_TURN, Array, uniform_turn
 
 Function = Callable[[Array], Array]
 
-_ZOOM_POINTS = np.linspace(-1.0, 1.0, 9)
-_ZOOMS = 14
-"""Each zoom keeps a quarter of the bracket: 14 leave 4e-9 of it, whose square is round-off."""
+_ZOOM_POINTS = np.linspace(-1.0, 1.0, 33)
+_ZOOMS = 7
+"""Each zoom keeps a sixteenth of the bracket: 7 leave 4e-9 of it, whose square is round-off."""
 
 _MINIMA_MAX = 256
 
@@ -53,12 +53,12 @@ def local_minima(function: Function, count: int) -> tuple[Array, Array]:
 
 
 def refined(function: Function, centre: Array, half: float, zooms: int) -> tuple[Array, Array]:
-    """Minima (m,) within `half` of their centres (m,), and their places, by nine points a zoom.
+    """Minima (m,) within `half` of their centres (m,), and their places, by 33 points a zoom.
 
     Parameters
     ----------
-    function : callable    (m, 9) -> (m, 9), one row per centre
-    half : float           half-width of the first bracket; each zoom keeps a quarter
+    function : callable    (m, 33) -> (m, 33), one row per centre
+    half : float           half-width of the first bracket; each zoom keeps a sixteenth
     """
     best = np.full(centre.shape, np.nan)
     for _ in range(zooms):
@@ -67,7 +67,7 @@ def refined(function: Function, centre: Array, half: float, zooms: int) -> tuple
         pick = np.argmin(values, axis=1)[:, None]
         centre = np.take_along_axis(trial, pick, axis=1)[:, 0]
         best = np.take_along_axis(values, pick, axis=1)[:, 0]
-        half /= 4.0
+        half /= 16.0
     return best, centre
 
 

@@ -15,7 +15,7 @@ from camwright.geometry.arrays import FULL_TURN, Array, finite
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.geometry.extrema import refined
 
-_ZOOMS = 13
+_ZOOMS = 7
 _LEAST_POINTS = 24
 
 Support = Callable[[Array, Array, Array], Array]

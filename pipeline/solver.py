@@ -89,7 +89,7 @@ def judged_at_corners(trial: Trial, torques: Mapping[str, Torque] | None = None)
     """
     known = engine_torques(trial.case) if torques is None else torques
     tried = outcomes(trial.case, known, trial.contour)
-    return replace(trial, corners=tried, checks=_judged(trial.solution, tried))
+    return replace(trial, corners=tried, checks=_judged(trial.checks, trial.solution, tried))
 
 
 def certify_trial(
@@ -101,12 +101,15 @@ def certify_trial(
 ) -> Trial:
     """Trial with its certificate, checked again; see `certified_solution`."""
     solved = certified_solution(trial.solution, workers, progress=progress, meanwhile=meanwhile)
-    return replace(trial, solution=solved, checks=_judged(solved, trial.corners))
+    return replace(
+        trial, solution=solved, checks=_judged(all_checks(solved), solved, trial.corners)
+    )
 
 
-def _judged(solved: Solution, tried: tuple[Outcome, ...]) -> tuple[Check, ...]:
+def _judged(
+    checks: tuple[Check, ...], solved: Solution, tried: tuple[Outcome, ...]
+) -> tuple[Check, ...]:
     """Checks of a solution at the worst corners tried; nominal without corners."""
-    checks = all_checks(solved)
     if not tried:
         return checks
     return in_order((*governed(checks, tried), unsolved(solved.machine, tried)))
