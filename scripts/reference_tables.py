@@ -22,7 +22,8 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.section import Section, section_of
 from camwright.pipeline.checks.check import Declaration
-from camwright.pipeline.checks.registry import CHECKS, MODULES
+from camwright.pipeline.checks.registry import CHECKS, DECLARED, MODULES
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_records import column_table
@@ -80,6 +81,9 @@ def _check(one: Declaration) -> str:
     needs = f"; a {one.needs} only" if one.needs else ""
     part = f"; part `{one.part}`" if one.part else ""
     depth = f"\n- Judged from the depth {one.tier.word} on."
+    if one.fails_from < one.tier:
+        word = one.fails_from.word
+        depth += f" At the depth {word} its utilisation is a lower bound: it can only fail."
     decides = "Decides the verdict" if one.must_have else "Does not decide the verdict"
     lines = (
         f"#### `{one.id}`: {title}",
@@ -129,14 +133,14 @@ def model_limits() -> str:
 
 def screening() -> str:
     """Checks that screening judges, with the deviation of each from the preview."""
-    titles = {each.id: each.title for each in CHECKS}
-    rows = (
-        (
-            f"`{each.check}`", titles[each.check].format(follower="roller"),
-            f"{100.0 * each.deviation:g} %", "fails only" if each.bound else "passes and fails",
+    rows = []
+    for each in SCREENED:
+        declared = DECLARED[each.check]
+        judged = "fails only" if declared.is_bound(Tier.SCREENING) else "passes and fails"
+        deviation = f"{100.0 * each.deviation:g} %"
+        rows.append(
+            (f"`{each.check}`", declared.title.format(follower="roller"), deviation, judged)
         )
-        for each in SCREENED
-    )  # fmt: skip
     return markdown(("check", "title", "deviation", "screening"), rows)
 
 

@@ -22,6 +22,7 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution
 
 AT_REST = 1e-9  # range of s'' over the lift, 1/rad^2, of a round cam
@@ -86,6 +87,7 @@ def acceleration_step(solution: Solution) -> Demand:
 @check(
     PRESSURE_ANGLE,
     title="Maximum pressure angle",
+    tier=Tier.SCREENING,
     formula="max |atan((s' - e)/(d + s))| <= alpha; s, s': lift and its slope, e: offset, d:"
     " height of the roller centre at zero lift, alpha: limits.pressure_angle",
     reason="Side force, guide friction and jamming grow with the tangent of the angle.",
@@ -105,6 +107,7 @@ def pressure_angle(solution: Solution) -> Demand:
 @check(
     CURVATURE_RATIO,
     title="Minimum convex pitch radius / roller radius",
+    tier=Tier.SCREENING,
     formula="min rho_p / r >= c; rho_p: convex radius of curvature of the pitch curve, r: roller"
     " radius, c: limits.curvature_ratio",
     reason="Near a ratio of 1 the convex cam surface becomes an edge.",
@@ -126,6 +129,7 @@ def curvature_ratio(solution: Solution) -> Demand:
     UNDERCUT_FACTOR,
     id="undercut",
     title="Minimum undercut factor",
+    tier=Tier.SCREENING,
     formula="min(1 - r kappa_p) >= c; r: roller radius, kappa_p: curvature of the pitch curve, c:"
     " limits.undercut_factor; flat face: min((R + s + s'')/(R + s)), R: base radius",
     reason="At zero the cam has a cusp; below, the follower does not follow the lift.",
@@ -188,6 +192,7 @@ def second_contact(solution: Solution) -> Demand:
     TOOL_RADIUS,
     id="concave_radius",
     title="Minimum concave radius",
+    tier=Tier.SCREENING,
     formula="min rho_c >= 1.1 R; rho_c: concave radius of the contour, R: limits.tool_radius or"
     " workshop.tool_radius",
     reason="A larger wheel or cutter cannot make the contour.",
@@ -271,6 +276,7 @@ def curvature_rate(solution: Solution) -> Demand:
 @check(
     MINIMUM_WALL,
     title="Minimum contour radius / bore radius including keyway",
+    tier=Tier.SCREENING,
     formula="min |P| / (R_b + t) >= c; P: contour, R_b: bore radius, t: depth of the keyway, c:"
     " limits.minimum_wall",
     reason="A thinner ring bursts at the keyway or opens on the shaft.",
@@ -290,6 +296,7 @@ def minimum_wall(solution: Solution) -> Demand:
 
 @check(
     title="Maximum lift vs. spring travel",
+    tier=Tier.SCREENING,
     formula="max s <= x; s: lift, x: spring.travel_max",
     reason="Beyond its travel the spring is solid and the follower is blocked.",
     unit="mm",

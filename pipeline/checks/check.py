@@ -85,6 +85,8 @@ class Declaration:
     evidence : bool            verification of the solution: it cannot be waived
     lift_can_help : bool       a gentler lift can pass it
     tier : Tier                least tier that can judge it; below it the check is not evaluated
+    fails_from : Tier          least tier with a lower bound of its utilisation: below `tier` it
+                               fails by it or is not evaluated
     forecast : bool            quick enough to forecast a smoother
     moved_by_tolerance : bool  its demand differs at a tolerance corner
     error : str                origin of the error bar of the demand
@@ -107,6 +109,7 @@ class Declaration:
     evidence: bool
     lift_can_help: bool
     tier: Tier
+    fails_from: Tier
     forecast: bool
     moved_by_tolerance: bool
     error: Error
@@ -123,10 +126,18 @@ class Declaration:
         None where it does not apply, its part is not described, or its tier is a deeper one.
         Whether a part is described has a check of its own, see `part_data`.
         """
-        if solution.tier < self.tier or not self._concerns(solution.machine):
+        if solution.tier < self.fails_from or not self._concerns(solution.machine):
             return None
         demand = self.demand(solution)
-        return None if demand is None else self.judged(solution.machine, demand)
+        if demand is None:
+            return None
+        made = self.judged(solution.machine, demand)
+        # a lower bound within the limit says nothing
+        return made if made.status == "fail" or not self.is_bound(solution.tier) else None
+
+    def is_bound(self, tier: Tier) -> bool:
+        """Whether its utilisation at a tier is a lower bound, by which it can only fail."""
+        return self.fails_from <= tier < self.tier
 
     def deeper(self, solution: Solution) -> Check | None:
         """The check, not evaluated, of a solution below its tier; None at or above it."""
@@ -176,7 +187,8 @@ def check(
     must_have: bool = True,
     evidence: bool = False,
     lift_can_help: bool = False,
-    tier: Tier = Tier.SCREENING,
+    tier: Tier = Tier.PREVIEW,
+    fails_from: Tier | None = None,
     forecast: bool = False,
     moved_by_tolerance: bool = True,
     error: Error = "sampling",
@@ -188,7 +200,7 @@ def check(
 ) -> Callable[[Callable[[Solution], Demand | None]], Declaration]:
     """Declare a check of the demand that the decorated function returns; see `Declaration`.
 
-    Id, unit and sense default to those of the function and the limit.
+    Id, unit and sense default to those of the function and the limit, fails_from to the tier.
     """
 
     def declared(demand: Callable[[Solution], Demand | None]) -> Declaration:
@@ -204,6 +216,7 @@ def check(
             evidence=evidence,
             lift_can_help=lift_can_help,
             tier=tier,
+            fails_from=tier if fails_from is None else fails_from,
             forecast=forecast,
             moved_by_tolerance=moved_by_tolerance,
             error=error,

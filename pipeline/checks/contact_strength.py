@@ -29,6 +29,7 @@ from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest
 from camwright.pipeline.contact import hertz
 from camwright.pipeline.contact.rolling_envelope import smallest_sphere
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.roller_motion import rolling_share
@@ -271,6 +272,7 @@ def _shakedown_uses(friction: float, poisson: float) -> tuple[Array, Array]:
     sense="at_most",
     method="greatest contact pressure over the turn; least endurance of cam and follower",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     forecast=True,
     error="contact",
     formula="p0 <= p_E / S; p0: greatest contact pressure over all load cases and angles, p_E:"
@@ -324,6 +326,7 @@ def _stress_with_traction(cycle: Cycle) -> Array:
     method="greatest contact pressure over the turn; 4.0 k, free rolling, k = Y/sqrt(3), least of"
     " cam and follower",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     forecast=True,
     error="contact",
     formula="p0 <= 4 k / S; k = Y/sqrt(3): least shear yield strength of cam and follower, S:"
@@ -387,6 +390,7 @@ def pressure_at_life(cycles: float, slope: float, intercept: float, modulus: flo
     unit="MPa",
     method="greatest contact pressure times the edge factor; the ends are not solved",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     error="contact",
     formula="f p0 <= p_E / S; f: limits.edge_factor for straight ends, 1 for a crown whose ellipse"
     " lies within the width",

@@ -68,9 +68,12 @@ def _at_temperature(
     ----------
     limit_at : callable   temperature, K -> limit; None without one, NaN beyond the card
     """
-    cold, temperature = limit_at(ROOM), hottest(solution, side).value
+    cold = limit_at(ROOM)
     if cold is None:
         return None, []
+    if solution.tier is Tier.SCREENING:
+        return cold, ["limit at 20 degC, an upper bound"]
+    temperature = hottest(solution, side).value
     if np.isnan(temperature):
         return cold, ["the temperature of the guide is not known: limit at 20 degC"]
     limit = limit_at(temperature)
@@ -90,6 +93,7 @@ def _guide_pressure(side: Side) -> Declaration:
         method="greatest push on one side of the bore over diameter x loaded length; at most"
         " the limit at the temperature of the guide",
         lift_can_help=True,
+        fails_from=Tier.SCREENING,
         forecast=True,
         error="guide_edges",
         part="guides",
@@ -158,6 +162,7 @@ def _guide_pv(side: Side) -> Declaration:
         method="mean |R v| over the turn over diameter x length; R: sum of the loads on both sides"
         " of the bore",
         lift_can_help=True,
+        tier=Tier.SCREENING,
         forecast=True,
         error="guides",
         part="guides",
@@ -302,6 +307,7 @@ def _guide_speed(side: Side) -> Declaration:
         source="limit of the bush's maker, source of the guide",
         method="greatest speed of the follower over the turn",
         lift_can_help=True,
+        tier=Tier.SCREENING,
         moved_by_tolerance=False,
         part="guides",
         formula="max |v| <= v_max; v: speed of the stem in the bush, v_max: guides.*.speed_limit.",
@@ -331,6 +337,7 @@ guide_speed_a, guide_speed_b = _guide_speed("A"), _guide_speed("B")
     method="distance of the outer ends of the guides over the overhang at minimum lift",
     must_have=False,
     lift_can_help=True,
+    tier=Tier.SCREENING,
     moved_by_tolerance=False,
     part="guides",
     formula="(b + (L_A + L_B) / 2) / a >= n; b: spacing of guides, L: their lengths, a: overhang"

@@ -35,6 +35,7 @@ _TIE = 1e-9  # relative difference up to which two forces are equal, and one is 
     title="Minimum contact force / preload",
     method="least normal force over the turn, guide friction and inertia included",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     forecast=True,
     formula="N_min / P >= limits.contact_force_margin; N_min: least normal force over all load"
     " cases and angles with guide friction and inertia, without surge, P: preload",
@@ -51,6 +52,7 @@ def contact_force_margin(solution: Solution) -> Demand:
     title="Maximum unloading inertia force / spring force",
     method="greatest -m w^2 s'' / F_s over the turn; the jump speed is w / sqrt of it",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     forecast=True,
     formula="max(-m w^2 s'' / F_s) <= limits.jump over all load cases and angles; m: moving mass,"
     " w: cam speed, s'': second derivative of the lift, F_s: spring force",
@@ -73,6 +75,7 @@ def jump(solution: Solution) -> Demand:
     method="greatest friction of both guides over the axial cam force on the rise; guides of finite"
     " length with clearance",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     forecast=True,
     part="guides",
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise; R: sum of the pushes on both sides"
@@ -100,6 +103,7 @@ def jam_index(solution: Solution) -> Demand:
     method="greatest friction of both guides over the axial cam force on the rise, at the maximum"
     " friction coefficients",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     moved_by_tolerance=False,
     part="guides",
     formula="max((mu_A R_A + mu_B R_B) / F_a) <= j on the rise, at guides.*.friction_max or the"
@@ -120,6 +124,7 @@ def jam_index_friction_max(solution: Solution) -> Demand:
     unit="rpm",
     method="least w sqrt(F_s / (-m w^2 s'')) where the follower decelerates, without friction",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     formula="min(w sqrt(F_s / (-m w^2 s''))) >= limits.jump_speed times limits.overspeed; w: crank"
     " speed, F_s: spring force, m: moving mass, s'': second derivative of the lift",
     reason="An engine exceeds its governed speed, and damping and tolerances are not known"
@@ -141,6 +146,7 @@ def jump_speed(solution: Solution) -> Demand:
     title="Minimum contact force / preload at overspeed",
     method="least spring force plus m w^2 s'' at the overspeed, without friction",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     formula="min(F_s + m w^2 s'') / P >= limits.contact_force_margin at w of limits.overspeed; F_s:"
     " spring force, m: moving mass, s'': second derivative of the lift, P: preload",
     reason="The synthesis keeps the contact by this closed form; the sweep adds friction"

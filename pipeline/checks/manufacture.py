@@ -17,6 +17,7 @@ from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import NONE, RIPPLE, Demand, check
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
 from camwright.pipeline.checks.torque_balance import cycles_of_ripple
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 
@@ -24,6 +25,7 @@ from camwright.pipeline.cycle.solution import Solution
 @check(
     GUIDE_GAP,
     title="Gap between guide A and cam or {follower}",
+    tier=Tier.SCREENING,
     formula="min(h - max|P|, l - x) >= g; h: end of guide A over the cam axis, P: contour, l: end"
     " of guide A over the roller centre at maximum lift, x: extent of the follower, g:"
     " limits.guide_gap",
@@ -47,6 +49,7 @@ def guide_gap(solution: Solution) -> Demand:
 @check(
     CAM_RADIUS,
     title="Maximum cam radius",
+    tier=Tier.SCREENING,
     formula="max |P| <= R; P: contour, R: limits.cam_radius",
     reason="The cam must fit into its space.",
     method="greatest radius of the contour, refined between samples",
@@ -68,6 +71,7 @@ def cam_radius(solution: Solution) -> Demand:
     WAVINESS,
     id="profile_waviness",
     title="Waviness inertia force / contact force",
+    tier=Tier.SCREENING,
     formula="max m a (2 pi v/lambda)^2 / N <= c; m: moving mass, a: half of"
     " cam.profile_tolerance, v: speed of the contact along the contour, lambda:"
     " cam.waviness_length, N: contact force, c: limits.waviness",

@@ -77,6 +77,7 @@ WAIVERS_WITHOUT_EFFECT = check(
     source="a waiver names a check of the design; a verification check cannot be waived",
     method="check ids of the waivers of the case against the ids of its checks",
     must_have=False,
+    tier=Tier.SCREENING,
     formula="n <= 0; n: waivers that name no check of the design",
     reason="a waiver without effect improves no check.",
 )(made_from_others)
@@ -118,7 +119,8 @@ def all_checks(solution: Solution) -> tuple[Check, ...]:
     if solution.tier < Tier.CYCLE:
         mark = f"{solution.tier.word}: "
         made = tuple(replace(one, method=mark + one.method) for one in made)
-    later = (declared.deeper(solution) for declared in CHECKS)
+    judged = {one.id for one in made}
+    later = (each.deeper(solution) for each in CHECKS if each.id not in judged)
     made = (*made, *(one for one in later if one is not None))
     known = {one.id for one in made if not one.evidence}
     idle = [waiver.check for waiver in solution.case.waivers if waiver.check not in known]

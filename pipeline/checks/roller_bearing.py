@@ -25,6 +25,7 @@ from camwright.pipeline.case.limits import (
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Declaration, Demand, check, not_given
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import bearing_life
@@ -83,6 +84,7 @@ def _known(force: Array) -> bool:
     title="Static safety factor of the roller bearing",
     method="static rating over the greatest normal force",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     forecast=True,
     needs="roller",
     part="roller_bearing",
@@ -110,6 +112,7 @@ def roller_static(solution: Solution) -> Demand:
     title="Greatest load over dynamic rating of the roller bearing",
     method="greatest normal force over the dynamic rating",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     needs="roller",
     part="roller_bearing",
     formula="N/C <= x; N: greatest normal force over all load cases and angles, C: dynamic rating,"
@@ -135,6 +138,7 @@ def roller_load_share(solution: Solution) -> Demand:
     method="(C / P_m)^3 million revolutions, P_m the cube mean of the normal force,"
     " surge of the spring included",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     forecast=True,
     needs="roller",
     part="roller_bearing",
@@ -228,6 +232,7 @@ def roller_modified_life(solution: Solution) -> Demand:
     unit="rpm",
     method="rolling without slip: w (|dP/dtheta| - r) / r",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     forecast=True,
     needs="roller",
     part="roller_bearing",
@@ -258,6 +263,7 @@ def _outer_ring(
         source=f"{symbol} of a track roller",
         method="greatest normal force over the turn",
         lift_can_help=True,
+        tier=Tier.SCREENING,
         needs="roller",
         part="roller_bearing",
         formula=f"N <= {symbol}; N: greatest normal force over all load cases and angles, {symbol}:"

@@ -13,6 +13,7 @@ from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import SPRING_FATIGUE, SPRING_SOLID, SPRING_SURGE, Limit, Sense
 from camwright.pipeline.checks.check import NONE, SPEED_RANGE, Declaration, Demand, check
 from camwright.pipeline.checks.extremes import Extreme
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpringSweep, highest_speed
 from camwright.pipeline.follower.spring import (
@@ -100,6 +101,7 @@ def _slow(
         method=method,
         source=source,
         lift_can_help=lift_can_help,
+        tier=Tier.SCREENING,
         moved_by_tolerance=False,
         part="spring",
         formula=formula,
@@ -132,8 +134,17 @@ class OverSpeed(NamedTuple):
     words: str
 
 
+def _at_rest(work: Work[float]) -> SpringSweep:
+    """Working range of the spring without surge: a lower bound of its forces."""
+    forces = (np.full((2, 1), force) for force in (work.preload, work.greatest))
+    return SpringSweep(np.zeros(1), *forces)
+
+
 def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> OverSpeed:
     """Greatest value (2, m) over both ends of the spring and all speeds."""
+    if solution.tier is Tier.SCREENING:
+        most = float(np.max(use(_at_rest(_work(solution)))))
+        return OverSpeed(most, most, "without surge")
     sweep, damped = solution.hardest_spring, solution.least_damped
     if sweep is None:
         return OverSpeed(np.nan, np.nan, "")
@@ -152,6 +163,7 @@ def _over_speed(solution: Solution, use: Callable[[SpringSweep], Array]) -> Over
     method="Wahl factor, greatest force at either end of the spring over the speed range, surge"
     " included",
     lift_can_help=True,
+    fails_from=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
     formula="tau_max / (0.56 R_m) <= 1, tau = K_w 8 D F / (pi d^3); F: greatest force in the coils"
@@ -184,6 +196,7 @@ def spring_stress(solution: Solution) -> Demand:
     method="Wahl factor, range of force at either end of the spring over the speed range, surge"
     " included",
     lift_can_help=True,
+    fails_from=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
     formula="1 / (tau_a / S_e + tau_m / S_su) >= limits.spring_fatigue; tau_a, tau_m: amplitude and"
@@ -268,6 +281,7 @@ spring_buckling = _slow(
     unit="-",
     source="tolerance of the rate in the case, else 5 %",
     method="G d^4/(8 D^3 n) of the spring design against spring.rate",
+    tier=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
     formula="|G d^4 / (8 D^3 n) / k - 1| <= tolerance of the rate; k: spring.rate",
@@ -286,6 +300,7 @@ def spring_rate(solution: Solution) -> Demand:
     SPRING_SURGE,
     title="Spring surge frequency / cam frequency",
     method="sqrt(k/m)/2 of the active coils over the highest speed of the sweep",
+    tier=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
     formula="f1 / f_cam >= limits.spring_surge; f1 = sqrt(k/m)/2: first natural frequency of the"
@@ -320,6 +335,7 @@ def spring_surge(solution: Solution) -> Demand:
     source="tolerance of the preload in the case, else 5 %",
     method="spring.design.relaxation of the greatest force, lost at every deflection",
     lift_can_help=True,
+    tier=Tier.SCREENING,
     moved_by_tolerance=False,
     part="spring",
     formula="R F_max / P <= tolerance of the preload; R: spring.design.relaxation, share of the"

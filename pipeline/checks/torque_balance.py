@@ -27,6 +27,7 @@ _CHORD = 1e-5
 @check(
     TORQUE_REDUCTION,
     title="Torque ripple reduction",
+    tier=Tier.SCREENING,
     formula="min over the load cases of 1 - std(T_e - T_c)/std(T_e) >= c; T_e, T_c: crank torque"
     " of engine and cam about their means, c: limits.torque_reduction",
     reason="It is the purpose of the cam.",

@@ -10,9 +10,9 @@ from camwright.geometry.errors import InputError
 class Tier(IntEnum):
     """Depth of a solution; each tier judges more checks than the one before.
 
-    SCREENING: closed forms, no tolerance corners; of many designs at once by `screen_designs`.
-    PREVIEW: closed forms, with corners. CYCLE: contact by finite elements over the turn. CERTIFIED:
-    the same with its certificate; it alone has a verdict.
+    SCREENING: closed forms without tolerance corners, surge and temperature of the guides; of many
+    designs at once by `screen_designs`. PREVIEW: closed forms, with them. CYCLE: contact by finite
+    elements over the turn. CERTIFIED: the same with its certificate; it alone has a verdict.
     """
 
     SCREENING = 1

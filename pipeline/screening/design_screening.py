@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,8 @@ from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.given_lift import given_lift
 from camwright.pipeline.case.load_case_torque import has_torque
 from camwright.pipeline.checks.check import Declaration
-from camwright.pipeline.checks.registry import CHECKS, accepted
+from camwright.pipeline.checks.registry import DECLARED, accepted
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.spring import spring_energy
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening.design_arrays import Designs, Source, TorqueOfSpeed, Turns
@@ -236,7 +236,7 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
     most = np.full(count, -np.inf)
     governing = np.full(count, "", dtype=object)
     for each in SCREENED:
-        declared = _declared()[each.check]
+        declared = DECLARED[each.check]
         part = declared.part
         if part and not (machine.scope.covers(part) and machine.describes(part)):
             continue
@@ -264,11 +264,6 @@ def judged_columns(designs: Designs) -> dict[str, Column]:
     }
 
 
-@cache
-def _declared() -> Mapping[str, Declaration]:
-    return {each.id: each for each in CHECKS}
-
-
 _STATUS = np.array(["not_evaluated", "pass", "fail"], dtype=object)
 _SCREEN = np.array(["open", "fail"], dtype=object)
 
@@ -289,9 +284,10 @@ def _figures(
     with np.errstate(invalid="ignore", divide="ignore"):
         holds = demand <= allowed if at_most else demand >= allowed
         used = utilisations(demand, allowed, at_most=at_most)
-    if screened.bound:
+    if declared.is_bound(Tier.SCREENING):
         known &= ~holds  # a lower bound within the limit says nothing
     status = _STATUS[np.where(known, np.where(holds, 1, 2), 0)]
+    status[~screened.applies(designs)] = ""
     for waiver in designs.case.waivers:
         if waiver.check == declared.id and not declared.evidence:
             up_to = accepted(waiver, declared.unit).up_to

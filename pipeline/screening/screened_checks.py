@@ -1,8 +1,8 @@
 """Demand and limit of each check that screening judges, of many designs at once.
 
 The formulas are those of the checks, on arrays. Where a check adds what screening leaves out, the
-surge of the spring or the temperature of a guide, the utilisation is a lower bound, and `bound` is
-True: a design that fails by it fails the check; any other is not evaluated.
+surge of the spring or the temperature of a guide, the utilisation is a lower bound: a design that
+fails by it fails the check; any other is not evaluated (`Declaration.is_bound`).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.extrema import sampled_greatest, sampled_least
@@ -61,17 +62,21 @@ Judged = tuple[Array, Array | float | None]
 Side = Literal["a", "b"]
 
 
+def _to_all(designs: Designs) -> NDArray[np.bool_]:
+    return np.ones(designs.count, dtype=bool)
+
+
 class Screened(NamedTuple):
     """A check that screening judges.
 
     deviation: from the demand of the preview, over the greater of demand and limit, as
-    `tests/verification/test_screening.py` measures it; bound: the utilisation is a lower bound.
+    `tests/verification/test_screening.py` measures it; applies: to which designs, (m,).
     """
 
     check: str
     judged: Callable[[Designs], Judged | None]
     deviation: float
-    bound: bool = False
+    applies: Callable[[Designs], NDArray[np.bool_]] = _to_all
 
 
 def _worst(designs: Designs, measure: Callable[[Turns], Array]) -> Array:
@@ -97,14 +102,17 @@ def _undercut(designs: Designs) -> Judged:
     return designs.least_factor, designs.limit(UNDERCUT_FACTOR)
 
 
+def _is_concave(designs: Designs) -> NDArray[np.bool_]:
+    """Whether a cam has concave places; any tool fits a convex one."""
+    return sampled_least(designs.pitch_curvature) < -np.finfo(float).tiny
+
+
 def _concave_radius(designs: Designs) -> Judged:
-    """Missing for a convex cam, which any tool fits."""
     hollow = np.minimum(sampled_least(designs.pitch_curvature), -np.finfo(float).tiny)
     radius = designs.value("roller.radius")[:, 0] - 1.0 / hollow
     tool, stated = designs.limit(TOOL_RADIUS), designs.case.workshop.tool_radius
     largest = np.where(np.isnan(tool), np.nan if stated is None else stated, tool)
-    concave = hollow < -np.finfo(float).tiny
-    return np.where(concave, radius, np.nan), TOOL_ALLOWANCE * largest
+    return np.where(_is_concave(designs), radius, np.nan), TOOL_ALLOWANCE * largest
 
 
 def _minimum_wall(designs: Designs) -> Judged:
@@ -421,7 +429,7 @@ SCREENED: tuple[Screened, ...] = (
     Screened("pressure_angle", _pressure_angle, 0.0001),
     Screened("curvature_ratio", _curvature_ratio, 0.0001),
     Screened("undercut", _undercut, 0.0001),
-    Screened("concave_radius", _concave_radius, 0.0001),
+    Screened("concave_radius", _concave_radius, 0.0001, _is_concave),
     Screened("minimum_wall", _minimum_wall, 0.0001),
     Screened("cam_radius", _cam_radius, 0.0001),
     Screened("spring_travel", _spring_travel, 0.0001),
@@ -445,13 +453,13 @@ SCREENED: tuple[Screened, ...] = (
     Screened("roller_life", _roller_life, 0.03),
     Screened("guide_speed_A", _guide_speed("a"), 0.002),
     Screened("guide_speed_B", _guide_speed("b"), 0.002),
-    Screened("guide_pressure_A", _guide_pressure("a"), 0.1, bound=True),
-    Screened("guide_pressure_B", _guide_pressure("b"), 0.1, bound=True),
+    Screened("guide_pressure_A", _guide_pressure("a"), 0.1),
+    Screened("guide_pressure_B", _guide_pressure("b"), 0.1),
     Screened("guide_pv_A", _guide_pv("a"), 0.03),
     Screened("guide_pv_B", _guide_pv("b"), 0.03),
     Screened("profile_waviness", _profile_waviness, 0.05),
-    Screened("spring_stress", _of_spring(_spring_stress), 0.03, bound=True),
-    Screened("spring_fatigue", _of_spring(_spring_fatigue), 0.03, bound=True),
+    Screened("spring_stress", _of_spring(_spring_stress), 0.03),
+    Screened("spring_fatigue", _of_spring(_spring_fatigue), 0.03),
     Screened("spring_solid", _of_spring(_spring_solid), 0.0001),
     Screened("spring_coil_gap", _of_spring(_spring_coil_gap), 0.0001),
     Screened("spring_solid_stress", _of_spring(_spring_solid_stress), 0.0001),

@@ -19,7 +19,8 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import replaced
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.case.machine import machine
-from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.check import Check, within_depth
+from camwright.pipeline.checks.registry import CHECKS, DECLARED
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.follower.follower_forces import levers
 from camwright.pipeline.follower.guide_reactions import guide_reactions
@@ -97,7 +98,10 @@ def compare(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str, f
             status = columns[f"{check.id}.status"][k]
             near = used is not None and abs(1.0 - used) <= screened.deviation
             if status == "not_evaluated":
-                assert screened.bound or check.status in ("not_evaluated", "pass"), check.id
+                assert DECLARED[check.id].is_bound(Tier.SCREENING) or check.status in (
+                    "not_evaluated",
+                    "pass",
+                ), check.id
                 continue
             close |= check.must_have and near
             assert status == check.status or near, (check.id, k, str(check))
@@ -138,6 +142,32 @@ def require_within(worst: Mapping[str, float]) -> None:
 def test_a_few_designs_agree_with_their_previews() -> None:
     worst = compare("gx120", 2, without=("guides.spacing",))
     require_within(worst)
+
+
+def test_screening_declares_its_checks() -> None:
+    declared = [each.id for each in CHECKS if each.fails_from is Tier.SCREENING]
+    assert sorted(declared) == sorted(each.check for each in SCREENED)
+
+
+@pytest.mark.parametrize("name", ["gx120", pytest.param("gx120-redesign", marks=pytest.mark.slow)])
+def test_a_single_case_has_the_statuses_of_its_row(name: str) -> None:
+    case, drawn = read_case(CASES / f"{name}.toml"), None
+    if case.smoothing.kind == "constrained":
+        drawn, energy = synthesis(case)
+        contour = drawn.contour(_lift(drawn, energy))
+    else:
+        drawn, contour = case, case.contour(cam_lift(case, engine_torques(case)))
+    trial = solve(drawn, contour, tier=Tier.SCREENING, positions=90)
+    row = screen_designs(case, {"spring.preload": [drawn.spring.preload]}, positions=90)
+    statuses = {key[: -len(".status")]: row[key][0] for key in row if key.endswith(".status")}
+    known = {check.id: check for check in trial.checks}
+    assert {check.id for check in within_depth(trial.checks)} <= set(statuses)
+    for each in SCREENED:
+        status, check = statuses.get(each.check, ""), known.get(each.check)
+        used = None if check is None else check.utilisation
+        near = used is not None and abs(1.0 - used) <= each.deviation
+        assert near or status == ("" if check is None else check.status), each.check
+    assert row["screen"][0] == trial.screen
 
 
 @pytest.mark.slow
