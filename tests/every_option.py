@@ -27,7 +27,7 @@ OPTIONS = {
         "bearing_static_rating": "4.75 kN",
         "rotor_mass": "1 kg",
         "slip_torque": "0 N m",
-        "counterweight": {"unbalance": "50 g mm", "angle": "30 deg", "position": "10 mm"},
+        "counterweight": {"residual": "50 g mm", "position": "10 mm"},
         "sections": [
             {
                 "name": "groove",

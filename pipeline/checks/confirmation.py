@@ -37,7 +37,8 @@ _KEY = (
     *("cam.key.application_factor", "cam.key.material.yield_strength", "limits.key_reversal"),
     *("cam.material.*yield_strength", "camshaft.material.*yield_strength"),
 )
-_SHAFT = (*_LOADS, "camshaft.drag", "camshaft.rotor_mass", "cam.material.density")
+_BENCH = ("camshaft.counterweight.residual",)
+_SHAFT = (*_LOADS, "camshaft.drag", "camshaft.rotor_mass", "cam.material.density", *_BENCH)
 _SURGE = ("spring.design.shear_modulus", "spring.design.density", "spring.design.damping_ratio")
 _TRACTION = (
     *_LOADS,
@@ -210,7 +211,7 @@ RESTS_ON: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "key_shear": _KEY,
         "torque_reversals": _LOADS,
         "cam_unbalance": (
-            "cam.material.density", "camshaft.rotor_mass", "limits.overspeed",
+            "cam.material.density", "camshaft.rotor_mass", "limits.overspeed", *_BENCH,
         ),
         "shaft_fatigue": (
             *_SHAFT, "camshaft.material.tensile_strength", "camshaft.material.fatigue_bending",

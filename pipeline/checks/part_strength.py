@@ -27,6 +27,7 @@ from camwright.pipeline.cycle.part_loads import PartLoads
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower import pin_strength
 from camwright.pipeline.follower.bearing_ring import goodman
+from camwright.pipeline.follower.camshaft_loads import Camshaft
 from camwright.pipeline.follower.roller import Roller
 from camwright.pipeline.follower.roller_parts import Fork, Pin
 
@@ -413,8 +414,9 @@ def torque_reversals(solution: Solution) -> Demand:
     title="Unbalance of the camshaft with its cam",
     method="exact first moment of the area of the contour less bore, keyway and counter-hole",
     moved_by_tolerance=False,
-    formula="e w <= limits.unbalance; e = U/m, U: unbalance of cam and counterweight, m:"
-    " camshaft.rotor_mass, or the mass of the cam alone, w: greatest cam speed of all load cases",
+    formula="e w <= limits.unbalance; e = U/m, U: unbalance of cam and counterweight, or"
+    " camshaft.counterweight.residual, m: camshaft.rotor_mass, or the mass of the cam alone, w:"
+    " greatest cam speed of all load cases",
     reason="the force m e w^2 loads shaft, bearings and frame at every speed",
 )
 def cam_unbalance(solution: Solution) -> Demand:
@@ -427,9 +429,17 @@ def cam_unbalance(solution: Solution) -> Demand:
     return Demand(
         rotor_unbalance(made, shaft) / rotor * speed,
         solution.machine.limits[UNBALANCE],
-        note=f"{made.force(speed):.1f} N at {angle} of the cam; mass of {whole},"
+        note=f"{made.force(speed):.1f} N at {angle} of the cam{_set(shaft)}; mass of {whole},"
         f" {shown(rotor, 'g')}{_hole(balanced)}",
     )
+
+
+def _set(shaft: Camshaft | None) -> str:
+    """The counterweight that is set on the bench in words."""
+    weight = None if shaft is None else shaft.counterweight
+    if weight is None or weight.residual is None:
+        return ""
+    return f", which the counterweight opposes on the bench up to {shown(weight.residual, 'g mm')}"
 
 
 def _hole(balanced: Balance) -> str:

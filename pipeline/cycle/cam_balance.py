@@ -96,20 +96,15 @@ def _unbalance(cam: CamBody, contour: Contour) -> Unbalance:
     return unbalance(contour, cam.bore_radius, cam.keyway, cam.width, density)
 
 
-def unbalance_force(cam: CamBody, contour: Contour, cam_speed: float, theta: Array) -> Array:
-    """Centrifugal force of the cam as manufactured on its shaft (2, n), N; see `rotating_force`."""
-    made = _as_made(cam, contour)
-    return rotating_force(made.product, made.angle, cam_speed, theta)
-
-
 def camshaft_loads(
     loads: Loads, shaft: Camshaft, cam: CamBody, contour: Contour, cam_speed: float
 ) -> ShaftLoads:
     """Loads of the camshaft over a turn, with the centrifugal forces of cam and counterweight."""
-    thrown = unbalance_force(cam, contour, cam_speed, loads.theta)
-    weight, held = shaft.counterweight, np.zeros_like(thrown)
+    made, weight = _as_made(cam, contour), shaft.counterweight
+    thrown = rotating_force(made.product, made.angle, cam_speed, loads.theta)
+    held = np.zeros_like(thrown)
     if weight is not None:
-        held = rotating_force(weight.unbalance, weight.angle, cam_speed, loads.theta)
+        held = rotating_force(*weight.set_against(made), cam_speed, loads.theta)
     forces = (loads.axial_force, loads.tangential_force, loads.cam_torque)
     return shaft_loads(*forces, shaft, thrown, held)
 
@@ -119,7 +114,8 @@ def rotor_unbalance(made: Unbalance, shaft: Camshaft | None) -> float:
     weight = None if shaft is None else shaft.counterweight
     total = made.product * np.exp(1j * made.angle)
     if weight is not None:
-        total += weight.unbalance * np.exp(1j * weight.angle)
+        product, direction = weight.set_against(made)
+        total += product * np.exp(1j * direction)
     return float(abs(total))
 
 

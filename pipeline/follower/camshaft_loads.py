@@ -27,6 +27,7 @@ from camwright.pipeline.base.quantities import (
     Part,
     Pressure,
 )
+from camwright.pipeline.base.units import shown
 from camwright.pipeline.contact.cam_body import KeyFlanks
 
 
@@ -140,6 +141,7 @@ class CamshaftGear(Part):
 Surface = Literal["ground", "machined", "hot_rolled", "forged"]
 Notch = Annotated[float, In(at_least=1, at_most=10)]
 Place = Annotated[float, In("mm", above=-10_000, below=10_000)]
+MassMoment = Annotated[float, In("g mm", above=0, at_most=1e9)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,14 +159,45 @@ class ShaftSection(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Counterweight(Part):
-    """Counterweight on the camshaft: unbalance m e, its direction in the cam frame, position."""
+    """Counterweight on the camshaft, stated in one of two ways.
+
+    unbalance, angle: its own m e and direction in the cam frame; residual: m e that is left of cam
+    and counterweight together when it is set against the cam on a balancing bench.
+    """
 
     table: ClassVar[str] = "camshaft.counterweight"
+    defaults: ClassVar[Mapping[str, str]] = {
+        "unbalance": "with residual: that of the cam, more by the residual",
+        "angle": "with residual: opposite to the unbalance of the cam",
+        "residual": "with unbalance: what it leaves of the cam",
+    }
 
-    unbalance: Annotated[float, In("g mm", above=0, at_most=1e9)]
-    angle: Angle
+    unbalance: MassMoment | None = None
+    angle: Angle | None = None
+    residual: MassMoment | None = None
     position: Place
     source: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if (self.unbalance is None) == (self.residual is None):
+            count = "neither" if self.residual is None else "both"
+            field = f"{self.table}.unbalance, residual"
+            raise InputError(field, count, "exactly one of the two")
+        field = f"{self.table}.angle"
+        if self.residual is None and self.angle is None:
+            raise InputError(field, "missing", "given with unbalance")
+        if self.residual is not None and self.angle is not None:
+            raise InputError(field, shown(self.angle, "deg"), "left out with residual")
+
+    def set_against(self, made: Unbalance) -> tuple[float, float]:
+        """Its unbalance, kg m, and direction in the cam frame, rad, beside a cam as manufactured.
+
+        A residual has no known direction: it is taken on the side of the counterweight.
+        """
+        if self.unbalance is not None and self.angle is not None:
+            return self.unbalance, self.angle
+        return made.product + (self.residual or 0.0), made.angle + pi
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -110,6 +110,22 @@ def test_the_recalled_source_that_a_check_declares_counts():
         with_values_to_confirm([check], stated(confirmed=[entry]))
 
 
+def test_the_residual_of_a_counterweight_counts_until_it_is_confirmed():
+    value = "camshaft.counterweight.residual"
+    (declared,) = (each for each in CHECKS if each.id == "cam_unbalance")
+
+    def unconfirmed(source: str, **more: Any) -> bool:
+        weight = {"residual": "20 g mm", "position": "10 mm", "source": source}
+        case = stated(camshaft=tables()["camshaft"] | {"counterweight": weight}, **more)
+        check = declared(made.solution(case=case))
+        assert check is not None
+        return value in with_values_to_confirm([check], case)[0].unconfirmed
+
+    assert unconfirmed("assumed: G 2.5")
+    assert not unconfirmed("balancing sheet 12")
+    assert not unconfirmed("assumed", confirmed=[{"value": value, "source": "sheet 12"}])
+
+
 def test_a_check_without_data_rests_on_nothing():
     case = stated(sources=sourced("recalled"))
     check = contact(case)

@@ -122,6 +122,43 @@ def test_a_part_that_is_neither_described_nor_left_out_is_a_row(keys, name):
     assert BY_ID[f"data_{name}"](made.solution(case=case_of(tables))) is None
 
 
+FIXED = {"unbalance": "50 g mm", "angle": "30 deg", "position": "10 mm"}
+BENCH = {"residual": "20 g mm", "position": "10 mm"}
+
+
+def with_counterweight(table: dict[str, str]) -> dict[str, Any]:
+    tables = deepcopy(TABLES)
+    tables["camshaft"]["counterweight"] = table
+    return tables
+
+
+@pytest.mark.parametrize("table", [FIXED, BENCH])
+def test_no_datum_of_a_counterweight_can_be_left_out(table):
+    shaft = case_of(with_counterweight(table)).camshaft
+    assert shaft is not None and shaft.counterweight is not None
+    for key in table:
+        left = {name: text for name, text in table.items() if name != key}
+        with pytest.raises(InputError, match=r"camshaft\.counterweight\..* must be "):
+            case_of(with_counterweight(left))
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        (FIXED | BENCH, "unbalance, residual = both, must be exactly one of the two"),
+        ({"position": "0 mm"}, "unbalance, residual = neither, must be exactly one of the two"),
+        (BENCH | {"angle": "30 deg"}, "angle = 30 deg, must be left out with residual"),
+        (BENCH | {"residual": "0 g mm"}, "residual = 0 g mm, must be > 0 and <= 1e+09 g mm"),
+        (BENCH | {"residual": "2e9 g mm"}, "residual = 2e9 g mm, must be > 0 and <= 1e+09 g mm"),
+        (BENCH | {"residual": "20 g"}, "residual = 20 g, must be"),
+    ],
+)
+def test_a_counterweight_is_stated_in_exactly_one_of_two_ways(table, message):
+    with pytest.raises(InputError) as refusal:
+        case_of(with_counterweight(table))
+    assert str(refusal.value).startswith(f"camshaft.counterweight.{message}")
+
+
 def test_a_scope_has_a_reason():
     tables = deepcopy(TABLES) | {"scope": {"not_covered": ["fork"]}}
     with pytest.raises(InputError, match=r"scope\.reason"):
