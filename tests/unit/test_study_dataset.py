@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from camwright.geometry.errors import ResultError
+from camwright.pipeline.studies.batch import study_run
 from camwright.pipeline.studies.batch.dataset import (
     DATASET,
     column_of,
@@ -18,7 +20,7 @@ from camwright.pipeline.studies.batch.dataset import (
     table_from,
     table_of,
 )
-from camwright.pipeline.studies.batch.row_selection import Figures
+from camwright.pipeline.studies.batch.row_selection import Figures, fails_in
 from camwright.pipeline.studies.batch.study_file import Objective
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
 
@@ -151,29 +153,46 @@ def test_a_full_disk_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert not (tmp_path / DATASET).exists() and not list(tmp_path.rglob("*.tmp"))
 
 
+def test_the_progress_line_counts_the_failures_of_its_stage(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One of three designs fails in the first stage, another one in the second."""
+    monkeypatch.setattr(study_run, "_NOTE_EVERY_S", 0.0)
+    home, notes = StudyFolder(tmp_path, resume=True), []
+    progress = SimpleNamespace(advance=lambda *_: None, note=notes.append)
+    run = SimpleNamespace(home=home, figures=Figures(()), progress=progress)
+    for name, screens in (("abc", ["fail", "error", "open"]), ("c", ["fail"])):
+        table = table_of(rows(name, screen=screens), UNITS)
+        home.write_shard(name, parquet_bytes(table), b"")
+        watch = study_run._Watch(run, len(name), None)  # type: ignore[arg-type]
+        watch.expect(Shard(name, tuple(name)))
+        watch.take(Shard(name, tuple(name)))
+    words = [each.rpartition(",")[0] for each in notes]
+    assert words == ["1 of 3 fail, 1 without result", "1 of 1 fail, 0 without result"]
+
+
 def test_selection() -> None:
     goals = (Objective(column="headline.lift_max_mm"), Objective(column="mesh.nodes", goal="max"))
     figures = Figures(goals)
-    figures.add(
-        table_of(
-            rows(
-                "abcde",
-                screen=["open", "open", "fail", "open", "error"],
-                governing=["pressure_angle"] * 3 + [None, None],
-                **{
-                    "headline.lift_max_mm": [3.0, 1.0, 0.0, 2.0, None],
-                    "mesh.nodes": [9.0, 1.0, 9.0, 0.5, None],
-                    "pressure_angle.utilisation": [0.5, 0.9, 1.05, None, None],
-                },
-            ),
-            UNITS,
-        )
+    table = table_of(
+        rows(
+            "abcde",
+            screen=["open", "open", "fail", "open", "error"],
+            governing=["pressure_angle"] * 3 + [None, None],
+            **{
+                "headline.lift_max_mm": [3.0, 1.0, 0.0, 2.0, None],
+                "mesh.nodes": [9.0, 1.0, 9.0, 0.5, None],
+                "pressure_angle.utilisation": [0.5, 0.9, 1.05, None, None],
+            },
+        ),
+        UNITS,
     )
+    figures.add(table)
     assert figures.best(2) == ["b", "d"]
     assert figures.borderline(2) == ["c", "b"]
     assert figures.front() == ["b", "a"]
     assert figures.failed() == ["c", "e"] == figures.kept("failed", 0)
     assert figures.record()["screen"] == {"error": 1, "fail": 1, "open": 3}
-    assert figures.fails == (1, 1)
+    assert fails_in(table) == (1, 1)
     figures.keep({"a"})
     assert figures.best(2) == ["a"]

@@ -122,12 +122,6 @@ class Figures:
             ],
         }
 
-    @property
-    def fails(self) -> tuple[int, int]:
-        """Designs that fail, and those without a result."""
-        counted = Counter(row[1] for row in self._rows.values())
-        return counted[FAILED], counted[NO_RESULT]
-
 
 def _in(row: tuple[str, str, str, str, float, tuple[float, ...]]) -> bool:
     return row[1] not in (FAILED, NO_RESULT) and bool(np.isfinite(row[5][0]))
@@ -135,6 +129,12 @@ def _in(row: tuple[str, str, str, str, float, tuple[float, ...]]) -> bool:
 
 def _counts(words: Iterable[str]) -> dict[str, Json]:
     return dict(sorted(Counter(words).items()))
+
+
+def fails_in(table: pa.Table) -> tuple[int, int]:
+    """Rows of a shard that fail, and those without a result."""
+    counted = Counter(table[SCREEN.name].to_pylist())
+    return counted[FAILED], counted[NO_RESULT]
 
 
 def passes_in(table: pa.Table) -> int:

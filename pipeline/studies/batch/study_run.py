@@ -20,7 +20,7 @@ from camwright.pipeline.studies.batch.case_template import (
 from camwright.pipeline.studies.batch.dataset import DATASET
 from camwright.pipeline.studies.batch.design_plan import Plan, Settings, Task, study_versions
 from camwright.pipeline.studies.batch.factor_axes import axis_of
-from camwright.pipeline.studies.batch.row_selection import Figures, passes_in
+from camwright.pipeline.studies.batch.row_selection import Figures, fails_in, passes_in
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of
 from camwright.pipeline.studies.batch.study_file import Stop, Study
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
@@ -239,7 +239,8 @@ class _Watch:
         self._run, self._count, self._rule = run, count, rule
         self._order: list[Shard] = []
         self._ready: dict[str, int] = {}
-        self._solved = self._whole = self._passes = self._judged = 0
+        self._solved = self._failed = self._lost = 0
+        self._whole = self._passes = self._judged = 0
         self._began = self._spoke = time.monotonic()
         self.stopped = ""
 
@@ -252,14 +253,16 @@ class _Watch:
         table = self._run.home.read_shard(shard.name)
         self._run.figures.add(table)
         self._ready[shard.name] = passes_in(table)
+        failed, lost = fails_in(table)
         self._solved += len(shard.ids)
+        self._failed += failed
+        self._lost += lost
         self._run.progress.advance(self._solved, self._count)
         now = time.monotonic()
         if now - self._spoke >= _NOTE_EVERY_S:
             self._spoke = now
-            fails, lost = self._run.figures.fails
             rate = self._solved / (now - self._began)
-            words = f"{fails} of {self._solved} fail, {lost} without result"
+            words = f"{self._failed} of {self._solved} fail, {self._lost} without result"
             self._run.progress.note(f"{words}, {rate:.3g} designs a second")
         self._judge(now - self._began)
 
