@@ -6,7 +6,7 @@ A key is that of the case file: ``spring.rate``, ``roller.bearing.C``, ``load_ca
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any, TypeVar, get_args
 
@@ -135,26 +135,33 @@ def replaced(case: Case, values: Mapping[str, float]) -> Case:
     InputError
         If a number is out of the bounds of its field, or contradicts its own table.
     """
+    tables: dict[tuple[str | int, ...], dict[str | int, float]] = {}
     for key, value in values.items():
         mark = quantity_of(key)
         if mark is not None:
             mark.require(key, value)
-        case = _put(case, steps_of(key), value)
+        *path, last = steps_of(key)
+        # the values of a table are compared with one another when all of them are there
+        tables.setdefault(tuple(path), {})[last] = value
+    for table, numbers in tables.items():
+        case = _put(case, table, numbers)
     return case
 
 
-def _put(node: Any, steps: tuple[str | int, ...], value: float) -> Any:
-    first, *rest = steps
-    if isinstance(first, int):
-        inner = _put(node[first], tuple(rest), value) if rest else value
-        return (*node[:first], inner, *node[first + 1 :])
-    name = _attribute(node, first)
-    inner = _put(getattr(node, name), tuple(rest), value) if rest else value
+def _put(node: Any, path: Sequence[str | int], values: Mapping[str | int, Any]) -> Any:
+    """A node with values in the table at a path below it."""
+    if path:
+        first, *rest = path
+        child = node[first] if isinstance(first, int) else getattr(node, _attribute(node, first))
+        values = {first: _put(child, rest, values)}
+    if isinstance(node, tuple):
+        return tuple(values.get(k, each) for k, each in enumerate(node))
+    named = {_attribute(node, str(name)): value for name, value in values.items()}
     if isinstance(node, Part):
-        if name not in {field.name for field in fields(node)}:  # type: ignore[arg-type]
+        for name in named.keys() - {field.name for field in fields(node)}:  # type: ignore[arg-type]
             raise InputError("factor", name, f"a key of {node.table}")
-        return replace(node, **{name: inner})  # type: ignore[type-var]
-    return node.model_copy(update={name: inner})
+        return replace(node, **named)  # type: ignore[type-var]
+    return node.model_copy(update=named)
 
 
 def with_values(case: Case, values: Mapping[str, TomlValue]) -> Case:

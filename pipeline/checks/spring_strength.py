@@ -20,6 +20,7 @@ from camwright.pipeline.follower.spring import (
     HelicalSpring,
     Number,
     Spring,
+    WoundWire,
     surge_harmonics,
 )
 
@@ -35,14 +36,14 @@ class Work(NamedTuple, Generic[Number]):
     preload: Number
     greatest: Number
     travel: Number
-    rate: float
+    rate: Number
 
 
 Measure = Callable[[HelicalSpring, Work[float]], float]
 
 
 def hardest_work(
-    spring: Spring, design: HelicalSpring, preload: Number, travel: Number
+    spring: Spring, design: WoundWire[Number], preload: Number, travel: Number
 ) -> Work[Number]:
     """Working range of the hardest spring in tolerance.
 

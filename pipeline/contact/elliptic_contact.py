@@ -20,7 +20,7 @@ from camwright.pipeline.contact.contact_history import ContactHistory
 
 _RATIO_MIN, _RATIO_MAX = 1e-5, 0.995
 _BISECTIONS = 60
-_TABLE = 200
+_TABLE, _FINE_TABLE = 200, 4000
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,12 @@ class Ellipse:
 
 
 def elliptic_contact(
-    force: ArrayLike, relative_radius: ArrayLike, crown_radius: float, modulus: float
+    force: ArrayLike,
+    relative_radius: ArrayLike,
+    crown_radius: ArrayLike,
+    modulus: float,
+    *,
+    interpolated: bool = False,
 ) -> Ellipse:
     """Semi-axes and peak pressure of a Hertz contact of crossed curvatures.
 
@@ -44,8 +49,9 @@ def elliptic_contact(
     ----------
     force : array (...)            N, >= 0
     relative_radius : array (...)  R in the rolling direction, m, 1/R = 1/R1 + 1/R2
-    crown_radius : float           in the axial direction, m, of the follower on a straight cam
+    crown_radius : array (...)     in the axial direction, m, of the follower on a straight cam
     modulus : float                E*, Pa
+    interpolated : bool            axis ratio from a table: 1e-6, of many contacts
 
     Returns
     -------
@@ -65,11 +71,11 @@ def elliptic_contact(
     if (load < 0).any():
         raise InputError("force", float(load.min()), ">= 0 N")
     radius = positive("relative_radius", relative_radius, "m")
-    axial = float(positive("crown_radius", crown_radius, "m"))
+    axial = positive("crown_radius", crown_radius, "m")
     stiffness = float(positive("modulus", modulus, "Pa"))
-    load, radius = np.broadcast_arrays(load, radius)
+    load, radius, axial = np.broadcast_arrays(load, radius, axial)
     longer, shorter = np.maximum(axial, radius), np.minimum(axial, radius)
-    ratio = axis_ratio(longer / shorter)
+    ratio = (_axis_ratio_of_table if interpolated else axis_ratio)(longer / shorter)
     _, first, second = _integrals(ratio)
     major = np.cbrt(3.0 * load * longer * (first - second) / (np.pi * stiffness * (1 - ratio**2)))
     minor = ratio * major
@@ -92,6 +98,19 @@ def axis_ratio(radii: ArrayLike) -> Array:
         steeper = _radii(np.exp(middle)) > wanted
         low, high = np.where(steeper, middle, low), np.where(steeper, high, middle)
     return np.asarray(np.exp(0.5 * (low + high)))
+
+
+def _axis_ratio_of_table(radii: Array) -> Array:
+    """As `axis_ratio`, from a table."""
+    logs, ratios = _axis_ratios()
+    return np.asarray(np.exp(np.interp(np.log(radii), logs, ratios)))
+
+
+@lru_cache(maxsize=1)
+def _axis_ratios() -> tuple[Array, Array]:
+    """Logarithms of ratios of the radii, rising, and of the axis ratios there, (q,)."""
+    ratio = np.linspace(np.log(_RATIO_MAX), np.log(_RATIO_MIN), _FINE_TABLE)
+    return np.log(_radii(np.exp(ratio))), ratio
 
 
 def pressure_cubed_per_force(curvature: ArrayLike, crown_radius: float, modulus: float) -> Array:

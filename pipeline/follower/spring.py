@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import Annotated, ClassVar, Literal, TypeVar
+from typing import Annotated, ClassVar, Generic, Literal, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,7 @@ from camwright.pipeline.base.quantities import (
     Temperature,
 )
 
+INDEX_MIN, INDEX_MAX = 3.0, 20.0  # D/d that can be coiled
 DEAD_COILS = 2.0  # of squared and ground ends
 SHEAR_STRENGTH_SHARE = 0.67  # shear over tensile strength, S_su / R_m
 ZIMMERLI = {"plain": (241e6, 379e6), "peened": (398e6, 534e6)}  # S_sa, S_sm by treatment, Pa
@@ -42,8 +43,185 @@ WireExponent = Annotated[float, In(at_least=0, below=1)]
 Treatment = Literal["plain", "peened"]
 
 
+class WoundWire(Generic[Number]):
+    """Formulas of a helical spring; its values are numbers, or arrays (m,) of many designs.
+
+    See `HelicalSpring` for the values.
+    """
+
+    wire_diameter: Number
+    mean_diameter: Number
+    coils: Number
+    free_length: Number
+    end_factor: Number
+    shear_modulus: Number
+    elastic_modulus: Number | None
+    density: Number
+    strength_at_1mm: Number
+    strength_exponent: Number
+    treatment: Treatment
+    temperature: float | None
+    relaxation: Number | None
+
+    @property
+    def tensile_strength(self) -> Number:
+        """Tensile strength R_m of the wire, Pa."""
+        drawn = self.wire_diameter / _STRENGTH_DIAMETER
+        share: Number = drawn**-self.strength_exponent
+        return self.strength_at_1mm * share
+
+    @property
+    def index(self) -> Number:
+        """Spring index C = D/d."""
+        return self.mean_diameter / self.wire_diameter
+
+    @property
+    def rate(self) -> Number:
+        """Rate k = G d^4 / (8 D^3 n), N/m."""
+        bend = self.shear_modulus * self.wire_diameter**4
+        return bend / (8.0 * self.mean_diameter**3 * self.coils)
+
+    @property
+    def active_mass(self) -> Number:
+        """Mass of the active coils, kg."""
+        return self._mass(self.coils)
+
+    @property
+    def mass(self) -> Number:
+        """Mass with the end coils, kg."""
+        return self._mass(self.coils + DEAD_COILS)
+
+    def _mass(self, coils: Number) -> Number:
+        section = 0.25 * np.pi * self.wire_diameter**2
+        return self.density * section * np.pi * self.mean_diameter * coils
+
+    @property
+    def solid_length(self) -> Number:
+        """Length with all coils closed, m."""
+        return self.wire_diameter * (self.coils + DEAD_COILS)
+
+    @property
+    def wahl_factor(self) -> Number:
+        """Wahl factor (4C - 1)/(4C - 4) + 0.615/C for curvature and direct shear."""
+        C = self.index
+        return (4.0 * C - 1.0) / (4.0 * C - 4.0) + 0.615 / C
+
+    @property
+    def surge_frequency(self) -> Number:
+        """First natural frequency between fixed ends, sqrt(k/m)/2, Hz."""
+        return natural_frequency(self.rate, self.active_mass)
+
+    @property
+    def _stress_per_newton(self) -> Number:
+        """Shear stress of the wire without correction factor, 8 D / (pi d^3), Pa/N."""
+        return 8.0 * self.mean_diameter / (np.pi * self.wire_diameter**3)
+
+    def stress(self, force: ArrayLike) -> Array:
+        """Maximum shear stress (...) of the wire with Wahl factor, Pa."""
+        return self.wahl_factor * self._stress_per_newton * finite("spring.force", force)
+
+    def deflection(self, force: Number) -> Number:
+        """Deflection from the free length, m."""
+        return force / self.rate
+
+    def solid_clearance(self, preload: Number, travel: Number) -> Number:
+        """Clearance to the solid length at full lift over the maximum deflection.
+
+        Negative: the spring is solid.
+        """
+        deflection = self.deflection(preload) + travel
+        return (self.free_length - self.solid_length - deflection) / deflection
+
+    def gap_left(self, preload: Number, travel: Number) -> Number:
+        """Sum of the gaps between the active coils at full lift, m; negative: solid."""
+        return self.free_length - self.solid_length - self.deflection(preload) - travel
+
+    @property
+    def minimum_gaps(self) -> Number:
+        """Minimum sum of the gaps between the active coils under a dynamic load, 1.5 S_a, m.
+
+        S_a = n (0.0015 D^2/d + 0.1 d) of a cold-coiled spring.
+
+        References
+        ----------
+        EN 13906-1:2013, 9.9 (by the formulas of an open implementation of it: verify).
+        """
+        D, d = self.mean_diameter, self.wire_diameter
+        return DYNAMIC_GAP * self.coils * (0.0015 * D**2 / d + 0.1 * d)
+
+    def solid_stress(self, rate: Number) -> Number:
+        """Shear stress at the solid length with a rate, N/m, without correction factor, Pa.
+
+        References
+        ----------
+        EN 13906-1:2013, 10.1.1 (recalled, verify): at most 0.56 R_m, cold coiled.
+        """
+        return self._stress_per_newton * rate * (self.free_length - self.solid_length)
+
+    @property
+    def static_strength(self) -> Number:
+        """Permissible shear stress under a static load and at solid length, 0.56 R_m, Pa."""
+        return STATIC_STRENGTH * self.tensile_strength
+
+    def fatigue_use(self, force_min: ArrayLike, force_max: ArrayLike) -> Array:
+        """Utilisation (...) by the Goodman line through the point of Zimmerli.
+
+        The line passes the shear strength 0.67 R_m on the axis of mean stress and the amplitude and
+        mean of Zimmerli for infinite life. Infinite for a shear strength below the mean stress of
+        Zimmerli. A mean below zero counts as zero.
+
+        Raises
+        ------
+        InputError
+            If a minimum is above its maximum, or a force is not finite.
+
+        References
+        ----------
+        Shigley's Mechanical Engineering Design, ch. 10: Zimmerli's data, torsional Goodman.
+        """
+        low, high = self.stress(force_min), self.stress(force_max)
+        if not (low <= high).all():
+            raise InputError("spring.force", float(np.max(force_min)), "minimum <= maximum, N")
+        amplitude, mean = 0.5 * (high - low), np.maximum(0.5 * (high + low), 0.0)
+        shear_strength = SHEAR_STRENGTH_SHARE * self.tensile_strength
+        zimmerli_amplitude, zimmerli_mean = ZIMMERLI[self.treatment]
+        left = 1.0 - zimmerli_mean / shear_strength
+        use = amplitude * left / zimmerli_amplitude + mean / shear_strength
+        return np.where(left > 0.0, use, np.inf)
+
+    @property
+    def buckling_deflection(self) -> Number:
+        """Deflection at which the spring buckles, m; infinite if it is stable at any.
+
+        s_K = L0 / (2 (1 - G/E)) (1 - sqrt(1 - (1 - G/E)/(0.5 + G/E) (pi D/(nu L0))^2)).
+
+        References
+        ----------
+        EN 13906-1:2013, 9.14 (by the formulas of an open implementation of it: verify); Haringx,
+        Philips Research Reports 3 (1948) 401-449.
+        """
+        isotropic = ISOTROPIC * self.shear_modulus
+        elastic = isotropic if self.elastic_modulus is None else self.elastic_modulus
+        ratio = self.shear_modulus / elastic
+        slender = np.pi * self.mean_diameter / (self.end_factor * self.free_length)
+        root = 1.0 - (1.0 - ratio) / (0.5 + ratio) * slender**2
+        longest = self.free_length * 0.5 / (1.0 - ratio)
+        deflection = longest * (1.0 - np.sqrt(np.maximum(root, 0.0)))
+        least = np.where(root < 0.0, np.inf, deflection)
+        return cast("Number", least[()])  # a number of numbers
+
+    def relaxed_preload(self, preload: Number, greatest: Number) -> Number | None:
+        """Loss of preload by relaxation over the preload; None without data.
+
+        The share of the greatest force that is lost acts at every deflection.
+        """
+        if self.temperature is None or self.relaxation is None:
+            return None
+        return self.relaxation * greatest / preload
+
+
 @dataclass(frozen=True, kw_only=True)
-class HelicalSpring(Part):
+class HelicalSpring(WoundWire[float], Part):
     """Cylindrical compression spring of round wire with squared and ground ends.
 
     mean_diameter D over wire_diameter d from 3 to 20; coils: active; end_factor: seating
@@ -88,118 +266,17 @@ class HelicalSpring(Part):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 3.0 <= self.mean_diameter / self.wire_diameter <= 20.0:
-            limit = "3 to 20 wire diameters: the range of coiling"
+        if not INDEX_MIN <= self.index <= INDEX_MAX:
+            limit = f"{INDEX_MIN:g} to {INDEX_MAX:g} wire diameters: the range of coiling"
             raise InputError("spring.design.mean_diameter", self.mean_diameter, limit)
         if not self.solid_length < self.free_length:
             limit = f"> {self.solid_length:g} m, the solid length"
             raise InputError("spring.design.free_length", self.free_length, limit)
 
     @property
-    def tensile_strength(self) -> float:
-        """Tensile strength R_m of the wire, Pa."""
-        return float(
-            self.strength_at_1mm
-            * (self.wire_diameter / _STRENGTH_DIAMETER) ** -self.strength_exponent
-        )
-
-    @property
-    def index(self) -> float:
-        """Spring index C = D/d."""
-        return self.mean_diameter / self.wire_diameter
-
-    @property
-    def rate(self) -> float:
-        """Rate k = G d^4 / (8 D^3 n), N/m."""
-        bend = self.shear_modulus * self.wire_diameter**4
-        return bend / (8.0 * self.mean_diameter**3 * self.coils)
-
-    @property
-    def active_mass(self) -> float:
-        """Mass of the active coils, kg."""
-        return self._mass(self.coils)
-
-    @property
-    def mass(self) -> float:
-        """Mass with the end coils, kg."""
-        return self._mass(self.coils + DEAD_COILS)
-
-    def _mass(self, coils: float) -> float:
-        section = 0.25 * np.pi * self.wire_diameter**2
-        return float(self.density * section * np.pi * self.mean_diameter * coils)
-
-    @property
-    def solid_length(self) -> float:
-        """Length with all coils closed, m."""
-        return self.wire_diameter * (self.coils + DEAD_COILS)
-
-    @property
-    def wahl_factor(self) -> float:
-        """Wahl factor (4C - 1)/(4C - 4) + 0.615/C for curvature and direct shear."""
-        C = self.index
-        return (4.0 * C - 1.0) / (4.0 * C - 4.0) + 0.615 / C
-
-    @property
     def damping(self) -> float:
         """Damping ratio of each mode of the surge."""
         return DAMPING if self.damping_ratio is None else self.damping_ratio
-
-    @property
-    def surge_frequency(self) -> float:
-        """First natural frequency between fixed ends, sqrt(k/m)/2, Hz."""
-        return natural_frequency(self.rate, self.active_mass)
-
-    @property
-    def _stress_per_newton(self) -> float:
-        """Shear stress of the wire without correction factor, 8 D / (pi d^3), Pa/N."""
-        return 8.0 * self.mean_diameter / (np.pi * self.wire_diameter**3)
-
-    def stress(self, force: ArrayLike) -> Array:
-        """Maximum shear stress (...) of the wire with Wahl factor, Pa."""
-        return self.wahl_factor * self._stress_per_newton * finite("spring.force", force)
-
-    def deflection(self, force: Number) -> Number:
-        """Deflection from the free length, m."""
-        return force / self.rate
-
-    def solid_clearance(self, preload: Number, travel: Number) -> Number:
-        """Clearance to the solid length at full lift over the maximum deflection.
-
-        Negative: the spring is solid.
-        """
-        deflection = self.deflection(preload) + travel
-        return (self.free_length - self.solid_length - deflection) / deflection
-
-    def gap_left(self, preload: Number, travel: Number) -> Number:
-        """Sum of the gaps between the active coils at full lift, m; negative: solid."""
-        return self.free_length - self.solid_length - self.deflection(preload) - travel
-
-    @property
-    def minimum_gaps(self) -> float:
-        """Minimum sum of the gaps between the active coils under a dynamic load, 1.5 S_a, m.
-
-        S_a = n (0.0015 D^2/d + 0.1 d) of a cold-coiled spring.
-
-        References
-        ----------
-        EN 13906-1:2013, 9.9 (by the formulas of an open implementation of it: verify).
-        """
-        D, d = self.mean_diameter, self.wire_diameter
-        return DYNAMIC_GAP * self.coils * (0.0015 * D**2 / d + 0.1 * d)
-
-    def solid_stress(self, rate: float) -> float:
-        """Shear stress at the solid length with a rate, N/m, without correction factor, Pa.
-
-        References
-        ----------
-        EN 13906-1:2013, 10.1.1 (recalled, verify): at most 0.56 R_m, cold coiled.
-        """
-        return self._stress_per_newton * rate * (self.free_length - self.solid_length)
-
-    @property
-    def static_strength(self) -> float:
-        """Permissible shear stress under a static load and at solid length, 0.56 R_m, Pa."""
-        return STATIC_STRENGTH * self.tensile_strength
 
     def static_use(self, force: float) -> float:
         """Static utilisation: shear stress over 0.56 R_m.
@@ -210,33 +287,6 @@ class HelicalSpring(Part):
         """
         return float(self.stress(force)) / self.static_strength
 
-    def fatigue_use(self, force_min: ArrayLike, force_max: ArrayLike) -> Array:
-        """Utilisation (...) by the Goodman line through the point of Zimmerli.
-
-        The line passes the shear strength 0.67 R_m on the axis of mean stress and the amplitude and
-        mean of Zimmerli for infinite life. Infinite for a shear strength below the mean stress of
-        Zimmerli. A mean below zero counts as zero.
-
-        Raises
-        ------
-        InputError
-            If a minimum is above its maximum, or a force is not finite.
-
-        References
-        ----------
-        Shigley's Mechanical Engineering Design, ch. 10: Zimmerli's data, torsional Goodman.
-        """
-        low, high = self.stress(force_min), self.stress(force_max)
-        if not (low <= high).all():
-            raise InputError("spring.force", float(np.max(force_min)), "minimum <= maximum, N")
-        amplitude, mean = 0.5 * (high - low), np.maximum(0.5 * (high + low), 0.0)
-        shear_strength = SHEAR_STRENGTH_SHARE * self.tensile_strength
-        zimmerli_amplitude, zimmerli_mean = ZIMMERLI[self.treatment]
-        endurance = zimmerli_amplitude / (1.0 - zimmerli_mean / shear_strength)
-        if endurance <= 0.0:
-            return np.full(amplitude.shape, np.inf)
-        return np.asarray(amplitude / endurance + mean / shear_strength)
-
     def fatigue_safety(self, force_min: ArrayLike, force_max: ArrayLike) -> float:
         """Least fatigue safety factor of ranges of force (...), see `fatigue_use`.
 
@@ -244,33 +294,6 @@ class HelicalSpring(Part):
         """
         use = float(np.max(self.fatigue_use(force_min, force_max)))
         return np.inf if use == 0.0 else 1.0 / use
-
-    @property
-    def buckling_deflection(self) -> float:
-        """Deflection at which the spring buckles, m; infinite if it is stable at any.
-
-        s_K = L0 / (2 (1 - G/E)) (1 - sqrt(1 - (1 - G/E)/(0.5 + G/E) (pi D/(nu L0))^2)).
-
-        References
-        ----------
-        EN 13906-1:2013, 9.14 (by the formulas of an open implementation of it: verify); Haringx,
-        Philips Research Reports 3 (1948) 401-449.
-        """
-        ratio = self.shear_modulus / (self.elastic_modulus or ISOTROPIC * self.shear_modulus)
-        slender = np.pi * self.mean_diameter / (self.end_factor * self.free_length)
-        root = 1.0 - (1.0 - ratio) / (0.5 + ratio) * slender**2
-        if root < 0.0:
-            return np.inf
-        return float(self.free_length * 0.5 / (1.0 - ratio) * (1.0 - np.sqrt(root)))
-
-    def relaxed_preload(self, preload: Number, greatest: Number) -> Number | None:
-        """Loss of preload by relaxation over the preload; None without data.
-
-        The share of the greatest force that is lost acts at every deflection.
-        """
-        if self.temperature is None or self.relaxation is None:
-            return None
-        return self.relaxation * greatest / preload
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -340,9 +363,10 @@ def surge_harmonics(
     return highest, ratio, ratio / highest if highest else np.inf
 
 
-def natural_frequency(rate: float, active_mass: float) -> float:
+def natural_frequency(rate: Number, active_mass: Number) -> Number:
     """First natural frequency between fixed ends, sqrt(k/m)/2, Hz."""
-    return 0.5 * float(np.sqrt(rate / active_mass))
+    frequency: Number = 0.5 * np.sqrt(rate / active_mass)
+    return frequency
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.energy import spring_deflection
@@ -21,6 +22,7 @@ from camwright.pipeline.case.limits import OVERSPEED, AnyLimit
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
 from camwright.pipeline.checks import demands
+from camwright.pipeline.contact.elliptic_contact import Ellipse, elliptic_contact
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.follower_forces import (
     REST,
@@ -32,6 +34,7 @@ from camwright.pipeline.follower.follower_forces import (
 )
 from camwright.pipeline.follower.guide_table import GuideRatios, GuideTable, Place, guide_table
 from camwright.pipeline.follower.spring import spring_force
+from camwright.pipeline.screening.design_factors import WoundSprings, wound_spring
 
 Columns = Mapping[str, Array]
 
@@ -83,7 +86,8 @@ class Turns:
     """Loads of a load case of many designs, arrays (m, 1) and (m, n).
 
     guides: loads of the guides over those of point supports; jam_index_max: at the maximum friction
-    on the rise.
+    on the rise; p0_line: of the line contact; p0: of the ellipse under a crowned roller; edged:
+    where the contact ends at an edge.
     """
 
     state: State
@@ -92,7 +96,9 @@ class Turns:
     loads: Loads
     guides: GuideRatios
     jam_index_max: Array
+    p0_line: Array
     p0: Array
+    edged: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,6 +266,11 @@ class Designs:
         )
 
     @cached_property
+    def wound_spring(self) -> WoundSprings | None:
+        """Springs as wound; None where the case has no spring design."""
+        return wound_spring(self.case, lambda key: self.value(key)[:, 0])
+
+    @cached_property
     def states(self) -> tuple[State, ...]:
         """Load cases of the designs, then standstill and over-speed at each preload."""
         base, stated = self.value("spring.preload"), self.case.load_cases
@@ -297,6 +308,7 @@ class Designs:
         system = replace(system, rubbing=self._settled(force, system))
         loads = loads_of(motion, system, speed, theta)
         guides = table.ratios(np.abs(loads.tangential_force), self._place)
+        p0_line, p0, edged = self._pressures(loads.normal_force)
         return Turns(
             state=state,
             crank_speed=crank,
@@ -304,7 +316,9 @@ class Designs:
             loads=loads,
             guides=guides,
             jam_index_max=self._jam_index_max(force, system),
-            p0=self._pressure(loads.normal_force),
+            p0_line=p0_line,
+            p0=p0,
+            edged=edged,
         )
 
     @cached_property
@@ -388,11 +402,32 @@ class Designs:
         bounded = np.where(self.least_factor[:, None] > 0.0, factor, np.nan)
         return np.asarray(1.0 / (self.value("roller.radius") * bounded))
 
-    def _pressure(self, normal_force: Array) -> Array:
-        """Maximum contact pressure (m, n), Pa; NaN where the contour bounds no body."""
-        load = np.maximum(normal_force, 0.0) / self.contact_width
+    @cached_property
+    def _ellipse(self) -> Ellipse | None:
+        """Contact of the crowned rollers under 1 N (m, n); None of straight ones."""
+        crown = self.value("roller.crown_radius")
+        if np.isnan(crown).all():
+            return None
+        curvature = self._relative_curvature
+        radius = 1.0 / np.where(np.isnan(curvature), 1.0, curvature)
         modulus = self.machine.contact_modulus
-        return np.sqrt(peak_pressure_square(load, self._relative_curvature, modulus))
+        return elliptic_contact(1.0, radius, crown, modulus, interpolated=True)
+
+    def _pressures(self, normal_force: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Maximum pressure of the line and of the contact (m, n), Pa; where it ends at an edge.
+
+        NaN where the contour bounds no body. As `crowned_contact`: an ellipse longer than the width
+        has at least the pressure of the line.
+        """
+        force, curvature = np.maximum(normal_force, 0.0), self._relative_curvature
+        modulus, width = self.machine.contact_modulus, self.contact_width
+        line = np.sqrt(peak_pressure_square(force / width, curvature, modulus))
+        if self._ellipse is None:
+            return line, line, np.ones(line.shape, dtype=bool)
+        scale = np.cbrt(force)
+        longer = 2.0 * scale * self._ellipse.half_length > width
+        crowned = np.where(np.isnan(curvature), np.nan, scale * self._ellipse.p0)
+        return line, np.where(longer, np.maximum(crowned, line), crowned), longer
 
     @cached_property
     def fastest(self) -> Array:

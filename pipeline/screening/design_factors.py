@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +21,18 @@ from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.machine import machine
 from camwright.pipeline.case.toml_text import TomlValue
 from camwright.pipeline.follower.guide_reactions import require_fit
+from camwright.pipeline.follower.spring import INDEX_MAX, INDEX_MIN, Treatment, WoundWire
 
+WIRE = (
+    "wire_diameter", "mean_diameter", "coils", "free_length", "end_factor", "shear_modulus",
+    "elastic_modulus", "density", "strength_at_1mm", "strength_exponent", "relaxation",
+)  # fmt: skip
+_LEFT_OUT = ("elastic_modulus", "relaxation")
 ARRAYS: tuple[str, ...] = (
     "spring.rate", "spring.preload", "spring.travel_max",
+    *(f"spring.design.{name}" for name in WIRE),
     "cam.prime_radius", "cam.offset", "cam.width", "cam.bore_radius", "cam.profile_tolerance",
-    "roller.radius", "roller.width", "roller.bearing.C", "roller.bearing.C0",
+    "roller.radius", "roller.width", "roller.crown_radius", "roller.bearing.C", "roller.bearing.C0",
     "roller.bearing.speed_limit", "roller.bearing.radial_limit",
     "roller.bearing.static_radial_limit",
     "follower.mass", "follower.overhang_at_max_lift", "follower.viscous_damping",
@@ -56,6 +64,40 @@ def is_array(case: Case, key: str, values: Factor) -> bool:
         still = any(_number(In("rpm"), _plain(each)) == 0.0 for each in speeds)
         return key.endswith((".preload", ".speed")) and not still
     return key in ARRAYS
+
+
+@dataclass(frozen=True, eq=False)
+class WoundSprings(WoundWire[Array]):
+    """Springs of many designs, each value (m,)."""
+
+    wire_diameter: Array
+    mean_diameter: Array
+    coils: Array
+    free_length: Array
+    end_factor: Array
+    shear_modulus: Array
+    elastic_modulus: Array | None
+    density: Array
+    strength_at_1mm: Array
+    strength_exponent: Array
+    treatment: Treatment
+    temperature: float | None
+    relaxation: Array | None
+
+
+def wound_spring(case: Case, at: Callable[[str], Array]) -> WoundSprings | None:
+    """Springs of designs; None where the case has no spring design.
+
+    Parameters
+    ----------
+    at : callable   dotted key -> values (m,), SI; NaN where the case leaves it out
+    """
+    design = case.spring.design
+    if design is None:
+        return None
+    values: dict[str, Any] = {name: at(f"spring.design.{name}") for name in WIRE}
+    values |= {name: None for name in _LEFT_OUT if np.isnan(values[name]).all()}
+    return WoundSprings(**values, treatment=design.treatment, temperature=design.temperature)
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +262,14 @@ def _suspects(case: Case, values: Mapping[str, Array], highest: Array) -> NDArra
         wrong |= at("roller.hub_radius") >= at("roller.radius")
         wrong |= 2.0 * at("roller.chamfer") >= at("roller.width")
         wrong |= at("roller.pin.span") < at("roller.width")
-        wrong |= at("follower.mass") <= case.spring_mass
+        if (wound := wound_spring(case, at)) is not None:
+            index = wound.index
+            wrong |= (
+                (index < INDEX_MIN)
+                | (index > INDEX_MAX)
+                | (wound.solid_length >= wound.free_length)
+            )
+            wrong |= at("follower.mass") <= case.follower.spring_share * wound.mass
         wrong |= at("workshop.tool_radius") > at("limits.tool_radius")
         half = 0.5 * (at("guides.a.length") + at("guides.b.length"))
         wrong |= at("guides.spacing") <= half

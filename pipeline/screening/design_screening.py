@@ -37,11 +37,12 @@ def screen_designs(
     """Closed-form checks of many designs at once, from lift to spring and bearing.
 
     Designs that differ in the keys of `ARRAYS` alone, and in preload and speed of load cases, are
-    solved as arrays: spring rate, preload and travel, prime and roller radius, offset, widths,
-    bore, bearing ratings, follower mass, overhang and damping, spacing, length and friction of the
-    guides, inertia, share of compensation, width of a smoother and every limit. Others are grouped
-    by their values, with one case each. The lift of a constrained synthesis is that of the case:
-    every design keeps its stored energy.
+    solved as arrays: rate, preload, travel and winding of the spring, prime and roller radius,
+    offset, widths, bore, bearing ratings, follower mass, overhang and damping, spacing and friction
+    of the guides, inertia, share of compensation, width of a smoother and every limit. Others are
+    grouped by their values, with one case each. The rate is `spring.rate`, not that of the winding:
+    a check compares them. The lift of a constrained synthesis is that of the case: every design
+    keeps its stored energy.
 
     Parameters
     ----------
@@ -318,7 +319,7 @@ def headline_columns(designs: Designs) -> dict[str, Column]:
     def over(measure: Callable[[Turns], Array]) -> Array:
         return np.max([sampled_greatest(measure(each)) for each in turns], axis=0)
 
-    p0 = over(lambda each: each.p0)
+    p0 = over(lambda each: each.p0_line)
     least = np.min([sampled_least(each.loads.normal_force) for each in turns], axis=0)
     figures = {
         "lift_max_mm": 1e3 * designs.highest,

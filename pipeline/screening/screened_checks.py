@@ -54,8 +54,8 @@ from camwright.pipeline.checks.spring_strength import (
     hardest_work,
 )
 from camwright.pipeline.follower.roller_motion import rating_life, rolling_share
-from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.screening.design_arrays import Designs, Turns
+from camwright.pipeline.screening.design_factors import WoundSprings
 
 Judged = tuple[Array, Array | float | None]
 """Demand (m,) and limit (m,), SI; NaN and None are missing."""
@@ -197,20 +197,23 @@ def _jam_index_friction_max(designs: Designs) -> Judged:
     return _worst(designs, lambda turns: turns.jam_index_max), designs.limit(JAM_INDEX)
 
 
-def _greatest_pressure(designs: Designs) -> Array:
-    return _worst(designs, lambda turns: turns.p0)
+def _pressure(_: Designs, turns: Turns) -> Array:
+    return turns.p0
+
+
+def _pressure_at_edge(designs: Designs, turns: Turns) -> Array:
+    """The edge factor stands in the demand, the limit is that of the contact pressure."""
+    return np.where(turns.edged, designs.limit(EDGE_FACTOR)[:, None], 1.0) * turns.p0
 
 
 def _contact(
-    name: str, safety: Limit, factor: Callable[[Designs], Array | float] = lambda _: 1.0
-) -> Callable[[Designs], Judged | None]:
-    """Contact pressure times a factor against the least limit of cam and roller."""
+    name: str, safety: Limit, pressure: Callable[[Designs, Turns], Array] = _pressure
+) -> Callable[[Designs], Judged]:
+    """Contact pressure (m, n) against the least limit of cam and roller."""
 
-    def judged(designs: Designs) -> Judged | None:
-        if designs.case.roller.crown_radius is not None:
-            return None
+    def judged(designs: Designs) -> Judged:
         limits = pressure_limits(designs.machine, LoadCycles(0.0, 0.0))
-        demand = factor(designs) * _greatest_pressure(designs)
+        demand = _worst(designs, lambda turns: pressure(designs, turns))
         return demand, _least_limit(designs, limits[name], safety, demand)
 
     return judged
@@ -222,15 +225,6 @@ def _least_limit(designs: Designs, least: LeastLimit, safety: Limit, demand: Arr
         return np.full(designs.count, np.nan)
     limit = least.value * designs.machine.limits[safety] / designs.limit(safety)
     return np.where(demand > limit, limit, np.nan) if least.lacking else limit
-
-
-def _edge_factor(designs: Designs) -> Array:
-    return designs.limit(EDGE_FACTOR)
-
-
-def _edge_pressure(designs: Designs) -> Judged | None:
-    """The edge factor stands in the demand, the limit is that of the contact pressure."""
-    return _contact("contact_pressure", CONTACT_SAFETY, _edge_factor)(designs)
 
 
 def _greatest_force(designs: Designs) -> Array:
@@ -360,67 +354,58 @@ def _torque_reduction(designs: Designs) -> Judged | None:
     return np.min(shares, axis=0), designs.limit(TORQUE_REDUCTION)
 
 
-class _Wound(NamedTuple):
-    """Spring design with its hardest work in each design of the group, (m,)."""
-
-    design: HelicalSpring
-    work: Work[Array]
-
-
-def _wound(designs: Designs) -> _Wound | None:
-    spring = designs.case.spring
-    if spring.design is None:
-        return None
-    preload = np.max([turns.state.preload[:, 0] for turns in designs.turns], axis=0)
-    return _Wound(spring.design, hardest_work(spring, spring.design, preload, designs.highest))
-
-
 def _of_spring(
-    judged: Callable[[Designs, HelicalSpring, Work[Array]], Judged],
+    judged: Callable[[Designs, WoundSprings, Work[Array]], Judged],
 ) -> Callable[[Designs], Judged | None]:
+    """Of the hardest spring in tolerance of each design."""
+
     def of_designs(designs: Designs) -> Judged | None:
-        wound = _wound(designs)
-        return None if wound is None else judged(designs, *wound)
+        wound = designs.wound_spring
+        if wound is None:
+            return None
+        preload = np.max([turns.state.preload[:, 0] for turns in designs.turns], axis=0)
+        work = hardest_work(designs.case.spring, wound, preload, designs.highest)
+        return judged(designs, wound, work)
 
     return of_designs
 
 
-def _spring_stress(_: Designs, design: HelicalSpring, work: Work[Array]) -> Judged:
+def _spring_stress(_: Designs, design: WoundSprings, work: Work[Array]) -> Judged:
     return design.stress(work.greatest) / design.static_strength, 1.0
 
 
-def _spring_fatigue(designs: Designs, design: HelicalSpring, work: Work[Array]) -> Judged:
+def _spring_fatigue(designs: Designs, design: WoundSprings, work: Work[Array]) -> Judged:
     return 1.0 / design.fatigue_use(work.preload, work.greatest), designs.limit(SPRING_FATIGUE)
 
 
-def _spring_solid(designs: Designs, design: HelicalSpring, work: Work[Array]) -> Judged:
+def _spring_solid(designs: Designs, design: WoundSprings, work: Work[Array]) -> Judged:
     return design.solid_clearance(work.preload, work.travel), designs.limit(SPRING_SOLID)
 
 
-def _spring_coil_gap(_: Designs, design: HelicalSpring, work: Work[Array]) -> Judged:
+def _spring_coil_gap(_: Designs, design: WoundSprings, work: Work[Array]) -> Judged:
     return design.gap_left(work.preload, work.travel), design.minimum_gaps
 
 
-def _spring_solid_stress(designs: Designs, design: HelicalSpring, work: Work[Array]) -> Judged:
-    return np.full(designs.count, design.solid_stress(work.rate)), design.static_strength
+def _spring_solid_stress(_: Designs, design: WoundSprings, work: Work[Array]) -> Judged:
+    return design.solid_stress(work.rate), design.static_strength
 
 
-def _spring_buckling(_: Designs, design: HelicalSpring, work: Work[Array]) -> Judged:
+def _spring_buckling(_: Designs, design: WoundSprings, work: Work[Array]) -> Judged:
     return (design.deflection(work.preload) + work.travel) / design.buckling_deflection, 1.0
 
 
-def _spring_rate(designs: Designs, design: HelicalSpring, _: Work[Array]) -> Judged:
+def _spring_rate(designs: Designs, design: WoundSprings, _: Work[Array]) -> Judged:
     rate = designs.value("spring.rate")[:, 0]
     return np.abs(design.rate / rate - 1.0), designs.case.spring.rate_tolerance or RATE_TOLERANCE
 
 
-def _spring_relaxation(designs: Designs, design: HelicalSpring, work: Work[Array]) -> Judged:
+def _spring_relaxation(designs: Designs, design: WoundSprings, work: Work[Array]) -> Judged:
     lost = design.relaxed_preload(work.preload, work.greatest)
     allowed = designs.case.spring.preload_tolerance or PRELOAD_TOLERANCE
     return np.full(designs.count, np.nan) if lost is None else np.asarray(lost), allowed
 
 
-def _spring_surge(designs: Designs, design: HelicalSpring, _: Work[Array]) -> Judged:
+def _spring_surge(designs: Designs, design: WoundSprings, _: Work[Array]) -> Judged:
     turns_per_second = designs.fastest / designs.case.mechanism.gear_ratio / FULL_TURN
     return design.surge_frequency / turns_per_second, designs.limit(SPRING_SURGE)
 
@@ -443,7 +428,9 @@ SCREENED: tuple[Screened, ...] = (
     Screened("jam_index", _jam_index, 0.01),
     Screened("jam_index_friction_max", _jam_index_friction_max, 0.01),
     Screened("contact_pressure", _contact("contact_pressure", CONTACT_SAFETY), 0.001),
-    Screened("edge_pressure", _edge_pressure, 0.001),
+    Screened(
+        "edge_pressure", _contact("contact_pressure", CONTACT_SAFETY, _pressure_at_edge), 0.001
+    ),
     Screened("shakedown", _contact("shakedown", SHAKEDOWN_SAFETY), 0.001),
     Screened("roller_static", _roller_static, 0.005),
     Screened("roller_load_share", _roller_load_share, 0.005),

@@ -17,7 +17,7 @@ from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
 from camwright.pipeline.screening import design_screening
 from camwright.pipeline.screening.design_arrays import Designs, TorqueOfSpeed
-from camwright.pipeline.screening.design_factors import ARRAYS
+from camwright.pipeline.screening.design_factors import ARRAYS, groups
 from camwright.pipeline.screening.design_screening import screen_designs, utilisations
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -73,6 +73,38 @@ def test_designs_of_other_structure_are_grouped() -> None:
         alone = screen_designs(own, {"spring.rate": [own.spring.rate]})
         for name in ("contact_pressure.demand", "contact_pressure.limit", "shakedown.limit"):
             np.testing.assert_allclose(columns[name][row], alone[name][0], rtol=1e-12)
+
+
+def test_wound_springs_are_solved_at_once_and_refused_by_name() -> None:
+    winding = {
+        "spring.design.wire_diameter": "3.6 mm", "spring.design.mean_diameter": "24 mm",
+        "spring.design.coils": 5.0, "spring.design.free_length": "60 mm",
+        "spring.design.shear_modulus": 77.2e9, "spring.design.density": 7850.0,
+        "spring.design.strength_at_1mm": 1.97e9, "spring.design.strength_exponent": 0.108,
+    }  # fmt: skip
+    wound = with_values(case(), winding)
+    factors = {
+        "spring.design.wire_diameter": ["3.6 mm", "4 mm", "9 mm", "3.6 mm", 0.0066],
+        "spring.design.mean_diameter": [0.024, 0.026, 0.024, 0.024, 0.1],
+        "spring.design.free_length": [0.06, 0.07, 0.08, 0.02, 0.08],
+    }
+    assert len(list(groups(wound, factors))) == 1
+    columns = screen_designs(wound, factors)
+    assert list(columns["screen"]) == ["fail", "fail", "error", "error", "error"]
+    assert [message.partition(" = ")[0] for message in columns["message"]] == [
+        "", "", "spring.design.mean_diameter", "spring.design.free_length", "follower.mass",
+    ]  # fmt: skip
+    for row in range(2):
+        own = with_values(wound, {key: values[row] for key, values in factors.items()})
+        alone = screen_designs(own, {"spring.rate": [own.spring.rate]})
+        design = own.spring.design
+        assert design is not None
+        for name in ("spring_stress", "spring_buckling", "spring_solid_stress", "spring_surge"):
+            for figure in ("demand", "limit"):
+                key = f"{name}.{figure}"
+                np.testing.assert_allclose(columns[key][row], alone[key][0], rtol=1e-12)
+        off = abs(design.rate / own.spring.rate - 1.0)
+        assert columns["spring_rate.demand"][row] == pytest.approx(off, rel=1e-12)
 
 
 def test_a_limit_of_each_design_is_its_own() -> None:

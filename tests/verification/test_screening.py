@@ -43,12 +43,18 @@ RANGES: Mapping[str, Mapping[str, tuple[float, float]]] = {
         "guides.spacing": (0.06, 0.12), "guides.a.friction": (0.02, 0.07),
         "guides.b.friction": (0.1, 0.16), "mechanism.compensation": (0.5, 1.0),
         "limits.pressure_angle": (0.3, 0.8), "limits.overspeed": (200.0, 420.0),
+        "roller.crown_radius": (0.05, 3.0),
     },
     "gx120-redesign": {
         "spring.rate": (160e3, 200e3), "spring.preload": (800.0, 1400.0),
         "cam.prime_radius": (0.05, 0.065), "cam.offset": (-0.003, 0.003),
         "cam.width": (0.012, 0.0175), "roller.radius": (0.0205, 0.0255),
-        "follower.mass": (0.55, 0.8), "limits.roller_static_safety": (1.5, 4.0),
+        "follower.mass": (0.55, 0.8), "spring.design.wire_diameter": (8.2e-3, 8.8e-3),
+        "spring.design.mean_diameter": (0.040, 0.044), "spring.design.coils": (3.5, 4.2),
+        "spring.design.free_length": (0.066, 0.078), "spring.design.shear_modulus": (75e9, 82e9),
+        "spring.design.elastic_modulus": (190e9, 215e9), "spring.design.end_factor": (0.5, 1.0),
+        "spring.design.strength_at_1mm": (1.8e9, 2.1e9), "spring.design.relaxation": (0.003, 0.03),
+        "limits.roller_static_safety": (1.5, 4.0),
     },
 }  # fmt: skip
 
@@ -110,7 +116,7 @@ def compare(name: str, count: int, without: tuple[str, ...] = ()) -> dict[str, f
         if not close:
             assert (columns["screen"][k] == "fail") == bool(fails), (k, fails)
         force = max(float(c.loads.normal_force.max()) for c in trial.cycles)
-        p0 = max(float(c.contact.p0.max()) for c in trial.cycles)
+        p0 = max(float(c.contact.p0_hertz.max()) for c in trial.cycles)
         worst["force"] = max(
             worst["force"], abs(columns["headline.normal_force_max_N"][k] / force - 1.0)
         )
