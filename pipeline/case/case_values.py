@@ -18,7 +18,7 @@ from camwright.pipeline.case.case_file import case_of, completed
 from camwright.pipeline.case.section import Section, section_of, suggestion
 from camwright.pipeline.case.toml_text import Tables, TomlValue, tables_of
 
-_STEP = re.compile(r"([A-Za-z_0-9]+)(?:\[(\d{1,4})\])?")
+_STEP = re.compile(r"([A-Za-z_0-9]+)(?:\[(0|[1-9][0-9]{0,3})\])?")
 Node = TypeVar("Node", Section, Part)
 
 

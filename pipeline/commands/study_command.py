@@ -55,9 +55,12 @@ def study(
     from camwright.pipeline.base.worker_processes import workers_for
     from camwright.pipeline.studies.batch.study_file import chosen_study
     from camwright.pipeline.studies.batch.study_run import run_study
+    from camwright.pipeline.studies.batch.task_scheduler import require_address
 
     if jobs is not None and not 1 <= jobs <= JOBS_MAX:
         raise InputError("--jobs", jobs, f">= 1 and <= {JOBS_MAX}")
+    if scheduler is not None:
+        require_address(scheduler)
     chosen, text, folder = chosen_study(files, depth)
     with progress_shown() as progress:
         record = run_study(

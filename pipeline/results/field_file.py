@@ -263,10 +263,10 @@ def _plain(values: ArrayLike | Sequence[str]) -> NDArray[Any]:
     """Values as VTK reads them: words are ASCII of any length."""
     import h5py
 
-    given = np.asarray(values)
-    if given.dtype.kind != "U":
-        return given
-    words = [word.encode("ascii", "backslashreplace") for word in given.tolist()]
+    array = np.asarray(values)
+    if array.dtype.kind != "U":
+        return array
+    words = [word.encode("ascii", "backslashreplace") for word in array.tolist()]
     return np.array(words, dtype=h5py.string_dtype("ascii"))
 
 

@@ -141,8 +141,8 @@ class TurnFields:
         }
         closing = approach(fields[first + ZONE], fields[second + ZONE], normals)
         for name in (second, second + ZONE):
-            moved = fields[name].displacement - closing * normals[:, None]
-            fields[name] = replace(fields[name], displacement=moved)
+            displacement = fields[name].displacement - closing * normals[:, None]
+            fields[name] = replace(fields[name], displacement=displacement)
         return fields
 
     def _with_patch(self, cam: Loaded, part: IntArray) -> BodyField:

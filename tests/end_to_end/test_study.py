@@ -10,16 +10,30 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
 import psutil
 import pytest
 
+from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import file_hashes
+from camwright.pipeline.cli import app
 from camwright.pipeline.results.run_reader import read_run, read_verdict
-from camwright.pipeline.studies.batch.dataset import read_dataset
+from camwright.pipeline.studies.batch import study_run
+from camwright.pipeline.studies.batch.answers import answered
+from camwright.pipeline.studies.batch.answers_yield import Yield
+from camwright.pipeline.studies.batch.dataset import (
+    parquet_bytes,
+    read_dataset,
+    table_of,
+    timings_of,
+)
+from camwright.pipeline.studies.batch.design_plan import Task
+from camwright.pipeline.studies.batch.design_rows import completed
+from camwright.pipeline.studies.batch.study_file import read_study
 
 ROOT = Path(__file__).resolve().parents[2]
 SECONDS = 300.0
@@ -271,10 +285,86 @@ def test_a_lost_scheduler_is_one_line_and_resumed(folder: Path, address: str) ->
     assert contents(folder / "lost") == contents(folder / "one")
 
 
+@pytest.mark.parametrize(
+    "address",
+    ["", "garbage", "tcp://", "http://x:1", "inproc://x", "ucx://1:1", "tcp://h:99999", "h:1/../x",
+     "tcp://h:0", "tcp://<b>:1", "tcp://h:1\n", "x" * 5000],
+)  # fmt: skip
+def test_text_that_is_no_address_is_refused(tmp_path: Path, address: str) -> None:
+    with pytest.raises(InputError, match=r"--scheduler = .*must be tcp://HOST:PORT") as refused:
+        app(
+            args=["study", "none.toml", "--out", str(tmp_path / "out"), "--scheduler", address],
+            standalone_mode=False,
+        )
+    assert len(str(refused.value)) < 200 and "\n" not in str(refused.value)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("case", ["../../../etc/passwd", "link.toml", "/etc/passwd", ".", "<b>"])
+@pytest.mark.parametrize("out", ["out", "file"])
+def test_a_refused_study_writes_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, case: str, out: str
+) -> None:
+    path = written(tmp_path, 2)
+    path.write_text(path.read_text().replace("eccentric.toml", case))
+    (tmp_path / "link.toml").symlink_to("/etc/passwd")
+    (tmp_path / "file").write_text("mine")
+    before = sorted(tmp_path.rglob("*"))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match="case") as refused:
+        app(args=["study", "study.toml", "--out", out], standalone_mode=False)
+    assert "root" not in str(refused.value)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+class EveryThirdRefused:
+    """Stands for the cluster: of three designs one passes, one fails, one has no result."""
+
+    def __init__(self, *_: object) -> None:
+        self.solved = 0
+
+    def shards(self, tasks: Iterable[Task]) -> Iterator[tuple[Task, tuple[bytes, bytes]]]:
+        for task in tasks:
+            screens = [("open", "fail", "error")[(self.solved + k) % 3] for k in range(10)]
+            self.solved += 10
+            rows = completed(task, {"screen": screens}, ())
+            clock = parquet_bytes(timings_of(rows, [0.0] * 10))
+            yield task, (parquet_bytes(table_of(rows, task.units)), clock)
+
+
+def test_the_stop_rule_counts_as_the_answers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Interval of the yield of the rows written: at most that of the rule, wider a shard before."""
+    path = written(tmp_path, 500)
+    path.write_text(path.read_text() + "[stop]\ninterval = 0.25\n")
+    monkeypatch.setattr(study_run, "cluster", lambda *_: nullcontext())
+    monkeypatch.setattr(study_run, "TaskScheduler", EveryThirdRefused)
+    record = study_run.run_study(read_study(path), path.read_text(), tmp_path, tmp_path / "out")
+    data = read_dataset(tmp_path / "out")
+    share = answered(data, read_study(path))["yield"]
+    assert record["stopped"] == "interval" and record["designs"] == len(data) < 500
+    assert share["count"] + share["without_result"] == len(data)
+    assert share["without_result"] == len(data) // 3
+    low, high = share["interval"]
+    assert high - low == pytest.approx(Yield(share["passed"], share["count"]).width, abs=1e-12)
+    screens = data["screen"][:-10]
+    before = Yield(int((screens == "open").sum()), int((screens != "error").sum()))
+    assert high - low <= 0.25 < before.width
+
+
+def test_a_file_in_the_way_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written(tmp_path, 2)
+    (tmp_path / "file").write_text("mine")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ResultError, match="file: in the way"):
+        app(args=["study", "study.toml", "--out", "file"], standalone_mode=False)
+    assert (tmp_path / "file").read_text() == "mine"
+
+
 def test_an_address_without_scheduler_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from camwright.geometry.errors import InputError
     from camwright.pipeline.studies.batch import task_scheduler
 
     monkeypatch.setattr(task_scheduler, "_CONNECT_S", 1)
@@ -306,12 +396,10 @@ def test_a_design_that_kills_its_process_is_a_row(folder: Path) -> None:
     """The process that solves is killed each time it starts."""
     from camwright.pipeline.studies.batch.case_template import read_templates
     from camwright.pipeline.studies.batch.solver_process import SolverProcess
-    from camwright.pipeline.studies.batch.study_file import read_study
-    from camwright.pipeline.studies.batch.study_run import planned
 
     study = read_study(folder / "study.toml")
     templates = read_templates(folder, study.cases)
-    plan = planned(study, templates)
+    plan = study_run.planned(study, templates)
     task = next(plan.tasks(study.tier)).alone(0)
     solver = SolverProcess(templates, plan.settings)
     finished = threading.Event()

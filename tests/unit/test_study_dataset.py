@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from camwright.geometry.errors import ResultError
@@ -100,11 +103,11 @@ def test_blocks_of_rows_are_as_one(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(study_folder, "_BLOCK", 2)
     home.write_dataset(np.array([2, 0, 1, 1, 0]), shards, [], ("a", "b", "c"))
     assert "".join(read_dataset(tmp_path)["id"]) == "cabba"
-    home.write_dataset(np.array([2, 0, 1]), shards[:1], [], ("a", "b", "c"))
+    home.write_dataset(np.array([0, 1]), shards[:1], [], ("a", "b", "c"))
     assert "".join(read_dataset(tmp_path)["id"]) == "ab"  # of a study that stopped
 
 
-@pytest.mark.parametrize("damage", ["bit", "cut", "other", "text"])
+@pytest.mark.parametrize("damage", ["bit", "cut", "other", "text", "column", "type", "screen"])
 def test_a_damaged_shard_is_not_taken(tmp_path: Path, damage: str) -> None:
     home, shards = _folder(tmp_path)
     assert home.holds(shards[0])
@@ -116,6 +119,17 @@ def test_a_damaged_shard_is_not_taken(tmp_path: Path, damage: str) -> None:
         del content[len(content) // 2 :]
     elif damage == "text":
         content[:] = b"no Parquet"
+    elif damage in ("column", "type", "screen"):  # whole, and of no study
+        table = table_from(bytes(content))
+        place = table.column_names.index("screen")
+        number = pa.array([1.0, 2.0])
+        if damage == "column":
+            table = table.append_column("no_check.demand", number)
+        elif damage == "type":
+            table = table.set_column(place, "screen", number)
+        else:
+            table = table.remove_column(place)
+        content[:] = parquet_bytes(table)
     else:
         content[:] = (tmp_path / "shards" / "two.parquet").read_bytes()
     path.write_bytes(content)
@@ -133,10 +147,82 @@ def test_a_folder_is_written_by_one_study_at_a_time(tmp_path: Path) -> None:
             pass
     with pytest.raises(ResultError, match="--resume"), StudyFolder(tmp_path / "s", resume=False):
         pass
-    (tmp_path / "f").mkdir()
-    (tmp_path / "f" / "thesis.doc").write_text("mine")
-    with pytest.raises(ResultError, match=r"thesis\.doc"), StudyFolder(tmp_path / "f", resume=True):
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("thesis.doc", r"holds thesis\.doc, which is not of a study"),
+        ("cases/gx120.toml", "holds cases and no shards: not a study"),
+        ("study.toml", r"holds study\.toml and no shards: not a study"),
+    ],
+)
+def test_a_folder_of_the_user_stays_as_it_is(tmp_path: Path, name: str, words: str) -> None:
+    own = tmp_path / "own" / name
+    own.parent.mkdir(parents=True)
+    own.write_text("mine")
+    with pytest.raises(ResultError, match=words), StudyFolder(tmp_path / "own", resume=True):
         pass
+    assert [each for each in tmp_path.rglob("*") if each.is_file()] == [own]
+
+
+@pytest.mark.parametrize("name", ["shards", "cases", "runs", ".lock", "study.toml"])
+def test_nothing_is_written_through_a_link(tmp_path: Path, name: str) -> None:
+    """A link in a study folder to a place outside of it."""
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "mine").write_text("mine")
+    with StudyFolder(tmp_path / "s", resume=False) as home:
+        home.write_inputs("x = 1\n", ())
+    target = outside / "mine" if name in (".lock", "study.toml") else outside
+    place = tmp_path / "s" / name
+    if place.is_dir():
+        place.rmdir()
+    place.unlink(missing_ok=True)
+    place.symlink_to(target)
+    with pytest.raises(ResultError, match="not of a study"), StudyFolder(home.path, resume=True):
+        pass
+    assert [each.read_text() for each in outside.iterdir()] == ["mine"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "[]", "{}", '{"versions": 3}', '{"versions": {"camwright": []}}', "\xff", "[" * 9999],
+)
+def test_a_damaged_run_is_not_taken(tmp_path: Path, text: str) -> None:
+    home = StudyFolder(tmp_path, resume=True)
+    run = tmp_path / "runs" / "a" / "run.json"
+    run.parent.mkdir(parents=True)
+    whole = {"versions": {"camwright": "1"}, "depth": "preview"}
+    run.write_text(json.dumps(whole))
+    assert home.holds_run("a", "preview", {"camwright": "1", "numpy": "2"})
+    assert not home.holds_run("a", "cycle", {"camwright": "1"})
+    assert not home.holds_run("a", "preview", {"camwright": "2"})
+    run.write_bytes(text.encode("latin-1"))
+    assert not home.holds_run("a", "preview", {"camwright": "1"})
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"screen": None}, "column screen is missing"),
+        ({"design": ["1", "2"]}, "column design holds string"),
+        ({"governing": [1.0, 2.0]}, "column governing holds double"),
+        ({"pressure_angle.utilisation": ["a", "b"]}, "holds string"),
+        ({"headline.lift_max_mm": [[1.0], [2.0]]}, "holds list"),
+        ({"<b>": [1.0, 2.0]}, "column <b> is unknown"),
+    ],
+)
+def test_a_table_that_is_no_dataset_is_refused(
+    tmp_path: Path, change: dict[str, Any], words: str
+) -> None:
+    columns: dict[str, Any] = {"design": [0, 1], **rows("ab")} | change
+    known = {name: values for name, values in columns.items() if values is not None}
+    texts = {name: pa.array(values, pa.string()) for name, values in known.items()
+             if values == [None, None]}  # fmt: skip
+    pq.write_table(pa.table(known | texts), tmp_path / DATASET)
+    with pytest.raises(ResultError, match=words):
+        read_dataset(tmp_path)
 
 
 def test_a_full_disk_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -191,7 +277,7 @@ def test_selection() -> None:
     assert figures.best(2) == ["b", "d"]
     assert figures.borderline(2) == ["c", "b"]
     assert figures.front() == ["b", "a"]
-    assert figures.failed() == ["c", "e"] == figures.kept("failed", 0)
+    assert figures.failed() == ["c"] == figures.kept("failed", 0)  # "e" has no run
     assert figures.record()["screen"] == {"error": 1, "fail": 1, "open": 3}
     assert fails_in(table) == (1, 1)
     figures.keep({"a"})

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +14,9 @@ from scipy import stats
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.studies.batch.case_template import read_templates
 from camwright.pipeline.studies.batch.design_plan import SHARD_OF, Plan, Settings
-from camwright.pipeline.studies.batch.factor_axes import axis_of
+from camwright.pipeline.studies.batch.factor_axes import Axis, axis_of
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of
 from camwright.pipeline.studies.batch.study_file import (
     Correlation,
@@ -28,13 +31,13 @@ from camwright.pipeline.studies.batch.study_file import (
 ROOT = Path(__file__).resolve().parents[2]
 CASE = read_case(ROOT / "cases" / "gx120.toml")
 RATE = {"key": "spring.rate", "range": {"low": "20 kN/m", "high": "30 kN/m"}}
+PRELOAD = {"key": "spring.preload", "normal": {"tolerance": "30 N"}}
 BASE: dict[str, Any] = {
     "name": "trial",
     "case": ["case.toml"],
     "factor": [RATE],
     "sampling": {"method": "sobol", "count": 8},
 }
-PRELOAD = {"key": "spring.preload", "normal": {"tolerance": "30 N"}}
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "studies").glob("*.toml")), ids=lambda p: p.stem)
@@ -66,7 +69,37 @@ def test_a_shipped_study_has_designs(path: Path) -> None:
         ({"deeper": {"depth": "cycle", "count": 3}}, "objective", "given with deeper"),
         ({"stop": {"interval": 2.0}}, "stop.interval", "< 1"),
         ({"design": {"time": "10 mm"}}, "design.time", "must be"),
-        ({"case": ["/etc/passwd"] * 0}, "case", "at least"),
+        ({"stop": {"interval": math.nan}}, "stop.interval", "finite"),
+        (
+            {"stop": {"interval": 0.1}, "sampling": {"method": "sobol_indices", "count": 8}},
+            "stop.interval", "left out unless sampling.method",
+        ),
+        ({"stop": {"interval": 0.1}, "case": ["a.toml", "b.toml"]}, "stop.interval", "several"),
+        ({"keep": "failed:3"}, "keep", "best:N"),
+        ({"keep": "best:\u0663"}, "keep", "best:N"),
+        ({"keep": "failed", "cam": "base", "depth": "preview"}, "keep", 'cam = "base"'),
+        ({"sampling": {"method": "sobol", "count": 10**12}}, "sampling.count", "<= 10000000"),
+        ({"sampling": {"method": "sobol", "count": 8, "seed": -1}}, "sampling.seed", ">= 0"),
+        (
+            {"factor": [{"key": "cam.width", "grid": {"low": 1, "high": 2, "count": 10**9}}]},
+            "factor[0].grid.count", "<= 100000",
+        ),
+        ({"factor": [{"key": "cam.width", "list": []}]}, "factor[0].list", "at least 1"),
+        ({"factor": [{"key": "cam.width", "list": [[1]]}]}, "factor[0].list[0]", "text, a number"),
+        ({"factor": [{"key": "cam.width", "list": [math.nan]}]}, "factor[0].list[0]", "finite"),
+        ({"factor": [{"key": "cam.width", "list": [10**400]}]}, "factor[0].list[0]", "finite"),
+        (
+            {"factor": [{"key": "cam.width", "range": {"low": 0, "high": math.inf}}]},
+            "factor[0].range.high", "finite",
+        ),
+        ({"case": []}, "case", "at least"),
+        (
+            {"factor": [RATE, PRELOAD], "correlation": [
+                {"between": ["spring.rate", "spring.preload"], "value": 0.5},
+                {"between": ["spring.preload", "spring.rate"], "value": 0.1},
+            ]},
+            "correlation.between", "once",
+        ),
         (
             {"correlation": [{"between": ["spring.rate", "cam.width"], "value": 0.5}]},
             "correlation.between", "two different factors",
@@ -96,6 +129,16 @@ def test_a_refusal_names_field_and_limit(change: dict[str, Any], field: str, lim
         ({"key": "spring.travel_max", "normal": {"std": "1 mm"}}, "no such number"),
         ({"key": "cam.material", "range": {"low": 0, "high": 1}}, "a list of values"),
         ({"key": "spring.design.card", "list": ["a"]}, "a key of the case file"),
+        ({"key": "<b>rate</b>", "list": [1]}, "a dotted key"),
+        ({"key": "name", "list": ["<script>", "../../x"]}, "none of schema_version, name"),
+        ({"key": "solver.positions", "list": [10**9]}, "none of"),
+        ({"key": "spring", "list": [1]}, "a value, not a table"),
+        ({"key": "load_case[0]", "list": [1]}, "a value, not a table"),
+        ({"key": "load_case[9].speed", "list": ["1 rpm"]}, "a table that the case has"),
+        ({"key": "load_case[00].speed", "list": ["1 rpm"]}, "a dotted key"),
+        ({"key": "spring.rate", "normal": {"tolerance": "1.2.3 %"}}, "spring.rate = 1.2.3 %"),
+        ({"key": "spring.rate", "normal": {"tolerance": "1e999 %"}}, "> 0"),
+        ({"key": "spring.rate", "list": ["nan N/m"]}, "finite"),
     ],
 )
 def test_a_factor_that_does_not_fit_the_case_is_refused(factor: Any, words: str) -> None:
@@ -106,8 +149,6 @@ def test_a_factor_that_does_not_fit_the_case_is_refused(factor: Any, words: str)
 
 @pytest.mark.parametrize("name", ["/etc/passwd", "C:case.toml", "missing.toml", "a\\b", "\0"])
 def test_a_case_outside_or_missing_is_refused(name: str, tmp_path: Path) -> None:
-    from camwright.pipeline.studies.batch.case_template import read_templates
-
     with pytest.raises(InputError, match="case = "):
         read_templates(tmp_path, [name])
 
@@ -204,10 +245,71 @@ def test_grid_and_list() -> None:
     grid = designs_of(axes, Sampling(method="grid"))
     assert grid.columns["cam.material"] == ("c45", "s355", "nylon") * 2
     np.testing.assert_array_equal(grid.columns["cam.width"], [5, 5, 5, 6, 6, 6])
+    three = [*axes, _axis(key="cam.prime_radius", list=["50 mm", "51 mm"])]
+    product = itertools.product(*(each.levels for each in three))
+    made = designs_of(three, Sampling(method="grid")).columns
+    assert list(zip(*(list(made[each.key]) for each in three), strict=True)) == list(product)
     with pytest.raises(InputError, match="lists of one length"):
         designs_of(axes, Sampling(method="list"))
     with pytest.raises(InputError, match="list or grid"):
         designs_of([_axis(**RATE)], Sampling(method="grid"))
+
+
+@pytest.mark.parametrize(
+    ("count", "sampling", "words"),
+    [
+        (20, {"method": "sobol_indices", "count": 2**20}, "23068672 designs of 20 factors"),
+        (20, {"method": "random", "count": 10**7}, "10000000 designs of 20 factors"),
+        (3, {"method": "grid"}, "grid of 1000 x 1000 x 1000 designs"),
+        (400, {"method": "grid"}, "grid of 1000 x 1000 x"),
+    ],
+)
+def test_a_sample_beyond_the_memory_is_refused(
+    count: int, sampling: dict[str, Any], words: str
+) -> None:
+    levels = tuple(range(1000)) if sampling["method"] == "grid" else ()
+    axes = [Axis(f"key{k}", "", levels, "uniform", 0.0, 1.0) for k in range(count)]
+    with pytest.raises(InputError, match=r"sampling = .* <= 10000000 designs") as refused:
+        designs_of(axes, Sampling.model_validate(sampling))
+    assert words in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "column", ["headline.nothing", "message", "design", "factor.cam.width", "pressure_angle.status"]
+)
+def test_an_objective_is_a_column_of_numbers(column: str) -> None:
+    from camwright.pipeline.studies.batch.study_run import planned
+
+    study = study_of(BASE | {"objective": [{"column": column}]})
+    with pytest.raises(InputError, match=f"objective.column = {column}"):
+        planned(study, read_templates(ROOT / "cases", ["gx120.toml"]))
+
+
+def test_an_objective_stays_among_the_outputs() -> None:
+    from camwright.pipeline.studies.batch.study_run import planned
+
+    column = "headline.lift_max_mm"
+    study = study_of(BASE | {"outputs": ["mesh.*"], "objective": [{"column": column}]})
+    plan = planned(study, read_templates(ROOT / "cases", ["gx120.toml"]))
+    assert plan.settings.outputs == ("mesh.*", column)
+
+
+def test_designs_of_a_study_that_stops_are_the_first_ones() -> None:
+    """Numbers 0 to 5 are of the unique designs 0, 1, 0, 2, 1, 3."""
+    levels = ["5 mm", "6 mm", "5 mm", "7 mm", "6 mm", "8 mm"]
+    plan = Plan.of(
+        ["a"], designs_of([_axis(key="cam.width", list=levels)], Sampling(method="list")),
+        _settings(),
+    )  # fmt: skip
+    assert plan.place.tolist() == [0, 1, 0, 2, 1, 3]
+    assert [plan.whole(unique) for unique in range(5)] == [0, 1, 3, 5, 6]
+
+
+def test_a_design_of_a_changed_case_has_another_id() -> None:
+    """A run folder is named by it: that of the earlier case is not taken."""
+    designs = designs_of([_axis(**RATE)], Sampling(method="sobol", count=4))
+    ids = [Plan.of(["a"], designs, _settings(templates={"a": name})).ids for name in "12"]
+    assert not set(ids[0]) & set(ids[1])
 
 
 def _settings(**change: Any) -> Settings:

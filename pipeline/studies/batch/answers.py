@@ -14,19 +14,24 @@ from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.checks.registry import DECLARED
 from camwright.pipeline.studies.batch import answers_sensitivity as sensitivity
-from camwright.pipeline.studies.batch.answers_yield import CONFIDENCE, Yield
+from camwright.pipeline.studies.batch.answers_yield import (
+    CONFIDENCE,
+    FAILS,
+    PASSES,
+    UNKNOWN,
+    Yield,
+    states_of,
+)
 from camwright.pipeline.studies.batch.dataset import FACTOR, HEADLINE, STATUS, Dataset
-from camwright.pipeline.studies.batch.study_file import Study
+from camwright.pipeline.studies.batch.study_file import INDEPENDENT, Study
 from camwright.pipeline.studies.redesign.pareto_front import front
 
 Answer: TypeAlias = dict[str, Any]
 """Part of the record, for JSON."""
 SCHEMA = 1
 SALTELLI = "sobol_indices"
-SAMPLES = ("random", "latin_hypercube", "sobol", SALTELLI)
+SAMPLES = (*INDEPENDENT, SALTELLI)
 """Methods of sampling whose designs represent the distributions of the factors."""
-PASSES, FAILS, UNKNOWN = 0, 1, 2
-"""State of a design by its verdict or its screen."""
 UTILISATION, PASS = "utilisation", "pass"
 """Outputs of every study: utilisation of the governing check; 1 where a design passes, else 0."""
 _MESSAGES, OUTPUTS_MAX = 12, 40
@@ -34,22 +39,8 @@ _OUTPUT_FIGURES = (".demand", ".utilisation")
 
 
 def states(data: Dataset) -> tuple[NDArray[np.uint8], str]:
-    """State (n,) of each design, and the column that decides: verdict or screen.
-
-    The verdict decides if every design has one or no result; else the screen, of every design.
-    """
-    screen, verdict = data["screen"], data["verdict"]
-    if (
-        np.isin(verdict, ("pass", "incomplete", "fail")).any()
-        and not ((verdict == "") & (screen != "error")).any()
-    ):
-        by, passing, failing = "verdict", ["pass"], ["fail", "incomplete"]
-    else:
-        by, passing, failing = "screen", ["open"], ["fail"]
-    state = np.full(len(data), UNKNOWN, dtype=np.uint8)
-    state[np.isin(data[by], passing)] = PASSES
-    state[np.isin(data[by], failing)] = FAILS
-    return state, by
+    """State (n,) of each design, and the column that decides; see `states_of`."""
+    return states_of(data["verdict"], data["screen"])
 
 
 def answered(data: Dataset, study: Study) -> Answer:

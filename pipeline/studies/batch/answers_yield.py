@@ -1,15 +1,38 @@
-"""Yield: share of designs that pass, with its confidence interval."""
+"""Yield: state of each design, share that passes, with its confidence interval."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
 from scipy.special import betaincinv
 
 from camwright.geometry.errors import InputError
 
 CONFIDENCE = 0.95
 """Level of every interval of a study."""
+PASSES, FAILS, UNKNOWN = 0, 1, 2
+"""State of a design by its verdict or its screen."""
+
+
+def states_of(verdict: NDArray[np.str_], screen: NDArray[np.str_]) -> tuple[NDArray[np.uint8], str]:
+    """State (n,) of each design, and the column that decides: verdict or screen.
+
+    The verdict decides if every design has one or no result; else the screen, of every design. A
+    design without a result is neither: yield and stop rule leave it out.
+    """
+    if (
+        np.isin(verdict, ("pass", "incomplete", "fail")).any()
+        and not ((verdict == "") & (screen != "error")).any()
+    ):
+        by, column, passing, failing = "verdict", verdict, ["pass"], ["fail", "incomplete"]
+    else:
+        by, column, passing, failing = "screen", screen, ["open"], ["fail"]
+    state = np.full(len(column), UNKNOWN, dtype=np.uint8)
+    state[np.isin(column, passing)] = PASSES
+    state[np.isin(column, failing)] = FAILS
+    return state, by
 
 
 @dataclass(frozen=True)

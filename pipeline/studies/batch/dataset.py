@@ -213,7 +213,43 @@ def read_parquet(path: Path) -> pa.Table:
 
     try:
         return table_from(path.read_bytes())
-    except (OSError, pa.ArrowException) as error:
+    except (OSError, ValueError, pa.ArrowException) as error:
+        raise ResultError(f"{path}: {' '.join(str(error).split())[:200]}") from None
+
+
+def require_columns(table: pa.Table, fixed: Sequence[Column], path: Path) -> None:
+    """Refuse a table that is not of a study.
+
+    Parameters
+    ----------
+    fixed : sequence   columns that it must have
+
+    Raises
+    ------
+    ResultError
+        If one of `fixed` is missing, a column is unknown, or it holds values of another type.
+    """
+    import pyarrow as pa
+
+    for each in fixed:
+        if each.name not in table.column_names:
+            raise ResultError(f"{path}: column {each.name} is missing")
+    if len(set(table.column_names)) < len(table.column_names):
+        raise ResultError(f"{path}: two columns have one name")
+    for field in table.schema:
+        column_of(field.name, {})
+        text, number = pa.types.is_string(field.type), pa.types.is_float64(field.type)
+        if field.name == DESIGN.name:
+            fits = pa.types.is_int64(field.type) and not table[field.name].null_count
+        elif field.name.startswith(FACTOR):
+            fits = text or number
+        else:
+            fits = text if is_text(field.name, {}) else number
+        if not fits:
+            raise ResultError(f"{path}: column {field.name} holds {field.type}")
+    try:
+        table.validate(full=True)
+    except pa.ArrowException as error:
         raise ResultError(f"{path}: {' '.join(str(error).split())[:200]}") from None
 
 
@@ -257,18 +293,20 @@ def read_dataset(folder: Path) -> Dataset:
     Raises
     ------
     ResultError
-        If the folder has none, or it is damaged.
+        If the folder has none, or it is damaged, or no dataset of a study.
     """
     table = read_parquet(folder / DATASET)
+    require_columns(table, FIXED, folder / DATASET)
     columns: dict[str, NDArray[Any]] = {}
     units: dict[str, str] = {}
     meanings: dict[str, str] = {}
     for field in table.schema:
         columns[field.name] = values_of(table[field.name])
-        marks = {key.decode(): text.decode() for key, text in (field.metadata or {}).items()}
+        marks = {
+            key.decode("utf-8", "replace"): text.decode("utf-8", "replace")
+            for key, text in (field.metadata or {}).items()
+        }
         units[field.name], meanings[field.name] = marks.get("unit", ""), marks.get("meaning", "")
-    if DESIGN.name not in columns:
-        raise ResultError(f"{folder / DATASET}: column {DESIGN.name} is missing")
     return Dataset(columns, units, meanings)
 
 

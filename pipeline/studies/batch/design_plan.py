@@ -137,6 +137,10 @@ class Plan:
         several: dict[str, str | None] = {CASE: None} if len(self.cases) > 1 else {}
         return several | ({} if self.designs is None else self.designs.units)
 
+    def whole(self, unique: int) -> int:
+        """Number of the designs before the first that is none of so many unique ones."""
+        return len(self.place) if unique >= len(self.ids) else int(self._first[unique])
+
     def tasks(self, tier: Tier, chosen: Sequence[int] | None = None) -> Iterator[Task]:
         """Tasks of all unique designs, or of those chosen, at a depth; in order."""
         places = range(len(self.ids)) if chosen is None else chosen

@@ -14,8 +14,8 @@ from camwright.geometry.errors import InputError
 from camwright.pipeline.base import units
 from camwright.pipeline.base.quantities import In
 from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.case_values import quantity_of, value_of
+from camwright.pipeline.case.case import Case, includes
+from camwright.pipeline.case.case_values import quantity_of, steps_of, value_of
 from camwright.pipeline.studies.batch.study_file import (
     Factor,
     Grid,
@@ -25,7 +25,11 @@ from camwright.pipeline.studies.batch.study_file import (
     Value,
 )
 
-_WITH_UNIT = re.compile(r"\s*([+-]?[\d.][\d_.]*(?:[eE][+-]?\d{1,3})?)\s*(\S.*?)\s*")
+_WITH_UNIT = re.compile(
+    r"\s*([+-]?(?:[0-9]+(?:_[0-9]+)*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)\s*(\S.*?)\s*"
+)
+_NO_FACTORS = ("schema_version", "name", "title", "notes", "sources", "confirmed")
+_OF_THE_STUDY = ("solver.positions", "solver.max_trials")
 SIGMAS = 3.0
 """Standard deviations in a tolerance of a normal distribution."""
 Levels = tuple[str | bool | int | float, ...]
@@ -98,10 +102,12 @@ def axis_of(factor: Factor, case: Case) -> Axis:
     Raises
     ------
     InputError
-        If the key is unknown, a value has another dimension, or the ends do not rise.
+        If the key is unknown or of no value of the case, a value has another dimension, or the ends
+        do not rise.
     """
     key, spread = factor.key, factor.spread
     quantity = quantity_of(key)
+    _require_value_at(case, key)
     if isinstance(spread, tuple):
         return _of_levels(key, quantity, spread)
     if not isinstance(quantity, In):
@@ -126,6 +132,25 @@ def axis_of(factor: Factor, case: Case) -> Axis:
     law: Literal["uniform", "triangular"]
     law = "triangular" if isinstance(spread, Triangular) else "uniform"
     return Axis(key, reading.unit, (), law, middle - half, middle + half, reading.affine)
+
+
+def _require_value_at(case: Case, key: str) -> None:
+    """Refuse a key that is none of one value of the design."""
+    if key.partition(".")[0] in _NO_FACTORS or key in _OF_THE_STUDY:
+        limit = f"none of {', '.join((*_NO_FACTORS, *_OF_THE_STUDY))}"
+        raise InputError("factor.key", key, limit)
+    if key in {name for name, _ in includes(case)}:
+        raise InputError("factor.key", key, "a value; an included file is that of the case")
+    node: object = case.tables()
+    for step in steps_of(key):
+        if isinstance(step, int):
+            if not (isinstance(node, list) and step < len(node)):
+                raise InputError("factor.key", key, "in a table that the case has")
+            node = node[step]
+        else:
+            node = node.get(step) if isinstance(node, dict) else None
+    if isinstance(node, (dict, list)):
+        raise InputError("factor.key", key, "a value, not a table")
 
 
 def _of_levels(key: str, quantity: object, values: Sequence[Value]) -> Axis:

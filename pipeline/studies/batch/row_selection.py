@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from camwright.geometry.errors import InputError
 from camwright.pipeline.base.files import Json
+from camwright.pipeline.studies.batch.answers_yield import states_of
 from camwright.pipeline.studies.batch.dataset import (
     DEPTH,
     GOVERNING,
@@ -43,13 +44,7 @@ class Figures:
     )
 
     def add(self, table: pa.Table) -> None:
-        """Take in the rows of a shard.
-
-        Raises
-        ------
-        InputError
-            If an objective is no column of numbers.
-        """
+        """Take in the rows of a shard."""
         names = set(table.column_names)
         texts = {
             each.name: [text or "" for text in table[each.name].to_pylist()]
@@ -63,8 +58,6 @@ class Figures:
         wanted = []
         for each in self.objectives:
             values = values_of(table[each.column]) if each.column in names else None
-            if values is not None and values.dtype.kind not in "fi":
-                raise InputError("objective.column", each.column, "a column of numbers")
             sign = 1.0 if each.goal == "min" else -1.0
             wanted.append(np.full(len(table), np.nan) if values is None else sign * values)
         for row, name in enumerate(texts[ID.name]):
@@ -99,8 +92,8 @@ class Figures:
         return [rows[known[k]][0] for k in front([pairs[k] for k in known])]
 
     def failed(self) -> list[str]:
-        """Ids of the designs that fail or have no result."""
-        return [name for name, row in self._rows.items() if row[1] in (FAILED, NO_RESULT)]
+        """Ids of the designs that fail; those without a result have no run."""
+        return [name for name, row in self._rows.items() if row[1] == FAILED]
 
     def kept(self, kind: str, count: int) -> list[str]:
         """Ids of the designs that `Study.keep` names."""
@@ -137,7 +130,7 @@ def fails_in(table: pa.Table) -> tuple[int, int]:
     return counted[FAILED], counted[NO_RESULT]
 
 
-def passes_in(table: pa.Table) -> int:
-    """Rows of a shard that pass: by their verdict, below certified by `screen`."""
-    pairs = zip(table[VERDICT.name].to_pylist(), table[SCREEN.name].to_pylist(), strict=True)
-    return sum((verdict == "pass") if verdict else screen == "open" for verdict, screen in pairs)
+def judged(table: pa.Table) -> NDArray[np.uint8]:
+    """State (n,) of each row of a shard, as in the answers."""
+    state, _ = states_of(values_of(table[VERDICT.name]), values_of(table[SCREEN.name]))
+    return state

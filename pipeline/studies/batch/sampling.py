@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
@@ -14,6 +15,8 @@ from camwright.pipeline.studies.batch.factor_axes import Axis, Levels
 from camwright.pipeline.studies.batch.study_file import DESIGNS_MAX, Correlation, Sampling
 
 _EDGE = 2.0**-53  # a share of 0 or 1 has no normal value
+VALUES_MAX = 100_000_000
+"""Maximum number of designs times factors: 0.8 GB of samples."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,10 +66,12 @@ def designs_of(
     if sampling.method in ("grid", "list"):
         picked = _picked([axis.factorial for axis in axes], sampling.method)
         columns = {
-            axis.key: _column(axis, [axis.levels[k] for k in places])
+            axis.key: _column(axis, [axis.levels[k] for k in places.tolist()])
             for axis, places in zip(axes, picked, strict=True)
         }
         return Designs(tuple(axes), columns, len(picked[0]))
+    count = (sampling.count or 0) * (len(axes) + 2 if sampling.method == "sobol_indices" else 1)
+    _require_size(f"{count} designs of {len(axes)} factors", count, len(axes))
     shares = _correlated(unit_cube(len(axes), sampling), axes, correlations)
     columns = {}
     for axis, share in zip(axes, shares.T, strict=True):
@@ -110,17 +115,24 @@ def unit_cube(dimensions: int, sampling: Sampling) -> Array:
     return np.asarray(sequence.random_base2((count - 1).bit_length()))[:count]
 
 
-def _picked(levels: Sequence[Levels], method: str) -> list[Sequence[int]]:
+def _require_size(words: str, designs: int, factors: int) -> None:
+    """Refuse more designs or values than a study holds."""
+    if designs > DESIGNS_MAX or designs * factors > VALUES_MAX:
+        limit = f"<= {DESIGNS_MAX} designs, and <= {VALUES_MAX} values of factors"
+        raise InputError("sampling", words[:80], limit)
+
+
+def _picked(levels: Sequence[Levels], method: str) -> list[NDArray[np.intp]]:
     """Places of the levels of each factor; the last factor of a grid varies fastest."""
     counts = [len(each) for each in levels]
     if method == "list":
         if len(set(counts)) != 1:
             raise InputError("factor.list", str(counts)[:80], "lists of one length")
-        return [range(counts[0])] * len(counts)
-    total = int(np.prod(np.array(counts, dtype=float)))
-    if total > DESIGNS_MAX:
-        raise InputError("sampling.method", f"grid of {total} designs", f"<= {DESIGNS_MAX}")
-    return list(zip(*itertools.product(*map(range, counts)), strict=True))
+        return [np.arange(counts[0])] * len(counts)
+    total = math.prod(counts)
+    _require_size(f"grid of {' x '.join(map(str, counts))} designs", total, len(counts))
+    inner = [math.prod(counts[k + 1 :]) for k in range(len(counts))]
+    return [np.arange(total) // step % n for step, n in zip(inner, counts, strict=True)]
 
 
 def _column(axis: Axis, values: Sequence[str | bool | int | float]) -> Array | Levels:

@@ -3,26 +3,47 @@
 from __future__ import annotations
 
 import os
+import re
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Literal, Self
 
 import tomli_w
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, PlainValidator, ValidationError, model_validator
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.quantities import Characters, In
 from camwright.pipeline.case.error_text import first_error
-from camwright.pipeline.case.section import Name, Section, Text
+from camwright.pipeline.case.section import Name, Section, Text, refusal
 from camwright.pipeline.contact.tiers import Tier
 
 STUDY_BYTES = 16 * 1024 * 1024
 DESIGNS_MAX = 10_000_000
 SCHEMA_VERSION = 1
+INDEPENDENT = ("random", "latin_hypercube", "sobol")
+"""Methods of sampling whose first designs are a sample of the distributions."""
 _BITS = 8.0  # a byte; the SI value of "1 MB" is in bits
-Value = Annotated[str, Characters(1, 200)] | bool | int | float
-"""A value as in a case file: text with a unit, a number, a name, true or false."""
+_NUMBER_MAX = 1e300
+_KEPT = re.compile(r"(|failed|pareto|best:([1-9][0-9]{0,6}))")
+
+
+def _plain_value(value: object) -> str | bool | int | float:
+    if isinstance(value, str):
+        try:
+            Characters(1, 200).require("", value)
+        except InputError as error:
+            raise refusal(error.limit) from None
+        return value
+    if not isinstance(value, (bool, int, float)):
+        raise refusal("text, a number, true or false")
+    if not abs(value) <= _NUMBER_MAX:  # NaN too
+        raise refusal("finite")
+    return value
+
+
+Value = Annotated[str | bool | int | float, PlainValidator(_plain_value)]
+"""A value as in a case file: text with a unit, a finite number, a name, true or false."""
 Key = Annotated[str, Characters(1, 120)]
 DepthWord = Literal["screening", "preview", "cycle", "certified"]
 
@@ -154,7 +175,8 @@ class Deeper(Section):
 class Stop(Section):
     """Ends the first stage: after a time, or at a width of the 95 % interval of the yield.
 
-    The rows of the tasks that are complete in their order stay.
+    The yield is that of the answers: designs without a result are left out. The designs before the
+    first one that is not solved stay.
     """
 
     time: Annotated[float, In("s", above=0, at_most=1e9)] | None = None
@@ -214,7 +236,10 @@ class Study(Section):
         if bool(keys) != (self.sampling is not None):
             word = "a table" if self.sampling else "missing"
             raise InputError("sampling", word, "given with factors, left out without")
+        pairs = [frozenset(each.between) for each in self.correlations]
         for each in self.correlations:
+            if pairs.count(frozenset(each.between)) > 1:
+                raise InputError("correlation.between", ", ".join(each.between), "once")
             for key in each.between:
                 if key not in keys or each.between[0] == each.between[1]:
                     raise InputError("correlation.between", key, "two different factors")
@@ -230,21 +255,34 @@ class Study(Section):
                 raise InputError("deeper.depth", self.deeper.depth, f"deeper than {self.depth}")
             if self.deeper.take == "best" and not self.objectives:
                 raise InputError("objective", "missing", 'given with deeper.take = "best"')
+        self._check_stop()
         self._check_keep()
         return self
 
+    def _check_stop(self) -> None:
+        if self.stop is None or self.stop.interval is None:
+            return
+        method = self.sampling.method if self.sampling else "missing"
+        if method not in INDEPENDENT:
+            limit = f"left out unless sampling.method is one of {', '.join(INDEPENDENT)}"
+            raise InputError("stop.interval", self.stop.interval, limit)
+        if len(self.cases) > 1:
+            raise InputError("stop.interval", self.stop.interval, "left out with several cases")
+
     def _check_keep(self) -> None:
-        kind, count = self.kept
-        if kind not in ("", "failed", "pareto", "best") or (kind == "best") != (count > 0):
+        if not _KEPT.fullmatch(self.keep):
             raise InputError("keep", self.keep, 'failed, pareto, or best:N such as "best:10"')
-        if kind in ("best", "pareto") and not self.objectives:
+        if self.keep and self.cam == "base":
+            limit = 'left out with cam = "base": a run folder has the cam of its own values'
+            raise InputError("keep", self.keep, limit)
+        if self.kept[0] in ("best", "pareto") and not self.objectives:
             raise InputError("objective", "missing", f'given with keep = "{self.keep}"')
 
     @property
     def kept(self) -> tuple[str, int]:
         """Kind of the designs with a run folder, and their number for ``best``."""
         kind, _, count = self.keep.partition(":")
-        return kind, int(count) if count.isdecimal() and len(count) < 8 else 0
+        return kind, int(count or 0)
 
     @property
     def tier(self) -> Tier:

@@ -21,6 +21,7 @@ from camwright.pipeline.studies.batch.dataset import (
     CASES,
     DATASET,
     DESIGN,
+    FIXED,
     ID,
     PAGE,
     RUNS,
@@ -31,6 +32,7 @@ from camwright.pipeline.studies.batch.dataset import (
     WRITING,
     in_order,
     read_parquet,
+    require_columns,
 )
 from camwright.pipeline.studies.batch.design_rows import CLOCK
 
@@ -76,13 +78,18 @@ class StudyFolder:
         present = [each.name for each in self.path.iterdir()] if self.path.is_dir() else []
         present = [name for name in present if not name.endswith(".tmp")]
         foreign = sorted(set(present) - set(_OURS))
+        foreign += sorted(name for name in present if (self.path / name).is_symlink())
         if foreign:
             raise ResultError(f"{self.path}: holds {foreign[0]}, which is not of a study")
-        if set(present) - {_LOCK} and not self._resume:
+        inside = sorted(set(present) - {_LOCK})
+        if inside and SHARDS not in inside:  # a folder of the user with cases/, runs/, study.toml
+            raise ResultError(f"{self.path}: holds {inside[0]} and no {SHARDS}: not a study")
+        if inside and not self._resume:
             raise ResultError(f"{self.path}: holds a study; --resume completes it")
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             self._take_lock()
+            (self.path / SHARDS).mkdir(exist_ok=True)  # first: by it a study is known
             for each in self.path.rglob(".*.tmp"):  # of a process that was killed
                 shutil.rmtree(each) if each.is_dir() else each.unlink()
         except OSError as error:
@@ -126,8 +133,9 @@ class StudyFolder:
             return False
         try:
             table = read_parquet(path)
+            require_columns(table, [each for each in FIXED if each is not DESIGN], path)
             whole = table[ID.name].to_pylist() == list(shard.ids)
-        except (ResultError, KeyError):
+        except ResultError:
             whole = False
         if not whole:
             path.unlink()
@@ -159,8 +167,10 @@ class StudyFolder:
             summary = read_json(self.path / RUNS / name / "run.json")
         except ResultError:
             return False
-        same = summary["versions"].items() <= versions.items()
-        return bool(same and summary["depth"] == depth)
+        made = summary.get("versions") if isinstance(summary, dict) else None
+        if not isinstance(made, dict) or summary.get("depth") != depth:
+            return False
+        return all(versions.get(each) == version for each, version in made.items())
 
     def write_run(self, name: str, files: Mapping[str, bytes]) -> None:
         """Write the run folder of a design; a design without result has an empty one."""
@@ -197,8 +207,7 @@ class StudyFolder:
 
         Parameters
         ----------
-        place : array (n,)   unique design of each number; rows of shards that are not there, of a
-                             study that stopped early, are left out
+        place : array (n,)   unique design of each number, of these shards
         shards : sequence    of the first stage: together the unique designs, in order
         deeper : sequence    of the second stage; their rows replace those of the first
         ids : sequence       of the unique designs
@@ -206,7 +215,6 @@ class StudyFolder:
         import pyarrow.parquet as pq
 
         starts = np.cumsum([0, *(len(shard.ids) for shard in shards)])
-        place = place[place < starts[-1]] if len(shards) else place[:0]
         order = {name: k for k, name in enumerate(ids)}
         second = [self.read_shard(shard.name) for shard in deeper]
         replaced = {order[name]: k for k, name in enumerate(n for s in deeper for n in s.ids)}

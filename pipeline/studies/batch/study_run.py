@@ -3,28 +3,40 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import Json, sha256_of
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.studies.batch.answers_yield import Yield
+from camwright.pipeline.studies.batch.answers_yield import PASSES, UNKNOWN, Yield
 from camwright.pipeline.studies.batch.case_template import (
     Template,
     UnpackedTemplates,
     read_templates,
 )
-from camwright.pipeline.studies.batch.dataset import DATASET
+from camwright.pipeline.studies.batch.dataset import (
+    DATASET,
+    DESIGN,
+    FACTOR,
+    HEADLINE,
+    column_of,
+    is_text,
+)
 from camwright.pipeline.studies.batch.design_plan import Plan, Settings, Task, study_versions
 from camwright.pipeline.studies.batch.factor_axes import axis_of
-from camwright.pipeline.studies.batch.row_selection import Figures, fails_in, passes_in
+from camwright.pipeline.studies.batch.row_selection import Figures, fails_in, judged
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of
 from camwright.pipeline.studies.batch.study_file import Stop, Study
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
 from camwright.pipeline.studies.batch.task_scheduler import TaskScheduler, cluster
+from camwright.reports.report_tables import HEADLINES
 
 _NOTE_EVERY_S = 10.0
 
@@ -76,24 +88,43 @@ def planned(study: Study, templates: Sequence[Template]) -> Plan:
     Raises
     ------
     InputError
-        If a factor does not fit the first case, or the sampling does not fit the factors.
+        If a factor does not fit the first case, the sampling does not fit the factors, or an
+        objective is no column of numbers.
     """
     designs: Designs | None = None
     if study.sampling is not None:
         base = UnpackedTemplates(templates)[templates[0].name]
         axes = [axis_of(factor, base) for factor in study.factors]
         designs = designs_of(axes, study.sampling, study.correlations)
+    wanted = [each.column for each in study.objectives]
     settings = Settings(
         templates={each.name: each.sha256 for each in templates},
         versions=study_versions(),
         cam=study.cam,
         positions=study.positions,
         corners=study.corners,
-        outputs=study.outputs,
+        outputs=(*study.outputs, *wanted) if study.outputs else (),
         seconds=study.limits.time,
         bytes=study.limits.bytes,
     )
-    return Plan.of([each.name for each in templates], designs, settings)
+    plan = Plan.of([each.name for each in templates], designs, settings)
+    for name in wanted:
+        _require_numbers(name, plan.units)
+    return plan
+
+
+def _require_numbers(name: str, units: Mapping[str, str | None]) -> None:
+    """Refuse an objective that is no column of numbers of a dataset."""
+    limit = "a column of numbers of the dataset, such as headline.p0_hertz_max_MPa"
+    try:
+        column_of(name, units)
+    except ResultError:
+        raise InputError("objective.column", name, limit) from None
+    unknown = (name.startswith(HEADLINE) and name.removeprefix(HEADLINE) not in HEADLINES) or (
+        name.startswith(FACTOR) and name.removeprefix(FACTOR) not in units
+    )
+    if unknown or name == DESIGN.name or is_text(name, units):
+        raise InputError("objective.column", name, limit)
 
 
 @dataclass(eq=False)
@@ -109,6 +140,7 @@ class _Run:
     stack: ExitStack
     progress: Progress
     stopped: str | None = None
+    solved: int = 0
     figures: Figures = field(init=False)
     _scheduler: TaskScheduler | None = None
 
@@ -130,11 +162,12 @@ class _Run:
             tasks = self._tasks_of(self._second, chosen)
             deeper = self._stage(self._second, tasks, len(chosen), stop=False)
         self.progress.stage("dataset")
-        home.write_dataset(plan.place, first, deeper, plan.ids)
+        self.solved = sum(len(shard.ids) for shard in first)
+        home.write_dataset(plan.place[: plan.whole(self.solved)], first, deeper, plan.ids)
         kept = sorted(self.figures.kept(*study.kept))
         home.forget_others([*first, *deeper], kept)
         self._keep(kept, {name for shard in deeper for name in shard.ids})
-        record = self._record(kept, first)
+        record = self._record(kept)
         home.write_summary(record)
         return record
 
@@ -205,15 +238,14 @@ class _Run:
         rule = self.study.deeper
         return self.study.tier if rule is None else Tier.of(rule.depth, "deeper.depth")
 
-    def _record(self, kept: Sequence[str], first: Sequence[Shard]) -> dict[str, Json]:
+    def _record(self, kept: Sequence[str]) -> dict[str, Json]:
         study, plan = self.study, self.plan
-        solved = sum(len(shard.ids) for shard in first)
         return {
             "name": study.name,
             "title": study.title,
-            "designs": int((plan.place < solved).sum()),
+            "designs": plan.whole(self.solved),
             "planned": len(plan.place),
-            "unique": solved,
+            "unique": self.solved,
             "stopped": self.stopped,
             **self.figures.record(),
             "kept": list(kept),
@@ -231,16 +263,17 @@ def _after(first: Task, others: Iterator[Task]) -> Iterator[Task]:
 class _Watch:
     """Progress of a stage, and its stop rule on the shards that are complete in their order.
 
-    The width of the interval is that of the same rows whatever the number of processes: those
-    before the first shard that is not complete.
+    The width of the interval is that of the same designs whatever the number of processes: those
+    before the first shard that is not complete. Their yield is counted as in the answers.
     """
 
     def __init__(self, run: _Run, count: int, rule: Stop | None) -> None:
         self._run, self._count, self._rule = run, count, rule
         self._order: list[Shard] = []
-        self._ready: dict[str, int] = {}
+        self._ready: dict[str, NDArray[np.uint8]] = {}
+        self._states = np.full(len(run.plan.ids), UNKNOWN, dtype=np.uint8)  # of unique designs
         self._solved = self._failed = self._lost = 0
-        self._whole = self._passes = self._judged = 0
+        self._whole = self._unique = self._designs = self._passes = self._judged = 0
         self._began = self._spoke = time.monotonic()
         self.stopped = ""
 
@@ -252,7 +285,7 @@ class _Watch:
         """A shard is complete."""
         table = self._run.home.read_shard(shard.name)
         self._run.figures.add(table)
-        self._ready[shard.name] = passes_in(table)
+        self._ready[shard.name] = judged(table)
         failed, lost = fails_in(table)
         self._solved += len(shard.ids)
         self._failed += failed
@@ -274,13 +307,23 @@ class _Watch:
             if shard.name not in self._ready:
                 break
             self._whole += 1
-            self._passes += self._ready[shard.name]
-            self._judged += len(shard.ids)
             if rule is not None and rule.interval is not None:
+                self._count_in(self._ready[shard.name])
                 width = Yield(self._passes, self._judged).width
                 self.stopped = "interval" if width <= rule.interval else ""
         if rule is not None and rule.time is not None and seconds >= rule.time:
             self.stopped = self.stopped or "time"
+
+    def _count_in(self, states: NDArray[np.uint8]) -> None:
+        """Count the designs that are whole with the next shard; equal ones as often as drawn."""
+        plan, start = self._run.plan, self._unique
+        self._unique += len(states)
+        self._states[start : self._unique] = states
+        whole = plan.whole(self._unique)
+        drawn = self._states[plan.place[self._designs : whole]]
+        self._designs = whole
+        self._passes += int((drawn == PASSES).sum())
+        self._judged += int((drawn != UNKNOWN).sum())
 
     def shards(self) -> list[Shard]:
         """Shards of the stage: all, or those before the stop."""

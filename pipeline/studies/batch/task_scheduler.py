@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import re
 import tempfile
 from asyncio import CancelledError
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -33,7 +34,15 @@ _AHEAD = 3
 """Tasks at a worker at once: one running, the next ones there."""
 _WORKER_MEMORY = "2GB"
 _CONNECT_S = 30
+_ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?(?:[\w.-]+|\[[0-9A-Fa-f:.]+\]):([0-9]{1,5})", re.ASCII)
 MISSING = 'Dask is missing; install it with: pip install "camwright[study]"'
+
+
+def require_address(address: str) -> None:
+    """Refuse text that is no address of a scheduler; InputError."""
+    match = _ADDRESS.fullmatch(address)
+    if match is None or not 1 <= int(match[1]) <= 65535:
+        raise InputError("--scheduler", repr(address)[:80], "tcp://HOST:PORT or tls://HOST:PORT")
 
 
 @contextlib.contextmanager
@@ -81,7 +90,7 @@ def cluster(jobs: int, address: str | None) -> Iterator[Client]:
             return
         try:
             client = distributed.Client(address, timeout=_CONNECT_S)
-        except (OSError, ValueError, TimeoutError) as error:
+        except (OSError, ValueError, TypeError) as error:  # TypeError: tls without certificates
             words = " ".join(str(error).split())[:200]
             raise InputError("--scheduler", f"{address} ({words})", "a running scheduler") from None
         yield stack.enter_context(client)
