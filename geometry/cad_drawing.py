@@ -173,6 +173,8 @@ def write_dxf(path: Path, outline: Outline, error: float | None = None) -> float
     note = f"chord error {polyline.error / _MILLIMETRE:.6g} mm, {len(corners)} chords, units mm"
     low = float(polyline.points[1].min()) / _MILLIMETRE - 6.0
     space.add_text(note, height=2.0, dxfattribs={"layer": "note", "insert": (0.0, low)})
+    for kind in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(kind)  # ezdxf itself adds them in the order of a set
     try:
         document.saveas(path)
     except OSError as failure:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 import sys
@@ -21,7 +22,10 @@ from camwright.meshes.gmsh_mesher import session
 
 _STEP_ERROR = 1e-8  # m; a smaller one only enlarges the file
 _DATE = re.compile(rb"(FILE_NAME\('[^']*',\s*)'[^']*'")
-"""Date of the header; a fixed one, so that the same cam gives the same bytes."""
+_PRODUCT = re.compile(
+    rb"PRODUCT\('Open CASCADE STEP translator \S+ \d+((?:\.\d+)*)',\s*'[^']*',\s*'',\s*"
+)
+_OCCURRENCE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+'")
 _PIECES = 8
 """Splines of the contour; on longer ones the areas of the CAD kernel err by more than 1e-6."""
 
@@ -64,7 +68,15 @@ def write_step(path: Path, outline: Outline, width: float) -> None:
         ) from error
     if not path.is_file() or b"END-ISO-10303-21" not in path.read_bytes()[-200:]:
         raise ResultError(f"{path}: incomplete file")
-    path.write_bytes(_DATE.sub(rb"\g<1>'1970-01-01T00:00:00'", path.read_bytes(), count=1))
+    path.write_bytes(_reproducible(path.read_bytes()))
+
+
+def _reproducible(text: bytes) -> bytes:
+    """The same bytes for the same cam: a fixed date, names without the counters of the process."""
+    count = itertools.count(1)
+    text = _DATE.sub(rb"\g<1>'1970-01-01T00:00:00'", text, count=1)
+    text = _PRODUCT.sub(rb"PRODUCT('cam\g<1>','cam\g<1>','',", text)
+    return _OCCURRENCE.sub(lambda match: match[1] + b"'%d'" % next(count), text)
 
 
 def _contour_curves(occ: ModuleType, outline: Outline) -> list[int]:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import csv
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -108,6 +111,31 @@ def test_drawing_has_its_layers_in_millimetres(drawn) -> None:
     assert np.hypot(*(corners[2] - corners[1])) == pytest.approx(KEYWAY.width, rel=1e-12)
     ends = np.array([(arc.start_point.x, arc.start_point.y), (arc.end_point.x, arc.end_point.y)])
     np.testing.assert_allclose(ends * MM, corners[[3, 0]], atol=1e-12)
+
+
+def test_files_are_the_same_whatever_day_and_process(tmp_path: Path) -> None:
+    """Another hash seed orders sets otherwise; the CAD kernel numbers the solids of a process."""
+    lines = f"""
+import sys
+from pathlib import Path
+sys.path[:0] = {sys.path!r}
+from test_shop_round_trip import BORE, KEYWAY, WIDTH, Outline, circle, write_dxf, write_step
+outline, folder = Outline(circle(), BORE, KEYWAY), Path(sys.argv[1])
+write_dxf(folder / "contour.dxf", outline)
+for name in ("cam.step", "again.step"):
+    write_step(folder / name, outline, WIDTH)
+"""
+    written = []
+    for seed in ("3", "4"):
+        folder = tmp_path / seed
+        folder.mkdir()
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        subprocess.run([sys.executable, "-c", lines, str(folder)], env=environment, check=True)
+        written.append({path.name: path.read_bytes() for path in folder.iterdir()})
+    assert set(written[0]) == {"contour.dxf", "cam.step", "again.step"}
+    assert written[0] == written[1]
+    assert written[0]["cam.step"] == written[0]["again.step"]
+    assert b"1970-01-01T00:00:00" in written[0]["cam.step"]
 
 
 def test_circle_cam_gives_a_circle(tmp_path: Path) -> None:
