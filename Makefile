@@ -36,8 +36,11 @@ setup: .venv/installed
 run: .venv/installed
 	@$(BIN)/camwright run $(CASE) --out $(OUT) --replace
 
+# Bytecode is kept, since the tests start many processes; files go out in their order, the longest,
+# those of tests/end_to_end, first.
 test: lint
-	$(BIN)/python -m pytest -q -m "not slow" -n 2 --dist loadfile
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q -m "not slow" -n 2 --dist loadfile \
+		--no-loadscope-reorder
 
 verify: .venv/developing
 	$(BIN)/python -m pytest -q -m slow

@@ -90,23 +90,23 @@ def processes_of(parent: psutil.Process) -> list[psutil.Process]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A study of four shards, solved in one process into ``one``."""
+    """A study of three shards, solved in one process into ``one``."""
     folder = tmp_path_factory.mktemp("study")
-    written(folder, 31)
+    written(folder, 21)
     made = run(folder, "study.toml", "--out", "one", "--jobs", "1")
     assert made.returncode == 0, made.stderr
-    assert "31 designs" in made.stdout and "screen: fail 31" in made.stdout
+    assert "21 designs" in made.stdout and "screen: fail 21" in made.stdout
     return folder
 
 
 def test_the_dataset_has_a_row_for_each_design(folder: Path) -> None:
     data = read_dataset(folder / "one")
-    assert len(data) == 31 == len(set(data["id"]))
+    assert len(data) == 21 == len(set(data["id"]))
     assert data.units["factor.spring.preload"] == "N"
     assert data["factor.spring.preload"].min() >= 40.0
-    assert data["message"].tolist() == [""] * 31
-    assert len(list((folder / "one" / "shards").iterdir())) == 4
-    assert len(list((folder / "one" / "timings").iterdir())) == 4
+    assert data["message"].tolist() == [""] * 21
+    assert len(list((folder / "one" / "shards").iterdir())) == 3
+    assert len(list((folder / "one" / "timings").iterdir())) == 3
 
 
 def test_killed_damaged_and_resumed_it_is_the_same(folder: Path) -> None:

@@ -51,8 +51,12 @@ def hertz_of_the_discs():
     return float(a), float(p0), float(load)
 
 
-@lru_cache(maxsize=24)
 def two_discs(edges=8, phase=0.0, other_phase=0.0, angle=0.0, swapped=False):
+    return solved_discs(edges, phase, other_phase, angle, swapped)
+
+
+@lru_cache(maxsize=24)  # one entry for a set-up, however its arguments are stated
+def solved_discs(edges, phase, other_phase, angle, swapped):
     a, _, load = hertz_of_the_discs()
     meshes = [
         disc(RADIUS, 0.5 * np.pi, a, edges, phase),
