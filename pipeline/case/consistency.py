@@ -228,6 +228,12 @@ def _check_roller(cam: CamBody, roller: Roller) -> None:
     _require("roller.hub_radius", roller.hub_radius, roller.hub_radius < radius, "< roller.radius")
     half = "< half of roller.width"
     _require("roller.chamfer", roller.chamfer, 2 * roller.chamfer < width, half)
+    ring = roller.bearing.ring
+    if ring is not None:
+        # A ring is stated to a micrometre; a tyre on it may be larger.
+        holds = radius >= 0.5 * ring.outer_diameter - 1e-6
+        limit = f">= {0.5 * ring.outer_diameter:.6g} m, half of roller.bearing.ring.outer_diameter"
+        _require("roller.radius", radius, holds, limit)
     pin = roller.pin
     if pin is not None and pin.mounting == "straddled":
         _require("roller.pin.span", pin.span, pin.span >= width, f">= {width:.6g} m, roller.width")

@@ -260,6 +260,7 @@ def _suspects(case: Case, values: Mapping[str, Array], highest: Array) -> NDArra
         wrong |= (np.abs(at("cam.offset")) >= at("cam.prime_radius")) | (surface <= 0.0)
         wrong |= (inside >= surface) | (at("cam.keyway.width") >= 1.8 * at("cam.bore_radius"))
         wrong |= at("roller.hub_radius") >= at("roller.radius")
+        wrong |= at("roller.radius") < 0.5 * at("roller.bearing.ring.outer_diameter")
         wrong |= 2.0 * at("roller.chamfer") >= at("roller.width")
         wrong |= at("roller.pin.span") < at("roller.width")
         if (wound := wound_spring(case, at)) is not None:

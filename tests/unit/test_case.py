@@ -128,6 +128,8 @@ def test_positions_can_be_given_again() -> None:
         ('name = "idle"', 'name = "../idle"', "load_case[0].name = ../idle, must be 1 to 40"),
         ('name = "gx120"', 'name = "gx/120"', "name = gx/120, must be 1 to 40"),
         ('radius = "8 mm" ', 'radius = "51 mm" ', "roller.radius = 0.051 m, must be < cam."),
+        ('radius = "8 mm" ', 'radius = "7.9 mm" ',
+         "roller.radius = 0.0079 m, must be >= 0.008 m, half of roller.bearing.ring.outer"),
         ('"8.5 mm"', '"42 mm"', "cam.bore_radius = 0.042 m, must be < 0.042 m"),
         ('depth = "2.3 mm"', 'depth = "34 mm"', "cam.keyway.depth = 0.034 m, must be < 0.0335 m"),
         ('hub_radius = "4.2 mm"', 'hub_radius = "8 mm"', "roller.hub_radius = 0.008 m, must be <"),

@@ -246,7 +246,8 @@ def test_the_progress_line_counts_the_failures_of_its_stage(
     monkeypatch.setattr(study_run, "_NOTE_EVERY_S", 0.0)
     home, notes = StudyFolder(tmp_path, resume=True), []
     progress = SimpleNamespace(advance=lambda *_: None, note=notes.append)
-    run = SimpleNamespace(home=home, figures=Figures(()), progress=progress)
+    plan = SimpleNamespace(ids="abc")
+    run = SimpleNamespace(home=home, figures=Figures(()), progress=progress, plan=plan)
     for name, screens in (("abc", ["fail", "error", "open"]), ("c", ["fail"])):
         table = table_of(rows(name, screen=screens), UNITS)
         home.write_shard(name, parquet_bytes(table), b"")
