@@ -27,7 +27,7 @@ from camwright.pipeline.solver import solve
 CASE = Path(__file__).resolve().parent.parent / "cases" / "gx120.toml"
 POSITIONS = 180
 ROUNDS = 5
-BUDGETS = {"--help": 8.0, "check": 110.0, "preview per load case": 4.0, "corners": 45.0}
+BUDGETS = {"--help": 7.0, "check": 102.0, "preview per load case": 3.5, "corners": 42.0}
 
 
 def seconds(work: Callable[[], object]) -> float:
