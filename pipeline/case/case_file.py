@@ -37,7 +37,7 @@ def read_case(path: str | Path) -> Case:
         For the first error, by its dotted name.
     """
     path = Path(path)
-    return parse_case(_read(path, "case", CASE_BYTES), path.resolve().parent)
+    return parse_case(_read(path, str(path), "case", CASE_BYTES), path.resolve().parent)
 
 
 def parse_case(content: str | bytes, folder: Path | None = None) -> Case:
@@ -109,17 +109,18 @@ def _is_deeper(tables: Tables, depth: int) -> bool:
     return bool(level)
 
 
-def _read(path: Path, field: str, limit: int) -> bytes:
+def _read(path: Path, name: str, field: str, limit: int) -> bytes:
+    """Contents of a file; a refusal has its `name`."""
     try:
         if not path.is_file():
-            raise InputError(field, str(path), "an existing file")
+            raise InputError(field, name, "an existing file")
         with path.open("rb") as file:
             content = file.read(limit + 1)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(field, f"{path} ({reason})", "a readable file") from None
+        raise InputError(field, f"{name} ({reason})", "a readable file") from None
     if len(content) > limit:
-        raise InputError(field, f"{path} is larger", f"at most {limit // 1024} KiB")
+        raise InputError(field, f"{name} is larger", f"at most {limit // 1024} KiB")
     return content
 
 
@@ -129,7 +130,7 @@ def _read_includes(case: Case, folder: Path | None) -> dict[str, bytes]:
     for field, name in includes(case):
         if folder is None:
             raise InputError(field, name, "left out where a case has no folder")
-        content = _read(inside(folder, name, field), field, INCLUDE_BYTES)
+        content = _read(inside(folder, name, field), name, field, INCLUDE_BYTES)
         kept = kept_as(name)
         if origin.setdefault(kept, name) != name:
             raise InputError(field, name, f"another file name than that of {origin[kept]}")

@@ -16,6 +16,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.studies.batch.case_template import read_templates
 from camwright.pipeline.studies.batch.design_plan import SHARD_OF, Plan, Settings
+from camwright.pipeline.studies.batch.design_rows import DesignSolver
 from camwright.pipeline.studies.batch.factor_axes import Axis, axis_of
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of
 from camwright.pipeline.studies.batch.study_file import (
@@ -27,6 +28,7 @@ from camwright.pipeline.studies.batch.study_file import (
     read_study,
     study_of,
 )
+from camwright.pipeline.studies.batch.study_run import planned
 
 ROOT = Path(__file__).resolve().parents[2]
 CASE = read_case(ROOT / "cases" / "gx120.toml")
@@ -278,16 +280,12 @@ def test_a_sample_beyond_the_memory_is_refused(
     "column", ["headline.nothing", "message", "design", "factor.cam.width", "pressure_angle.status"]
 )
 def test_an_objective_is_a_column_of_numbers(column: str) -> None:
-    from camwright.pipeline.studies.batch.study_run import planned
-
     study = study_of(BASE | {"objective": [{"column": column}]})
     with pytest.raises(InputError, match=f"objective.column = {column}"):
         planned(study, read_templates(ROOT / "cases", ["gx120.toml"]))
 
 
 def test_an_objective_stays_among_the_outputs() -> None:
-    from camwright.pipeline.studies.batch.study_run import planned
-
     column = "headline.lift_max_mm"
     study = study_of(BASE | {"outputs": ["mesh.*"], "objective": [{"column": column}]})
     plan = planned(study, read_templates(ROOT / "cases", ["gx120.toml"]))
@@ -310,6 +308,17 @@ def test_a_design_of_a_changed_case_has_another_id() -> None:
     designs = designs_of([_axis(**RATE)], Sampling(method="sobol", count=4))
     ids = [Plan.of(["a"], designs, _settings(templates={"a": name})).ids for name in "12"]
     assert not set(ids[0]) & set(ids[1])
+
+
+def test_the_message_of_a_row_has_no_path_of_the_machine() -> None:
+    """Cases are unpacked into a folder of another name each time."""
+    factor = {"key": "load_case[0].torque", "list": ["none.csv"]}
+    study = study_of(BASE | {"factor": [factor], "sampling": {"method": "list"}})
+    templates = read_templates(ROOT / "cases", ["gx120.toml"])
+    plan = planned(study, templates)
+    (task,) = plan.tasks(Tier.PREVIEW)
+    row = DesignSolver(templates, plan.settings).solved(task, 0)
+    assert row["message"] == "load_case[0].torque = none.csv, must be an existing file"
 
 
 def _settings(**change: Any) -> Settings:
