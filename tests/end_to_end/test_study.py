@@ -156,10 +156,11 @@ def test_a_signal_ends_in_one_line(folder: Path, number: signal.Signals) -> None
         command("study.toml", "--out", out, "--jobs", "2"),
         cwd=folder, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
-    shards = folder / out / "shards"
-    while main.poll() is None and not (shards.is_dir() and any(shards.glob("*.parquet"))):
+    children: list[psutil.Process] = []
+    # Two workers, each with the process that solves: the first shard is begun, none is complete.
+    while main.poll() is None and len(children) < 4:
         time.sleep(0.02)
-    children = processes_of(psutil.Process(main.pid))
+        children = processes_of(psutil.Process(main.pid))
     main.send_signal(number)
     _, errors = main.communicate(timeout=60)
     assert main.returncode == 130
