@@ -38,7 +38,7 @@ RANGES: Mapping[str, Mapping[str, tuple[float, float]]] = {
     "gx120": {
         "spring.rate": (15e3, 60e3), "spring.preload": (200.0, 900.0),
         "cam.prime_radius": (0.045, 0.07), "cam.offset": (-0.005, 0.005),
-        "cam.width": (0.004, 0.006), "roller.radius": (0.007, 0.02), "roller.width": (0.004, 0.006),
+        "cam.width": (0.004, 0.006), "roller.radius": (0.008, 0.02), "roller.width": (0.004, 0.006),
         "follower.mass": (0.1, 0.3), "follower.overhang_at_max_lift": (0.02, 0.04),
         "guides.spacing": (0.06, 0.12), "guides.a.friction": (0.02, 0.07),
         "guides.b.friction": (0.1, 0.16), "mechanism.compensation": (0.5, 1.0),
@@ -48,7 +48,7 @@ RANGES: Mapping[str, Mapping[str, tuple[float, float]]] = {
     "gx120-redesign": {
         "spring.rate": (160e3, 200e3), "spring.preload": (800.0, 1400.0),
         "cam.prime_radius": (0.05, 0.065), "cam.offset": (-0.003, 0.003),
-        "cam.width": (0.012, 0.0175), "roller.radius": (0.0205, 0.0255),
+        "cam.width": (0.012, 0.0175), "roller.radius": (0.0235, 0.0285),
         "follower.mass": (0.55, 0.8), "spring.design.wire_diameter": (8.2e-3, 8.8e-3),
         "spring.design.mean_diameter": (0.040, 0.044), "spring.design.coils": (3.5, 4.2),
         "spring.design.free_length": (0.066, 0.078), "spring.design.shear_modulus": (75e9, 82e9),
