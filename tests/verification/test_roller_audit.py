@@ -9,7 +9,11 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
+import pylife.strength.fatigue  # registers the Woehler curve of a Series
+import pylife.stress.collective  # noqa: F401 - registers the load collective of a frame
 import pytest
+from pylife.strength.meanstress import fkm_goodman
 from ring_beams import beam_ring_bending
 from stated_loads import stated_loads
 
@@ -116,6 +120,14 @@ def test_speed_from_lengths_of_the_pitch_curve():
 def test_basic_life_by_adding_damage():
     """Miner: the turns at each position over those it could endure."""
     damage = np.sum(turns_per_step() / (1e6 * (1140.0 / surged()) ** 3))
+    assert demand("roller_life") == pytest.approx(cam_period() / damage / HOUR, rel=1e-4)
+
+
+def test_basic_life_by_the_damage_of_pylife():
+    """Its Woehler curve through C at a million turns, exponent 3, Miner without endurance."""
+    curve = pd.Series({"k_1": 3.0, "ND": 1e6, "SD": 1140.0}).fatigue.miner_elementary()
+    turns = pd.DataFrame({"range": 2.0 * surged(), "mean": 0.0, "cycles": turns_per_step()})
+    damage = curve.damage(turns.load_collective).sum()
     assert demand("roller_life") == pytest.approx(cam_period() / damage / HOUR, rel=1e-4)
 
 
@@ -275,6 +287,26 @@ def test_pin_fatigue_on_the_goodman_line():
             amplitude, mean = 0.5 * np.ptp(stress), max(0.5 * (stress.max() + stress.min()), 0.0)
             reserve.append((2000e6 - mean) / 2000e6 * 700e6 / amplitude)
     assert demand("roller_pin_fatigue") == pytest.approx(min(reserve), rel=1e-3)
+
+
+def test_pin_fatigue_by_the_haigh_diagram_of_pylife():
+    """Its mean stress correction along Goodman's line, M = 700/2000 on either side of R = 0.
+
+    The amplitude of every fibre grows, at its mean, until its equivalent at R = -1 is the limit.
+    """
+    theta = uniform_turn(72)
+    slope = 0.5 * STROKE * np.sin(theta)
+    angle = np.arctan2(slope, BASE + 0.5 * STROKE * (1.0 - np.cos(theta)))
+    around = np.linspace(-np.pi, np.pi, 1001)[:, None]
+    stress = pin_bending_stress(1.0, 5e-3, 10e-3, 16e-3) * force() * np.cos(angle - around)
+    amplitude = 0.5 * np.ptp(stress, axis=1)
+    mean = np.maximum(0.5 * (stress.max(axis=1) + stress.min(axis=1)), 0.0)
+    low, high = np.zeros(amplitude.size), np.full(amplitude.size, 1e6)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        beyond = fkm_goodman(middle * amplitude, mean, 0.35, 0.35, -1.0) > 700e6
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    assert demand("roller_pin_fatigue") == pytest.approx(low.min(), rel=1e-3)
 
 
 def test_a_turning_force_bends_the_pin_though_its_size_is_constant():
