@@ -357,6 +357,39 @@ def edge_factor(run: RunFiles) -> float:
     return float(run.checks["edge_pressure"]["demand"]) / greatest
 
 
+# --- shape ------------------------------------------------------------------------------------
+def closure(run: RunFiles) -> float:
+    """Where a polynomial through the last values of the lift ends, less the first, um."""
+    values, count = run.columns("workshop/contour.csv")["lift_mm"], 8
+    last = np.polynomial.Polynomial.fit(np.arange(-count, 0.0), values[-count:], count - 1)
+    return 1e3 * abs(float(last(0.0)) - float(values[0]))
+
+
+def acceleration_step(run: RunFiles) -> float:
+    """Greatest change of the second difference over its range: a step stays, a bend halves."""
+    values = run.columns("workshop/contour.csv")["lift_mm"]
+
+    def steps(spacing: int) -> float:
+        every = values[::spacing]
+        second = np.roll(every, 1) - 2.0 * every + np.roll(every, -1)
+        return float(np.max(np.abs(np.diff(second, append=second[0]))) / np.ptp(second))
+
+    return max(0.0, 2.0 * steps(1) - steps(2))
+
+
+def gouge(run: RunFiles) -> float:
+    """Greatest depth of the nearest point of the contour within the wheel on any other, mm."""
+    table, tool = run.columns("workshop/contour.csv"), run.value("workshop.tool_radius")
+    points = np.column_stack([table["x_mm"], table["y_mm"]])
+    whole = np.arange(len(points) + 1.0)
+    curve = CubicSpline(whole, np.vstack([points, points[:1]]), bc_type="periodic")
+    at = np.arange(0.0, len(points), 0.025)
+    along = curve(at, 1)
+    normal = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
+    nearest, _ = cKDTree(curve(at)).query(curve(at) + tool * normal)
+    return float(np.max(tool - nearest))
+
+
 RECOMPUTED: dict[str, tuple[Callable[[RunFiles], float], float, float]] = {
     # function, relative and absolute tolerance in the unit of the check
     "mesh_jacobian": (least_scaled_jacobian, 1e-9, 0.0),
@@ -368,6 +401,9 @@ RECOMPUTED: dict[str, tuple[Callable[[RunFiles], float], float, float]] = {
     "certificate_spread": (greatest_spread, 1e-6, 1e-9),
     "edge_factor": (edge_factor, 1e-4, 0.0),  # the demand is refined between angles
     "bore_stress": (bore_stress, 0.05, 0.0),  # the error bar of the check is 3 to 5 %
+    "closure": (closure, 0.0, 0.01),  # of the polynomial, a hundredth of the limit
+    "acceleration_step": (acceleration_step, 0.0, 0.02),  # a tenth of the limit
+    "tool_gouge": (gouge, 0.01, 2e-4),  # points 15 um apart; um of a spline through the table
     "speed_reduction": (speed_reduction, 5e-3, 0.0),  # friction at the mean speed
 }
 """Checks whose demand the files of a run give again, with the tolerance of the formulation."""

@@ -82,8 +82,8 @@ MODEL_LIMITS = (
         singular=True,
     ),
     ModelLimit(
-        "Stress where the bodies are held is excluded; no held place lies within ten half-widths of"
-        " the contact.",
+        "Stress where the bodies are held is excluded; the contact must lie ten half-widths away"
+        " from there.",
         "held_distance",
         singular=True,
     ),

@@ -22,10 +22,6 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
     (_SHAPE, "test_crossings_and_second_contact_by_distances"): (
         "self_intersection", "second_contact",
     ),
-    (_SHAPE, "test_closure_and_step_by_differences_of_the_table"): (
-        "closure", "acceleration_step",
-    ),
-    (_SHAPE, "test_gouge_by_distances_of_the_wheel_s_centres"): ("tool_gouge",),
     (_SHAPE, "test_waviness_by_a_follower_on_a_sine"): ("profile_waviness",),
     (_SHAPE, "test_ripple_reduction_by_a_fourier_series_of_the_engine_s_torque"): (
         "torque_reduction",
@@ -141,6 +137,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "contact_equilibrium", "contact_complementarity", "hertz_difference",
     ),
     (_RUN, "test_demands_by_the_files_of_the_run"): (
+        "closure", "acceleration_step", "tool_gouge",
         "speed_reduction", "bore_stress", "excluded_zone",
         "mesh_angle", "mesh_jacobian", "mesh_edges", "mesh_p0", "mesh_half_width", "mesh_tau_max",
         "mesh_von_mises", "certificate_gci", "certificate_spread", "edge_factor",

@@ -299,23 +299,6 @@ def test_mesh_quality_by_triangles():
     assert np.degrees(demand("mesh_angle", solved())) == pytest.approx(least, abs=2.0)
 
 
-def test_closure_and_step_by_differences_of_the_table():
-    """A polynomial through the last values ends at the first; steps vanish with the spacing."""
-    values = previewed().contour.pitch.lift.values
-    count = 8
-    last = np.polynomial.Polynomial.fit(np.arange(-count, 0.0), values[-count:], count - 1)
-    assert demand("closure", previewed()) == pytest.approx(abs(last(0.0) - values[0]), abs=1e-8)
-
-    def steps(spacing):
-        every = values[::spacing]
-        second = np.roll(every, 1) - 2.0 * every + np.roll(every, -1)
-        return np.max(np.abs(np.diff(second, append=second[0]))) / np.ptp(second)
-
-    # a step stays while a bend halves
-    left = max(0.0, 2.0 * steps(1) - steps(2))
-    assert demand("acceleration_step", previewed()) == pytest.approx(left, abs=0.02)
-
-
 def test_closure_of_a_table():
     theta = np.radians(np.arange(0.0, 361.0, 5.0))
     values = 0.005 * (1.0 - np.cos(theta))
