@@ -11,11 +11,9 @@ import os
 import resource
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
+from parts import ROUNDS, dense_solution, seconds
 
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
@@ -26,23 +24,11 @@ from camwright.pipeline.solver import solve
 
 CASE = Path(__file__).resolve().parent.parent / "cases" / "gx120.toml"
 POSITIONS = 180
-ROUNDS = 5
 BUDGETS = {"--help": 7.0, "check": 102.0, "preview per load case": 3.5, "corners": 42.0}
 
 
-def seconds(work: Callable[[], object]) -> float:
-    """CPU seconds, the least of some rounds after a first one."""
-    work()
-    spent = []
-    for _ in range(ROUNDS):
-        start = time.process_time()
-        work()
-        spent.append(time.process_time() - start)
-    return min(spent)
-
-
 def process_seconds(*arguments: str) -> float:
-    """CPU seconds of the command line in a process of its own, likewise."""
+    """CPU seconds of the command line in a process of its own, the least of some rounds."""
     spent = []
     for _ in range(ROUNDS):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -58,9 +44,7 @@ def process_seconds(*arguments: str) -> float:
 
 
 def main() -> int:
-    random = np.random.default_rng(0)
-    matrix, right = random.normal(size=(1000, 1000)), random.normal(size=1000)
-    unit = seconds(lambda: np.linalg.solve(matrix, right))
+    unit = dense_solution()
     case = read_case(CASE)
     torques = engine_torques(case)
     contour = case.contour(cam_lift(case, torques))

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 import tracemalloc
 from pathlib import Path
 
@@ -57,8 +58,6 @@ def main() -> None:
 
 def made(folder: Path) -> Path:
     """A study folder of 2,000 screened designs."""
-    import tomllib
-
     tables = tomllib.loads(MADE)
     tables["case"] = [tables["case"]]
     run_study(study_of(tables), MADE, ROOT, folder, jobs=2, progress=Silent())
@@ -155,7 +154,6 @@ def plan() -> None:
     settings = Settings({"made": "0"}, {}, "own", 180, True, (), 1.0, 1)
     designs = Designs((Axis(),), {"spring.preload": values}, count)
     tracemalloc.start()
-    began = time.process_time()
     made_plan = Plan.of(["made"], designs, settings)
     size, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()

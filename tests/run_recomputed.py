@@ -252,10 +252,10 @@ def bore_stress(run: RunFiles) -> float:
 
     push = load.assemble(rim) * loads["line_load_N_per_mm"][k] * 1e3
     held = basis.get_dofs(on["bore"])
-    moved = solve(*condense(energy.assemble(basis), push, D=held))
+    displacement = solve(*condense(energy.assemble(basis), push, D=held))
     corners = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     at_nodes = Basis(mesh, basis.elem, quadrature=(corners, np.ones(3)))
-    strain = np.asarray(sym_grad(at_nodes.interpolate(moved)))
+    strain = np.asarray(sym_grad(at_nodes.interpolate(displacement)))
     share, mean = np.bincount(mesh.t.T.ravel()), np.zeros((2, 2, len(points)))
     for i, j in np.ndindex(2, 2):
         mean[i, j] = np.bincount(mesh.t.T.ravel(), strain[i, j].ravel())

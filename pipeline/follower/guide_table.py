@@ -144,13 +144,13 @@ class GuideTable:
         # The roller does not enter guide A: positions just outside take the node at its mouth.
         overhang = max(along * _OVERHANG_STEP * guides.spacing, 0.5 * guides.a.length)
         long = replace(stem, length=np.inf)
-        found = guide_reactions(_FORCES, np.full(_FORCES.size, overhang), long, guides)
+        reactions = guide_reactions(_FORCES, np.full(_FORCES.size, overhang), long, guides)
         on_a, on_b = (_FORCES * each for each in levers(np.asarray(overhang), guides.spacing))
         return np.stack(
             [
-                found.rubbing_load_a / on_a, found.rubbing_load_b / on_b,
-                found.bearing_load_a / on_a, found.bearing_load_b / on_b,
-                np.abs(found.reaction_a) / on_a, np.abs(found.reaction_b) / on_b,
+                reactions.rubbing_load_a / on_a, reactions.rubbing_load_b / on_b,
+                reactions.bearing_load_a / on_a, reactions.bearing_load_b / on_b,
+                np.abs(reactions.reaction_a) / on_a, np.abs(reactions.reaction_b) / on_b,
             ]
         )  # fmt: skip
 

@@ -181,13 +181,13 @@ def test_checks_from_rest_to_overspeed_name_what_governs_and_pass_on_no_missing_
     text = LOADS.replace("[cam]\n", oil + rough)
     text = text.replace("[roller]\n", f"[roller]\nfriction = 0.1\n{rough}")
     oiled = parse_case(text).with_positions(72)
-    found = {check.id: check for check in preview_case(oiled, corners=False).checks}
-    assert found["film_ratio"].load_case == "idle"
-    assert found["film_ratio"].demand > 1e-2
+    checks = {check.id: check for check in preview_case(oiled, corners=False).checks}
+    assert checks["film_ratio"].load_case == "idle"
+    assert checks["film_ratio"].demand > 1e-2
     for name in ("contact_pressure", "roller_static", "guide_pv_A", "jump", "roller_speed"):
-        assert found[name].load_case == "over-speed", name
-    assert found["torque_reduction"].load_case == "idle"
-    for check in found.values():
+        assert checks[name].load_case == "over-speed", name
+    assert checks["torque_reduction"].load_case == "idle"
+    for check in checks.values():
         assert check.status != "pass" or np.isfinite(check.demand), check.id
 
 

@@ -260,6 +260,14 @@ def test_help_and_version(command: Command) -> None:
     assert command("nonsense")[0] == 2
 
 
+def last_line_of(script: str) -> str:
+    """Last line that a script prints in a process of its own."""
+    ended = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, env=os.environ
+    )
+    return ended.stdout.splitlines()[-1]
+
+
 def test_version_answers_without_the_heavy_libraries() -> None:
     script = (
         "import sys; sys.argv = ['camwright', '--version']\n"
@@ -268,10 +276,7 @@ def test_version_answers_without_the_heavy_libraries() -> None:
         "except SystemExit: pass\n"
         "print(sorted({'numpy', 'pydantic', 'pint', 'gmsh', 'pyvista'} & set(sys.modules)))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True, env=os.environ
-    )
-    assert done.stdout.splitlines()[-1] == "[]"
+    assert last_line_of(script) == "[]"
 
 
 def test_a_case_is_read_without_the_heavy_libraries() -> None:
@@ -286,10 +291,7 @@ def test_a_case_is_read_without_the_heavy_libraries() -> None:
         "heavy.add('skfem')\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True, env=os.environ
-    )
-    assert done.stdout.splitlines()[-1] == "[]"
+    assert last_line_of(script) == "[]"
 
 
 @pytest.mark.parametrize(

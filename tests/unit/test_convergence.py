@@ -52,10 +52,10 @@ def test_two_meshes_of_the_order_elsewhere_give_the_limit(order):
     """A power law of another coefficient; the bar: 3 times the error, and more."""
     sizes = np.array([4.0, 2.0, 1.0])
     elsewhere = converged(7 + 0.001 * sizes**order, 2.0)
-    found = converged_on_two(10 + 0.02 * sizes[:2] ** order, 2.0, [elsewhere])
-    np.testing.assert_allclose(found.extrapolated, 10, rtol=1e-12)
-    own = 3 * 0.02 * 2.0**order / found.values[1]
-    np.testing.assert_allclose(found.gci, own + elsewhere.gci, rtol=1e-9)
+    estimate = converged_on_two(10 + 0.02 * sizes[:2] ** order, 2.0, [elsewhere])
+    np.testing.assert_allclose(estimate.extrapolated, 10, rtol=1e-12)
+    own = 3 * 0.02 * 2.0**order / estimate.values[1]
+    np.testing.assert_allclose(estimate.gci, own + elsewhere.gci, rtol=1e-9)
 
 
 def test_two_meshes_take_the_least_order_and_never_a_narrower_bar():
@@ -68,10 +68,10 @@ def test_two_meshes_take_the_least_order_and_never_a_narrower_bar():
 
 def test_two_meshes_without_an_observed_order_are_not_extrapolated():
     scattered = converged((1.0, 1.02, 1.01), 2.0)
-    found = converged_on_two((1.0, 1.001), 2.0, [scattered])
-    assert (found.order, found.extrapolated) == (None, 1.001)
+    estimate = converged_on_two((1.0, 1.001), 2.0, [scattered])
+    assert (estimate.order, estimate.extrapolated) == (None, 1.001)
     own = 3 * 0.001 / 1.001 / (np.sqrt(2.0) - 1)
-    assert found.gci == pytest.approx(scattered.gci + own)
+    assert estimate.gci == pytest.approx(scattered.gci + own)
 
 
 @pytest.mark.parametrize("values", [(1.0,), (1.0, np.nan), (1.0, 2.0, 3.0)])

@@ -214,7 +214,7 @@ def test_a_corner_without_a_solution_is_refused_alone(monkeypatch, demands):
     heaviest = 1.05 * machines(case())[0].mass
 
     def refusing(inputs, positions, *, coarse):
-        if any(given.machine.mass > heaviest for given in inputs):
+        if any(each.machine.mass > heaviest for each in inputs):
             raise ContactError("guides: too heavy")
         return turns(inputs, positions, coarse=coarse)
 

@@ -122,8 +122,8 @@ def test_displacement_of_the_surface_is_a_parabola_under_the_pressure():
 
 def test_displacement_above_the_tangent_is_that_of_a_point_force_far_away():
     x, depth = np.array([-200.0, 60.0, 90.0]), np.array([-9.0, -12.0, -1.0])
-    found = hertz.subsurface_displacement(x, depth, 0.3)
-    np.testing.assert_allclose(found, point_force_displacement(x, depth, 0.3), atol=5e-5)
+    displacement = hertz.subsurface_displacement(x, depth, 0.3)
+    np.testing.assert_allclose(displacement, point_force_displacement(x, depth, 0.3), atol=5e-5)
 
 
 def test_sliding_moves_the_largest_von_mises_to_the_surface_beyond_the_known_friction():

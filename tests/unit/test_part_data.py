@@ -65,13 +65,13 @@ def outcome(keys: tuple[str, ...]) -> tuple[str, bool]:
     """Verdict without a key, "error" if it cannot be read or solved; whether it has a default."""
     try:
         tables = without(*keys)
-        case, found = case_of(tables), verdict(judged(tables))
+        case, judgement = case_of(tables), verdict(judged(tables))
     except CamError:
         return "error", False
     table: Any = case.tables()
     for key in keys:
         table = table.get(key) if isinstance(table, dict) else None
-    return found, table is not None or keys[-1] in WORDS
+    return judgement, table is not None or keys[-1] in WORDS
 
 
 @settings(max_examples=6, deadline=None, derandomize=True)

@@ -14,6 +14,7 @@ import pytest
 
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.studies.batch import study_run
+from camwright.pipeline.studies.batch.answers_yield import FAILS, PASSES, UNKNOWN
 from camwright.pipeline.studies.batch.dataset import (
     DATASET,
     column_of,
@@ -23,7 +24,7 @@ from camwright.pipeline.studies.batch.dataset import (
     table_from,
     table_of,
 )
-from camwright.pipeline.studies.batch.row_selection import Figures, fails_in
+from camwright.pipeline.studies.batch.row_selection import Figures, states_in
 from camwright.pipeline.studies.batch.study_file import Objective
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
 
@@ -110,7 +111,7 @@ def test_blocks_of_rows_are_as_one(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 @pytest.mark.parametrize("damage", ["bit", "cut", "other", "text", "column", "type", "screen"])
 def test_a_damaged_shard_is_not_taken(tmp_path: Path, damage: str) -> None:
     home, shards = _folder(tmp_path)
-    assert home.holds(shards[0])
+    assert home.read_whole(shards[0]) is not None
     path = tmp_path / "shards" / "one.parquet"
     content = bytearray(path.read_bytes())
     if damage == "bit":
@@ -133,7 +134,7 @@ def test_a_damaged_shard_is_not_taken(tmp_path: Path, damage: str) -> None:
     else:
         content[:] = (tmp_path / "shards" / "two.parquet").read_bytes()
     path.write_bytes(content)
-    assert not home.holds(shards[0])
+    assert home.read_whole(shards[0]) is None
     assert not path.exists()
 
 
@@ -253,7 +254,7 @@ def test_the_progress_line_counts_the_failures_of_its_stage(
         home.write_shard(name, parquet_bytes(table), b"")
         watch = study_run._Watch(run, len(name), None)  # type: ignore[arg-type]
         watch.expect(Shard(name, tuple(name)))
-        watch.take(Shard(name, tuple(name)))
+        watch.take(Shard(name, tuple(name)), table)
     words = [each.rpartition(",")[0] for each in notes]
     assert words == ["1 of 3 fail, 1 without result", "1 of 1 fail, 0 without result"]
 
@@ -280,6 +281,6 @@ def test_selection() -> None:
     assert figures.front() == ["b", "a"]
     assert figures.failed() == ["c"] == figures.kept("failed", 0)  # "e" has no run
     assert figures.record()["screen"] == {"error": 1, "fail": 1, "open": 3}
-    assert fails_in(table) == (1, 1)
+    assert states_in(table).tolist() == [PASSES, PASSES, FAILS, PASSES, UNKNOWN]
     figures.keep({"a"})
     assert figures.best(2) == ["a"]

@@ -23,7 +23,6 @@ from camwright.pipeline.studies.batch.study_file import (
     Correlation,
     Factor,
     Sampling,
-    Study,
     chosen_study,
     read_study,
     study_of,
@@ -117,7 +116,7 @@ def test_a_refusal_names_field_and_limit(change: dict[str, Any], field: str, lim
     with pytest.raises(InputError) as refused:
         study_of(tables)
     assert field in str(refused.value)
-    assert limit in str(refused.value) or limit == "must be"
+    assert limit in str(refused.value)
 
 
 @pytest.mark.parametrize(
@@ -225,8 +224,8 @@ def test_correlated_factors_have_the_stated_correlation() -> None:
     stated = Correlation(between=("spring.preload", "spring.rate"), value=0.8)
     table = {"method": "latin_hypercube", "count": 4000}
     made = designs_of(axes, Sampling.model_validate(table), [stated]).columns
-    found = np.corrcoef(np.asarray(made["spring.preload"]), np.asarray(made["spring.rate"]))
-    assert abs(found[0, 1] - 0.8) < 0.03
+    matrix = np.corrcoef(np.asarray(made["spring.preload"]), np.asarray(made["spring.rate"]))
+    assert abs(matrix[0, 1] - 0.8) < 0.03
     assert abs(np.std(made["spring.preload"]) - 10.0) < 0.5
 
 
@@ -350,7 +349,3 @@ def test_a_shard_is_named_by_all_that_its_rows_depend_on() -> None:
         other = Plan.of(["a", "b"], designs, _settings(**change))
         assert not names & {task.name for task in other.tasks(Tier.PREVIEW)}
     assert not names & {task.name for task in plan.tasks(Tier.CYCLE)}
-
-
-def test_a_study_of_many_rows_is_a_study() -> None:
-    assert isinstance(study_of(dict(BASE)), Study)

@@ -172,8 +172,8 @@ def test_command_judges_the_real_part(run, tmp_path: Path, capsys) -> None:
     table = tmp_path / "measured.csv"
     rows = "".join(f"{a!r},{b!r}\n" for a, b in zip(x.tolist(), y.tolist(), strict=True))
     table.write_text("x_mm,y_mm\n" + rows, encoding="utf-8")
-    given = ["inspect", str(folder), str(table), "--jobs", "1", "--tolerance", "20 um"]
-    code = app(args=given, standalone_mode=False)
+    arguments = ["inspect", str(folder), str(table), "--jobs", "1", "--tolerance", "20 um"]
+    code = app(args=arguments, standalone_mode=False)
     record = json.loads((folder / FOLDER / "inspection.json").read_text(encoding="utf-8"))
     assert code == EXIT_CODE[record["verdict"]]
     assert record["phase_deg"] == pytest.approx(3.0, rel=0.015)

@@ -29,15 +29,19 @@ def tried(family, seed):
             gate(quality(body, point, half_width), edges_min=EDGES[1])
         if seed % 2:
             return "meshed"  # solved at every second seed, for the time it takes
-        found = solve_pair(one.pair, one.theta, one.force, EDGES[1]).solution
+        solution = solve_pair(one.pair, one.theta, one.force, EDGES[1]).solution
     except CamError as error:
         assert re.search(r"[a-z_.]+ ?=|fit|undercut", str(error)), f"{seed}: no name in '{error}'"
         return type(error).__name__
-    assert found.residual_equilibrium < 1e-8
+    assert solution.residual_equilibrium < 1e-8
     if one.slender:
         return "slender"
     allowed = HERTZ + one.varying
-    assert abs(found.p0 / one.pressure - 1.0) <= allowed, (family, seed, found.p0 / one.pressure)
+    assert abs(solution.p0 / one.pressure - 1.0) <= allowed, (
+        family,
+        seed,
+        solution.p0 / one.pressure,
+    )
     return "as Hertz"
 
 

@@ -117,7 +117,7 @@ def test_superposed_field_is_that_of_the_load_itself():
     loaded = LoadedBody(body, "rim")
     correction = loaded.correction_fields(at, normal)
     under = np.array([load]), np.array([half_width])
-    moved, _ = loaded.superposed(mesh.points, correction, at, normal, *under)
+    displacement, _ = loaded.superposed(mesh.points, correction, at, normal, *under)
     frame = ContactFrame(at[:, 0], normal[:, 0])
     shapes = PressureShapes(np.linspace(-half_width, half_width, 41))
     ellipse = np.sqrt(1 - (shapes.centres / half_width) ** 2)
@@ -125,7 +125,7 @@ def test_superposed_field_is_that_of_the_load_itself():
     direct = body.displacement(-(normal_loads(mesh, "rim", frame, shapes) @ pressure)[:, :, None])
     away = np.hypot(*(mesh.points - at)) > 10 * half_width
     size = np.abs(direct[:, away]).max()
-    np.testing.assert_allclose(moved[:, away], direct[:, away], atol=1e-2 * size)
+    np.testing.assert_allclose(displacement[:, away], direct[:, away], atol=1e-2 * size)
 
 
 @pytest.mark.parametrize(("module", "name"), [("cvxopt", "cholmod"), ("pypardiso", "pardiso")])

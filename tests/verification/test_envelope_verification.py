@@ -57,15 +57,15 @@ def test_stresses_with_those_of_the_body_are_of_their_sum():
     contact = closed_form_history(pair, theta, force(theta))
     load = force(theta) / WIDTH
     body = 4e7 * np.sin(3 * theta)
-    found = swept(pair, theta, contact, theta, load, body_stress=body)
+    envelope = swept(pair, theta, contact, theta, load, body_stress=body)
     field = rolling_pass(0.3).stress
     middle = field.shape[2] // 2
     near = field[:, :, middle - 160 : middle + 161]
     for k in (0, 20, 55):
         total = contact.p0[k] * near + body[k] * np.eye(3)[0][:, None, None]
         for values, measured in (
-            (found.von_mises, von_mises(total, 0.3)),
-            (found.tau_max, shear_in_plane(total)),
+            (envelope.von_mises, von_mises(total, 0.3)),
+            (envelope.tau_max, shear_in_plane(total)),
         ):
             np.testing.assert_allclose(values[k], measured.max(axis=1), rtol=1e-9)
 

@@ -70,14 +70,14 @@ def test_strokes_solved_at_once_are_those_solved_alone():
         Stroke(PitchCurve(PITCH.lift, 0.05, 0.012), ROUGH, 0.0, uniform_turn(36)),
         Stroke(PITCH, replace(ROUGH, mass=0.3), 2.0 * SPEED, THETA),
     ]
-    for stroke, found in zip(strokes, guided_strokes(strokes, STEM, PAIR), strict=True):
+    for stroke, together in zip(strokes, guided_strokes(strokes, STEM, PAIR), strict=True):
         pitch, system, speed, theta = stroke
         alone = guided_loads(pitch, system, STEM, PAIR, speed, theta)
-        np.testing.assert_array_equal(found.loads.theta, theta)
+        np.testing.assert_array_equal(together.loads.theta, theta)
         for name in ("normal_force", "friction_force_a", "friction_force_b"):
             wanted = getattr(alone.loads, name)
             np.testing.assert_allclose(
-                getattr(found.loads, name), wanted, rtol=1e-10, atol=1e-10 * wanted.max()
+                getattr(together.loads, name), wanted, rtol=1e-10, atol=1e-10 * wanted.max()
             )
 
 

@@ -97,12 +97,12 @@ def test_field_is_that_of_the_certificate(series) -> None:
     k = int(cycle.contact.p0.argmax())
     solved = solve_pair(pair, float(cycle.theta[k]), float(cycle.loads.normal_force[k]))
     blocks, half_width = file.step(k), file.notes["half_width_mm"][k]
-    for name, side, moved in zip(
+    for name, side, displacement in zip(
         ("cam", "roller"), solved.sides, solved.solution.displacements, strict=True
     ):
         body = side.body
         recovery = StressRecovery(body, np.arange(body.mesh.triangles.shape[1]))
-        nodal = recovery(moved[:, :, None])[:, :, 0]
+        nodal = recovery(displacement[:, :, None])[:, :, 0]
         mises = 1e-6 * plane_stress_measures.von_mises(nodal, body.poisson)
         at = 1e3 * body.mesh.points[:, recovery.nodes]
         fine = blocks[name + ZONE]
@@ -111,8 +111,8 @@ def test_field_is_that_of_the_certificate(series) -> None:
         apart = np.hypot(*(fine.points[:, :, None] - at[:, None, near]))
         nearest, weight = apart.argmin(axis=0), apart.min(axis=0) < 0.03 * half_width
         # a thirtieth of a half-width aside, and 8 elements across it in the certificate
-        found = fine.data["von_mises_MPa"][nearest[weight]]
-        np.testing.assert_allclose(found, mises[near[weight]], atol=0.06 * mises.max())
+        shown = fine.data["von_mises_MPa"][nearest[weight]]
+        np.testing.assert_allclose(shown, mises[near[weight]], atol=0.06 * mises.max())
         assert weight.sum() > 20
 
 
@@ -127,9 +127,9 @@ def test_displaced_surfaces_touch(series) -> None:
             for s in (blocks["cam" + ZONE], blocks["roller" + ZONE])
         )
         together = float((cam[1] - roller[1]) @ normal)
-        moved = blocks["roller"].data["displacement_mm"][:, :2] @ normal
-        assert moved.min() < 0  # towards the cam
-        approach = -moved.min()
+        along = blocks["roller"].data["displacement_mm"][:, :2] @ normal
+        assert along.min() < 0  # towards the cam
+        approach = -along.min()
         # digits of point data, and of points in single precision
         assert abs(together) < 2e-5 * approach
         assert abs((roller[0] - cam[0]) @ normal) < 1e-5
@@ -144,12 +144,12 @@ def test_displaced_surfaces_coincide_along_the_contact(series) -> None:
     heights = []
     for name in ("cam", "roller"):
         fine = blocks[name + ZONE]
-        moved = fine.points + fine.data["displacement_mm"].T[:2] - contact[:, None]
-        along = moved[0] * normal[1] - moved[1] * normal[0]
+        displaced = fine.points + fine.data["displacement_mm"].T[:2] - contact[:, None]
+        along = displaced[0] * normal[1] - displaced[1] * normal[0]
         surface = np.flatnonzero(np.arange(along.size) % 33 <= 1)  # both ends of each ring
         order = surface[np.argsort(along[surface])]
         inside = np.linspace(-0.9, 0.9, 19) * half_width
-        heights.append(np.interp(inside, along[order], normal @ moved[:, order]))
+        heights.append(np.interp(inside, along[order], normal @ displaced[:, order]))
     depth = half_width**2 * 0.5 * (1 / 8.0)
     # Hertz pressure on real bodies: their bending is corrected, the pressure is not
     np.testing.assert_allclose(heights[0], heights[1], atol=0.05 * depth)
@@ -193,10 +193,10 @@ def test_concave_flank_is_free_of_traction() -> None:
     """Above the tangent the half-plane's field continues: with its correction, a free surface."""
     places = np.array([[3.0, -8.0, 30.0], [-0.2, -1.0, -4.0]])
     at, up = np.zeros((2, 1)), np.array([[0.0], [1.0]])
-    found = hertz_stress(places * np.array([[1.0], [-1.0]]), at, up, np.array([0.01]))[:, :, 0]
+    stress = hertz_stress(places * np.array([[1.0], [-1.0]]), at, up, np.array([0.01]))[:, :, 0]
     flamant = point_force_stress(*places) * np.array([[1.0], [1.0], [-1.0]])
     # a point force in place of the ellipse: half-width over distance, squared
-    np.testing.assert_allclose(found, flamant, rtol=1e-3, atol=1e-7)
+    np.testing.assert_allclose(stress, flamant, rtol=1e-3, atol=1e-7)
 
 
 def test_shown_cam_angles() -> None:
@@ -233,10 +233,10 @@ def test_positions_without_load_or_without_a_patch_have_a_field(series, tmp_path
     changed = replace(contact, line_load=load, half_width_hertz=size, pressure=pressure)
     fields = TurnFields(pair, bodies, replace(cycle, contact=changed))
     write_stress(tmp_path / "x.vtkhdf", fields, np.array([3, 4]))
-    found = read_series(tmp_path / "x.vtkhdf")
-    for step in found.step(0).values():
+    written = read_series(tmp_path / "x.vtkhdf")
+    for step in written.step(0).values():
         assert not any(values.any() for values in step.data.values())
-    closed, whole = (f["cam" + ZONE].data["von_mises_MPa"] for f in (found.step(1), file.step(4)))
+    closed, whole = (f["cam" + ZONE].data["von_mises_MPa"] for f in (written.step(1), file.step(4)))
     # Hertz in closed form instead of the finite-element patch
     assert closed.max() == pytest.approx(whole.max(), rel=2e-2)
 
@@ -268,14 +268,14 @@ def test_script_draws_the_nearest_cam_angle(series, tmp_path) -> None:
     script = Path(sys.modules[TurnFields.__module__].__file__).parent / "templates" / VIEW
     (tmp_path / VIEW).write_bytes(script.read_bytes())
     (tmp_path / file.path.name).write_bytes(file.path.read_bytes())
-    done = subprocess.run(
+    drawing = subprocess.run(
         [sys.executable, VIEW, "118", "picture.png"],
         cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False,
         env=os.environ | {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"},
     )  # fmt: skip
-    if done.returncode < 0:
+    if drawing.returncode < 0:
         pytest.skip("no OpenGL device")
-    assert "cam angle 120 deg" in done.stdout, done.stderr
+    assert "cam angle 120 deg" in drawing.stdout, drawing.stderr
     assert (tmp_path / "picture.png").stat().st_size > 10_000
 
 

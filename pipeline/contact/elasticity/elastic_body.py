@@ -235,9 +235,9 @@ class CondensedBody:
         solution = np.zeros_like(right)
         if held_at is not None:
             place, coupling, rows = self._held
-            moved = np.asarray(held_at, dtype=float).reshape(-1, forces.shape[2])[place]
-            right -= coupling @ moved
-            solution[~self._kept] = moved[rows]
+            held = np.asarray(held_at, dtype=float).reshape(-1, forces.shape[2])[place]
+            right -= coupling @ held
+            solution[~self._kept] = held[rows]
         solution[self._kept] = self._matrix.solve_last(right[self._kept])
         return solution.reshape(forces.shape)
 

@@ -50,9 +50,9 @@ for column, (centre, size) in enumerate(((middle, half), (contact, reach))):
     longest = max(each.max(initial=0.0) for each in near)
     factor = SHARE * size / longest if longest else 1.0
     for name, mesh in meshes.items():
-        moved = mesh.warp_by_vector("displacement_mm", factor=factor)
-        moved.points[:, 2] += 0.1 * reach * name.endswith("_contact")  # in front of the body
-        plotter.add_mesh(moved, scalars="von_mises_MPa", clim=(0.0, peak), lighting=False)
+        displaced = mesh.warp_by_vector("displacement_mm", factor=factor)
+        displaced.points[:, 2] += 0.1 * reach * name.endswith("_contact")  # in front of the body
+        plotter.add_mesh(displaced, scalars="von_mises_MPa", clim=(0.0, peak), lighting=False)
     text = f"{notes['load_case'][0]}, {angles[chosen]:g} deg, displacement x {factor:.3g}"
     plotter.add_text(text, font_size=10)
     plotter.view_xy()

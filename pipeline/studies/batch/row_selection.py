@@ -124,13 +124,7 @@ def _counts(words: Iterable[str]) -> dict[str, Json]:
     return dict(sorted(Counter(words).items()))
 
 
-def fails_in(table: pa.Table) -> tuple[int, int]:
-    """Rows of a shard that fail, and those without a result."""
-    counted = Counter(table[SCREEN.name].to_pylist())
-    return counted[FAILED], counted[NO_RESULT]
-
-
-def judged(table: pa.Table) -> NDArray[np.uint8]:
+def states_in(table: pa.Table) -> NDArray[np.uint8]:
     """State (n,) of each row of a shard, as in the answers."""
     state, _ = states_of(values_of(table[VERDICT.name]), values_of(table[SCREEN.name]))
     return state

@@ -126,20 +126,20 @@ class StudyFolder:
             for name, content in each.files.items():
                 write_atomic(self.path / CASES / each.name / name, content)
 
-    def holds(self, shard: Shard) -> bool:
-        """Whether the shard is there and whole; a damaged one is deleted."""
+    def read_whole(self, shard: Shard) -> pa.Table | None:
+        """Rows of a shard; None if it is missing or damaged, and then deleted."""
         path = self._shard(shard.name)
         if not path.is_file():
-            return False
+            return None
         try:
             table = read_parquet(path)
             require_columns(table, [each for each in FIXED if each is not DESIGN], path)
-            whole = table[ID.name].to_pylist() == list(shard.ids)
+            if table[ID.name].to_pylist() == list(shard.ids):
+                return table
         except ResultError:
-            whole = False
-        if not whole:
-            path.unlink()
-        return whole
+            pass
+        path.unlink()
+        return None
 
     def write_shard(self, name: str, rows: bytes, clock: bytes) -> None:
         """Write the rows of a task and their clock figures."""

@@ -6,7 +6,9 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +17,7 @@ from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import Json, sha256_of
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.studies.batch.answers_yield import PASSES, UNKNOWN, Yield
+from camwright.pipeline.studies.batch.answers_yield import FAILS, PASSES, UNKNOWN, Yield
 from camwright.pipeline.studies.batch.case_template import (
     Template,
     UnpackedTemplates,
@@ -28,15 +30,19 @@ from camwright.pipeline.studies.batch.dataset import (
     HEADLINE,
     column_of,
     is_text,
+    table_from,
 )
 from camwright.pipeline.studies.batch.design_plan import Plan, Settings, Task, study_versions
 from camwright.pipeline.studies.batch.factor_axes import axis_of
-from camwright.pipeline.studies.batch.row_selection import Figures, fails_in, judged
+from camwright.pipeline.studies.batch.row_selection import Figures, states_in
 from camwright.pipeline.studies.batch.sampling import Designs, designs_of
 from camwright.pipeline.studies.batch.study_file import Stop, Study
 from camwright.pipeline.studies.batch.study_folder import Shard, StudyFolder
 from camwright.pipeline.studies.batch.task_scheduler import TaskScheduler, cluster
 from camwright.reports.report_tables import HEADLINES
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 _NOTE_EVERY_S = 10.0
 
@@ -186,17 +192,18 @@ class _Run:
                     return
                 shard = Shard(task.name, task.ids)
                 watch.expect(shard)
-                if self.home.holds(shard):
-                    watch.take(shard)
-                else:
+                table = self.home.read_whole(shard)
+                if table is None:
                     yield task
+                else:
+                    watch.take(shard, table)
 
         pending = missing()
         start = next(pending, None)
         if start is not None:
-            for task, (rows, clock) in self._cluster().shards(_after(start, pending)):
+            for task, (rows, clock) in self._cluster().shards(chain([start], pending)):
                 self.home.write_shard(task.name, rows, clock)
-                watch.take(Shard(task.name, task.ids))
+                watch.take(Shard(task.name, task.ids), table_from(rows))
                 if watch.stopped:
                     break
         shards = watch.shards()
@@ -255,11 +262,6 @@ class _Run:
         }
 
 
-def _after(first: Task, others: Iterator[Task]) -> Iterator[Task]:
-    yield first
-    yield from others
-
-
 class _Watch:
     """Progress of a stage, and its stop rule on the shards that are complete in their order.
 
@@ -281,15 +283,13 @@ class _Watch:
         """The next shard in order."""
         self._order.append(shard)
 
-    def take(self, shard: Shard) -> None:
-        """A shard is complete."""
-        table = self._run.home.read_shard(shard.name)
+    def take(self, shard: Shard, table: pa.Table) -> None:
+        """A shard is complete, of these rows."""
         self._run.figures.add(table)
-        self._ready[shard.name] = judged(table)
-        failed, lost = fails_in(table)
+        states = self._ready[shard.name] = states_in(table)
         self._solved += len(shard.ids)
-        self._failed += failed
-        self._lost += lost
+        self._failed += int((states == FAILS).sum())
+        self._lost += int((states == UNKNOWN).sum())
         self._run.progress.advance(self._solved, self._count)
         now = time.monotonic()
         if now - self._spoke >= _NOTE_EVERY_S:
