@@ -21,15 +21,23 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import NOT_STORED, ContactStore, is_body, solution
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.preview import preview_case, smoothing_record
-from camwright.pipeline.results.trial import CONSTRAINED, GIVEN_LIFT, SmoothingRecord, Trial
+from camwright.pipeline.results.trial import (
+    CONSTRAINED,
+    GIVEN_LIFT,
+    SmoothingRecord,
+    Trial,
+    TrialPoint,
+)
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.fe_correction import (
-    LimitShift,
+    Comparison,
+    Rank,
     SynthesisRecord,
+    compared,
     corrected,
     design_record,
+    rank,
     redrawn,
-    settled,
 )
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.multistart import Starts, explored
@@ -67,10 +75,11 @@ class Synthesis:
 
 
 class Iteration(NamedTuple):
-    """Final trial of a run, its number that of the trials, and the stopping criterion in words."""
+    """Final trial of a run, the stopping criterion in words, and a point of each trial in order."""
 
     final: Trial
     statement: str
+    points: tuple[TrialPoint, ...]
 
 
 class TrialSink(Protocol):
@@ -139,7 +148,8 @@ def trials_of(
     if case.engine is None:
         trial = task.solved(1, case, given_lift(case), lift_origin(case), GIVEN_LIFT)
         reason = f"prescribed lift: {_result(trial)}, not smoothed"
-        return Iteration(trial, reason)
+        task.sink.keep(trial)
+        return Iteration(trial, reason, (TrialPoint.of(trial),))
     return _smoothed(task)
 
 
@@ -163,7 +173,7 @@ class _Task:
         synthesis: SynthesisRecord | None = None,
         uses: tuple[Array, Mapping[str, Array]] | None = None,
     ) -> Trial:
-        """Trial of a lift, passed to the sink; uses: see `Trial.limits_in_use`."""
+        """Trial of a lift; uses: see `Trial.limits_in_use`."""
         self.progress.stage(f"trial {number}: lift and contour")
         trial = solve(
             case,
@@ -173,7 +183,7 @@ class _Task:
             store=self.sink.store(number),
             progress=_Prefixed(self.progress, f"trial {number}: "),
         )
-        trial = replace(
+        return replace(
             trial,
             number=number,
             why=why,
@@ -181,8 +191,6 @@ class _Task:
             synthesis=synthesis,
             limits_in_use=uses,
         )
-        self.sink.keep(trial)
-        return trial
 
 
 def _smoothed(task: _Task) -> Iteration:
@@ -191,14 +199,17 @@ def _smoothed(task: _Task) -> Iteration:
     forecast = cache(lambda smoother: forecast_checks(case, torques, smoother))
     smoother, why = Smoother.from_case(case.smoothing), "smoother of the case"
     attempts: list[Attempt] = []
+    points: list[TrialPoint] = []
     while True:
         lift = cam_lift(case, torques, smoother)
         record = smoothing_record(smoother)
         trial = task.solved(len(attempts) + 1, case, lift, why, record)
+        task.sink.keep(trial)
+        points.append(TrialPoint.of(trial))
         attempts.append(Attempt(smoother, within_depth(trial.checks)))
         after = next_smoother(attempts, case.solver.max_trials, forecast)
         if isinstance(after, Stop):
-            return Iteration(trial, after.reason)
+            return Iteration(trial, after.reason, tuple(points))
         del trial  # its solution takes most of the memory
         task.progress.note(f"trial {len(attempts)} fails: {after.why}")
         smoother, why = after.smoother, after.why
@@ -224,26 +235,22 @@ def forecast_checks(
 
 
 def _constrained(task: _Task) -> Iteration:
-    """Synthesis and finite elements in turn, until no utilisation above one half changes."""
+    """Synthesis and finite elements in turn, until they agree; the best trial is the final one."""
     case, torques = task.case, task.torques
     problem = problem_of(case, torques)
     why = "least ripple within all limits"
     starts: Starts | None = None
-    shift: LimitShift | None = None
-    number = 0
+    comparisons: list[Comparison] = []
+    points: list[TrialPoint] = []
+    best: tuple[Rank, Trial] | None = None
     while True:
-        number += 1
+        number = len(points) + 1
         task.progress.stage(f"trial {number}: synthesis")
         if number > 1:  # starts from the optimum of the trial before
             design = synthesise(problem)
         else:
             design, starts = explored(problem, case.smoothing.starts)
         record = design_record(design, problem, starts if number == 1 else None)
-        conflict = None
-        if not design.feasible:
-            task.progress.stage("conflicting limits")
-            conflict = infeasibility(problem, roller_problems(case, torques, problem))
-            record["infeasible"] = conflict.as_record()
         trial = task.solved(
             number,
             redrawn(case, design),
@@ -253,17 +260,41 @@ def _constrained(task: _Task) -> Iteration:
             synthesis=record,
             uses=limits_in_use(design),
         )
-        if conflict is not None:
-            return Iteration(trial, conflict.sentence)
-        shift, problem = corrected(problem, design, trial.cycles, shift)
-        last = number == case.solver.max_trials
+        comparisons.append(compared(problem, design, trial.cycles))
         unmeshed = task.tier is Tier.CYCLE and trial.mesh is None
-        if settled(shift, trial.checks) or unmeshed or last:
-            agree = "" if starts is None else f"; {starts.sentence}"
-            return Iteration(trial, f"trial {number} {_result(trial)}; {shift.sentence}{agree}")
+        # Without corrections the synthesis sees lower bounds: limits that conflict there conflict.
+        conflicts = number == 1 and not design.feasible
+        ends = conflicts or unmeshed or comparisons[-1].settled(trial.checks)
+        last = ends or number == case.solver.max_trials
+        conflict = None
+        if last and not design.feasible:
+            task.progress.stage("conflicting limits")
+            conflict = infeasibility(problem, roller_problems(case, torques, problem))
+            record["infeasible"] = conflict.as_record()
+        task.sink.keep(trial)
+        points.append(TrialPoint.of(trial))
+        ranked = rank(trial.checks, design.ripple)
+        if best is None or ranked <= best[0]:
+            best = (ranked, trial)
+        if last:
+            final = best[1]
+            parts = [_ending(final, number, comparisons[-1], settled=ends)]
+            parts += [] if conflict is None else [conflict.sentence]
+            parts += [] if starts is None or conflict is not None else [starts.sentence]
+            return Iteration(final, "; ".join(parts), tuple(points))
         del trial  # its solution takes most of the memory
-        why = shift.sentence
+        why = comparisons[-1].sentence
         task.progress.note(f"trial {number}: {why}")
+        problem = corrected(problem, design, comparisons)
+
+
+def _ending(final: Trial, count: int, latest: Comparison, *, settled: bool) -> str:
+    """Result of the final trial and the reason for the end of the trials, in words."""
+    chosen = f"trial {final.number} {_result(final)}"
+    if final.number < count:
+        chosen += f"; it is the best of {count} trials"
+    reason = latest.sentence if settled else f"the trials do not settle: {latest.sentence}"
+    return f"{chosen}; {reason}"
 
 
 def _result(trial: Trial) -> str:

@@ -54,17 +54,20 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
     # Most previews need no optimiser.
     from camwright.pipeline.smoothing.constrained_synthesis import synthesise
     from camwright.pipeline.smoothing.fe_correction import (
-        LimitShift,
+        Comparison,
+        Rank,
+        compared,
         corrected,
         design_record,
+        rank,
         redrawn,
-        settled,
     )
     from camwright.pipeline.smoothing.problem_setup import problem_of
 
     problem = problem_of(case, torques)
-    earlier: LimitShift | None = None
-    for _ in range(_ROUNDS):
+    comparisons: list[Comparison] = []
+    best: tuple[Rank, Trial] | None = None
+    while True:
         design = synthesise(problem)
         drawn = redrawn(case, design)
         contour = drawn.contour(design.lift())
@@ -80,10 +83,14 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
             smoothing=CONSTRAINED,
             synthesis=design_record(design, problem),
         )
-        earlier, problem = corrected(problem, design, trial.cycles, earlier)
-        if not design.feasible or settled(earlier, trial.checks):
-            break
-    return trial
+        comparisons.append(compared(problem, design, trial.cycles))
+        ranked = rank(trial.checks, design.ripple)
+        if best is None or ranked <= best[0]:
+            best = (ranked, trial)
+        last = not design.feasible or len(comparisons) == _ROUNDS
+        if last or comparisons[-1].settled(trial.checks):
+            return best[1]
+        problem = corrected(problem, design, comparisons)
 
 
 def smoothing_record(smoother: Smoother | None) -> SmoothingRecord:

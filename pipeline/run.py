@@ -8,19 +8,21 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from camwright.geometry.errors import CamError
 from camwright.pipeline.base.progress import SILENT, Progress
 from camwright.pipeline.base.worker_processes import Crew, crew
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.load_case_torque import engine_torques, measurement_record
 from camwright.pipeline.checks.tolerance_corners import corners_record
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.cycle.ripple_map import ripple_map
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.iteration import trials_of
 from camwright.pipeline.results.field_output import Shown, write_fields
 from camwright.pipeline.results.run_folder import RunFolder
 from camwright.pipeline.results.run_reader import Run, read_run
 from camwright.pipeline.results.run_records import crank_speed_record, headline, torque_columns
-from camwright.pipeline.results.trial import Trial
+from camwright.pipeline.results.trial import Trial, TrialPoint
 from camwright.pipeline.results.trial_writer import TrialWriter
 from camwright.pipeline.results.workshop_files import WORKSHOP, write_workshop
 from camwright.pipeline.smoothing.required_lift import required_torque
@@ -99,10 +101,10 @@ def _solved(
     if torques:
         folder.write_torque(torque_columns(torques[case.load_cases[0].name]))
     writer = TrialWriter(folder)
-    final, statement = trials_of(case, torques, tier=depth, sink=writer, progress=watch)
+    final, statement, points = trials_of(case, torques, tier=depth, sink=writer, progress=watch)
     if final.corners:
         folder.write_corners(corners_record(final.case, final.corners))
-    summary = _summary(folder, torques, final) | dict(also(final))
+    summary = _summary(folder, torques, final, points) | dict(also(final))
 
     def rest() -> None:
         """Files that need no certificate."""
@@ -127,7 +129,7 @@ def _solved(
 
 
 def restated(statement: str, before: Sequence[str], after: Sequence[str]) -> str:
-    """Stopping criterion, and the failing checks of the last trial that it does not know.
+    """Stopping criterion, and the failing checks of the final trial that it does not know.
 
     Parameters
     ----------
@@ -143,7 +145,12 @@ def _failing(trial: Trial) -> list[str]:
     return [one.id for one in trial.checks if one.must_have and one.status == "fail"]
 
 
-def _summary(folder: RunFolder, torques: Mapping[str, Torque], final: Trial) -> dict[str, Any]:
+def _summary(
+    folder: RunFolder,
+    torques: Mapping[str, Torque],
+    final: Trial,
+    points: Sequence[TrialPoint],
+) -> dict[str, Any]:
     """Contents of ``run.json`` that no certificate changes; writes ``1_speed.csv``."""
     case, required = final.case, None
     if final.smoothing.strength is not None:
@@ -153,14 +160,26 @@ def _summary(folder: RunFolder, torques: Mapping[str, Torque], final: Trial) -> 
     if columns is not None:
         folder.write_speed(columns)
     return {
-        "trials": final.number,
+        "trials": len(points),
+        "final_trial": final.number,
+        "trial_points": [point.as_record() for point in points],
         "scope": case.scope.as_record(),
         "headline": headline(torques, final),
         "prices": None if final.synthesis is None else final.synthesis["prices"],
         "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
         **crank_speed,
+        "ripple_map": _ripple_map_record(torques, final),
         "measurement": measurement_record(case),
     }
+
+
+def _ripple_map_record(torques: Mapping[str, Torque], final: Trial) -> Mapping[str, Any] | None:
+    """Ripple map of the final cam; the reason where a working cycle cannot be solved."""
+    try:
+        mapped = ripple_map(final.case, torques, final.contour.pitch, final.cycles[0].loads.rubbing)
+    except CamError as error:
+        return {"refused": str(error)}
+    return None if mapped is None else mapped.as_record()
 
 
 def _judged(final: Trial, statement: str) -> dict[str, Any]:

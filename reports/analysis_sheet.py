@@ -14,6 +14,7 @@ from camwright.reports.figures import (
     Curve,
     Figure,
     LimitLine,
+    LineFigure,
     OutlineFigure,
     Panel,
     circle,
@@ -23,12 +24,13 @@ from camwright.reports.report_tables import number, quantity, words
 from camwright.reports.sheet_turn import Turn, angle_figure, curves_of
 
 GROUPS = (
-    ("Torque", ("torque", "torque-components", "crank-speed")),
+    ("Torque", ("torque", "torque-components", "crank-speed", "ripple-map")),
     ("Shape", ("outline", "pressure-angle", "face", "lift", "radii")),
     ("Limits", ("limits",)),
     ("Contact", ("pressure", "half-width", "stress")),
     ("Forces and guides", ("normal-force", "forces", "guides", "jamming", "speed")),
     ("Parts", ("edge-pressure", "elastic", "roller", "film", "parts")),
+    ("Trials", ("trial-points",)),
 )
 LARGEST_RADIUS_MM = 150.0
 HARD_STOP_DEG = 45.0
@@ -43,6 +45,7 @@ def groups(turn: Turn) -> tuple[tuple[str, tuple[Figure, ...]], ...]:
     makers: tuple[Callable[[Turn], Figure | None], ...] = (
         _torque, _components, _crank_speed, _lift, _outline, _pressure_angle, _face, _radii,
         _limits_strip, _pressure, _half_width, _stress, *PART_FIGURES,
+        _ripple_map, _trial_points,
     )  # fmt: skip
     made = (maker(turn) for maker in makers)
     by_id = {figure.id: figure for figure in made if figure is not None}
@@ -286,6 +289,49 @@ def _stress(turn: Turn) -> Figure | None:
         "depths.",
         Panel("stress", "MPa", stress, turn.limit("yield, von Mises", "MPa", "first_yield")),
         Panel("depth", "mm", depth, height=0.62),
+    )  # fmt: skip
+
+
+def _ripple_map(turn: Turn) -> Figure | None:
+    """Residual torque ripple by speed and engine load."""
+    record = turn.ripple_map
+    if record is None or "refused" in record:
+        return None
+    pressures = record["intake_pressure_kPa"]
+    labels = [""] if pressures is None else [f"{value:.4g} kPa" for value in pressures]
+    curves = tuple(
+        Curve(label, np.array(values), colour)
+        for label, values, colour in zip(labels, record["ratio"], SERIES, strict=False)
+    )
+    loads = "" if pressures is None else " Engine load by intake pressure."
+    return LineFigure(
+        "ripple-map", "Torque ripple by speed and load",
+        "Standard deviation of the crank torque with the cam over that of the engine alone; above "
+        f"1 the cam adds ripple. Quasi-static cam torque with inertia and friction.{loads} "
+        f"{record['engine']}", "crank speed", "rpm", np.array(record["crank_speed_rpm"]),
+        (Panel("ripple ratio", "", curves, (LimitLine(1.0, "engine alone"),), height=1.1),),
+    )  # fmt: skip
+
+
+def _trial_points(turn: Turn) -> Figure | None:
+    """Ripple and worst utilisation by trial; None of a single trial."""
+    if len(turn.points) < 2:
+        return None
+
+    def column(name: str) -> Array:
+        return np.array([np.nan if p[name] is None else p[name] for p in turn.points], dtype=float)
+
+    notes = tuple(words(str(point["limit"])) for point in turn.points)
+    panels = (
+        Panel("ripple", "N m", (Curve("", column("ripple_Nm"), "blue"),), height=0.7),
+        Panel("utilisation", "", (Curve("", column("utilisation"), "vermillion", notes=notes),),
+              (LimitLine(1.0, "limit"),), height=0.9),
+    )  # fmt: skip
+    return LineFigure(
+        "trial-points", "Trials",
+        "Standard deviation of the crank torque with the cam, and the greatest utilisation of the "
+        "required checks that depend on the lift, by trial.",
+        "trial", "", column("trial"), panels, whole=True,
     )  # fmt: skip
 
 

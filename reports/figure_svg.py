@@ -38,6 +38,7 @@ from camwright.reports.figures import (
     Y_AXIS,
     AngleFigure,
     Figure,
+    LineFigure,
     OutlineFigure,
     Panel,
     closed,
@@ -141,7 +142,9 @@ def style(salt: str) -> Iterator[None]:
 
 def draw(figure: Figure) -> Canvas:
     """The matplotlib figure of a figure."""
-    return _angles(figure) if isinstance(figure, AngleFigure) else _outline(figure)
+    if isinstance(figure, OutlineFigure):
+        return _outline(figure)
+    return _angles(figure) if isinstance(figure, AngleFigure) else _lines(figure)
 
 
 def svg_of(figure: Figure) -> str:
@@ -186,25 +189,10 @@ def themed(svg: str, figure_id: str) -> str:
 
 def _angles(figure: AngleFigure) -> Canvas:
     """Panels with a common crank axis below and the cam axis above."""
-    rows = -(-max(panel.legend_entries for panel in figure.panels) // LEGEND_ROW)
-    heights = [panel.height * 1.62 for panel in figure.panels]
-    gaps = [GAP + (0.2 if legend else 0.0) for legend in figure.legends]
-    top = TOP - 0.2 + 0.2 * (rows if figure.legends[0] else 0)
-    total = top + sum(heights) + sum(gaps[1:]) + BOTTOM
-    canvas = Canvas(figsize=(FIGURE_WIDTH, total))
-    edge = total - top
-    axes: list[Axes] = []
-    for number, (panel, height) in enumerate(zip(figure.panels, heights, strict=True)):
-        edge -= height + (gaps[number] if number else 0.0)
-        box = (LEFT / FIGURE_WIDTH, edge / total,
-               1 - (LEFT + RIGHT) / FIGURE_WIDTH, height / total)  # fmt: skip
-        ax = canvas.add_axes(box)
-        axes.append(ax)
+    canvas, axes = _stacked(figure)
+    for ax, panel in zip(axes, figure.panels, strict=True):
         _panel(ax, figure, panel)
-        ax.tick_params(labelbottom=number == len(heights) - 1)
-        if figure.legends[number]:
-            above = (0.42 if number == 0 else 0.02) / height
-            _legend(ax, panel, 1 + above)
+    _legends(figure, axes)
     for start, name, _ in figure.named_strokes:
         axes[0].annotate(
             name, (start + 90.0, 1.0), xycoords=("data", "axes fraction"), xytext=(0, -3),
@@ -214,6 +202,58 @@ def _angles(figure: AngleFigure) -> Canvas:
     axes[-1].set_xlabel(CRANK_AXIS, labelpad=2)
     _cam_axis(axes[0], figure.gear_ratio)
     return canvas
+
+
+def _lines(figure: LineFigure) -> Canvas:
+    """Panels with a common axis of another quantity, points marked."""
+    canvas, axes = _stacked(figure)
+    for ax, panel in zip(axes, figure.panels, strict=True):
+        for curve in panel.curves:
+            ax.plot(
+                figure.x, curve.values, "o-", color=COLOURS[curve.colour], label=curve.label,
+                linewidth=1.5, markersize=2.6, zorder=3,
+            )  # fmt: skip
+            for note, place in zip(curve.notes, zip(figure.x, curve.values, strict=True),
+                                   strict=False):  # fmt: skip
+                ax.annotate(
+                    note, place, xytext=(0, 4), textcoords="offset points", ha="center",
+                    va="bottom", fontsize=7.0, color=COLOURS["muted"], zorder=4,
+                )  # fmt: skip
+        _vertical(ax, panel, strokes=False)
+        ax.set_xlim(*figure.span)
+        ax.xaxis.set_major_locator(MaxNLocator(nbins=8, integer=figure.whole))
+    _legends(figure, axes)
+    axes[-1].set_xlabel(figure.axis, labelpad=2)
+    return canvas
+
+
+def _stacked(figure: AngleFigure | LineFigure) -> tuple[Canvas, list[Axes]]:
+    """Axes of the panels, one below the other."""
+    rows = -(-max(panel.legend_entries for panel in figure.panels) // LEGEND_ROW)
+    heights = [panel.height * 1.62 for panel in figure.panels]
+    gaps = [GAP + (0.2 if legend else 0.0) for legend in figure.legends]
+    named_above = isinstance(figure, AngleFigure)
+    top = (TOP - 0.2 if named_above else GAP) + 0.2 * (rows if figure.legends[0] else 0)
+    total = top + sum(heights) + sum(gaps[1:]) + BOTTOM
+    canvas = Canvas(figsize=(FIGURE_WIDTH, total))
+    edge = total - top
+    axes: list[Axes] = []
+    for number, height in enumerate(heights):
+        edge -= height + (gaps[number] if number else 0.0)
+        box = (LEFT / FIGURE_WIDTH, edge / total,
+               1 - (LEFT + RIGHT) / FIGURE_WIDTH, height / total)  # fmt: skip
+        ax = canvas.add_axes(box)
+        axes.append(ax)
+        ax.tick_params(labelbottom=number == len(heights) - 1)
+    return canvas, axes
+
+
+def _legends(figure: AngleFigure | LineFigure, axes: Sequence[Axes]) -> None:
+    for number, (ax, panel) in enumerate(zip(axes, figure.panels, strict=True)):
+        if figure.legends[number]:
+            second = number == 0 and isinstance(figure, AngleFigure)  # above the cam axis
+            above = (0.42 if second else 0.02) / (panel.height * 1.62)
+            _legend(ax, panel, 1 + above)
 
 
 def _legend(ax: Axes, panel: Panel, height: float) -> None:
@@ -240,17 +280,22 @@ def _panel(ax: Axes, figure: AngleFigure, panel: Panel) -> None:
             linestyle=(0, (4, 3.4)) if curve.dashed else "solid",
             zorder=3.2 if curve.dashed else 3, linewidth=1.1 if curve.dashed else 1.5,
         )  # fmt: skip
-    low, high = vertical_span(panel, figure.strokes)
-    ax.set_ylim(low, high)
-    if low < 0 < high:
-        ax.axhline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=1)
     if figure.mark is not None:
         ax.axvline(
             figure.mark, color=COLOURS["ink"], linewidth=0.7, linestyle=(0, (1, 2)), zorder=2
         )
-    _limits(ax, panel, low, high)
+    _vertical(ax, panel, strokes=figure.strokes)
     ax.set_xlim(0.0, figure.period)
     ax.set_xticks(np.arange(0.0, figure.period + 1.0, CRANK_STEP))
+
+
+def _vertical(ax: Axes, panel: Panel, *, strokes: bool) -> None:
+    """Vertical axis of a panel with its limits; frame and grid."""
+    low, high = vertical_span(panel, strokes)
+    ax.set_ylim(low, high)
+    if low < 0 < high:
+        ax.axhline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=1)
+    _limits(ax, panel, low, high)
     ax.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10]))
     ax.grid(True, axis="y", zorder=0)
     ax.set_axisbelow(True)

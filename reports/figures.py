@@ -37,7 +37,7 @@ class Curve:
     """One quantity over the turn.
 
     `values` (n,) are at the crank angles of the figure; `band` is the minimum and maximum over
-    several load cases, drawn as a pale ribbon.
+    several load cases, drawn as a pale ribbon. `notes` are written at the points of a `LineFigure`.
     """
 
     label: str
@@ -45,6 +45,7 @@ class Curve:
     colour: str = "blue"
     dashed: bool = False
     band: tuple[Array, Array] | None = None
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -80,13 +81,18 @@ class Panel:
         return f"{self.quantity}, {self.unit}" if self.unit else self.quantity
 
     @property
+    def noted(self) -> bool:
+        """Whether points of a curve are named."""
+        return any(curve.notes for curve in self.curves)
+
+    @property
     def legend_entries(self) -> int:
         """Number of curves with a label."""
         return sum(bool(curve.label) for curve in self.curves)
 
 
 def vertical_span(panel: Panel, strokes: bool) -> tuple[float, float]:
-    """Vertical axis limits: curves, ribbons, near limits, and space for the stroke names."""
+    """Vertical axis limits: curves, ribbons, near limits, space for names of strokes or points."""
     if panel.span is not None:
         return panel.span
     held = [part for curve in panel.curves for part in (curve.values, *(curve.band or ()))]
@@ -100,7 +106,9 @@ def vertical_span(panel: Panel, strokes: bool) -> tuple[float, float]:
         if low - FAR_LIMIT * size < line.value < high + FAR_LIMIT * size:
             low, high = min(low, line.value), max(high, line.value)
     size = max(high - low, size)
-    return low - (0.06 * size if low != 0.0 else 0.0), high + (0.16 if strokes else 0.07) * size
+    return low - (0.06 * size if low != 0.0 else 0.0), high + (
+        0.16 if strokes or panel.noted else 0.07
+    ) * size
 
 
 @dataclass(frozen=True)
@@ -180,10 +188,8 @@ class AngleFigure:
 
     @property
     def legends(self) -> tuple[bool, ...]:
-        """Whether each panel has a legend; one is enough for panels with equal labels."""
-        first = [curve.label for curve in self.panels[0].curves]
-        shared = all(len(p.curves) < 2 or [c.label for c in p.curves] == first for p in self.panels)
-        return tuple(p.legend_entries > 1 and not (k and shared) for k, p in enumerate(self.panels))
+        """Whether each panel has a legend."""
+        return shown_legends(self.panels)
 
     @property
     def alt(self) -> str:
@@ -201,6 +207,66 @@ class AngleFigure:
                 )
             parts += [f"limit {line.label}: {line.value:.4g} {panel.unit}" for line in panel.limits]
         return f"{self.title} over one turn of the cam. " + ". ".join(parts) + "."
+
+
+@dataclass(frozen=True, eq=False)
+class LineFigure:
+    """Panels over a common quantity: x (n,), ascending; `whole`: a count. Points are marked."""
+
+    id: str
+    title: str
+    caption: str
+    quantity: str
+    unit: str
+    x: Array
+    panels: tuple[Panel, ...]
+    whole: bool = False
+
+    @property
+    def axis(self) -> str:
+        """Title of the horizontal axis."""
+        return f"{self.quantity}, {self.unit}" if self.unit else self.quantity
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Limits of the horizontal axis."""
+        low, high = float(self.x[0]), float(self.x[-1])
+        margin = 0.5 if self.whole else 0.03 * (high - low)
+        return low - margin, high + margin
+
+    @property
+    def legends(self) -> tuple[bool, ...]:
+        """Whether each panel has a legend."""
+        return shown_legends(self.panels)
+
+    @property
+    def alt(self) -> str:
+        """Text alternative: range of each curve; every point of a count."""
+        parts = []
+        for panel in self.panels:
+            for curve in panel.curves:
+                if not np.isfinite(curve.values).any():
+                    continue
+                name = f"{panel.quantity}, {curve.label}" if curve.label else panel.quantity
+                if self.whole:
+                    points = zip(self.x, curve.values, strict=True)
+                    notes = [f" ({note})" for note in curve.notes] or [""] * self.x.size
+                    shown = ", ".join(
+                        f"{value:.4g} {panel.unit}".rstrip() + f" at {at:g}{note}"
+                        for (at, value), note in zip(points, notes, strict=True)
+                    )
+                else:
+                    low, high = np.nanmin(curve.values), np.nanmax(curve.values)
+                    shown = f"{low:.4g} to {high:.4g} {panel.unit}".rstrip()
+                parts.append(f"{name}: {shown}")
+        return f"{self.title} by {self.quantity}. " + ". ".join(parts) + "."
+
+
+def shown_legends(panels: Sequence[Panel]) -> tuple[bool, ...]:
+    """Whether each panel has a legend; one is enough for panels with equal labels."""
+    first = [curve.label for curve in panels[0].curves]
+    shared = all(len(p.curves) < 2 or [c.label for c in p.curves] == first for p in panels)
+    return tuple(p.legend_entries > 1 and not (k and shared) for k, p in enumerate(panels))
 
 
 @dataclass(frozen=True, eq=False)
@@ -347,4 +413,4 @@ def _slot(bore_radius: float, width: float, depth: float, angle: float) -> Array
     return np.array([[cosine, -sine], [sine, cosine]]) @ corners
 
 
-Figure = AngleFigure | OutlineFigure
+Figure = AngleFigure | LineFigure | OutlineFigure

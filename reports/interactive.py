@@ -29,6 +29,7 @@ from camwright.reports.figures import (
     AngleFigure,
     Curve,
     Figure,
+    LineFigure,
     OutlineCurve,
     OutlineFigure,
     Panel,
@@ -79,7 +80,9 @@ def scripts(sources: Iterable[Path]) -> tuple[tuple[Markup, ...], tuple[str, ...
 
 def specification(figure: Figure) -> Spec:
     """Traces and layout of a figure for Plotly, colours by name."""
-    return _angles(figure) if isinstance(figure, AngleFigure) else _outline(figure)
+    if isinstance(figure, OutlineFigure):
+        return _outline(figure)
+    return _angles(figure) if isinstance(figure, AngleFigure) else _sweep(figure)
 
 
 def script_safe_json(value: Json) -> str:
@@ -136,6 +139,46 @@ def _angles(figure: AngleFigure) -> Spec:
     }}  # fmt: skip
 
 
+def _sweep(figure: LineFigure) -> Spec:
+    lines, x = _Lines.of(figure), _numbers(figure.x)
+    shapes: list[Spec] = []
+    notes: list[Spec] = []
+    traces: list[Spec] = []
+    axes: dict[str, Spec] = {}
+    for number, panel in enumerate(figure.panels):
+        end = "" if number == 0 else str(number + 1)
+        axis, (bottom, top) = f"y{end}", lines.domains[number]
+        low, high = vertical_span(panel, strokes=False)
+        axes[f"yaxis{end}"] = {
+            "domain": [bottom, top], "fixedrange": True, "range": [low, high],
+            "title": {"text": html.escape(panel.title), "standoff": 8},
+        }  # fmt: skip
+        for curve in panel.curves:
+            trace: Spec = {"type": "scatter", "mode": "lines+markers", "x": x, "xaxis": "x",
+                     "yaxis": axis, "marker": {"size": 5, "color": curve.colour},
+                     "customdata": x, "showlegend": figure.legends[number]}  # fmt: skip
+            traces.append(trace | _curve(curve, panel, "") | {"y": _numbers(curve.values)})
+            notes += [
+                {"xref": "x", "x": at, "yref": axis, "y": value, "yshift": 4, "yanchor": "bottom",
+                 "showarrow": False, "text": html.escape(note),
+                 "font": {"color": "muted", "size": 10}}
+                for note, at, value in zip(curve.notes, x, _numbers(curve.values), strict=False)
+                if value is not None
+            ]  # fmt: skip
+        lines_of, notes_of = _limits(panel, axis, low, high)
+        shapes, notes = shapes + lines_of, notes + notes_of
+    last = len(figure.panels)
+    horizontal: Spec = {"range": list(figure.span), "fixedrange": True,
+                        "title": {"text": html.escape(figure.axis)},
+                        "anchor": "y" if last == 1 else f"y{last}"}  # fmt: skip
+    if figure.whole:
+        horizontal["dtick"] = 1
+    return {"data": traces, "at": {"name": figure.quantity, "unit": figure.unit}, "layout": {
+        "height": lines.height, "shapes": shapes, "annotations": notes, **axes,
+        "margin": {"l": 68, "r": 14, "t": lines.top, "b": _BOTTOM_PIXELS}, "xaxis": horizontal,
+    }}  # fmt: skip
+
+
 @dataclass(frozen=True)
 class _Lines:
     """Height and top margin of a figure, pixels, and the vertical domain of each panel, 0 to 1."""
@@ -145,7 +188,7 @@ class _Lines:
     domains: tuple[tuple[float, float], ...]
 
     @classmethod
-    def of(cls, figure: AngleFigure) -> _Lines:
+    def of(cls, figure: AngleFigure | LineFigure) -> _Lines:
         gaps = [_GAP_PIXELS + _LEGEND_PIXELS * legend for legend in figure.legends[1:]]
         heights = [_PANEL_PIXELS * panel.height for panel in figure.panels]
         whole = sum(heights) + sum(gaps)

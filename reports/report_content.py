@@ -278,7 +278,8 @@ def _trials(material: Material) -> Section:
     return Section(
         "trials", "Trials and shadow prices",
         [Block(Tabular(table)), *_tables((prices, "Shadow prices of the limits", lead))],
-        "Each trial recomputes all stages from its own lift; the last trial is the result.",
+        "Each trial recomputes all stages from its own lift; "
+        f"trial {run.final.number} is the result.",
         "Trials",
     )  # fmt: skip
 

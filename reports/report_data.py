@@ -57,6 +57,7 @@ def governing_turn(run: Run, case: Record) -> Turn:
     return Turn(
         by_name[drawn], tuple(by_name.values()), final.lift, final.contour, run.torque,
         final.checks, case, final.record["balance"], drawn, run.speed, final.limits,
+        run.summary["trial_points"], run.summary["ripple_map"],
     )  # fmt: skip
 
 

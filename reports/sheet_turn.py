@@ -31,6 +31,8 @@ class Turn:
     balance : mapping     balance of trial.json
     speed : Table or None      1_speed.csv
     limits : Table or None     2_limits.csv
+    points : sequence          trial_points of run.json
+    ripple_map : mapping       ripple_map of run.json; None without one
     """
 
     columns: Table
@@ -44,6 +46,8 @@ class Turn:
     load_case: str = ""
     speed: Table | None = None
     limits: Table | None = None
+    points: Sequence[Record] = ()
+    ripple_map: Record | None = None
 
     @property
     def counter_hole(self) -> tuple[float, float, float, bool] | None:

@@ -22,6 +22,18 @@ RATE, PRELOAD, PRIME_RADIUS, ROLLER, WIDTH = 24.2e3, 242.0, 0.050, 0.008, 0.0044
 MODULUS, MASS, SPEED = 113.2e9, 0.175, 78.54
 BORE, HUB = 0.010, 0.0025
 
+TRIAL_POINTS = [
+    {"trial": 1, "ripple_Nm": 3.4, "limit": "pressure_angle", "utilisation": 1.2, "passes": False},
+    {"trial": 2, "ripple_Nm": 3.1, "limit": "jump", "utilisation": 0.97, "passes": True},
+]
+RIPPLE_MAP = {
+    "load_case": "idle", "engine": "Working cycle solved at three speeds.",
+    "crank_speed_rpm": [1500.0, 2500.0, 3600.0], "intake_pressure_kPa": [30.5, 101.3],
+    "ratio": [[0.4, 0.5, 0.7], [0.8, 0.85, 0.9]],
+    "ripple_before_Nm": [[6.0, 5.8, 5.7], [30.0, 29.0, 28.0]],
+    "ripple_after_Nm": [[2.4, 2.9, 3.99], [24.0, 24.65, 25.2]],
+}  # fmt: skip
+
 CASE = """\
 schema_version = 1
 name = "gx120"
@@ -506,7 +518,8 @@ def write_run(
         "statement": "no smoothing that keeps the torque reduction lets roller_static pass",
         "platform": "Linux x86_64", "prices": None, "benchmarks": None, "speed": None,
         "consistency": [], "files": {},
-        "trials": 2, "depth": "certified", "verdict": verdict_of(records), "screen": None,
+        "trials": 2, "final_trial": 2, "trial_points": TRIAL_POINTS, "ripple_map": RIPPLE_MAP,
+        "depth": "certified", "verdict": verdict_of(records), "screen": None,
         "binding": list(binding_of(records)),
         "scope": left_out.as_record(),
         "headline": {

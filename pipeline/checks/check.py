@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from camwright.pipeline.base.units import in_unit, shown
-from camwright.pipeline.case.limits import AnyLimit, Sense
+from camwright.pipeline.case.limits import TORQUE_REDUCTION, AnyLimit, Sense
 from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.case.scope_section import PartName
 from camwright.pipeline.checks.extremes import Extreme
@@ -450,6 +450,11 @@ def screen(checks: Iterable[Check]) -> Screen:
 def within_depth(checks: Iterable[Check]) -> tuple[Check, ...]:
     """The checks without those that a deeper solution judges."""
     return tuple(each for each in checks if not each.judged_at)
+
+
+def depends_on_lift(one: Check) -> bool:
+    """Whether a synthesis of the lift can change the demand of a check."""
+    return one.lift_can_help or one.id == TORQUE_REDUCTION.id
 
 
 def binding(checks: Iterable[Check]) -> tuple[str, ...]:

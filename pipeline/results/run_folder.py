@@ -376,7 +376,7 @@ def _differing(state: Json, now: Mapping[str, Json]) -> str:
 
 
 def drawn_cam(run: Path) -> tuple[Case, Contour]:
-    """The case of a run and the contour of its last trial."""
+    """The case of a run and the contour of its final trial."""
     case = read_case(run / "case.toml")
     values = 1e-3 * run_reader.read_run(run).final.lift["lift_mm"]
     return case, case.contour(Lift(uniform_turn(values.size), values))

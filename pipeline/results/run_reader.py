@@ -17,7 +17,7 @@ from camwright.geometry.errors import ResultError
 from camwright.pipeline.base.files import Json, hash_inputs, read_json, read_text, sha256_of
 from camwright.pipeline.base.tables import Table, read_table
 
-SCHEMA = 4
+SCHEMA = 5
 """Number of the form of a run folder; a folder of another form is refused."""
 HEADLINE = (
     *("torque_std_before_Nm", "torque_std_after_Nm", "torque_p2p_before_Nm", "torque_p2p_after_Nm"),
@@ -116,6 +116,16 @@ class Finding(TypedDict):
     flagged: bool
 
 
+class TrialPointRecord(TypedDict):
+    """Ripple and worst utilisation of a trial; see `trial.TrialPoint`."""
+
+    trial: int
+    ripple_Nm: float | None
+    limit: str
+    utilisation: float | None
+    passes: bool
+
+
 class SummaryOfAnyRun(TypedDict):
     """Contents of ``run.json`` that every run has."""
 
@@ -126,6 +136,8 @@ class SummaryOfAnyRun(TypedDict):
     platform: str
     timings_s: dict[str, float]
     trials: int
+    final_trial: int
+    trial_points: list[TrialPointRecord]
     depth: str
     verdict: str | None
     screen: str | None
@@ -136,6 +148,7 @@ class SummaryOfAnyRun(TypedDict):
     prices: Json
     benchmarks: Json
     speed: Json
+    ripple_map: dict[str, Json] | None
     consistency: list[Finding]
     files: dict[str, str]
 
@@ -182,7 +195,7 @@ class TrialRecord:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A run read from its folder; the last trial is the result."""
+    """A run read from its folder; the final trial is the result."""
 
     path: Path
     case_text: str
@@ -193,8 +206,8 @@ class Run:
 
     @property
     def final(self) -> TrialRecord:
-        """The last trial."""
-        return self.trials[-1]
+        """The trial that is the result: the best one of a synthesis, else the last one."""
+        return self.trials[self.summary["final_trial"] - 1]
 
     @property
     def verdict(self) -> str | None:
@@ -231,7 +244,7 @@ def read_run(path: str | Path) -> Run:
 
 
 def read_verdict(path: Path) -> dict[str, Any]:
-    """Summary of a finished run and checks of its last trial; no table is read.
+    """Summary of a finished run and checks of its final trial; no table is read.
 
     Raises
     ------
@@ -240,7 +253,7 @@ def read_verdict(path: Path) -> dict[str, Any]:
     """
     summary = read_summary(path)
     _case_text(path, summary)
-    trial = path / f"trial_{summary['trials']}"
+    trial = path / f"trial_{summary['final_trial']}"
     checks, depth = read_checks(trial), read_trial_record(trial)["depth"]
     _require_judgement(path, summary, checks, depth)
     return {
@@ -282,6 +295,10 @@ def read_summary(path: Path) -> Summary:
     _require(file, summary, SummaryOfAnyRun.__annotations__)
     if not isinstance(summary["trials"], int) or summary["trials"] < 1:
         raise ResultError(f"{file}: trials = {summary['trials']}, must be a count >= 1")
+    final = summary["final_trial"]
+    if not isinstance(final, int) or not 1 <= final <= summary["trials"]:
+        limit = f"must be from 1 to {summary['trials']}"
+        raise ResultError(f"{file}: final_trial = {final}, {limit}")
     return summary
 
 
@@ -461,7 +478,7 @@ def _case_text(path: Path, summary: Summary) -> str:
 def _require_judgement(
     path: Path, summary: Summary, checks: Iterable[AnyCheck], depth: str
 ) -> None:
-    """Refuse a summary whose depth, verdict or screen is not that of the last trial."""
+    """Refuse a summary whose depth, verdict or screen is not that of the final trial."""
     judged = judgement(checks, depth)
     for name, said in (
         ("depth", summary["depth"]),
@@ -469,7 +486,7 @@ def _require_judgement(
         ("screen", summary["screen"]),
     ):
         if said != judged[name]:
-            whose = "the last trial" if name == "depth" else "the checks of the last trial"
+            whose = "the final trial" if name == "depth" else "the checks of the final trial"
             raise ResultError(f"{path}: run.json says {said}, {whose} {judged[name]}")
 
 

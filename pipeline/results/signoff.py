@@ -36,7 +36,7 @@ def record(path: Path) -> dict[str, Json]:
         If a file of the run is missing or unreadable.
     """
     summary = run_reader.read_summary(path)
-    trial = path / f"trial_{summary['trials']}"
+    trial = path / f"trial_{summary['final_trial']}"
     made, checks = run_reader.read_trial_record(trial), run_reader.read_checks(trial)
     corners = path / "corners.json"
     return {
@@ -69,7 +69,7 @@ def record(path: Path) -> dict[str, Json]:
             if c["waiver"]
         ],
         "to_be_confirmed": to_be_confirmed(checks),
-        "trial": summary["trials"],
+        "trial": summary["final_trial"],
         "headline": summary["headline"],
         "figures": [_figure(check) for check in checks],
         "evidence": {

@@ -6,16 +6,28 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from camwright.geometry.arrays import Array
 from camwright.geometry.contour import Contour
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.check import Check, Screen, Verdict, binding, screen, verdict
+from camwright.pipeline.checks.check import (
+    Check,
+    Screen,
+    Verdict,
+    binding,
+    depends_on_lift,
+    screen,
+    verdict,
+    within_depth,
+)
 from camwright.pipeline.checks.tolerance_corners import Outcome
 from camwright.pipeline.contact.contact_history import CertificatePoint
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import ContactMesh, Solution
+from camwright.pipeline.results.run_reader import TrialPointRecord
 
 
 @dataclass(frozen=True)
@@ -33,6 +45,60 @@ class SmoothingRecord:
 
 GIVEN_LIFT = SmoothingRecord(None, "a given lift")
 CONSTRAINED = SmoothingRecord("constrained", "constrained: the least ripple within all limits")
+
+
+@dataclass(frozen=True)
+class TrialPoint:
+    """Ripple and worst utilisation of a trial.
+
+    Parameters
+    ----------
+    number : int          from 1, within a run
+    ripple : float        std of the crank torque with the cam in the design load case, N m; None:
+                          without an engine torque
+    limit : str           id of the worst must-have check that depends on the lift; "": none
+    utilisation : float   of it; None: infinite, or no such check
+    passes : bool         no must-have check within the depth of the trial fails
+    """
+
+    number: int
+    ripple: float | None
+    limit: str
+    utilisation: float | None
+    passes: bool
+
+    @classmethod
+    def of(cls, trial: Trial) -> TrialPoint:
+        """Point of a solved trial."""
+        judged = [
+            one
+            for one in within_depth(trial.checks)
+            if one.must_have and depends_on_lift(one) and one.status in ("pass", "fail")
+        ]
+        # A utilisation of None is infinite.
+        worst = max(judged, key=lambda one: _or_infinite(one.utilisation), default=None)
+        after = trial.cycles[0].turn.torque_after
+        return cls(
+            trial.number,
+            None if after is None else float(np.std(after)),
+            "" if worst is None else worst.id,
+            None if worst is None else worst.utilisation,
+            screen(within_depth(trial.checks)) == "open",
+        )
+
+    def as_record(self) -> TrialPointRecord:
+        """The JSON record."""
+        return {
+            "trial": self.number,
+            "ripple_Nm": self.ripple,
+            "limit": self.limit,
+            "utilisation": self.utilisation,
+            "passes": self.passes,
+        }
+
+
+def _or_infinite(utilisation: float | None) -> float:
+    return np.inf if utilisation is None else utilisation
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import NamedTuple, NotRequired, TypedDict
 
 import numpy as np
+import scipy
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.checks.check import Check
+from camwright.pipeline.checks.check import Check, depends_on_lift, within_depth
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.smoothing.infeasibility import ConflictRecord
-from camwright.pipeline.smoothing.multistart import Starts, StartsRecord
+from camwright.pipeline.smoothing.multistart import NEGLIGIBLE, Starts, StartsRecord
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Correction
 from camwright.pipeline.smoothing.shadow_prices import PriceRecord, prices
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
-SETTLED = 0.01  # of a limit: maximum change of a utilisation at convergence
+SETTLED = 5e-3  # of a limit: maximum change of a utilisation at convergence
+SETTLED_RIPPLE = 2e-3  # of the residual ripple: maximum change by a further trial at convergence
 _LOADED = 0.05  # of the maximum: least load of a meaningful ratio
 _RUBBING = 1e-6  # the same for friction, which also acts at low guide loads
 _USED = 0.5  # utilisation below which a limit does not count
+_LATEST = 0.25  # least share of the latest corrections in those of the next trial
+_SUM = 1e3  # weight of the sum of the shares in their least squares
 
 
 class SynthesisRecord(TypedDict):
@@ -47,70 +51,176 @@ class SynthesisRecord(TypedDict):
 
 
 class LimitShift(NamedTuple):
-    """Change of a utilisation by finite elements, of the limit that changes most."""
+    """Change of the utilisation of one limit by finite elements."""
 
     limit: str
     before: float
     after: float
 
     @property
-    def size(self) -> float:
-        """Absolute change, of the limit."""
-        return abs(self.after - self.before)
-
-    def relaxation(self, earlier: LimitShift | None) -> float:
-        """Relaxation factor of the new corrections, below 1 where the shifts alternate.
-
-        A sequence that alternates by a constant factor converges there (Aitken).
-        """
-        if earlier is None or earlier.limit != self.limit or earlier.size == 0.0:
-            return 1.0
-        ratio = (self.after - self.before) / (earlier.after - earlier.before)
-        return 1.0 / (1.0 - ratio) if -1.0 <= ratio < 0.0 else 1.0
+    def change(self) -> float:
+        """Change, of the limit."""
+        return self.after - self.before
 
     @property
     def sentence(self) -> str:
         """The change in words."""
-        if not self.limit:
-            return "finite elements change no utilisation above one half"
         values = f"from {self.before:.4g} to {self.after:.4g} of its limit"
         return f"finite elements change {self.limit} {values}"
 
 
-def corrected(
-    problem: Problem, design: Design, cycles: Sequence[Cycle], earlier: LimitShift | None
-) -> tuple[LimitShift, Problem]:
-    """Shift of the utilisations by the solved cycles, and the corrected problem.
-
-    The corrected problem starts from the design.
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Finite elements of one cam against the closed forms of its synthesis.
 
     Parameters
     ----------
-    cycles : sequence        of the design, one a load case
-    earlier : LimitShift     of the round before; None in the first
+    applied : tuple of Correction       in the synthesis, by scenario
+    corrections : tuple of Correction   by scenario, of this cam alone
+    shifts : tuple of LimitShift        of each limit
+    ripple_shift : float                change of the residual ripple by a further trial, relative,
+                                        to first order: multipliers times shifts
+    converged : bool                    of the synthesis; else the shift of the ripple is not known
     """
-    corrections = {cycle.load_case: _correction(cycle) for cycle in cycles}
-    after = _with_corrections(problem, corrections)
-    shift = _shift(design, problem, after)
-    share = shift.relaxation(earlier)
+
+    applied: tuple[Correction, ...]
+    corrections: tuple[Correction, ...]
+    shifts: tuple[LimitShift, ...]
+    ripple_shift: float
+    converged: bool = True
+
+    @property
+    def used(self) -> tuple[LimitShift, ...]:
+        """Shifts of the limits used by one half at least, the greatest first."""
+        used = (each for each in self.shifts if max(each.before, each.after) > _USED)
+        return tuple(sorted(used, key=lambda each: -abs(each.change)))
+
+    @property
+    def size(self) -> float:
+        """Greatest change of a utilisation above one half."""
+        return abs(self.used[0].change) if self.used else 0.0
+
+    @property
+    def sentence(self) -> str:
+        """The greatest change in words."""
+        if not self.used:
+            return "finite elements change no utilisation above one half"
+        return self.used[0].sentence
+
+    def settled(self, checks: Sequence[Check]) -> bool:
+        """Whether finite elements and synthesis agree.
+
+        To 0.5 % of each limit and 0.2 % of the ripple; to the reserve of the synthesis where a
+        check fails that a gentler lift can pass.
+        """
+        fails = any(c.must_have and c.lift_can_help and c.status == "fail" for c in checks)
+        within = self.converged and abs(self.ripple_shift) < SETTLED_RIPPLE
+        return within and self.size < (RESERVE if fails else SETTLED)
+
+
+class Rank(NamedTuple):
+    """Order of trials; the least is the best."""
+
+    violation: float
+    ripple: float
+
+
+def rank(checks: Sequence[Check], ripple: float) -> Rank:
+    """Rank of a trial: greatest violation of the checks that depend on the lift, then ripple.
+
+    Of trials without a violation that of the least ripple is the best. A check that a deeper
+    solution judges does not count.
+
+    Parameters
+    ----------
+    ripple : float   residual ripple over that of the engine
+    """
+    over = [
+        max((np.inf if one.utilisation is None else one.utilisation) - 1.0, 0.0)
+        for one in within_depth(checks)
+        if one.must_have and one.status == "fail" and depends_on_lift(one)
+    ]
+    # A check fails by its error bar too: a violation of zero that is none the less one.
+    return Rank(max(over) + RESERVE if over else 0.0, ripple)
+
+
+def compared(problem: Problem, design: Design, cycles: Sequence[Cycle]) -> Comparison:
+    """Solved cycles of a design against its synthesis.
+
+    Parameters
+    ----------
+    cycles : sequence   of the design, one a load case
+    """
+    by_load_case = {cycle.load_case: _correction(cycle) for cycle in cycles}
+    applied = tuple(each.correction for each in problem.scenarios)
+    # A tolerance corner takes the correction of its load case.
+    corrections = tuple(
+        by_load_case.get(each.name.split(",")[0], each.correction) for each in problem.scenarios
+    )
+    before, after = (_utilisation(problem, design, each) for each in (applied, corrections))
+    shifts = tuple(LimitShift(name, use, after[name]) for name, use in before.items())
+    by_limits = sum(design.multipliers.get(each.limit, 0.0) * each.change for each in shifts)
+    ripple_shift = by_limits / max(design.ripple, NEGLIGIBLE)
+    return Comparison(applied, corrections, shifts, ripple_shift, design.converged)
+
+
+def corrected(problem: Problem, design: Design, cams: Sequence[Comparison]) -> Problem:
+    """Problem of the next trial; it starts from the design.
+
+    The corrections are the convex combination of those of all cams for which the change of the
+    utilisations of the latest cam, over the turn, is least: where several limits alternate, their
+    changes cancel. This is Anderson's mixing without extrapolation.
+
+    Parameters
+    ----------
+    cams : sequence   of all trials in order, that of the design last
+
+    References
+    ----------
+    Walker and Ni, SIAM J. Numer. Anal. 49 (2011) 1715: Anderson acceleration.
+    """
+    changes = [
+        _over_turn(problem, design, cam.corrections) - _over_turn(problem, design, cam.applied)
+        for cam in cams
+    ]
+    weights = shares(np.stack(changes, axis=1))
     scenarios = tuple(
-        replace(new, correction=old.correction.towards(new.correction, share))
-        for old, new in zip(problem.scenarios, after.scenarios, strict=True)
+        replace(each, correction=_mixed([cam.corrections[k] for cam in cams], weights))
+        for k, each in enumerate(problem.scenarios)
     )
-    relaxed = replace(
-        after, scenarios=scenarios, seed=design.coefficients, variables=design.variables
+    return replace(
+        problem, scenarios=scenarios, seed=design.coefficients, variables=design.variables
     )
-    return shift, relaxed
 
 
-def settled(shift: LimitShift, checks: Sequence[Check]) -> bool:
-    """Whether finite elements and synthesis agree.
+def shares(changes: Array) -> Array:
+    """Share (m,) of the corrections of each cam in those of the next trial; their sum is 1.
 
-    To 1 % of each limit; to the reserve of the synthesis where a check fails that a gentler lift
-    can pass.
+    Parameters
+    ----------
+    changes : array (n, m)   of the utilisations of one cam by the corrections of each cam
     """
-    fails = any(c.must_have and c.lift_can_help and c.status == "fail" for c in checks)
-    return shift.size < (RESERVE if fails else SETTLED)
+    changes = np.asarray(changes, dtype=float)
+    scale = float(np.abs(changes).max(initial=0.0))
+    latest = np.eye(changes.shape[1])[-1:]
+    if scale == 0.0:
+        return np.asarray(latest[0])
+    matrix = np.vstack([changes / scale, np.full(changes.shape[1], _SUM)])
+    solution, _ = scipy.optimize.nnls(matrix, np.append(np.zeros(len(changes)), _SUM))
+    weights = np.asarray(solution / np.sum(solution), dtype=float)
+    if weights[-1] < _LATEST:  # else a trial could be solved twice
+        weights[:-1] *= (1.0 - _LATEST) / (1.0 - weights[-1])
+        weights[-1] = _LATEST
+    return weights
+
+
+def _mixed(corrections: Sequence[Correction], weights: Array) -> Correction:
+    """Weighted mean of corrections at equal cam angles."""
+    mean, total = corrections[0], float(weights[0])
+    for one, weight in zip(corrections[1:], weights[1:], strict=True):
+        total += float(weight)
+        mean = mean.towards(one, float(weight) / total if total > 0.0 else 1.0)
+    return mean
 
 
 def _correction(cycle: Cycle) -> Correction:
@@ -133,26 +243,27 @@ def _ratio(solved: Array, closed: Array, least: float = _LOADED) -> Array:
     return np.where(loaded, solved, 1.0) / np.where(loaded, closed, 1.0)
 
 
-def _with_corrections(problem: Problem, corrections: Mapping[str, Correction]) -> Problem:
-    """The problem with new corrections; a tolerance corner takes that of its load case."""
+def _utilisation(
+    problem: Problem, design: Design, corrections: Sequence[Correction]
+) -> Mapping[str, float]:
+    """Utilisation of each limit by a design under the corrections of each scenario."""
+    search = _search(problem, design, corrections)
+    return search.state(design.coefficients, design.variables).utilisation
+
+
+def _over_turn(problem: Problem, design: Design, corrections: Sequence[Correction]) -> Array:
+    """Utilisations of all limits over the turn, (n,), each of the weight of one value."""
+    search = _search(problem, design, corrections)
+    uses = search.utilisations(design.coefficients, design.variables, search.turn)
+    return np.concatenate([use / np.sqrt(use.size) for _, use in sorted(uses.items())])
+
+
+def _search(problem: Problem, design: Design, corrections: Sequence[Correction]) -> Search:
     scenarios = tuple(
-        replace(each, correction=corrections.get(each.name.split(",")[0], each.correction))
-        for each in problem.scenarios
+        replace(each, correction=correction)
+        for each, correction in zip(problem.scenarios, corrections, strict=True)
     )
-    return replace(problem, scenarios=scenarios)
-
-
-def _shift(design: Design, before: Problem, after: Problem) -> LimitShift:
-    """Greatest change of a utilisation above one half between two problems."""
-    utilisations = [
-        Search(replace(each, seed=design.coefficients))
-        .state(design.coefficients, design.variables)
-        .utilisation
-        for each in (before, after)
-    ]
-    shifts = [LimitShift(name, use, utilisations[1][name]) for name, use in utilisations[0].items()]
-    used = [each for each in shifts if max(each.before, each.after) > _USED]
-    return max(used, key=lambda each: each.size, default=LimitShift("", 0.0, 0.0))
+    return Search(replace(problem, scenarios=scenarios, seed=design.coefficients))
 
 
 def _corrections_record(problem: Problem) -> dict[str, dict[str, list[float]]]:

@@ -42,7 +42,9 @@
     const plain = (text) => new DOMParser().parseFromString(text, "text/html").body.textContent;
     const curves = spec.data.filter((trace) => trace.hovertemplate && trace.x.length > index);
     if (!curves.length) return "";
-    const where = "cam angle " + curves[0].customdata[index].toFixed(1) + " degrees: ";
+    const at = spec.at || { name: "cam angle", unit: "degrees" };
+    const where = (at.name + " " + (spec.at ? curves[0].customdata[index] :
+      curves[0].customdata[index].toFixed(1)) + " " + at.unit).trimEnd() + ": ";
     return where + curves.map((trace) => plain(trace.name) + " " +
       (trace.y[index] === null ? "unknown" : trace.y[index] + " " + plain(trace.meta))).join("; ");
   }

@@ -9,7 +9,7 @@ from made_check import made_check
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.checks.check import Check, verdict
 from camwright.pipeline.run import restated
-from camwright.pipeline.smoothing.fe_correction import SETTLED, LimitShift, settled
+from camwright.pipeline.smoothing.fe_correction import SETTLED, Comparison, LimitShift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Next, Stop, best_attempt, next_smoother
 from camwright.pipeline.smoothing.smoothing_forecast import Attempt, keeps_torque, score
@@ -172,12 +172,12 @@ def test_a_demand_that_is_not_proven_is_smoothed_until_it_is():
 
 
 def test_missing_data_do_not_hold_the_synthesis_to_its_reserve():
-    """A change of half a percent is settled unless a check fails that a lift can help."""
-    shift = LimitShift("pressure_angle", 0.9, 0.905)
-    assert RESERVE < shift.size < SETTLED
-    assert settled(shift, [made_check("guide_pv_B", 2.0, None, lift_can_help=True)])
-    assert settled(shift, [made_check("mesh", 2.0, 1.0), made_check("angle", 0.9, 1.0)])
-    assert not settled(shift, [check("pressure_angle", 1.001)])
+    """A change of 0.4 % is settled unless a check fails that a lift can help."""
+    comparison = Comparison((), (), (LimitShift("pressure_angle", 0.9, 0.904),), 0.0)
+    assert RESERVE < comparison.size < SETTLED
+    assert comparison.settled([made_check("guide_pv_B", 2.0, None, lift_can_help=True)])
+    assert comparison.settled([made_check("mesh", 2.0, 1.0), made_check("angle", 0.9, 1.0)])
+    assert not comparison.settled([check("pressure_angle", 1.001)])
 
 
 def test_the_stopping_criterion_names_what_certificate_and_corners_add():

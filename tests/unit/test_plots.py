@@ -16,6 +16,7 @@ from camwright.reports.figures import (
     AngleFigure,
     Curve,
     LimitLine,
+    LineFigure,
     OutlineFigure,
     Panel,
     placed_limits,
@@ -236,3 +237,31 @@ def test_both_renderers_draw_the_same_outline():
     assert layout["xaxis"]["range"] == pytest.approx(ax.get_xlim())
     notes = [(note["text"], note["x"], note["y"]) for note in layout["annotations"]]
     assert notes == [(text.get_text(), *text.xy) for text in ax.texts]
+
+
+def sweep(**more):
+    panels = (
+        Panel("ripple", "N m", (Curve("low", np.array([1.0, 2.0])),
+                                Curve("high", np.array([3.0, 5.0]), "green"))),
+        Panel("use", "", (Curve("", np.array([1.2, 0.9]), notes=("jump", "travel")),),
+              (LimitLine(1.0, "limit"),)),
+    )  # fmt: skip
+    return LineFigure("sweep", "Sweep", "", "speed", "rpm", np.array([1.0, 2.0]), panels, **more)
+
+
+def test_points_of_a_sweep_are_named_on_axes_of_its_quantity():
+    """In the drawing, its data for the page, and its text alternative."""
+    top, bottom = drawn(sweep(whole=True)).axes
+    assert bottom.get_xlabel() == "speed, rpm"
+    assert bottom.get_xlim() == (0.5, 2.5)
+    assert [text.get_text() for text in top.get_legend().get_texts()] == ["low", "high"]
+    assert bottom.get_legend() is None
+    assert {"jump", "travel", "limit 1"} <= {text.get_text() for text in bottom.texts}
+    made = specification(sweep(whole=True))
+    assert [trace["y"] for trace in made["data"]] == [[1.0, 2.0], [3.0, 5.0], [1.2, 0.9]]
+    assert made["at"] == {"name": "speed", "unit": "rpm"}
+    notes = [note["text"] for note in made["layout"]["annotations"]]
+    assert notes == ["jump", "travel", "limit 1"]
+    assert "use: 1.2 at 1 (jump), 0.9 at 2 (travel)" in sweep(whole=True).alt
+    assert "ripple, high: 3 to 5 N m" in sweep().alt
+    assert sweep().span == pytest.approx((0.97, 2.03))

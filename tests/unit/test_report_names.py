@@ -37,7 +37,7 @@ MODULES = (
 WITH_UNIT = re.compile(
     r"[a-z]\w*_(mm|um|N|MPa|deg|Nm|W|J|rpm|percent|per_mm|per_s|per_rad[23]?|turn)"
 )
-PRICES = {"ripple_per_unit_Nm", "ripple_per_percent_Nm", "binds_at_deg"}
+PRICES = {"ripple_Nm", "ripple_per_unit_Nm", "ripple_per_percent_Nm", "binds_at_deg"}
 
 
 class Recorder(dict[str, Any]):

@@ -169,6 +169,30 @@ def test_verdict_comes_from_the_checks(tmp_path: Path, status: str, verdict: str
     run_reader.verify_run(run.path)
 
 
+def test_the_result_is_the_final_trial_whether_or_not_it_is_the_last(tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    with RunFolder(out, small_case()) as folder:
+        write_trial(folder, [check()], 1)
+        write_trial(folder, [check("fail")], 2)
+        folder.finish(summary(trials=2) | {"final_trial": 1})
+    run = run_reader.read_run(out)
+    assert len(run.trials) == 2
+    assert run.final.number == 1
+    assert run.verdict == run_reader.read_verdict(out)["verdict"] == "pass"
+    record = json.loads((out / "signoff.json").read_text())
+    assert record["trial"] == 1
+    assert record["verdict"] == "pass"
+
+
+@pytest.mark.parametrize("final", [0, 3, None])
+def test_a_final_trial_that_was_not_solved_is_refused(tmp_path: Path, final: int | None) -> None:
+    out = write_run(tmp_path / "run")
+    record = json.loads((out / "run.json").read_text())
+    (out / "run.json").write_text(json.dumps(record | {"final_trial": final}))
+    with pytest.raises(ResultError, match=rf"final_trial = {final}, must be from 1 to 1$"):
+        run_reader.read_run(out)
+
+
 def test_the_line_of_the_verdict_counts_its_reasons() -> None:
     line = run_reader.verdict_line
     good = check(to_be_confirmed=["a", "b"])
@@ -328,7 +352,7 @@ def test_a_folder_of_another_schema_is_refused(
     run = write_run(tmp_path / "run")
     for name in ("run.json", "signoff.json"):
         (run / name).write_text(json.dumps({"schema": 1, "case": "small"}))
-    with pytest.raises(ResultError, match=r"\.json: schema = 1, must be 4: run the case again$"):
+    with pytest.raises(ResultError, match=r"\.json: schema = 1, must be 5: run the case again$"):
         read(run)
 
 

@@ -3,36 +3,75 @@
 import numpy as np
 import pytest
 from made_check import made_check
+from synthesis_ratings import rated
 
-from camwright.pipeline.smoothing.fe_correction import SETTLED, LimitShift, settled
-from camwright.pipeline.smoothing.scenario import Correction
+from camwright.pipeline.checks.check import Check
+from camwright.pipeline.smoothing.fe_correction import (
+    SETTLED,
+    SETTLED_RIPPLE,
+    Comparison,
+    LimitShift,
+    corrected,
+    rank,
+    shares,
+)
+from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
+from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
 
 
-def shift(before, after, limit="guide_pv_A"):
-    return LimitShift(limit, before, after)
+def comparison(ripple_shift=0.0, converged=True, **shifts):
+    """A comparison whose shifts end at 1 of their limit."""
+    changes = (LimitShift(name, 1.0 - change, 1.0) for name, change in shifts.items())
+    return Comparison((), (), tuple(changes), ripple_shift, converged)
 
 
 def test_first_corrections_are_taken_over_whole():
-    assert shift(0.9, 0.95).relaxation(None) == 1.0
-    assert shift(0.9, 0.95).relaxation(shift(0.9, 0.95, "jump")) == 1.0
-    assert shift(0.9, 0.95).relaxation(shift(0.9, 0.9)) == 1.0
+    np.testing.assert_array_equal(shares([[0.05]]), [1.0])
 
 
-def test_swinging_corrections_end_where_a_geometric_series_does():
-    """x -> 1 - q x has its fixed point at 1/(1 + q): two steps and one of Aitken's reach it."""
+def test_corrections_that_change_nothing_are_those_of_the_latest_cam():
+    np.testing.assert_array_equal(shares(np.zeros((2, 3))), [0.0, 0.0, 1.0])
+
+
+def test_alternating_changes_end_where_a_geometric_series_does():
+    """x -> 1 - q x has its fixed point at 1/(1 + q): two cams and their mean reach it."""
     q, start = 0.6, 0.2
     first = 1 - q * start
     second = 1 - q * first
-    share = shift(first, second).relaxation(shift(start, first))
-    assert first + share * (second - first) == pytest.approx(1 / (1 + q), abs=1e-12)
+    weights = shares([[first - start, second - first]])
+    # the sum of the shares is held by a weight of 1e3
+    assert weights @ [first, second] == pytest.approx(1 / (1 + q), abs=1e-6)
 
 
-def test_a_series_that_goes_one_way_is_left_alone():
-    assert shift(0.95, 0.97).relaxation(shift(0.9, 0.95)) == 1.0
+def test_a_series_that_goes_one_way_is_not_held_back():
+    np.testing.assert_allclose(shares([[0.05, 0.02]]), [0.0, 1.0])
 
 
-def check(demand, lift_can_help=True):
-    return made_check("x", demand, 1.0, lift_can_help=lift_can_help)
+def test_a_growing_series_still_takes_over_part_of_the_latest():
+    np.testing.assert_allclose(shares([[0.02, 0.05]]), [0.75, 0.25])
+
+
+def changes_by_turns(slopes: np.ndarray, count: int, mixed: bool) -> list[float]:
+    """Greatest change of each round of x -> 1 - slopes x, a limit a component."""
+    level, after, changes = np.zeros(len(slopes)), [], []
+    for _ in range(count):
+        after.append(1.0 - slopes * level)
+        changes.append(after[-1] - level)
+        weights = shares(np.array(changes).T) if mixed else np.eye(len(after))[-1]
+        level = weights @ after
+    return [float(np.abs(change).max()) for change in changes]
+
+
+def test_several_limits_that_alternate_settle_within_six_trials():
+    """Limits that alternate by 0.95, 0.7 and 0.4: mixing settles, a plain repetition does not."""
+    slopes = np.array([0.95, 0.7, 0.4])
+    plain, mixed = (changes_by_turns(slopes, 6, mixed=each) for each in (False, True))
+    assert plain[-1] > 0.7
+    assert mixed[-1] < SETTLED
+
+
+def check(demand, lift_can_help=True, name="x") -> Check:
+    return made_check(name, demand, 1.0, lift_can_help=lift_can_help)
 
 
 @pytest.mark.parametrize(
@@ -45,8 +84,52 @@ def check(demand, lift_can_help=True):
         (0.0009, [check(1.1)], True),
     ],
 )
-def test_trials_end_where_nothing_moves_that_the_lift_can_help(share, checks, ends):
-    assert settled(shift(0.9, 0.9 + share), checks) is ends
+def test_trials_end_where_no_shift_is_left_that_the_lift_can_help(share, checks, ends):
+    assert comparison(jump=share).settled(checks) is ends
+
+
+@pytest.mark.parametrize(
+    ("ripple", "converged", "ends"),
+    [
+        (0.99 * SETTLED_RIPPLE, True, True),
+        (-1.01 * SETTLED_RIPPLE, True, False),
+        (0.0, False, False),  # the multipliers of an unconverged design forecast nothing
+    ],
+)
+def test_trials_end_where_a_further_one_leaves_the_ripple(ripple, converged, ends):
+    assert comparison(ripple, converged, jump=0.0).settled([check(0.9)]) is ends
+
+
+def test_the_best_trial_passes_with_the_least_ripple_else_violates_least():
+    passing, gentler = rank([check(0.99)], 0.5), rank([check(0.9)], 0.6)
+    slightly, strongly = rank([check(1.001)], 0.3), rank([check(1.4), check(1.001)], 0.2)
+    assert sorted([strongly, gentler, slightly, passing]) == [passing, gentler, slightly, strongly]
+    # a check that no lift changes, or that a deeper solution judges, does not count
+    assert rank([check(1.4, lift_can_help=False)], 0.5) == passing
+    lost = made_check("torque_reduction", 0.3, 0.4, sense="at_least", lift_can_help=False)
+    assert rank([lost], 0.5) > passing
+    # neither does one beyond its limit by the error bar alone pass
+    unproven = made_check("jump", 0.999, 1.0, lift_can_help=True, error_share=0.01)
+    assert unproven.status == "fail"
+    assert rank([unproven], 0.5) > passing
+
+
+def test_next_trial_starts_from_the_design_with_the_mean_of_two_cams_that_alternate():
+    """Bearing loads of 1.2 and 1.4 times the closed form, each the correction of the other cam."""
+    variables = DesignVariables(1e4, 1e2, 0.05)
+    running = Scenario("idle", 78.5, np.sin(np.arange(12.0)), 0.2, 0.08, 0.038, 0.06, 0.06)
+    ratings = rated(roller_radius=0.016, guide_pressure=(1e4, None), guide_area=(4e-4, 4e-4))
+    problem = Problem((running,), ratings, variables, coefficients=12, points=12)
+    energy = 0.3 + 0.2 * np.cos(2 * np.pi * np.arange(12) / 12)
+    design = Design(energy, variables, 0.5, {}, {}, {}, 3, True)
+    low, high = (Correction(*np.full((6, 12), level)) for level in (1.2, 1.4))
+    after = corrected(
+        problem,
+        design,
+        [Comparison((low,), (high,), (), 0.0), Comparison((high,), (low,), (), 0.0)],
+    )
+    assert after.seed is design.coefficients
+    np.testing.assert_allclose(after.scenarios[0].correction.guide_a, 1.3, rtol=1e-6)
 
 
 def test_part_of_the_way_from_one_correction_to_another():
@@ -58,5 +141,5 @@ def test_part_of_the_way_from_one_correction_to_another():
 
 
 def test_sentence_names_the_limit_and_both_shares():
-    assert "guide_pv_A from 0.9 to 0.95" in shift(0.9, 0.95).sentence
-    assert "no utilisation" in LimitShift("", 0.0, 0.0).sentence
+    assert "guide_pv_A from 0.95 to 1 of" in comparison(guide_pv_A=0.05, jump=-0.01).sentence
+    assert "no utilisation" in comparison().sentence

@@ -242,7 +242,7 @@ def trial_at(case: Case, tier: Tier, lift: Lift | None, *, corners: bool) -> Tri
         return solve(case, case.contour(lift), tier=tier, corners=corners)
     if tier <= Tier.PREVIEW:
         return preview_case(case, corners=corners)
-    trial, _ = trials_of(case, engine_torques(case), tier=tier)
+    trial = trials_of(case, engine_torques(case), tier=tier).final
     if tier < Tier.CERTIFIED:
         return trial
     with crew(1) as workers:
