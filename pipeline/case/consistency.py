@@ -92,8 +92,10 @@ def _check_start(case: Case) -> None:
         if constrained and load_case.preload is not None:
             limit = 'left out with smoothing.kind = "constrained", which has one spring'
             raise InputError(f"load_case[{k}].preload", load_case.preload, limit)
-        if case.engine is None and load_case.torque is not None:
-            raise InputError(f"load_case[{k}].torque", load_case.torque, "left out with a lift")
+        for name in ("torque", "torque_reduction", "speed_reduction"):
+            value = getattr(load_case, name)
+            if case.engine is None and value is not None:
+                raise InputError(f"load_case[{k}].{name}", value, "left out with a lift")
         modelled = isinstance(case.engine, CylinderEngine) and load_case.torque is None
         if not modelled and (load_case.intake_pressure is not None or not load_case.fired):
             name = "fired" if load_case.intake_pressure is None else "intake_pressure"

@@ -8,7 +8,13 @@ import numpy as np
 
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import OVERSPEED, Limits
+from camwright.pipeline.case.limits import (
+    OVERSPEED,
+    SPEED_REDUCTION,
+    TORQUE_REDUCTION,
+    AnyLimit,
+    Limits,
+)
 from camwright.pipeline.case.requirements_section import OVER_SPEED, STANDSTILL, LoadCase
 from camwright.pipeline.case.scope_section import PartName, Scope
 from camwright.pipeline.contact.cam_body import CamBody
@@ -38,6 +44,8 @@ _UNLOADED = {
     "intake_pressure": None,
     "fired": True,
     "ripple_weight": 0.0,
+    TORQUE_REDUCTION.id: None,
+    SPEED_REDUCTION.id: None,
     "source": "every case is judged at standstill and over-speed",
 }
 # Crank speed of a load case at rest, rad/s: inertia, film and heat are negligible.
@@ -68,7 +76,8 @@ class Machine:
     load_case : str
     speed : float              of the crank, rad/s, >= 0; 0: at rest
     gear_ratio : float         crank turns per cam turn
-    ripple_weight : float      weight of its torque ripple; 0: no reduction is required
+    ripple_weight : float      weight of its torque ripple in the synthesis
+    torque_reduction, speed_reduction : float   required of the ripple; None: none is required
     cam : CamBody
     follower : FollowerKind    the part that touches the cam, roller or flat face
     mass : float               that moves with the follower, kg, spring_mass of it of the spring
@@ -89,6 +98,8 @@ class Machine:
     speed: float
     gear_ratio: float
     ripple_weight: float
+    torque_reduction: float | None
+    speed_reduction: float | None
     cam: CamBody
     follower: FollowerKind
     mass: float
@@ -275,6 +286,8 @@ def machine(case: Case, state: LoadCase) -> Machine:
         speed=state.speed,
         gear_ratio=case.mechanism.gear_ratio,
         ripple_weight=state.ripple_weight,
+        torque_reduction=_required(case, state, TORQUE_REDUCTION),
+        speed_reduction=_required(case, state, SPEED_REDUCTION),
         cam=case.cam,
         follower=case.facing,
         mass=follower.mass,
@@ -293,3 +306,11 @@ def machine(case: Case, state: LoadCase) -> Machine:
         limits=case.limits,
         scope=case.scope,
     )
+
+
+def _required(case: Case, state: LoadCase, row: AnyLimit) -> float | None:
+    """Reduction of a ripple required in a load case; None: none is required."""
+    stated: float | None = getattr(state, row.id)
+    if stated is None:
+        return case.limits[row] if state.ripple_weight > 0 else None
+    return stated or None

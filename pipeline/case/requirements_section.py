@@ -161,8 +161,10 @@ class LoadCase(Section):
 
     Standstill, and over-speed where limits.overspeed is stated, are judged besides.
 
-    At speed 0 spring and friction act, inertia does not. The torque ripple counts with its weight;
-    at weight 0 no reduction is required. A preload acts on the cam designed for spring.preload.
+    At speed 0 spring and friction act, inertia does not. The torque ripple counts in the synthesis
+    with its weight. torque_reduction and speed_reduction are those required in the load case, 0:
+    none; left out, those of `limits` at a weight above 0, none at weight 0. A preload acts on the
+    cam designed for spring.preload.
     With a cylinder model the intake pressure sets the engine load, and an unfired load case is
     motored, at cranking speed if its speed is 0.
     """
@@ -174,4 +176,6 @@ class LoadCase(Section):
     intake_pressure: GasPressure | None = None
     fired: bool = True
     ripple_weight: Annotated[float, In(at_least=0, at_most=1000)] = 1.0
+    torque_reduction: Annotated[float, In(at_least=0, below=1)] | None = None
+    speed_reduction: Annotated[float, In(at_least=0, below=1)] | None = None
     source: Text = ""

@@ -22,7 +22,7 @@ Error = Literal["sampling", "contact", "guides", "guide_edges", "bore", "unknown
 Record = dict[str, str | float | bool | list[str] | None]
 EVERY = "all, standstill and over-speed included"
 NONE = "none: the shape of the cam or a part as drawn"
-RIPPLE = "those with an engine torque and a ripple weight"
+RIPPLE = "those with an engine torque and a required reduction"
 SPEED_RANGE = "every speed from standstill to over-speed"
 ROUNDING = 1e-9
 """Relative error of closed forms and exact integrals: no uncertainty of a demand."""

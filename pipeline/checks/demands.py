@@ -18,6 +18,16 @@ def ripple_reduction(before: Array, after: Array) -> Array:
     return np.asarray(1.0 - np.divide(left, ripple, out=none, where=ripple > 0))
 
 
+def common_reduction(
+    reduction: float | Array, required: float | Array, common: float | Array
+) -> Array:
+    """Reduction that leaves the same share of the ripple allowed at another requirement, (...).
+
+    1 - (1 - r) (1 - c)/(1 - c_i): it is at least c where r is at least c_i.
+    """
+    return np.asarray(1.0 - (1.0 - reduction) * ((1.0 - common) / (1.0 - required)))
+
+
 def unloading(inertia: Array, spring: Array) -> Array:
     """Unloading inertia force over spring force: -m w^2 s'' / F_s."""
     return -inertia / spring

@@ -15,8 +15,8 @@ from camwright.pipeline.case.limits import (
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import NONE, RIPPLE, Demand, check
-from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
-from camwright.pipeline.checks.torque_balance import cycles_of_ripple
+from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest
+from camwright.pipeline.checks.torque_balance import least_reduction
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
@@ -139,7 +139,7 @@ def chord_error(solution: Solution) -> Demand:
     id="phase_tolerance",
     title="Torque ripple reduction at phase tolerance",
     formula="min over +-d of 1 - std(T_e(phi + d) - T_c)/std(T_e) >= c; T_e, T_c: crank torque of"
-    " engine and cam, d: tolerances.phase, c: limits.torque_reduction",
+    " engine and cam, d: tolerances.phase, c: of torque_reduction, as its load cases",
     reason="Does not decide: the tolerance corners judge torque_reduction at the phase tolerance"
     " too.",
     method="engine torque shifted by plus and minus the phase tolerance; the lesser",
@@ -149,14 +149,14 @@ def chord_error(solution: Solution) -> Demand:
 )
 def phase_tolerance(solution: Solution) -> Demand | None:
     """Ripple reduction at the ends of the phase tolerance of key and gear."""
-    running = cycles_of_ripple(solution)
-    if not running:
-        return None
     phase = solution.case.tolerances.phase
-    worst = worst_case(running, lambda cycle: _reduction(cycle, phase), at_least=True)
+    least = least_reduction(solution, lambda cycle: _reduction(cycle, phase))
+    if least is None:
+        return None
+    worst, required = least
     return Demand(
         worst.value if phase > 0 else None,
-        solution.machine.limits[TORQUE_REDUCTION],
+        required,
         worst,
         note=f"{shown(phase, 'deg')} of crank" if phase > 0 else "no phase tolerance is given",
     )

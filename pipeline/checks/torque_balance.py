@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array
@@ -28,8 +30,9 @@ _CHORD = 1e-5
     TORQUE_REDUCTION,
     title="Torque ripple reduction",
     tier=Tier.SCREENING,
-    formula="min over the load cases of 1 - std(T_e - T_c)/std(T_e) >= c; T_e, T_c: crank torque"
-    " of engine and cam about their means, c: limits.torque_reduction",
+    formula="min over the load cases of 1 - (1 - c)/(1 - c_i) std(T_e - T_c)/std(T_e) >= c; T_e,"
+    " T_c: crank torque of engine and cam about their means, c_i: load_case.torque_reduction, else"
+    " limits.torque_reduction, c: the greatest c_i",
     reason="It is the purpose of the cam.",
     method="1 - std of the crank torque with the cam, friction and inertia included, over that"
     " without it",
@@ -38,33 +41,58 @@ _CHORD = 1e-5
 )
 def torque_reduction(solution: Solution) -> Demand | None:
     """Reduction of the torque ripple by the cam; None without an engine."""
-    cycles = cycles_of_ripple(solution)
-    if not cycles:
+    least = least_reduction(solution, _reduction)
+    if least is None:
         return None
-    loading = [m.load_case for m in solution.machines if not m.ripple_weight > 0]
-    worst = worst_case(cycles, _reduction, at_least=True)
-    return Demand(
-        worst.value,
-        solution.machine.limits[TORQUE_REDUCTION],
-        worst,
-        note=f"not required in {', '.join(loading)}" if loading else "",
-    )
+    worst, common = least
+    free = [machine.load_case for machine in solution.machines if not machine.torque_reduction]
+    notes = [f"not required in {', '.join(free)}"] if free else []
+    own = next(m for m in solution.machines if m.load_case == worst.load_case).torque_reduction
+    if own is not None and own != common:
+        value = shown(float(demands.common_reduction(worst.value, common, own)), "", 3)
+        notes.append(f"{value} in {worst.load_case}, where {shown(own, '')} is required")
+    return Demand(worst.value, common, worst, note="; ".join(notes))
 
 
-def cycles_of_ripple(solution: Solution) -> tuple[Cycle, ...]:
-    """Cycles with an engine whose load case counts for the ripple."""
-    return tuple(
+def least_reduction(
+    solution: Solution, reduction: Callable[[Cycle], float]
+) -> tuple[Extreme, float] | None:
+    """Least reduction of the torque ripple by the greatest requirement, and that requirement.
+
+    Of load cases with other requirements it is the `common_reduction`. None where no load case
+    requires one.
+
+    Parameters
+    ----------
+    reduction : callable   cycle with an engine torque -> reduction of its ripple
+    """
+    required = {
+        machine.load_case: machine.torque_reduction
+        for machine in solution.machines
+        if machine.torque_reduction is not None
+    }
+    cycles = [
         cycle
         for cycle in solution.cycles
-        if cycle.turn.torque_before is not None and cycle.machine.ripple_weight > 0
-    )
+        if cycle.turn.torque_before is not None and cycle.load_case in required
+    ]
+    if not cycles:
+        return None
+    common = max(required[cycle.load_case] for cycle in cycles)
+
+    def comparable(cycle: Cycle) -> float:
+        own = required[cycle.load_case]
+        return float(demands.common_reduction(reduction(cycle), own, common))
+
+    return worst_case(cycles, comparable, at_least=True), common
 
 
 @check(
     SPEED_REDUCTION,
     title="Speed ripple reduction of the crank",
-    formula="min over the load cases of 1 - std(w_c)/std(w_e) >= c; w_c, w_e: crank speed with"
-    " and without the cam, c: limits.speed_reduction",
+    formula="min over the load cases of 1 - (1 - c)/(1 - c_i) std(w_c)/std(w_e) >= c; w_c, w_e:"
+    " crank speed with and without the cam, c_i: load_case.speed_reduction, else"
+    " limits.speed_reduction, c: the greatest c_i",
     reason="Decides where the case requires it.",
     method="1 - std of the crank speed with the cam over that of the engine alone,"
     " inertia of crank and follower included",
@@ -72,34 +100,40 @@ def cycles_of_ripple(solution: Solution) -> tuple[Cycle, ...]:
 )
 def speed_reduction(solution: Solution) -> Demand | None:
     """Reduction of the crank speed ripple by the cam; None without a crankshaft."""
-    idle = {m.load_case for m in solution.machines if not m.ripple_weight > 0}
+    required = {
+        machine.load_case: machine.speed_reduction
+        for machine in solution.machines
+        if machine.speed_reduction is not None
+    }
+    common = max(required.values(), default=None)
+    # without a requirement the value is that of the load cases whose ripple counts
+    counting = {each.load_case: 0.0 for each in solution.machines if each.ripple_weight > 0}
+    judged = required or counting
+
+    def share(load_case: str, speeds: tuple[float, float]) -> float:
+        reduction = _reduced(*speeds)
+        return float(demands.common_reduction(reduction, judged[load_case], common or 0.0))
+
     shares = {
-        name: _reduced(*speeds) for name, speeds in solution.crank_speed.items() if name not in idle
+        name: share(name, speeds) for name, speeds in solution.crank_speed.items() if name in judged
     }
     if not shares:
         return None
     worst = min(shares, key=lambda name: -np.inf if np.isnan(shares[name]) else shares[name])
-    allowed = solution.machine.limits[SPEED_REDUCTION]
+    value, halved = shares[worst], solution.crank_speed_halved.get(worst)
+    # change with every second crank angle alone
+    error = 0.0 if halved is None else _relative(share(worst, halved) - value, abs(value))
     return Demand(
-        float(shares[worst]),
-        allowed,
-        Extreme(float(shares[worst]), worst, None, _speed_error(solution, worst)),
-        note="" if allowed is not None else "no reduction of the speed ripple is required",
-        must_have=allowed is not None,
+        value,
+        common,
+        Extreme(value, worst, None, error),
+        note="" if common is not None else "no reduction of the speed ripple is required",
+        must_have=common is not None,
     )
 
 
 def _reduced(before: float, after: float) -> float:
     return 1.0 - after / before if before > 0 else np.nan
-
-
-def _speed_error(solution: Solution, load_case: str) -> float:
-    """Change of a speed reduction with every second crank angle alone, over its value."""
-    halved = solution.crank_speed_halved.get(load_case)
-    if halved is None:
-        return 0.0
-    value = _reduced(*solution.crank_speed[load_case])
-    return _relative(_reduced(*halved) - value, abs(value))
 
 
 def _reduction(cycle: Cycle) -> float:

@@ -18,9 +18,10 @@ from camwright.geometry.periodic_spline import knot_derivatives, knot_integrals
 from camwright.geometry.pitch_curve import speed_and_curvature
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_values import value_of
-from camwright.pipeline.case.limits import OVERSPEED, AnyLimit
+from camwright.pipeline.case.limits import OVERSPEED, TORQUE_REDUCTION, AnyLimit
 from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import CREEP, Machine, machine
+from camwright.pipeline.case.requirements_section import LoadCase
 from camwright.pipeline.checks import demands
 from camwright.pipeline.contact.elliptic_contact import Ellipse, elliptic_contact
 from camwright.pipeline.contact.hertz import peak_pressure_square
@@ -72,13 +73,13 @@ class State(NamedTuple):
     """A load case of many designs: crank speed, rad/s, and preload, N, (m, 1).
 
     torque (m or 1, n): of the engine less its mean, crank N m, at the cam angles of the loads; None
-    without one. weight: of its torque ripple.
+    without one. required: reduction of its ripple, (m,) or (); None: none is required.
     """
 
     speed: Array
     preload: Array
     torque: Array | None
-    weight: float
+    required: Array | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,13 +285,19 @@ class Designs:
             torque = self.torques.get(k)
             torque = None if torque is None else self.at_loads(torque)
             speed = self.value(f"load_case[{k}].speed")
-            states.append(State(speed, preload, torque, each.ripple_weight))
+            states.append(State(speed, preload, torque, self._required(each)))
         over = self.value(f"limits.{OVERSPEED.id}")
         for speed in (np.zeros_like(over), over):
             if np.isnan(speed).all():
                 continue
-            states += [State(speed, preload, None, 0.0) for preload in preloads]
+            states += [State(speed, preload, None, None) for preload in preloads]
         return tuple(states)
+
+    def _required(self, state: LoadCase) -> Array | None:
+        """Reduction of the torque ripple required in a load case."""
+        if state.torque_reduction is None and state.ripple_weight > 0:
+            return self.limit(TORQUE_REDUCTION)
+        return np.asarray(state.torque_reduction) if state.torque_reduction else None
 
     @cached_property
     def turns(self) -> tuple[Turns, ...]:

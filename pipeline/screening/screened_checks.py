@@ -38,7 +38,6 @@ from camwright.pipeline.case.limits import (
     SPRING_SOLID,
     SPRING_SURGE,
     TOOL_RADIUS,
-    TORQUE_REDUCTION,
     UNDERCUT_FACTOR,
     WAVINESS,
     Limit,
@@ -345,13 +344,15 @@ def torque_after(designs: Designs, turns: Turns) -> Array:
 
 def _torque_reduction(designs: Designs) -> Judged | None:
     shares = [
-        demands.ripple_reduction(turns.state.torque, torque_after(designs, turns))
+        (demands.ripple_reduction(turns.state.torque, torque_after(designs, turns)), required)
         for turns in designs.turns
-        if turns.state.torque is not None and turns.state.weight > 0.0
+        if turns.state.torque is not None and (required := turns.state.required) is not None
     ]
     if not shares:
         return None
-    return np.min(shares, axis=0), designs.limit(TORQUE_REDUCTION)
+    common = np.max(np.broadcast_arrays(*(required for _, required in shares)), axis=0)
+    least = [demands.common_reduction(share, required, common) for share, required in shares]
+    return np.min(least, axis=0), np.broadcast_to(common, designs.count)
 
 
 def _of_spring(

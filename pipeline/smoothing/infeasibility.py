@@ -14,7 +14,7 @@ from camwright.pipeline.smoothing import bounds
 from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import FACTOR_MAX
-from camwright.pipeline.smoothing.synthesis_problem import Problem, coarsened
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem, coarsened
 
 _BISECTIONS = 5
 _MARGIN = 1.02  # factor of a relaxation over the least feasible one
@@ -129,16 +129,29 @@ def _feasible(problem: Problem) -> bool:
     A limit on the ripple is compared with the least ripple: as a constraint it would slow the
     search among the limits that conflict with it.
     """
-    weights = {item.weight for item in problem.scenarios if item.weight > 0}
-    torque_alone = problem.speed_weight == 0.0 and problem.torque_weight == 1.0
-    if problem.ceiling is None or weights != {1.0} or not torque_alone:
+    ripple = _ripple_over_ceilings(problem)
+    if ripple is None:
         return synthesise(problem, ripple_weight=0.0).feasible
-    best = synthesise(_without_reduction(problem))
-    return best.feasible and best.ripple <= problem.ceiling
+    best = synthesise(ripple)
+    return best.feasible and best.ripple <= 1.0
 
 
-def _without_reduction(problem: Problem) -> Problem:
-    return replace(problem, left_out=problem.left_out | {TORQUE_REDUCTION.id})
+def _ripple_over_ceilings(problem: Problem) -> Problem | None:
+    """Problem of the least torque ripple over its ceilings, not kept; None without a ceiling."""
+    ceilings = [problem.ceiling_of(item) for item in problem.scenarios]
+    if all(ceiling is None for ceiling in ceilings):
+        return None
+    weights = [0.0 if ceiling is None else 1.0 / ceiling for ceiling in ceilings]
+    return replace(
+        problem,
+        scenarios=tuple(
+            replace(item, weight=weight)
+            for item, weight in zip(problem.scenarios, weights, strict=True)
+        ),
+        torque_weight=1.0,
+        speed_weight=0.0,
+        left_out=problem.left_out | {TORQUE_REDUCTION.id},
+    )
 
 
 def _candidates(problem: Problem, conflict: list[str]) -> list[_Candidate]:
@@ -226,14 +239,23 @@ def _replaced_by(other: Problem) -> Change:
 
 
 def _less_reduction(problem: Problem) -> list[Relaxation]:
-    """Torque ripple reduction feasible within the other limits."""
-    required, best = problem.torque_reduction, synthesise(_without_reduction(problem))
-    if required is None or not best.feasible:
+    """Torque ripple reduction feasible within the other limits: the greatest one required."""
+    ripple = _ripple_over_ceilings(problem)
+    best = None if ripple is None else synthesise(ripple)
+    if best is None or not best.feasible:
         return []
-    reduction = 1.0 - best.ripple * _MARGIN
+    factor = best.ripple * (1.0 - RESERVE) * _MARGIN
 
-    def change(other: Problem, _: float) -> Problem:
-        return replace(other, torque_reduction=reduction)
+    def less(required: float | None, size: float) -> float | None:
+        return None if required is None else 1.0 - (1.0 - required) * size
 
-    factor = (1.0 - reduction) / (1.0 - required)
-    return [Relaxation(TORQUE_REDUCTION.title, required, reduction, "-", factor, change)]
+    def change(other: Problem, size: float) -> Problem:
+        scenarios = (
+            replace(item, torque_reduction=less(item.torque_reduction, size))
+            for item in other.scenarios
+        )
+        return replace(other, scenarios=tuple(scenarios))
+
+    required = max(item.torque_reduction or 0.0 for item in problem.scenarios)
+    after = 1.0 - (1.0 - required) * factor
+    return [Relaxation(TORQUE_REDUCTION.title, required, after, "-", factor, change)]

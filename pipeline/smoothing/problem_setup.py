@@ -10,7 +10,6 @@ import numpy as np
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.case.machine import Machine, machines
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.guide_friction import FrictionRange
@@ -66,7 +65,6 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
         energy=(0.0, np.inf if "initial_energy" in smoothing.free else 0.0),
         coefficients=smoothing.coefficients,
         points=POINTS,
-        torque_reduction=case.limits[TORQUE_REDUCTION],
         torque_weight=smoothing.torque_weight,
         speed_weight=smoothing.speed_weight,
         jerk_weight=smoothing.jerk_weight,
@@ -91,6 +89,7 @@ def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scen
         viscous_damping=machine.viscous_damping,
         preload_factor=machine.spring.preload / case.spring.preload,
         weight=0.0 if torque is None else machine.ripple_weight,
+        torque_reduction=None if torque is None else machine.torque_reduction,
         friction_worst=friction.greatest,
         correction=Correction.none(POINTS),
     )

@@ -125,6 +125,7 @@ class Scenario:
     cam_speed : float        rad/s
     torque : array (n,)      engine torque at n equal cam angles, of zero mean, crank N m
     weight : float           of its ripple in the objective; 0: limits only
+    torque_reduction : float   required of its torque ripple; None: none is required
     mass, viscous_damping, guide_spacing, overhang : float   of the follower, SI
     friction_a, friction_b : float
     friction_worst : two floats   maximum friction of guides A and B; None: not known
@@ -144,6 +145,7 @@ class Scenario:
     rate_factor: float = 1.0
     preload_factor: float = 1.0
     weight: float = 1.0
+    torque_reduction: float | None = None
     friction_worst: tuple[float, float] | None = None
     correction: Correction = field(default_factory=lambda: Correction.none(8))
 

@@ -35,7 +35,6 @@ class Problem:
     energy : (float, float)         least and greatest energy at minimum lift, E0, J
     coefficients : int              number of splines of the turn
     points : int                    number of cam angles
-    torque_reduction : float        least reduction of the torque ripple; None: not required
     torque_weight, speed_weight : float   of torque ripple and of speed ripple
     jerk_weight : float             of the lift jerk over that of the exact energy
     left_out : frozenset            checks whose limits are not kept
@@ -50,19 +49,23 @@ class Problem:
     energy: tuple[float, float] = (0.0, np.inf)
     coefficients: int = 96
     points: int = 720
-    torque_reduction: float | None = None
     torque_weight: float = 1.0
     speed_weight: float = 0.0
     jerk_weight: float = 1e-5
     left_out: frozenset[str] = frozenset()
     seed: Array | None = None
 
+    def ceiling_of(self, item: Scenario) -> float | None:
+        """Greatest residual ripple of a scenario over that of the engine; None: not limited."""
+        if item.torque_reduction is None or TORQUE_REDUCTION.id in self.left_out:
+            return None
+        return (1.0 - item.torque_reduction) * (1.0 - RESERVE)
+
     @property
     def ceiling(self) -> float | None:
-        """Greatest residual ripple over that of the engine; None where not required."""
-        if self.torque_reduction is None or TORQUE_REDUCTION.id in self.left_out:
-            return None
-        return (1.0 - self.torque_reduction) * (1.0 - RESERVE)
+        """Least ceiling of the scenarios whose ripple counts; None without one."""
+        counting = [self.ceiling_of(item) for item in self.scenarios if item.weight > 0]
+        return min((each for each in counting if each is not None), default=None)
 
 
 @dataclass(frozen=True, eq=False)

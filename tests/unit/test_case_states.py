@@ -235,3 +235,17 @@ def test_a_throttle_without_a_cylinder_model_is_refused():
     )
     with pytest.raises(InputError, match=r"load_case\[1\]\.intake_pressure"):
         parse_case(lift)
+
+
+@pytest.mark.parametrize("name", ["torque_reduction", "speed_reduction"])
+def test_a_lift_has_no_ripple_to_reduce(name):
+    text = re.sub(
+        r"(?ms)^\[engine\].*?^(?=\[mechanism\])",
+        '[lift]\nkind = "eccentric"\neccentricity = "5 mm"\n\n',
+        GX120,
+    )
+    parse_case(text)
+    with pytest.raises(InputError, match=rf"load_case\[0\]\.{name} = 0.3, must be left out"):
+        parse_case(text + f"{name} = 0.3\n")
+    with pytest.raises(InputError, match=rf"load_case\[0\]\.{name} = 1, must be >= 0 and < 1"):
+        parse_case(GX120 + f"{name} = 1\n")

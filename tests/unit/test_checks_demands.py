@@ -413,6 +413,49 @@ def test_torque_reduction_by_hand():
     assert torque_balance.torque_reduction(solution).demand == pytest.approx(0.7)
 
 
+def test_each_load_case_has_its_own_torque_reduction():
+    """0.7 of 0.5 leaves 0.6 of the ripple allowed, 0.2 of 0.1 leaves 8/9 of it."""
+    cycles = (made.cycle(scale=0.6), made.cycle(load_case="rated", scale=1.6))
+
+    def judged(**rated):
+        states = (
+            made.load_case("idle", torque_reduction=0.5),
+            made.load_case("rated", ripple_weight=0.0, **rated),
+        )
+        case = made.case(load_cases=states)
+        return torque_balance.torque_reduction(made.solution(case=case, cycles=cycles))
+
+    check = judged(torque_reduction=0.1)
+    assert (check.status, check.load_case, check.limit) == ("pass", "rated", 0.5)
+    assert check.demand == pytest.approx(1.0 - 0.5 * 8.0 / 9.0)
+    assert "0.2 in rated, where 0.1 is required" in check.note
+    assert judged(torque_reduction=0.199).status == "pass"
+    assert judged(torque_reduction=0.201).status == "fail"
+    # a weight of zero alone, and a requirement of zero beside a weight, require nothing
+    assert (judged().load_case, judged().demand) == ("idle", pytest.approx(0.7))
+    free = made.case(load_cases=(made.load_case("idle", torque_reduction=0.0),))
+    assert torque_balance.torque_reduction(made.solution(case=free)) is None
+
+
+def test_each_load_case_has_its_own_speed_reduction():
+    """0.75 of 0.5 leaves 0.5 of the ripple allowed, 0.25 of 0.1 leaves 5/6 of it."""
+    states = (
+        made.load_case("idle", speed_reduction=0.5),
+        made.load_case("rated", ripple_weight=0.0, speed_reduction=0.1),
+    )
+    ripple = {"idle": (4.0, 1.0), "rated": (2.0, 1.5)}
+    halved = {"idle": (4.0, 1.0), "rated": (2.0, 1.4)}
+    check = torque_balance.speed_reduction(
+        made.solution(
+            case=made.case(load_cases=states), crank_speed=ripple, crank_speed_halved=halved
+        )
+    )
+    demand = 1.0 - 0.5 * 0.75 / 0.9
+    assert (check.load_case, check.limit) == ("rated", 0.5)
+    assert check.demand == pytest.approx(demand)
+    assert check.error_share == pytest.approx(0.5 * 0.05 / 0.9 / demand)
+
+
 def test_speed_reduction_by_hand():
     """The load case with the least, of those whose ripple counts; a NaN is the least of all."""
     ripple = {"idle": (4.0, 1.0), "rated": (2.0, 1.5), "fast": (1.0, 2.0)}

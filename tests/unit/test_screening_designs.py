@@ -113,6 +113,22 @@ def test_a_limit_of_each_design_is_its_own() -> None:
     np.testing.assert_allclose(columns["pressure_angle.limit"], [30.0, 60.0], rtol=1e-12)
 
 
+def test_load_cases_with_own_torque_reductions_are_screened_as_the_preview_judges_them() -> None:
+    """Demand by the greatest requirement; of a limit that differs by design, that of each."""
+    base = case()
+    idle = base.load_cases[0]
+    states = (
+        idle,
+        idle.model_copy(update={"name": "less", "torque_reduction": 0.2, "ripple_weight": 0.0}),
+    )
+    own = base.model_copy(update={"load_cases": states})
+    columns = screen_designs(own, {"limits.torque_reduction": [0.1, 0.3, 0.4]})
+    alone = screen_designs(base, {"spring.rate": [base.spring.rate]})["torque_reduction.demand"][0]
+    np.testing.assert_allclose(columns["torque_reduction.limit"], [0.2, 0.3, 0.4], rtol=1e-12)
+    # the same reduction in both load cases: the greatest requirement is the closest
+    np.testing.assert_allclose(columns["torque_reduction.demand"], alone, rtol=1e-9)
+
+
 def test_the_width_of_a_smoother_is_that_of_the_case() -> None:
     columns = screen_designs(case(), {"smoothing.spacing": ["5 deg", "7 deg"]})
     own = with_values(case(), {"smoothing.spacing": "7 deg"})

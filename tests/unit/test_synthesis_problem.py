@@ -38,6 +38,25 @@ def test_every_load_case_is_a_scenario(case, torques):
     assert abs(idle.torque.mean()) < 1e-12 and idle.torque.size == 720
 
 
+def test_weight_and_required_reduction_of_a_load_case_are_apart(case, torques):
+    idle, over = case.load_cases
+    problem = problem_of(case, torques)
+    required = [item.torque_reduction for item in problem.scenarios]
+    assert required == [0.5, None, None, None]
+    assert problem.ceiling == pytest.approx(0.5, rel=2e-3)
+    states = (
+        section(idle, torque_reduction=0.0),
+        section(over, ripple_weight=0.5, torque_reduction=0.1),
+    )
+    own = problem_of(section(case, load_cases=states), torques)
+    weights = [(item.weight, item.torque_reduction) for item in own.scenarios]
+    assert weights == [(1.0, None), (0.5, 0.1), (0.0, None), (0.0, None)]
+    assert own.ceiling == own.ceiling_of(own.scenarios[1]) == pytest.approx(0.9, rel=2e-3)
+    assert own.ceiling_of(own.scenarios[0]) is None
+    left_out = replace(own, left_out=frozenset({"torque_reduction"}))
+    assert left_out.ceiling_of(own.scenarios[1]) is None and left_out.ceiling is None
+
+
 def test_corners_are_all_of_spring_and_friction_and_each_of_mass_and_phase(case, torques):
     wide = section(
         case,

@@ -24,11 +24,12 @@ def small(**ratings):
     """A torque of two waves on a coarse turn, half of it to be taken away."""
     theta = uniform_turn(120)
     torque = 8.0 * np.sin(2 * theta) + 4.0 * np.cos(3 * theta)
-    running = Scenario("idle", 78.5, torque, 0.2, 0.08, 0.038, 0.06, 0.06)
+    running = Scenario(
+        "idle", 78.5, torque, 0.2, 0.08, 0.038, 0.06, 0.06, torque_reduction=0.5
+    )  # fmt: skip
     limits = rated(roller_radius=0.008, pressure_angle=np.pi / 6, **ratings)
     return Problem(
         (running,), limits, DesignVariables(24.2e3, 242.0, 0.05), coefficients=24, points=120,
-        torque_reduction=0.5,
     )  # fmt: skip
 
 

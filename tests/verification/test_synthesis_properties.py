@@ -43,8 +43,10 @@ def engine(seed, waves=9):
     return np.sum(size[:, None] * np.cos(order[:, None] * theta + phase[:, None]), axis=0)
 
 
-def problem(torque, **changes):
-    load = Scenario("one", 78.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12)
+def problem(torque, reduction=None, **changes):
+    load = Scenario(
+        "one", 78.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12, torque_reduction=reduction
+    )  # fmt: skip
     plain = {"coefficients": COUNT, "points": POINTS, "jerk_weight": 1e-7}
     return Problem((load,), LIMITS, DesignVariables(RATE, PRELOAD, BASE), **(plain | changes))
 
@@ -226,9 +228,7 @@ def test_ripple_of_the_speed_is_lowered_as_that_of_the_torque_is():
 def test_reduction_of_the_torque_holds_while_the_speed_is_lowered():
     asked = engine(3)
     least = synthesise(problem(asked)).ripple
-    given_problem = problem(
-        asked, torque_weight=0.0, speed_weight=1.0, torque_reduction=1.0 - 1.05 * least
-    )
+    given_problem = problem(asked, 1.0 - 1.05 * least, torque_weight=0.0, speed_weight=1.0)
     design = synthesise(given_problem)
     assert design.feasible
     by_torque = Search(problem(asked)).state(design.coefficients, design.variables)

@@ -18,7 +18,7 @@ from camwright.pipeline.case.cards.catalogue import (
 )
 from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_of
 from camwright.pipeline.case.case import Case
-from camwright.pipeline.case.limits import JUMP, TORQUE_REDUCTION
+from camwright.pipeline.case.limits import JUMP
 from camwright.pipeline.follower.spring import HelicalSpring
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 from camwright.pipeline.studies.redesign import ripple_bounds
@@ -153,10 +153,10 @@ class _Least:
     def by_spring(self, force: float) -> dict[str, float]:
         """Bounds by spring for a roller load limit (N), without infeasible springs."""
         case, problem = self.case, self.problem
-        torque = max(problem.scenarios, key=lambda item: item.weight).torque
-        bound = ripple_bounds.RippleBound(torque, problem.gear_ratio)
+        design = max(problem.scenarios, key=lambda item: item.weight)
+        bound = ripple_bounds.RippleBound(design.torque, problem.gear_ratio)
         relief = ripple_bounds.relief_of(problem.scenarios, problem.ratings.limits.get(JUMP))
-        allowed = 1.0 - case.limits[TORQUE_REDUCTION] + ripple_bounds.RESERVE
+        allowed = 1.0 - (design.torque_reduction or 0.0) + ripple_bounds.RESERVE
         preload, bounds = case.spring.preload, {}
         for name, (spring, travel) in self.springs.items():
             held = preload * travel + 0.5 * spring.rate * travel**2
