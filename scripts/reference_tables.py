@@ -20,6 +20,7 @@ from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.limits import LIMITS
+from camwright.pipeline.case.requirements_section import Smoothing
 from camwright.pipeline.case.section import Section, section_of
 from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.registry import CHECKS, DECLARED, MODULES
@@ -28,6 +29,7 @@ from camwright.pipeline.preview import preview_case
 from camwright.pipeline.results.model_limits import MODEL_LIMITS
 from camwright.pipeline.results.run_records import column_table
 from camwright.pipeline.screening.screened_checks import SCREENED
+from camwright.pipeline.smoothing.objective import COSTS, SPEED, TORQUE, harmonics
 from camwright.pipeline.studies.batch.dataset import (
     FACTOR,
     FIGURES,
@@ -107,6 +109,17 @@ def _limit(one: Declaration) -> str:
     value = shown(row.default, row.quantity.unit)
     default_of = f", default {value}" if value else ", without a default"
     return f"`limits.{row.id}`{default_of}; {row.source}"
+
+
+def objective() -> str:
+    """Terms of the objective of a synthesis with their references and default weights."""
+    default = Smoothing.model_fields
+    rows = (
+        (f"`{term.key}_weight`", term.words, term.reference,
+         shown(default[f"{term.key}_weight"].default, ""))
+        for term in (TORQUE, SPEED, harmonics(()), *COSTS)
+    )  # fmt: skip
+    return markdown(("key", "term", "1 at", "default weight"), rows)
 
 
 def columns() -> str:
@@ -322,6 +335,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "limits": limits,
     "checks": checks,
     "columns": columns,
+    "objective": objective,
     "model_limits": model_limits,
     "dataset": dataset,
     "study_files": study_files,

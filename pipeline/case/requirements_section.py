@@ -34,6 +34,7 @@ class Mechanism(Section):
 
 
 FreeName = Literal["initial_energy", "spring_rate", "preload", "prime_radius", "phase"]
+Order = Annotated[float, In(at_least=0.5, at_most=180)]
 Phase = Annotated[float, In("deg", at_least=-180, at_most=180)]
 
 
@@ -41,8 +42,14 @@ class Smoothing(Section):
     """Smoothing of the torque before the lift is computed from it; angles are crank angles.
 
     `constrained` computes the lift of least ripple within all limits; values named by `free` are
-    variables within their ranges. The phase is that of the cam on its shaft, in cam angle. The
-    optimisation starts from `starts` points, all but one random, to find several local optima.
+    variables within their ranges. Each weight is that of a term over its reference: ripple of
+    torque, speed and harmonics (rms) over that of the engine; loss of guides and roller bearing per
+    cam turn and greatest energy of the spring over the energy swing of the engine torque; contact
+    force at standstill (mean) and greatest contact force over that of the greatest engine torque at
+    the prime radius. harmonic_orders are periods per crank turn. robust_weight is that of the
+    torque ripple at speeds and loads of 1 -+ robust_speed and 1 -+ robust_load. The phase is that
+    of the cam on its shaft, in cam angle. The optimisation starts from `starts` points, all but one
+    random, to find several local optima.
     """
 
     kind: Literal[
@@ -70,6 +77,15 @@ class Smoothing(Section):
     starts: Annotated[int, Field(ge=1, le=40)] = 4
     torque_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 1.0
     speed_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
+    harmonic_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
+    harmonic_orders: Annotated[tuple[Order, ...], Field(strict=False, max_length=64)] = ()
+    loss_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 1.0
+    spring_energy_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
+    rest_force_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
+    peak_force_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0
+    robust_weight: Annotated[float, In(at_least=0, at_most=1)] = 0.0
+    robust_speed: Annotated[float, In(at_least=0, below=1)] = 0.1
+    robust_load: Annotated[float, In(at_least=0, below=1)] = 0.1
     jerk_weight: Annotated[float, In(at_least=0, at_most=1e3)] = 1e-5
     corners: bool = False
     source: Text = ""
@@ -83,6 +99,16 @@ class Smoothing(Section):
             if ends is None or not ends[0] < ends[1]:
                 field = f"smoothing.{name}_range"
                 raise InputError(field, ends, "two rising values, as smoothing.free names it")
+        return self
+
+    @model_validator(mode="after")
+    def _has_its_orders(self) -> Self:
+        for order in self.harmonic_orders:
+            if order % 0.5 != 0.0:
+                limit = "whole or half, per crank turn: a cycle has two turns"
+                raise InputError("smoothing.harmonic_orders", order, limit)
+        if self.harmonic_weight > 0 and not self.harmonic_orders:
+            raise InputError("smoothing.harmonic_orders", "missing", "given with harmonic_weight")
         return self
 
     @model_validator(mode="after")

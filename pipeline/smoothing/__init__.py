@@ -10,6 +10,7 @@ In the order of the calculation:
 | `smoothing_feedback`    | smoother of the next trial                   | strength                |
 | `scenario`              | design variables, ratings, load cases        | k, N/m; P, N; r0, m     |
 | `constraints`           | limits of a synthesis by cam angle           | utilisation             |
+| `objective`             | terms of the objective over their references | loss, force; ratio      |
 | `gradients`             | derivatives by complex steps                 | d/dE, d/dk, d/dP, d/dr0 |
 | `bounds`                | limits in drawing units; relaxed ratings     | as in the case file     |
 | `allowables`            | ratings of a case                            | SI                      |

@@ -77,6 +77,8 @@ def ratings_of(case: Case) -> Ratings:
         normal_force_by=normal_force_by or "roller_static",
         force_safety=limits[ROLLER_STATIC_SAFETY] if by_rating else 1.0,
         dynamic_rating=bearing.C,
+        bearing_drag=bearing.drag_torque or 0.0,
+        bearing_friction_arm=(bearing.friction or 0.0) * roller.hub_radius,
         life_force_cubed=cubed,
         roller_spin=allowed_spin(machine) if covers("roller_bearing") else None,
         guide_pressure=pressures if covers("guides") else (None, None),

@@ -14,6 +14,7 @@ from camwright.pipeline.smoothing import bounds
 from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import FACTOR_MAX
+from camwright.pipeline.smoothing.objective import TORQUE, Weighted
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Problem, coarsened
 
 _BISECTIONS = 5
@@ -148,8 +149,7 @@ def _ripple_over_ceilings(problem: Problem) -> Problem | None:
             replace(item, weight=weight)
             for item, weight in zip(problem.scenarios, weights, strict=True)
         ),
-        torque_weight=1.0,
-        speed_weight=0.0,
+        objective=(Weighted(TORQUE, 1.0),),
         left_out=problem.left_out | {TORQUE_REDUCTION.id},
     )
 

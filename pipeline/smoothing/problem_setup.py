@@ -10,10 +10,15 @@ import numpy as np
 
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.limits import OVERSPEED
+from camwright.pipeline.case.load_case_torque import engine_torque
 from camwright.pipeline.case.machine import Machine, machines
+from camwright.pipeline.case.requirements_section import LoadCase
+from camwright.pipeline.engine.cylinder import CylinderEngine
 from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.smoothing.allowables import ratings_of
+from camwright.pipeline.smoothing.objective import KEYS, Objective, objective_of
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
@@ -45,6 +50,11 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
         for each in machines(case)
         for scenario in _scenarios(case, each, torques.get(each.load_case))
     ]
+    if smoothing.robust_weight > 0:
+        named = {item.name: item for item in scenarios}
+        for state in case.load_cases:
+            if named[state.name].weight > 0:
+                scenarios += _robust(case, state, named[state.name])
     names = {
         "spring_rate": "rate",
         "preload": "preload",
@@ -65,10 +75,16 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
         energy=(0.0, np.inf if "initial_energy" in smoothing.free else 0.0),
         coefficients=smoothing.coefficients,
         points=POINTS,
-        torque_weight=smoothing.torque_weight,
-        speed_weight=smoothing.speed_weight,
+        objective=_objective(case),
         jerk_weight=smoothing.jerk_weight,
     )
+
+
+def _objective(case: Case) -> Objective:
+    """Terms of the weights of the smoothing; harmonics are of the crank, per turn."""
+    smoothing, ratio = case.smoothing, case.mechanism.gear_ratio
+    weights = {key: float(getattr(smoothing, f"{key}_weight")) for key in KEYS}
+    return objective_of(weights, [round(order * ratio) for order in smoothing.harmonic_orders])
 
 
 def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scenario]:
@@ -96,6 +112,36 @@ def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scen
     if not case.smoothing.corners:
         return [nominal]
     return [nominal, *_corners(case, nominal, friction)]
+
+
+def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
+    """Ends of the range of speed and load of a load case, weighted; none above the over-speed.
+
+    The load is a factor on the intake pressure of a cylinder model, else on the engine torque.
+    """
+    smoothing, engine, most = case.smoothing, case.engine, case.limits[OVERSPEED]
+    modelled = engine if isinstance(engine, CylinderEngine) and state.torque is None else None
+    scenarios = []
+    for rate, load in product(_ends(smoothing.robust_speed), _ends(smoothing.robust_load)):
+        speed, factor = state.speed * rate, load
+        speed = speed if most is None else min(speed, most)
+        changed: dict[str, float] = {"speed": speed}
+        if modelled is not None:
+            changed["intake_pressure"] = (state.intake_pressure or modelled.intake_pressure) * load
+            factor = 1.0
+        torque = engine_torque(case, state.model_copy(update=changed))
+        values = factor * torque.without_mean().resampled(POINTS).total
+        scenarios.append(
+            replace(
+                nominal,
+                name=f"{nominal.name}, n x {rate:g}, load x {load:g}",
+                cam_speed=speed / case.mechanism.gear_ratio,
+                torque=values - values.mean(),
+                weight=nominal.weight * smoothing.robust_weight,
+                torque_reduction=None,
+            )
+        )
+    return scenarios
 
 
 def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Scenario]:

@@ -43,6 +43,8 @@ class Ratings:
     normal_force : float       least of the limits on the normal force, N; normal_force_by is the
                                check it comes from, force_safety its factor on the static rating
     dynamic_rating : float     C of the roller bearing, N
+    bearing_drag : float       torque of the roller bearing without load, N m
+    bearing_friction_arm : float   its torque per normal force, m
     life_force_cubed : float   limit of the mean of N^3 |n| over the turn, N^3 rad/s
     roller_spin : float        rad/s
     guide_pressure, guide_pv, guide_area : pairs   of guides A and B, Pa, Pa m/s, m^2; pressures as
@@ -65,6 +67,8 @@ class Ratings:
     normal_force_by: str = "roller_static"
     force_safety: float = 1.0
     dynamic_rating: float | None = None
+    bearing_drag: float = 0.0
+    bearing_friction_arm: float = 0.0
     life_force_cubed: float | None = None
     roller_spin: float | None = None
     guide_pressure: tuple[float | None, float | None] = (None, None)

@@ -12,6 +12,17 @@ from camwright.geometry.energy import spring_deflection
 from camwright.geometry.lift import Lift
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
+from camwright.pipeline.smoothing.objective import (
+    SPEED,
+    TORQUE,
+    Objective,
+    Residual,
+    Scale,
+    Weighted,
+    residuals,
+    scale_of,
+)
+from camwright.pipeline.smoothing.objective import torque_ripple as torque_ripple
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
 RESERVE = 1e-3  # of each limit, for extremes between the points
@@ -35,7 +46,7 @@ class Problem:
     energy : (float, float)         least and greatest energy at minimum lift, E0, J
     coefficients : int              number of splines of the turn
     points : int                    number of cam angles
-    torque_weight, speed_weight : float   of torque ripple and of speed ripple
+    objective : tuple of Weighted   terms that are minimised
     jerk_weight : float             of the lift jerk over that of the exact energy
     left_out : frozenset            checks whose limits are not kept
     seed : array (coefficients,)    start, J; None: convex optimum or exact energy
@@ -49,11 +60,28 @@ class Problem:
     energy: tuple[float, float] = (0.0, np.inf)
     coefficients: int = 96
     points: int = 720
-    torque_weight: float = 1.0
-    speed_weight: float = 0.0
+    objective: Objective = (Weighted(TORQUE, 1.0),)
     jerk_weight: float = 1e-5
     left_out: frozenset[str] = frozenset()
     seed: Array | None = None
+
+    @property
+    def torque_weight(self) -> float:
+        """Weight of the torque ripple."""
+        return self._weight(TORQUE)
+
+    @property
+    def speed_weight(self) -> float:
+        """Weight of the speed ripple."""
+        return self._weight(SPEED)
+
+    def _weight(self, term: Residual) -> float:
+        return sum(each.weight for each in self.objective if each.term is term)
+
+    @property
+    def scale(self) -> Scale:
+        """References of the costs of the objective."""
+        return scale_of(self.scenarios, self.gear_ratio, self.variables.prime_radius)
 
     def ceiling_of(self, item: Scenario) -> float | None:
         """Greatest residual ripple of a scenario over that of the engine; None: not limited."""
@@ -126,30 +154,11 @@ def thinned(torque: Array, points: int) -> Array:
 
 
 def ripple_of(problem: Problem, item: Scenario, values: Array) -> Array:
-    """Weighted torque and speed ripple of columns of crank torque, over that of the engine."""
-    parts = [np.sqrt(problem.torque_weight) * torque_ripple(item, values)]
-    if problem.speed_weight > 0:
-        before = _integral(item.torque - item.torque.mean())
-        norm = np.sqrt(before.size) * float(np.std(before))
-        parts.append(np.sqrt(problem.speed_weight) / norm * _integral(values))
-    return np.concatenate(parts)
-
-
-def torque_ripple(item: Scenario, values: Array) -> Array:
-    """Columns of crank torque about their means; the norm is their std over that of the engine."""
-    before = item.torque - item.torque.mean()
-    return np.asarray((values - values.mean(axis=0)) / (np.sqrt(before.size) * np.std(before)))
+    """Residuals of columns of crank torque, weighted, over those of the engine."""
+    return residuals(problem.objective, item, values)
 
 
 def triangle(columns: Array) -> tuple[Array, Array]:
     """Level (m,) and slopes (m, w) of equal norm in w + 1 rows; columns: slopes, then level."""
     factor = np.asarray(np.linalg.qr(columns, mode="r"))
     return factor[:, -1], factor[:, :-1]
-
-
-def _integral(values: Array) -> Array:
-    """Integral of periodic columns over the angle, of zero mean."""
-    spectrum = np.fft.rfft(values, axis=0)
-    order = np.arange(spectrum.shape[0]).reshape(-1, *[1] * (spectrum.ndim - 1))
-    spectrum = np.divide(spectrum, 1j * order, out=np.zeros_like(spectrum), where=order > 0)
-    return np.fft.irfft(spectrum, n=values.shape[0], axis=0)

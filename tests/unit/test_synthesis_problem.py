@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from camwright.geometry.errors import InputError
-from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.problem_setup import problem_of
 
@@ -104,6 +104,47 @@ def test_preload_is_not_freed_where_a_load_case_has_its_own(case, torques):
         problem_of(own, torques)
 
 
+def test_ripple_counts_at_the_ends_of_a_range_of_speed_and_load(case, torques):
+    smoothing = section(case.smoothing, robust_weight=0.5, robust_speed=0.2, robust_load=0.1)
+    plain = problem_of(case, torques).scenarios
+    scenarios = problem_of(section(case, smoothing=smoothing), torques).scenarios
+    assert [item.name for item in scenarios[: len(plain)]] == [item.name for item in plain]
+    idle, ends = scenarios[0], scenarios[len(plain) :]
+    speeds = [item.cam_speed / idle.cam_speed for item in ends]
+    assert speeds == pytest.approx([0.8, 0.8, 1.2, 1.2])
+    assert {(item.weight, item.torque_reduction) for item in ends} == {(0.5, None)}
+    # more air, more gas torque; the inertia torque grows with the speed
+    greatest = [np.ptp(item.torque) for item in ends]
+    assert greatest[0] < greatest[1] and greatest[2] < greatest[3]
+    assert ends[0].name == "idle, n x 0.8, load x 0.9"
+    still = section(smoothing, robust_speed=0.0, robust_load=0.0)
+    same = problem_of(section(case, smoothing=still), torques).scenarios[len(plain) :]
+    for item in same:
+        np.testing.assert_allclose(item.torque, idle.torque, rtol=0, atol=1e-9)
+    over = section(case.limits, overspeed=1.1 * case.load_cases[0].speed)
+    kept = section(case, smoothing=smoothing, limits=over, load_cases=case.load_cases[:1])
+    fastest = problem_of(kept, torques).scenarios[-1]
+    assert fastest.cam_speed == pytest.approx(1.1 * idle.cam_speed)
+
+
+def test_load_of_a_measured_torque_scales_it(tmp_path):
+    (tmp_path / "torque.csv").write_text(
+        "crank_angle_deg,torque_Nm\n"
+        + "".join(f"{k},{8.0 * np.sin(np.radians(k)):.9f}\n" for k in range(720))
+    )
+    text = (DATA / "soft_spring.toml").read_text()
+    case = parse_case(
+        text.replace('name = "idle"\n', 'name = "idle"\ntorque = "torque.csv"\n'), tmp_path
+    )
+    smoothing = section(case.smoothing, robust_weight=1.0, robust_load=0.25)
+    measured = section(case, smoothing=smoothing, load_cases=case.load_cases[:1])
+    torques = engine_torques(measured)
+    scenarios = problem_of(measured, torques).scenarios
+    ends = [item for item in scenarios if ", n x" in item.name]
+    sizes = [np.ptp(item.torque) / np.ptp(scenarios[0].torque) for item in ends]
+    assert sizes == pytest.approx([0.75, 1.25, 0.75, 1.25])
+
+
 def test_what_is_freed_has_its_range(case, torques):
     smoothing = section(
         case.smoothing, free=("spring_rate", "phase"), spring_rate_range=(2e4, 3e4),
@@ -117,3 +158,26 @@ def test_what_is_freed_has_its_range(case, torques):
 def test_a_lift_that_is_given_has_nothing_to_lower(case):
     with pytest.raises(InputError, match=r"smoothing\.kind"):
         problem_of(case, {})
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ("harmonic_orders = [0.75]", r"harmonic_orders = 0\.75, must be whole or half"),
+        ("harmonic_weight = 1.0", r"harmonic_orders = missing, must be given"),
+        ("harmonic_orders = [0.0]", r"harmonic_orders\[0\] = 0\.0, must be >= 0\.5 and <= 180"),
+        ("loss_weight = -1", r"loss_weight = -1, must be >= 0"),
+        ("robust_load = 1.0", r"robust_load = 1\.0, must be >= 0 and < 1"),
+        ("robust_weight = nan", r"robust_weight = nan"),
+    ],
+)
+def test_a_weight_that_cannot_be_is_refused(lines, words):
+    text = (DATA / "soft_spring.toml").read_text()
+    with pytest.raises(InputError, match=rf"smoothing\.{words}"):
+        parse_case(text.replace("[smoothing]\n", f"[smoothing]\n{lines}\n"))
+
+
+def test_an_objective_without_a_term_is_refused(case, torques):
+    smoothing = section(case.smoothing, torque_weight=0.0, loss_weight=0.0)
+    with pytest.raises(InputError, match=r"smoothing\.torque_weight = 0\.0"):
+        problem_of(section(case, smoothing=smoothing), torques)

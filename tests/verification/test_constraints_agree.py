@@ -31,6 +31,7 @@ from camwright.pipeline.smoothing.constraints import (
     load_utilisations,
     shape_utilisations,
 )
+from camwright.pipeline.smoothing.objective import objective_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import INITIAL_ENERGY, LEAST_ENERGY, Search
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
@@ -307,7 +308,8 @@ def test_gradients_match_differences(free, crown):
         (scenario(), replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.0)),
         replace(EVERY, crown_radius=crown),
         DesignVariables(24.2e3, 242.0, 0.05), freed={name: RANGES[name] for name in free},
-        energy=(0.0, 0.0), coefficients=24, points=180, speed_weight=0.5, jerk_weight=1e-2,
+        energy=(0.0, 0.0), coefficients=24, points=180, jerk_weight=1e-2,
+        objective=objective_of({"torque": 1.0, "speed": 0.5}),
     )  # fmt: skip
     search = Search(given, extra=np.array([0.31, 2.17]))
     state = search.state(search.start + 2.0, given.variables)
@@ -332,13 +334,13 @@ def test_gradients_match_differences(free, crown):
 
 
 @pytest.mark.parametrize("free", [(), tuple(RANGES)])
-@pytest.mark.parametrize("term", ["torque", "speed", "jerk"])
+@pytest.mark.parametrize("term", ["torque", "speed", "harmonic", "jerk"])
 def test_gradient_of_each_term_of_the_objective(free, term):
-    weights = {"torque_weight": 0.0, "speed_weight": 0.0, "jerk_weight": 0.0}
+    objective = () if term == "jerk" else objective_of({term: 1.0}, orders=(2, 3))
     given = Problem(
         (scenario(),), EVERY, DesignVariables(24.2e3, 242.0, 0.05),
         freed={name: RANGES[name] for name in free}, coefficients=24, points=180,
-        **(weights | {f"{term}_weight": 1.0}),
+        objective=objective, jerk_weight=float(term == "jerk"),
     )  # fmt: skip
     search = Search(given)
     state = search.state(search.start + 2.0, given.variables)

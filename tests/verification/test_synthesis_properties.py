@@ -18,6 +18,7 @@ from camwright.pipeline.smoothing import multistart
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.energy_spline import Grid, exact_start, fitted_energy
 from camwright.pipeline.smoothing.multistart import explored
+from camwright.pipeline.smoothing.objective import objective_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
@@ -217,7 +218,7 @@ def test_twenty_random_starts_agree_on_the_soft_spring(monkeypatch):
 def test_ripple_of_the_speed_is_lowered_as_that_of_the_torque_is():
     """Short waves hardly show in the speed; the descent must not lose itself in them."""
     asked = engine(3)
-    by_speed = problem(asked, torque_weight=0.0, speed_weight=1.0)
+    by_speed = problem(asked, objective=objective_of({"speed": 1.0}))
     found, other = synthesise(by_speed), synthesise(problem(asked))
     assert found.feasible and found.converged
     search = Search(by_speed)
@@ -228,7 +229,8 @@ def test_ripple_of_the_speed_is_lowered_as_that_of_the_torque_is():
 def test_reduction_of_the_torque_holds_while_the_speed_is_lowered():
     asked = engine(3)
     least = synthesise(problem(asked)).ripple
-    given_problem = problem(asked, 1.0 - 1.05 * least, torque_weight=0.0, speed_weight=1.0)
+    by_speed = objective_of({"speed": 1.0})
+    given_problem = problem(asked, 1.0 - 1.05 * least, objective=by_speed)
     design = synthesise(given_problem)
     assert design.feasible
     by_torque = Search(problem(asked)).state(design.coefficients, design.variables)

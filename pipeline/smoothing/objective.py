@@ -1,0 +1,275 @@
+"""Terms of the objective of a synthesis, each over a reference of the engine; differentiable.
+
+A residual is linear in the crank torque: its square, weighted, adds to that of the torque ripple,
+and the root of the sum over the engine is minimised. A cost adds its greatest weighted value. At a
+weight of 1 each term counts as much as a torque ripple equal to that of the engine. Costs are
+functions of complex numbers, as the constraints are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.errors import InputError
+from camwright.geometry.pitch_curve import magnitude
+from camwright.pipeline.follower.roller_motion import rolling_share
+from camwright.pipeline.smoothing.constraints import Forces, Jet, Mean, Motion, forces, motion
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+
+
+class Scale(NamedTuple):
+    """References of the costs: energy swing of the engine torque, J; its greatest force, N.
+
+    The energy swing is the range of the integral of the torque over a cycle; the force is that of
+    the greatest torque at the prime radius.
+    """
+
+    energy: float
+    force: float
+
+
+def scale_of(scenarios: Sequence[Scenario], gear_ratio: float, prime_radius: float) -> Scale:
+    """References of the scenario of the greatest weight; prime radius of the pitch curve, m."""
+    torque = gear_ratio * max(scenarios, key=lambda item: item.weight).torque
+    stored = torque_integral(torque - torque.mean())
+    return Scale(float(np.ptp(stored)), float(np.abs(torque).max()) / prime_radius)
+
+
+@dataclass(frozen=True)
+class Residual:
+    """A term linear in the crank torque.
+
+    Parameters
+    ----------
+    key : str          of its weight, KEY_weight
+    words : str        quantity
+    reference : str    value at which it is 1
+    columns : callable   scenario, columns of crank torque (n, w), N m -> columns (m, w), of the
+                         norm of the quantity over its reference
+    """
+
+    key: str
+    words: str
+    reference: str
+    columns: Callable[[Scenario, Array], Array] = field(repr=False)
+
+
+class Turning(NamedTuple):
+    """Cam in one scenario at n cam angles; scale: references of the costs."""
+
+    jet: Jet
+    path: Motion
+    force: Forces
+    variables: DesignVariables
+    ratings: Ratings
+    scenario: Scenario
+    scale: Scale
+
+
+@dataclass(frozen=True)
+class Cost:
+    """A smooth term.
+
+    Parameters
+    ----------
+    key, words, reference : str   as of `Residual`
+    value : callable      cam -> quantity over its reference, (n,), or a `Mean` of the turn
+    everywhere : bool     in every scenario; False: where the ripple counts, times its weight
+    """
+
+    key: str
+    words: str
+    reference: str
+    value: Callable[[Turning], Array | Mean] = field(repr=False)
+    everywhere: bool = False
+
+
+class Weighted(NamedTuple):
+    """A term with its weight, > 0."""
+
+    term: Residual | Cost
+    weight: float
+
+
+Objective = tuple[Weighted, ...]
+
+
+def torque_ripple(item: Scenario, values: Array) -> Array:
+    """Columns of crank torque about their means; the norm is their std over that of the engine."""
+    before = item.torque - item.torque.mean()
+    return np.asarray((values - values.mean(axis=0)) / (np.sqrt(before.size) * np.std(before)))
+
+
+def _speed_ripple(item: Scenario, values: Array) -> Array:
+    """Columns of the integral of the crank torque; at constant inertia the speed is as it."""
+    before = torque_integral(item.torque - item.torque.mean())
+    return np.asarray(torque_integral(values) / (np.sqrt(before.size) * np.std(before)))
+
+
+def harmonics(orders: Iterable[int]) -> Residual:
+    """Chosen harmonics of the torque, rms over the ripple of the engine.
+
+    Parameters
+    ----------
+    orders : iterable of int   periods of each in a cam turn, >= 1; samples do not resolve those of
+                               half of their number and above, which are zero
+    """
+    chosen = tuple(orders)
+
+    def columns(item: Scenario, values: Array) -> Array:
+        count = values.shape[0]
+        resolved = np.array([[order] for order in chosen if 2 * order < count]).reshape(-1, 1)
+        angle = resolved * np.arange(count) * (FULL_TURN / count)
+        waves = np.sqrt(2.0) / count * np.concatenate([np.cos(angle), np.sin(angle)])
+        return np.asarray(waves @ values / np.std(item.torque))
+
+    return Residual("harmonic", "chosen harmonics of the torque", _ENGINE, columns)
+
+
+def torque_integral(values: Array) -> Array:
+    """Integral of periodic columns (n, ...) over the cam angle, of zero mean."""
+    spectrum = np.fft.rfft(values, axis=0)
+    order = np.arange(spectrum.shape[0]).reshape(-1, *[1] * (spectrum.ndim - 1))
+    spectrum = np.divide(spectrum, 1j * order, out=np.zeros_like(spectrum), where=order > 0)
+    return np.fft.irfft(spectrum, n=values.shape[0], axis=0)
+
+
+def _loss(at: Turning) -> Mean:
+    """Work of the friction of guides and roller bearing over a turn."""
+    ratings, force = at.ratings, at.force
+    guides = (force.axial - force.spring - force.inertia) * at.jet.slope
+    drag = ratings.bearing_drag + ratings.bearing_friction_arm * force.normal
+    rolling = drag * magnitude(rolling_share(at.path.speed, ratings.roller_radius))
+    return Mean(FULL_TURN / at.scale.energy * (guides + rolling))
+
+
+def _spring_energy(at: Turning) -> Array:
+    """F_s^2/(2 k), the preload included."""
+    rate = at.variables.rate * at.scenario.rate_factor
+    return at.force.spring**2 / (2.0 * rate * at.scale.energy)
+
+
+def _rest_force(at: Turning) -> Mean:
+    """Contact force at standstill without friction; every angle is as likely."""
+    return Mean(at.force.spring * np.sqrt(1.0 + at.path.tangent**2) / at.scale.force)
+
+
+_ENGINE = "torque ripple of the engine"
+_SWING = "energy swing of the engine torque in the design load case"
+_FORCE = "greatest engine torque of the design load case over the prime radius, at the cam"
+
+TORQUE = Residual("torque", "torque ripple", _ENGINE, torque_ripple)
+SPEED = Residual("speed", "speed ripple", "speed ripple of the engine", _speed_ripple)
+LOSS = Cost("loss", "mean loss of guides and roller bearing, work per cam turn", _SWING, _loss)
+COSTS: tuple[Cost, ...] = (
+    LOSS,
+    Cost(
+        "spring_energy",
+        "greatest energy of the spring, preload included",
+        _SWING,
+        _spring_energy,
+        everywhere=True,
+    ),
+    Cost(
+        "rest_force",
+        "contact force at standstill, mean over the angles",
+        _FORCE,
+        _rest_force,
+        everywhere=True,
+    ),
+    Cost(
+        "peak_force",
+        "greatest contact force",
+        _FORCE,
+        lambda at: at.force.normal / at.scale.force,
+        everywhere=True,
+    ),
+)
+"""Costs, by their weights."""
+
+KEYS: tuple[str, ...] = (TORQUE.key, SPEED.key, "harmonic", *(each.key for each in COSTS))
+"""Keys of all terms; the weight of each is smoothing.KEY_weight."""
+
+
+def objective_of(weights: Mapping[str, float], orders: Iterable[int] = ()) -> Objective:
+    """Terms of an objective; those of a weight of zero are left out.
+
+    Parameters
+    ----------
+    weights : mapping          by the key of a term, >= 0
+    orders : iterable of int   of the harmonics, periods in a cam turn
+
+    Raises
+    ------
+    InputError
+        If no term has a weight, or the harmonics have one and no orders.
+    """
+    chosen = tuple(orders)
+    if weights.get("harmonic", 0.0) > 0 and not chosen:
+        raise InputError("smoothing.harmonic_orders", "missing", "given with harmonic_weight")
+    known: tuple[Residual | Cost, ...] = (TORQUE, SPEED, harmonics(chosen), *COSTS)
+    terms = {term.key: term for term in known}
+    objective = tuple(
+        Weighted(terms[key], float(weight)) for key, weight in weights.items() if weight > 0
+    )
+    if not objective:
+        raise InputError("smoothing.torque_weight", 0.0, "> 0, or another weight of smoothing")
+    return objective
+
+
+def residuals(objective: Objective, item: Scenario, values: Array) -> Array:
+    """Stacked residuals of columns of crank torque (n, w), N m: (m, w); the norm is minimised."""
+    parts = [
+        np.sqrt(each.weight) * each.term.columns(item, values)
+        for each in objective
+        if isinstance(each.term, Residual)
+    ]
+    return np.concatenate(parts) if parts else np.zeros((1, *values.shape[1:]))
+
+
+def costs(
+    objective: Objective,
+    scale: Scale,
+    ratings: Ratings,
+    item: Scenario,
+    jet: Jet,
+    highest: float,
+    variables: DesignVariables,
+) -> Mapping[str, Array | Mean]:
+    """Weighted costs of a scenario by key; each (n,), or a `Mean` of the turn.
+
+    Parameters
+    ----------
+    highest : float   maximum lift, m
+    """
+    terms = [
+        (each.term, each.weight * (1.0 if each.term.everywhere else item.weight))
+        for each in objective
+        if isinstance(each.term, Cost) and (each.term.everywhere or item.weight > 0)
+    ]
+    if not terms:
+        return {}
+    path = motion(jet, variables, ratings.offset)
+    force = forces(jet, path, highest, variables, item)
+    at = Turning(jet, path, force, variables, ratings, item, scale)
+    return {term.key: _times(term.value(at), weight) for term, weight in terms}
+
+
+def _times(value: Array | Mean, weight: float) -> Array | Mean:
+    """Weighted cost; the power of a mean of a cost is 1."""
+    return value._replace(terms=weight * value.terms) if isinstance(value, Mean) else weight * value
+
+
+def total_cost(of_scenarios: Iterable[Mapping[str, Array | Mean]]) -> float:
+    """Sum of the greatest weighted cost of each term over scenarios and cam angles."""
+    greatest: dict[str, float] = {}
+    for each in of_scenarios:
+        for key, value in each.items():
+            most = float(np.max(value.value if isinstance(value, Mean) else value))
+            greatest[key] = max(greatest.get(key, -np.inf), most)
+    return sum(greatest.values())
