@@ -24,7 +24,7 @@ from camwright.pipeline.solver import solve
 
 CASE = Path(__file__).resolve().parent.parent / "cases" / "gx120.toml"
 POSITIONS = 180
-BUDGETS = {"--help": 7.0, "check": 102.0, "preview per load case": 3.5, "corners": 42.0}
+BUDGETS = {"--help": 7.0, "check": 96.0, "preview per load case": 2.8, "corners": 40.0}
 
 
 def process_seconds(*arguments: str) -> float:

@@ -36,9 +36,9 @@ def finite(field: str, values: ArrayLike) -> Array:
         If a value is NaN or infinite.
     """
     array = readonly(values)
-    bad = ~np.isfinite(array)
-    if bad.any():
-        raise InputError(field, float(array[bad].flat[0]), "finite")
+    known = np.isfinite(array)
+    if not known.all():
+        raise InputError(field, float(array[~known].flat[0]), "finite")
     return array
 
 

@@ -356,13 +356,24 @@ class RollerContour(Contour):
         return self
 
     def local_frame(self, theta: ArrayLike) -> Frame:
+        height, along, across = self._direction(theta)
+        normal, tangent = cam_axes(theta, across, -along), cam_axes(theta, along, across)
+        return Frame(self._inset(theta, height, along, across), normal, tangent)
+
+    def points(self, theta: ArrayLike) -> Array:
+        return self._inset(theta, *self._direction(theta))
+
+    def _direction(self, theta: ArrayLike) -> tuple[Array, Array, Array]:
+        """Height of the roller centre, m, and unit tangent along and across the travel."""
         s, s1 = self.lift.derivatives(theta, 1)
-        along, across = s1 - self.pitch.offset, self.pitch.height_base + s
-        speed = np.hypot(along, across)
-        along, across, height = along / speed, across / speed, across
+        along, height = s1 - self.pitch.offset, self.pitch.height_base + s
+        speed = np.hypot(along, height)
+        return height, along / speed, height / speed
+
+    def _inset(self, theta: ArrayLike, height: Array, along: Array, across: Array) -> Array:
+        """Contour point: the roller centre moved inwards by the roller radius."""
         inset = self.roller_radius
-        point = cam_axes(theta, height - inset * across, self.pitch.offset + inset * along)
-        return Frame(point, cam_axes(theta, across, -along), cam_axes(theta, along, across))
+        return cam_axes(theta, height - inset * across, self.pitch.offset + inset * along)
 
     def speed(self, theta: ArrayLike) -> Array:
         speed, curvature = self.pitch.speed_and_curvature(theta)

@@ -7,6 +7,7 @@ them, and the synthesis differentiates the same functions by a complex step.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -49,7 +50,7 @@ class PitchCurve(FollowerPath):
     def radius_base(self) -> float:
         return self.prime_radius
 
-    @property
+    @cached_property
     def height_base(self) -> float:
         return float(np.sqrt(self.prime_radius**2 - self.offset**2))
 

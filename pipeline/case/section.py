@@ -54,7 +54,7 @@ class Section(BaseModel):
 
     defaults: ClassVar[Mapping[str, str]] = {}
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, defer_build=True)
 
     @property
     def lacking(self) -> tuple[str, ...]:

@@ -203,27 +203,26 @@ def _steps(
 ) -> tuple[Array, Array]:
     """Tangential force (n,) N and spin (n,) rad/s of the periodic turn."""
     count = rolling.size
-    sense = np.sign(rolling)
     tangential, turning = np.zeros(count), np.array(rolling)
     omega = float(rolling[-1])
     scale = max(float(np.abs(rolling).max()), 1e-300)
+    before, columns = omega, (rolling, demand, limit, resisting, np.sign(rolling))
+    rows = list(zip(*(each.tolist() for each in columns), strict=True))
     for _ in range(_TURNS_MAX):
         start = omega
-        for k in range(count):
-            target, drag = float(rolling[k]), float(resisting[k])
-            if omega == float(rolling[k - 1]):
-                needed = float(demand[k])
+        for k, (target, rolled, most, drag, way) in enumerate(rows):
+            if omega == before:
+                needed = rolled
             else:
-                needed = (inertia * (target - omega) / step + float(sense[k]) * drag) / radius
-            tangential[k] = np.clip(needed, -limit[k], limit[k])
-            if abs(needed) <= limit[k]:
+                needed = (inertia * (target - omega) / step + way * drag) / radius
+            pull = min(max(needed, -most), most)
+            if abs(needed) <= most:
                 omega = target
             elif inertia == 0:
                 omega = 0.0
             else:
-                driven = omega + float(tangential[k]) * radius * step / inertia
-                omega = _braked(driven, drag * step / inertia)
-            turning[k] = omega
+                omega = _braked(omega + pull * radius * step / inertia, drag * step / inertia)
+            tangential[k], turning[k], before = pull, omega, target
         if abs(omega - start) <= _SETTLED * scale:
             break
     return tangential, turning

@@ -208,23 +208,27 @@ class _Resonant:
         return 2.0 * np.pi * natural_frequency(self.spring.rate, self.design.active_mass)
 
     def stiffness(self, cam_speed: Array) -> DynamicStiffness:
-        """Dynamic stiffness less the rate (m, harmonics) at moving and fixed end, N/m."""
-        drive = cam_speed[:, None] * self.order
+        """Dynamic stiffness less the rate (m, harmonics) at moving and fixed end, N/m.
+
+        Without mass zero, (m, 1).
+        """
         if self.design is None:
-            return DynamicStiffness(self.spring.rate, np.zeros(drive.shape, dtype=complex))
+            return DynamicStiffness(self.spring.rate, np.zeros((cam_speed.size, 1), dtype=complex))
+        drive = cam_speed[:, None] * self.order
         frequency = self.first / (2.0 * np.pi)
         return dynamic_stiffness(drive, self.spring.rate, frequency, self.design.damping)
 
-    def back(self, spectrum: NDArray[np.complex128]) -> Array:
-        if not spectrum.any():
-            return np.zeros((*spectrum.shape[:-1], ANGLES))
-        return np.fft.irfft(spectrum, ANGLES)
+    def surge(self, stiffness: NDArray[np.complex128]) -> Array:
+        """Force of the surge (m, n) of a dynamic stiffness less the rate, N; zero as (m, 1)."""
+        if not stiffness.any():
+            return np.zeros((len(stiffness), 1))
+        return np.fft.irfft(stiffness * self.spectrum, ANGLES)
 
     def end_forces(self, cam_speed: Array) -> tuple[Array, Array]:
         """Least and greatest force (2, m) over the turn at moving and fixed end, N."""
         static = self.spring.force(self.lift)
         ends = self.stiffness(cam_speed)
-        forces = [static + self.back(each * self.spectrum) for each in (ends.moving, ends.fixed)]
+        forces = [static + self.surge(each) for each in (ends.moving, ends.fixed)]
         least, greatest = (
             np.stack([extreme(end, axis=1) for end in forces]) for extreme in (np.min, np.max)
         )
@@ -287,7 +291,7 @@ class _Follower:
     def extremes(self, cam_speed: Array) -> dict[str, Array]:
         """Arrays (m,) of `SpeedSweep` by name at cam speeds (m,), rad/s."""
         moving = self.resonant.stiffness(cam_speed).moving
-        surge = self.resonant.back(moving * self.resonant.spectrum)
+        surge = self.resonant.surge(moving)
         speed = cam_speed[:, None]
         push = speed**2 * self.inertia
         push += self.spring
@@ -326,7 +330,7 @@ class _Follower:
         force *= joint
         joint += behind
         force /= joint
-        return self.resonant.back(force)
+        return np.fft.irfft(force, ANGLES)
 
 
 def _met(modes: Array, peak: Array, enough: float, top: float) -> Array:

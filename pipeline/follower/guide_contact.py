@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,25 @@ _FEW = 500  # loads solved from the rigid beam each
 _SPACING = 16  # loads between those solved from the rigid beam
 _DIRECTIONS = 20  # of loads, per rad
 _TOUCH = 1e-9  # initial indentation of a rigid beam over the clearance
+
+
+class BoundKnots(NamedTuple):
+    """Linear equations of the beam with some knots bound to the bore.
+
+    The unknowns are the bore forces at the knots and the change of the end motion, rows and columns
+    scaled by bore compliance and beam length, for accuracy with stiff bores, stiff beams and short
+    guides.
+
+    Parameters
+    ----------
+    knots : array (active,)
+    system : array (active + 2, active + 2)
+    scale : float   of the rows of the knots, m/N
+    """
+
+    knots: NDArray[np.intp]
+    system: Array
+    scale: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +86,7 @@ class BearingLine:
     def law(self, deflection: Array) -> Array:
         """Force of the bore (k, n), N: zero within the clearance, linear beyond."""
         depth = np.abs(deflection) - self.play[:, None]
-        return self.stiffness[:, None] * np.sign(deflection) * np.maximum(depth, 0.0)
+        return np.copysign(self.stiffness[:, None] * np.maximum(depth, 0.0), deflection)
 
     def law_miss(self, deflection: Array, push: Array) -> Array:
         """Maximum residual of the contact law over the knots (n,), as indentation, m."""
@@ -89,6 +109,31 @@ class BearingLine:
         terms = np.abs(self.compliance) @ np.abs(push) + self.rigid_modes @ np.abs(rigid)
         allowed = TOLERANCE * depth + _ROUND_OFF * terms.max(axis=0)
         return np.asarray(self.law_miss(self.deflection(push, rigid), push) <= allowed)
+
+    @cached_property
+    def _bound(self) -> dict[bytes, BoundKnots]:
+        return {}
+
+    def bound_knots(self, touch: bytes) -> BoundKnots:
+        """Equations with some knots bound to the bore; `touch`: bytes of bool (k,), by knot.
+
+        Kept: the same few sets of knots recur at most positions and in most steps.
+        """
+        if touch not in self._bound:
+            self._bound[touch] = self._bound_to(np.flatnonzero(np.frombuffer(touch, dtype=bool)))
+        return self._bound[touch]
+
+    def _bound_to(self, knots: NDArray[np.intp]) -> BoundKnots:
+        modes = self.rigid_modes[knots] / np.array([1.0, self.positions[-1]])
+        softness = self.compliance[np.ix_(knots, knots)] + np.diag(1.0 / self.stiffness[knots])
+        scale = (
+            float(softness.diagonal().max(initial=0.0)) or 1.0
+        )  # no knot: a step without meaning
+        system = np.zeros((len(knots) + 2, len(knots) + 2))
+        system[:-2, :-2], system[:-2, -2:], system[-2:, :-2] = softness / scale, -modes, modes.T
+        if len(knots) < 2:  # the beam could rotate: weak support
+            system[-2:, -2:] = 1e-6 * np.eye(2)
+        return BoundKnots(knots, system, scale)
 
     def size(self, load: Array) -> Array:
         """Size (n,), N, of loads (2, n): force and couple of moment over length."""
@@ -226,34 +271,25 @@ def _linear_step(
     """
     deflection = line.deflection(push, rigid)
     touch = np.abs(deflection) >= line.play[:, None]
-    offset = np.sign(deflection) * line.play[:, None] - line.rigid_modes @ rigid
-    push, rigid = np.zeros_like(push), rigid.copy()
-    for here in alike(touch):
-        knots = np.flatnonzero(touch[:, here[0]])
-        solution = _bound(line, knots, offset[np.ix_(knots, here)], load[:, here])
-        push[np.ix_(knots, here)] = solution[:-2]
-        rigid[:, here] += solution[-2:]
-    return push, rigid, touch.sum(axis=0)
-
-
-def _bound(line: BearingLine, knots: NDArray[np.intp], offset: Array, load: Array) -> Array:
-    """Bore forces and change of end motion (active + 2, n) with some knots bound to the bore.
-
-    Rows and columns are scaled by bore compliance and beam length, for accuracy with stiff bores,
-    stiff beams and short guides.
-    """
-    modes = line.rigid_modes[knots] / np.array([1.0, line.positions[-1]])
-    softness = line.compliance[np.ix_(knots, knots)] + np.diag(1.0 / line.stiffness[knots])
-    scale = float(softness.diagonal().max(initial=0.0)) or 1.0  # no knot: a step without meaning
-    system = np.zeros((len(knots) + 2, len(knots) + 2))
-    system[:-2, :-2], system[:-2, -2:], system[-2:, :-2] = softness / scale, -modes, modes.T
-    if len(knots) < 2:  # the beam could rotate: weak support
-        system[-2:, -2:] = 1e-6 * np.eye(2)
-    right = np.vstack([-offset / scale, load / np.array([[1.0], [line.positions[-1]]])])
-    solution = np.linalg.solve(system, right)
-    solution[-2:] *= scale
-    solution[-1] /= line.positions[-1]
-    return solution
+    offset = line.rigid_modes @ rigid - np.sign(deflection) * line.play[:, None]
+    far = load / np.array([[1.0], [line.positions[-1]]])
+    groups = alike(touch)
+    order = np.concatenate([np.zeros(0, dtype=np.intp), *groups])  # those alike side by side
+    offset, far = offset[:, order], far[:, order]
+    pushes, motions, end = np.zeros_like(push), np.empty_like(rigid), 0
+    for here in groups:
+        start, end = end, end + here.size
+        bound = line.bound_knots(touch[:, here[0]].tobytes())
+        right = np.empty((bound.knots.size + 2, here.size))
+        np.divide(offset[bound.knots, start:end], bound.scale, out=right[:-2])
+        right[-2:] = far[:, start:end]
+        solution = np.linalg.solve(bound.system, right)
+        pushes[bound.knots, start:end] = solution[:-2]
+        np.multiply(solution[-2:], bound.scale, out=motions[:, start:end])
+    motions[1] /= line.positions[-1]
+    push, turned = np.empty_like(push), np.empty_like(rigid)
+    push[:, order], turned[:, order] = pushes, motions
+    return push, rigid + turned, touch.sum(axis=0)
 
 
 def _best_length(
