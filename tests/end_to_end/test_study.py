@@ -90,7 +90,7 @@ def processes_of(parent: psutil.Process) -> list[psutil.Process]:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A study of three shards, solved in one process into ``one``."""
+    """A study of five shards, solved in one process into ``one``."""
     folder = tmp_path_factory.mktemp("study")
     written(folder, 21)
     made = run(folder, "study.toml", "--out", "one", "--jobs", "1")
@@ -105,8 +105,8 @@ def test_the_dataset_has_a_row_for_each_design(folder: Path) -> None:
     assert data.units["factor.spring.preload"] == "N"
     assert data["factor.spring.preload"].min() >= 40.0
     assert data["message"].tolist() == [""] * 21
-    assert len(list((folder / "one" / "shards").iterdir())) == 3
-    assert len(list((folder / "one" / "timings").iterdir())) == 3
+    assert len(list((folder / "one" / "shards").iterdir())) == 5
+    assert len(list((folder / "one" / "timings").iterdir())) == 5
 
 
 def test_killed_damaged_and_resumed_it_is_the_same(folder: Path) -> None:

@@ -18,7 +18,7 @@ from camwright.pipeline.studies.batch.factor_axes import Levels
 from camwright.pipeline.studies.batch.sampling import Designs
 
 SHARD_OF: Mapping[Tier, int] = {
-    Tier.SCREENING: 500, Tier.PREVIEW: 10, Tier.CYCLE: 5, Tier.CERTIFIED: 1,
+    Tier.SCREENING: 500, Tier.PREVIEW: 5, Tier.CYCLE: 5, Tier.CERTIFIED: 1,
 }  # fmt: skip
 """Designs of a shard: a second or more of work, so that the scheduler's milliseconds are few."""
 _ID = 24  # hex digits: 96 bits
