@@ -20,6 +20,7 @@ In the order of the calculation:
 | `cone_program`          | second-order cone programs                   | x, multipliers          |
 | `linear_model`          | state of a search and its linear models      |                         |
 | `sampled_problem`       | functions of a problem at sampled cam angles |                         |
+| `lagrangian`            | prices and second derivatives at a state     | ripple ratio            |
 | `convex_relaxation`     | convex part: global optimum as a start       | E, J                    |
 | `trust_region`          | descent to a local optimum                   |                         |
 | `constrained_synthesis` | cam of least ripple within all limits        | E, J; s, m              |

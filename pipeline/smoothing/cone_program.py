@@ -28,12 +28,16 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class Norm:
-    """A ripple |level + slopes @ x|, (m,) and (m, n): in the objective, bounded, or both."""
+    """A ripple |level + slopes @ x|, (m,) and (m, n): in the objective, bounded, or both.
+
+    number: of the weighted scenario.
+    """
 
     level: Array
     slopes: Array
     weight: float = 1.0
     ceiling: float | None = None
+    number: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,12 +50,17 @@ class Reach:
 
 @dataclass(frozen=True, eq=False)
 class ConeSolution:
-    """Solution of a convex program: unknowns x, slack and multipliers by limit."""
+    """Solution of a convex program: unknowns x, slack by limit, multipliers.
+
+    rows: multipliers (m,) of each of the rows, in their order; norms: of each norm in the objective
+    and of its ceiling.
+    """
 
     step: Array
     ripple: float
     slack: dict[str, float]
-    multipliers: dict[str, Array]
+    rows: list[Array]
+    norms: list[tuple[float, float]]
     objective: float
 
 
@@ -167,7 +176,8 @@ def solved(
     names = list(dict.fromkeys(row.name for row in rows if row.elastic))
     if any(norm.ceiling is not None for norm in norms):
         names.append(TORQUE_REDUCTION.id)
-    program = Cones(size + 1 + len(names))  # x, ripple, slacks
+    bounded = size + 1 + len(names)
+    program = Cones(bounded + len(norms))  # x, ripple, slacks, bound of each norm
     program.charge_square(curvature)
     program.charge(np.concatenate([slope, [ripple_weight], np.full(len(names), penalty)]))
     for row in rows:
@@ -177,36 +187,33 @@ def solved(
             matrix = matrix - program.columns(relief, size + 1 + names.index(row.name))
         program.at_most(matrix, -row.level)
     identity = scipy.sparse.eye_array(program.size, format="csr")
+    for k, norm in enumerate(norms):
+        bound = identity[[bounded + k]]
+        program.at_most(norm.weight * bound - identity[[size]], 0.0)
+        if norm.ceiling is not None:
+            program.at_most(bound - identity[[bounded - 1]], norm.ceiling)
     program.at_most(identity[:size], box[1])
     program.at_most(-identity[:size], -box[0])
-    program.at_most(-identity[size + 1 :], 0.0)
+    program.at_most(-identity[size + 1 : bounded], 0.0)
     if reach is not None:
         rows_of = reach.slopes.shape[0]
         program.norm_at_most(reach.slopes, np.zeros(rows_of), None, reach.bound)
-    for norm in norms:
-        if norm.weight > 0:
-            program.norm_at_most(norm.slopes * norm.weight, norm.level * norm.weight, size)
-        if norm.ceiling is not None:
-            program.norm_at_most(norm.slopes, norm.level, program.size - 1, norm.ceiling)
+    for k, norm in enumerate(norms):
+        program.norm_at_most(norm.slopes, norm.level, bounded + k)
     result = program.solved()
     if result is None:
         return None
     values, duals, objective = result
+    parts = np.split(duals, np.cumsum([row.level.size for row in rows]))
+    cones = iter(parts[-1])
     return ConeSolution(
         step=values[:size],
         ripple=float(values[size]),
         slack={name: float(values[size + 1 + k]) for k, name in enumerate(names)},
-        multipliers=_multipliers(rows, duals),
+        rows=parts[:-1],
+        norms=[
+            (float(next(cones)), float(next(cones)) if norm.ceiling is not None else 0.0)
+            for norm in norms
+        ],
         objective=objective,
     )
-
-
-def _multipliers(rows: Sequence[Rows], duals: Array) -> dict[str, Array]:
-    multipliers: dict[str, Array] = {}
-    start = 0
-    for row in rows:
-        part = duals[start : start + row.level.size]
-        earlier = multipliers.get(row.name, np.zeros(0))
-        multipliers[row.name] = np.concatenate([earlier, part])
-        start += row.level.size
-    return multipliers

@@ -2,9 +2,9 @@
 
 The unknowns are the coefficients of the stored energy, a periodic quintic B-spline, and the free
 ones of spring rate, preload, prime radius and phase. The search starts from the global optimum of
-the convex part of the problem or from the exact energy. Each step linearises delivered torque and
-limits, solves a convex program within a trust region, and is accepted when the merit decreases:
-ripple plus penalised violations.
+the convex part of the problem or from the exact energy. Each step solves a convex program within a
+trust region: linear models of delivered torque and limits, second derivatives of the Lagrangian. It
+is accepted when the merit decreases: ripple plus penalised violations.
 """
 
 from __future__ import annotations
@@ -13,9 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from camwright.geometry.arrays import Array, readonly, uniform_turn
+from camwright.geometry.arrays import Array, readonly
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.energy_spline import Grid
+from camwright.pipeline.smoothing.lagrangian import Lagrangian
 from camwright.pipeline.smoothing.linear_model import State
 from camwright.pipeline.smoothing.sampled_problem import LEAST_ENERGY, Search
 from camwright.pipeline.smoothing.synthesis_problem import FINEST, RESERVE, Design, Problem
@@ -23,6 +25,7 @@ from camwright.pipeline.smoothing.trust_region import PENALTY, Descent, descende
 
 _ROUNDS = 4
 _MULTIPLIER_LEAST = 1e-6
+_REFINED = 0.01  # of a limit: peaks this near to it, or the greatest, are refined between points
 
 
 def synthesise(problem: Problem, ripple_weight: float = 1.0) -> Design:
@@ -37,19 +40,18 @@ def synthesise(problem: Problem, ripple_weight: float = 1.0) -> Design:
     -------
     Design   not `feasible` where the search ends outside a limit
     """
-    extra: Array | None = None
-    seed = replace(problem, seed=started(problem, ripple_weight))
-    steps = 0
-    for _ in range(_ROUNDS):
-        search = Search(seed, extra)
-        descent = descended(search, ripple_weight)
-        steps += descent.steps
-        between = _between(search, descent.state)
+    seeded = replace(problem, seed=started(problem, ripple_weight))
+    search = Search(seeded)
+    descent = descended(search, ripple_weight)
+    steps, fine = descent.steps, _peaks(search, descent.state)
+    for _ in range(_ROUNDS - 1):
+        between = _between(search, descent.state, fine)
         if not between.size:
             break
-        extra = between if extra is None else np.unique(np.concatenate([extra, between]))
-        seed = replace(problem, seed=descent.state.coefficients, variables=descent.state.variables)
-    return _design(search, descent, steps)
+        search = Search(seeded, np.concatenate([search.extra, between]))
+        descent = descended(search, ripple_weight, descent)
+        steps, fine = steps + descent.steps, _peaks(search, descent.state)
+    return _design(search, descent, steps, fine)
 
 
 def started(problem: Problem, ripple_weight: float = 1.0) -> Array:
@@ -65,42 +67,57 @@ def started(problem: Problem, ripple_weight: float = 1.0) -> Array:
     return min(states, key=lambda state: state.merit(PENALTY, ripple_weight)).coefficients
 
 
-def _fine(search: Search) -> Grid:
-    problem = search.problem
-    return Grid.at(uniform_turn(FINEST * problem.points), problem.coefficients)
+def _peaks(search: Search, state: State) -> Grid:
+    """Cam angles beside the greatest utilisations, finer than the points."""
+    points, step = search.problem.points, search.turn.theta[1]
+    near = np.zeros(points, dtype=bool)
+    for each in state.pointwise.values():
+        value = each.max(axis=0)[:points]
+        peak = (value >= np.roll(value, 1)) & (value >= np.roll(value, -1))
+        near |= peak & (value >= min(1.0 - RESERVE - _REFINED, value.max()))
+    offsets = np.arange(1 - FINEST, FINEST) * (step / FINEST)
+    theta = np.unique(np.round((search.turn.theta[near, None] + offsets).ravel() / step, 6)) * step
+    return Grid.at(theta, search.problem.coefficients)
 
 
-def _between(search: Search, state: State) -> Array:
+def _between(search: Search, state: State, fine: Grid) -> Array:
     """Cam angles between the points at which a limit is exceeded more than at them."""
-    fine = _fine(search)
     angles: list[Array] = []
-    for name, value in search.utilisations(state.coefficients, state.variables, fine).items():
-        if np.size(value) == 1:
-            continue
+    for name, value in search.pointwise(state.coefficients, state.variables, fine).items():
         bound = max(1.0 - 0.5 * RESERVE, state.utilisation[name] + 0.2 * RESERVE)
         peak = (value >= np.roll(value, 1)) & (value > np.roll(value, -1)) & (value > bound)
         angles.append(fine.theta[peak])
     return np.unique(np.concatenate(angles)) if angles else np.zeros(0)
 
 
-def _design(search: Search, descent: Descent, steps: int) -> Design:
-    state, multipliers = descent.state, {}
-    if descent.program is not None:
-        for name, values in descent.program.multipliers.items():
-            if name != LEAST_ENERGY and values.sum() > _MULTIPLIER_LEAST:
-                multipliers[name] = float(values.sum())
-    theta = search.turn.theta
+def _design(search: Search, descent: Descent, steps: int, fine: Grid) -> Design:
+    state, theta = descent.state, search.turn.theta
     on_points = search.utilisations(state.coefficients, state.variables, search.turn)
     # The checks refine between points.
-    fine = search.utilisations(state.coefficients, state.variables, _fine(search))
-    most = {name: max(state.utilisation[name], float(np.max(fine[name]))) for name in fine}
+    peaks = search.pointwise(state.coefficients, state.variables, fine)
+    most = {name: max(state.utilisation[name], float(peaks[name].max())) for name in peaks}
     return Design(
         coefficients=readonly(state.coefficients),
         variables=state.variables,
         ripple=state.ripple,
-        utilisation=state.utilisation | most,
-        multipliers=multipliers,
+        utilisation=dict(state.utilisation) | most,
+        multipliers=_multipliers(descent),
         strip={name: (theta, np.broadcast_to(use, theta.shape)) for name, use in on_points.items()},
         steps=steps,
         converged=descent.converged,
+        lagrangian=None
+        if descent.model is None or descent.program is None
+        else Lagrangian.of(search, state, descent.model, descent.program),
     )
+
+
+def _multipliers(descent: Descent) -> dict[str, float]:
+    """Sum of the multipliers of each limit."""
+    model, program = descent.model, descent.program
+    if model is None or program is None:
+        return {}
+    totals = {TORQUE_REDUCTION.id: sum(ceiling for _, ceiling in program.norms)}
+    for limit, prices in zip(model.limits, program.rows, strict=True):
+        totals[limit.name] = totals.get(limit.name, 0.0) + float(prices.sum())
+    totals.pop(LEAST_ENERGY, None)
+    return {name: total for name, total in totals.items() if total > _MULTIPLIER_LEAST}

@@ -11,7 +11,7 @@ value, title, unit and slope from the row.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import inf
@@ -40,7 +40,7 @@ from camwright.pipeline.contact.elliptic_contact import pressure_cubed_per_force
 from camwright.pipeline.contact.hertz import peak_pressure_square
 from camwright.pipeline.follower.follower_forces import levers
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, rolling_share, wear
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, Value
 
 FACTOR_MAX = 4.0
 """Maximum factor of a relaxation."""
@@ -148,15 +148,16 @@ def forces(
 
 
 class Mean(NamedTuple):
-    """Power of a mean over the turn; terms (n,) at equally spaced angles."""
+    """Power of a mean over the turn; terms (..., n) at equally spaced angles."""
 
     terms: Array
     power: float = 1.0
 
     @property
     def value(self) -> Array:
-        """(1,)"""
-        return np.array([max(float(np.mean(self.terms)), 0.0) ** self.power])
+        """(..., 1)"""
+        mean = np.mean(self.terms, axis=-1, keepdims=True)
+        return np.asarray(np.maximum(np.real(mean), 0.0) ** self.power)
 
 
 class Shape(NamedTuple):
@@ -185,7 +186,7 @@ class Loads(NamedTuple):
     force: Forces
     spin: Array
     side: Array
-    preload: float
+    preload: Value
 
 
 State = TypeVar("State", Shape, Loads)
@@ -224,16 +225,24 @@ class Constraint(Generic[State]):
 
 
 def shape_utilisations(
-    jet: Jet, variables: DesignVariables, ratings: Ratings
+    jet: Jet, variables: DesignVariables, ratings: Ratings, names: Container[str] | None = None
 ) -> Mapping[str, Array | Mean]:
-    """Utilisations of the limits on the shape of the cam, by check; each (n,)."""
-    return _utilisations(SHAPE, Shape(jet, motion(jet, variables, ratings.offset), ratings))
+    """Utilisations of the limits on the shape of the cam, or of those named, by check; (n,)."""
+    return _utilisations(SHAPE, Shape(jet, motion(jet, variables, ratings.offset), ratings), names)
 
 
 def load_utilisations(
-    jet: Jet, highest: float, variables: DesignVariables, ratings: Ratings, scenario: Scenario
+    jet: Jet,
+    highest: float,
+    variables: DesignVariables,
+    ratings: Ratings,
+    scenario: Scenario,
+    names: Container[str] | None = None,
 ) -> Mapping[str, Array | Mean]:
-    """Utilisations of the limits on the loads of one scenario; each (n,), or a `Mean`."""
+    """Utilisations of the limits on the loads, or of those named; each (..., n), or a `Mean`.
+
+    Leading axes are those of stacked scenarios.
+    """
     path = motion(jet, variables, ratings.offset)
     force = forces(jet, path, highest, variables, scenario)
     loads = Loads(
@@ -246,7 +255,7 @@ def load_utilisations(
         side=force.axial * path.tangent,
         preload=variables.preload * scenario.preload_factor,
     )
-    return _utilisations(LOADS, loads)
+    return _utilisations(LOADS, loads, names)
 
 
 def delivered_torque(
@@ -258,10 +267,12 @@ def delivered_torque(
 
 
 def _utilisations(
-    constraints: tuple[Constraint[State], ...], state: State
+    constraints: tuple[Constraint[State], ...], state: State, names: Container[str] | None
 ) -> Mapping[str, Array | Mean]:
     uses: dict[str, Array | Mean] = {}
     for each in constraints:
+        if names is not None and each.check not in names:
+            continue
         limit = each.value(state.ratings)
         use = None if limit is None else each.utilisation(state, limit)
         if use is not None:

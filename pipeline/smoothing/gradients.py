@@ -1,10 +1,10 @@
-"""Derivatives of functions of lift and design variables by complex steps."""
+"""First and second derivatives of functions of lift and design variables by complex steps."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,85 +14,118 @@ from camwright.pipeline.smoothing.scenario import DesignVariables
 
 Function = Callable[[Jet, float, DesignVariables], Mapping[str, "Array | Mean"]]
 FREED = ("rate", "preload", "prime_radius")
-Number = TypeVar("Number", float, Array)
 _STEP = 1e-30
+_SHARE = 1e-5  # of a variable: step of the second derivatives
 
 
 class Gradient(NamedTuple):
-    """Value (n,) and its partial derivatives.
+    """Terms (...) of a value, and their partial derivatives.
 
-    local (4, n): by E, E', E'', E''' of each point; shared (4, n): by the maximum lift, k, P, r0.
-    For a `Mean`, value is (1,), shared (4, 1), and local the contribution of each point.
+    local (4, ...): by E, E', E'', E''' of each point; shared (1 or 4, ...): by the maximum lift
+    and, where they are free, k, P, r0. power: of the mean of the terms; None: they are the value.
     """
 
-    value: Array
+    terms: Array
     local: Array
     shared: Array
-    mean: bool = False
+    power: float | None = None
 
 
-def differentiated(
-    function: Function,
-    energy: tuple[Array, ...],
-    highest: float,
-    variables: DesignVariables,
-    freed: bool,
-) -> dict[str, Gradient]:
+class Point(NamedTuple):
+    """Arguments of a function: E, E', E'', E''' (n,), J/rad^k; maximum lift, m; variables."""
+
+    energy: tuple[Array, ...]
+    highest: float
+    variables: DesignVariables
+
+
+def differentiated(function: Function, at: Point, freed: bool) -> dict[str, Gradient]:
     """Values of a function of the lift with all derivatives, by name.
 
     Parameters
     ----------
     function : callable   jet, maximum lift, variables -> values by name
-    energy : four arrays (n,)   E, E', E'', E''', J/rad^k
-    highest : float       maximum lift, m
-    variables : DesignVariables
-    freed : bool          with the derivatives by k, P, r0; else they are zero
+    freed : bool          with the derivatives by k, P, r0
 
     References
     ----------
     Squire and Trapp, SIAM Review 40 (1998) 110: the complex step has no cancellation.
     """
-
-    def slopes(parts: tuple[Array, ...], top: float, at: DesignVariables) -> dict[str, Array]:
-        values = function(lift_jet(parts, at), top, at)
-        return {name: np.imag(_terms(value)) / _STEP for name, value in values.items()}
-
-    directions = [
-        slopes((*energy[:k], _stepped(energy[k]), *energy[k + 1 :]), highest, variables)
-        for k in range(len(energy))
-    ]
-    directions.append(slopes(energy, _stepped(highest), variables))
-    for name in FREED if freed else ():
-        other = replace(variables, **{name: _stepped(getattr(variables, name))})
-        directions.append(slopes(energy, highest, other))
-    values = function(lift_jet(energy, variables), highest, variables)
-    return {
-        name: _gradient(value, [direction[name] for direction in directions], len(energy))
-        for name, value in values.items()
-    }
+    slopes = [_values(function, stepped) for stepped in _steps(at, 1j * _STEP, freed)]
+    orders = len(at.energy)
+    gradients = {}
+    for name, value in _values(function, at).items():
+        terms = np.asarray(_terms(value), dtype=float)
+        sides = [
+            np.broadcast_to(np.imag(_terms(slope[name])) / _STEP, terms.shape) for slope in slopes
+        ]
+        power = value.power if isinstance(value, Mean) else None
+        gradients[name] = Gradient(terms, np.stack(sides[:orders]), np.stack(sides[orders:]), power)
+    return gradients
 
 
-def _stepped(value: Number) -> Number:
-    """Value plus the imaginary step, typed as the real value."""
-    stepped: Number = np.add(value, 1j * _STEP)
-    return stepped
+def second_derivatives(
+    function: Function, at: Point, freed: bool, weights: Mapping[str, Array]
+) -> Array:
+    """Second derivatives (q, q, ...) of a weighted sum of terms.
+
+    By E, E', E'', E''', the maximum lift and, where they are free, k, P, r0: q is 5 or 8. Central
+    differences of complex steps.
+
+    Parameters
+    ----------
+    weights : mapping   of the terms (...) by name; values without a weight do not count
+    """
+
+    def slope(point: Point) -> Array:
+        """Gradient (q, ...)."""
+        sides = []
+        for stepped in _steps(point, 1j * _STEP, freed):
+            values = _values(function, stepped)
+            parts = [weight * np.imag(_terms(values[name])) for name, weight in weights.items()]
+            sides.append(np.sum(np.broadcast_arrays(*parts), axis=0) / _STEP)
+        return np.stack(sides)
+
+    sizes = [float(np.abs(part).max()) or 1.0 for part in at.energy]
+    sizes.append(at.highest or 1.0)
+    sizes += [getattr(at.variables, name) for name in FREED] if freed else []
+    steps = [_SHARE * size for size in sizes]
+    second = np.stack(
+        [
+            (slope(_step(at, k, step)) - slope(_step(at, k, -step))) / (2.0 * step)
+            for k, step in enumerate(steps)
+        ]
+    )
+    return np.asarray(0.5 * (second + np.swapaxes(second, 0, 1)))
+
+
+def _values(function: Function, at: Point) -> Mapping[str, Array | Mean]:
+    return function(lift_jet(at.energy, at.variables), at.highest, at.variables)
+
+
+def _steps(at: Point, step: complex, freed: bool) -> list[Point]:
+    count = len(at.energy) + 1 + (len(FREED) if freed else 0)
+    return [_step(at, k, step) for k in range(count)]
+
+
+def _step(at: Point, place: int, step: complex) -> Point:
+    """The point with a step in one argument."""
+    orders = len(at.energy)
+    if place < orders:
+        part = np.asarray(at.energy[place] + step)
+        return at._replace(energy=(*at.energy[:place], part, *at.energy[place + 1 :]))
+    if place == orders:
+        return at._replace(highest=_sum(at.highest, step))
+    name = FREED[place - orders - 1]
+    value = _sum(getattr(at.variables, name), step)
+    return at._replace(variables=replace(at.variables, **{name: value}))
+
+
+def _sum(value: float, step: complex) -> float:
+    """Value plus the step, typed as the real value."""
+    total: float = np.add(value, step)
+    return total
 
 
 def _terms(value: Array | Mean) -> Array:
     return value.terms if isinstance(value, Mean) else value
-
-
-def _gradient(value: Array | Mean, slopes: list[Array], orders: int) -> Gradient:
-    none = np.zeros_like(slopes[0])
-    local = np.stack(slopes[:orders])
-    shared = np.stack([*slopes[orders:], *[none] * (orders + 1 + len(FREED) - len(slopes))])
-    if not isinstance(value, Mean):
-        return Gradient(np.asarray(value, dtype=float), local, shared)
-    mean = float(np.mean(value.terms))
-    front = value.power * mean ** (value.power - 1.0) if mean > 0 else 0.0
-    return Gradient(
-        value.value,
-        front / none.size * local,
-        front * shared.mean(axis=1, keepdims=True),
-        mean=True,
-    )

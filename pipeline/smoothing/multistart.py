@@ -1,10 +1,10 @@
-"""Synthesis from several starts: best design, agreement of the optima."""
+"""Synthesis from several starts and on more splines: best design, agreement, convergence."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypedDict
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 import scipy
@@ -17,6 +17,8 @@ from camwright.pipeline.smoothing.synthesis_problem import Design, Problem, coar
 
 AGREE = 0.01  # relative difference of the residual ripple of equal designs
 NEGLIGIBLE = 1e-3  # of the engine's ripple: residual ripples below it are equal
+COEFFICIENTS_MAX = 240
+_REFINEMENT = 1.5  # of the number of splines
 _SEED = 1989
 
 
@@ -30,9 +32,19 @@ class StartsRecord(TypedDict):
     sentence: str
 
 
+class ResolutionRecord(TypedDict):
+    """JSON record of `Resolution`."""
+
+    splines: int
+    coarser_splines: int | None
+    change_percent: float
+    settled: bool
+    sentence: str
+
+
 @dataclass(frozen=True)
 class Starts:
-    """Residual ripple of the coarse design of each start; None where a limit is not kept.
+    """Residual ripple of the design of each start; None where a limit is not kept.
 
     The first start is that of the problem, the others are random.
     """
@@ -83,11 +95,57 @@ class Starts:
         }
 
 
-def explored(problem: Problem, count: int) -> tuple[Design, Starts]:
-    """Best design from several starts, and their agreement.
+@dataclass(frozen=True)
+class Resolution:
+    """Change of the ripple with the number of splines.
 
-    The starts are compared at fewer cam angles. The design is that from the start of the problem,
-    unless a random start has less ripple by more than `AGREE`.
+    Parameters
+    ----------
+    coefficients : int   splines of the design
+    coarser : int        of the design before; None: the number is that of the case
+    change : float       of the ripple between both, over that of the design
+    settled : bool       whether it is within what was asked for
+    """
+
+    coefficients: int
+    coarser: int | None = None
+    change: float = 0.0
+    settled: bool = True
+
+    @property
+    def sentence(self) -> str:
+        """The change in words."""
+        if self.coarser is None:
+            return f"{self.coefficients} splines, as the case states"
+        change = f"{self.coarser} splines leave {100 * abs(self.change):.2g} %"
+        more = "more" if self.change > 0 else "less"
+        lasting = "" if self.settled else ", more than asked for"
+        return f"{self.coefficients} splines; {change} {more} ripple{lasting}"
+
+    def as_record(self) -> ResolutionRecord:
+        """The JSON record."""
+        return {
+            "splines": self.coefficients,
+            "coarser_splines": self.coarser,
+            "change_percent": 100.0 * self.change,
+            "settled": self.settled,
+            "sentence": self.sentence,
+        }
+
+
+class Explored(NamedTuple):
+    """Best design, agreement of the starts, and change with the number of splines."""
+
+    design: Design
+    starts: Starts
+    resolution: Resolution
+
+
+def explored(problem: Problem, count: int) -> Explored:
+    """Best design from several starts, their agreement, and its convergence with the splines.
+
+    Each start is solved on fewer splines and cam angles, and then on those of the design. The
+    number of splines rises until the ripple changes by less than `Problem.convergence`.
 
     Parameters
     ----------
@@ -96,22 +154,46 @@ def explored(problem: Problem, count: int) -> tuple[Design, Starts]:
     """
     coarse = coarsened(problem)
     random = np.random.default_rng(_SEED)
-    starts = [coarse, *(_random(coarse, random) for _ in range(count - 1))]
-    designs = [synthesise(each) for each in starts] if count > 1 else []
-    own = synthesise(problem)
-    candidates = [own]
-    better = _best(designs)
-    if better is not None and (
-        not designs[0].feasible or better.ripple * (1.0 + AGREE) < designs[0].ripple
-    ):
-        fine = refined(better.coefficients, problem.coefficients)
-        candidates.append(synthesise(replace(problem, seed=fine, variables=better.variables)))
-    ripples = tuple(each.ripple if each.feasible else None for each in designs or candidates)
-    return _best(candidates) or own, Starts(ripples)
+    designs, resolution = resolved(problem, synthesise(coarse))
+    fine = replace(problem, coefficients=resolution.coefficients)
+    others = [
+        continued(fine, synthesise(_random(coarse, random))) for _ in range(count - 1)
+    ]
+    alike = [designs[-1], *others]
+    ripples = tuple(each.ripple if each.feasible else None for each in alike)
+    best = _best([*alike, *designs]) or min(alike, key=lambda each: each.violation)
+    return Explored(best, Starts(ripples), resolution)
+
+
+def resolved(problem: Problem, design: Design) -> tuple[list[Design], Resolution]:
+    """Designs of rising numbers of splines, the last the finest, and the change of their ripple.
+
+    Parameters
+    ----------
+    design : Design   to start from, of fewer splines
+    """
+    designs = [continued(problem, design)]
+    if problem.convergence is None:
+        return designs, Resolution(problem.coefficients)
+    while True:
+        before, count = designs[-1], designs[-1].coefficients.size
+        finer = min(round(_REFINEMENT * count), COEFFICIENTS_MAX)
+        designs.append(continued(replace(problem, coefficients=finer), before))
+        after = designs[-1]
+        change = (before.ripple - after.ripple) / max(after.ripple, NEGLIGIBLE)
+        settled = abs(change) <= problem.convergence
+        if settled or finer == COEFFICIENTS_MAX or not (before.feasible and after.feasible):
+            return designs, Resolution(finer, count, change, settled)
+
+
+def continued(problem: Problem, design: Design) -> Design:
+    """Design of a problem from one of it on other splines."""
+    seed = refined(design.coefficients, problem.coefficients)
+    return synthesise(replace(problem, seed=seed, variables=design.variables))
 
 
 def _best(designs: Sequence[Design]) -> Design | None:
-    kept = [each for each in designs if each.feasible]
+    kept = [each for each in designs if each.feasible and each.converged]
     return min(kept, key=lambda each: each.ripple) if kept else None
 
 

@@ -13,6 +13,7 @@ from camwright.geometry.arrays import Array, uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
 from camwright.pipeline.smoothing.cone_program import Norm
 from camwright.pipeline.smoothing.constraints import (
+    SHAPE,
     Jet,
     Mean,
     delivered_torque,
@@ -21,9 +22,9 @@ from camwright.pipeline.smoothing.constraints import (
     shape_utilisations,
 )
 from camwright.pipeline.smoothing.energy_spline import Grid, basis_matrix, exact_start
-from camwright.pipeline.smoothing.gradients import FREED, Function, Gradient, differentiated
+from camwright.pipeline.smoothing.gradients import FREED, Function, Point, differentiated
 from camwright.pipeline.smoothing.linear_model import Linear, Model, State, Summit
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, stacked, taken
 from camwright.pipeline.smoothing.synthesis_problem import (
     RESERVE,
     Problem,
@@ -34,16 +35,32 @@ from camwright.pipeline.smoothing.synthesis_problem import (
 
 INITIAL_ENERGY = "initial_energy"
 LEAST_ENERGY = "least_energy"
+SHAPE_LIMITS = frozenset(each.check for each in SHAPE)
+# Distance from a limit within which a row is in the model; from another scenario at that angle.
+_NEAR, _BEHIND = 0.05, 0.01
+_RIPPLE_BEHIND = 0.005  # of the engine's ripple: the same for the ripples of the scenarios
+_FARTHEST = 1.0  # greatest step of a coefficient, of the scale
 
 
 class Search:
-    """Functions of one problem on a uniform grid, with extra angles between its points."""
+    """Functions of one problem on a uniform grid, with extra angles between its points.
+
+    Parameters
+    ----------
+    extra : array (e,)   cam angles, rad, at which the limits hold too
+    """
 
     def __init__(self, problem: Problem, extra: Array | None = None) -> None:
         self.problem = problem
         count = problem.coefficients
-        self.turn = Grid.at(uniform_turn(problem.points), count)
-        self.extra = Grid.at(np.zeros(0) if extra is None else extra, count)
+        theta = uniform_turn(problem.points)
+        self.extra = np.zeros(0) if extra is None else extra
+        self.turn = Grid.at(theta, count)
+        self.grid = Grid.at(np.concatenate([theta, self.extra]), count)
+        self.every = np.arange(problem.points, dtype=np.intp)
+        self.weighted = [k for k, item in enumerate(problem.scenarios) if item.weight > 0]
+        self._stacks: dict[float, Scenario] = {}
+        self._engines: dict[float, Array] = {}
         self.exact = self._exact()
         self.start = self.exact if problem.seed is None else problem.seed
         self.scale = max(float(np.abs(self.exact).max()), 1e-9)
@@ -99,173 +116,326 @@ class Search:
         peak = Grid.at(np.array([self._summit_angle(coefficients)]), coefficients.size)
         return float(lift_jet(peak.energy(coefficients), variables).lift[0])
 
-    def _summit(self, coefficients: Array, variables: DesignVariables) -> Summit:
-        peak = Grid.at(np.array([self._summit_angle(coefficients)]), coefficients.size)
-        freed = bool(self.problem.freed)
-        lift = differentiated(_lift, peak.energy(coefficients), 0.0, variables, freed)["lift"]
+    def summit(self, state: State) -> Summit:
+        """Maximum lift at a state, and its derivatives."""
+        angle = np.array([self._summit_angle(state.coefficients)])
+        peak = Grid.at(angle, state.coefficients.size)
+        at = Point(peak.energy(state.coefficients), 0.0, state.variables)
+        lift = differentiated(_lift, at, self.freed)["lift"]
         return Summit(
-            float(lift.value[0]), peak.chained(lift.local)[0], peak.columns[0], lift.shared[:, 0]
+            float(lift.terms[0]), peak.chained(lift.local)[0], peak.columns[0], lift.shared[:, 0]
         )
 
-    def _scenarios(self, grid: Grid, variables: DesignVariables) -> list[Scenario]:
-        """Scenarios with their corrections at the angles of a grid."""
-        theta = grid.theta + float(variables.phase)
-        return [
-            replace(item, correction=item.correction.at(theta)) for item in self.problem.scenarios
-        ]
+    @property
+    def freed(self) -> bool:
+        """Whether a design variable is free."""
+        return bool(self.problem.freed)
 
-    def _functions(self, grid: Grid, variables: DesignVariables) -> list[Function]:
-        ratings = self.problem.ratings
-        loads = [partial(_loads, item, ratings) for item in self._scenarios(grid, variables)]
-        return [partial(_shape, ratings), *loads]
+    def stack(self, grid: Grid, variables: DesignVariables) -> Scenario:
+        """Stacked scenarios with their corrections at the angles of a grid."""
+        phase = float(variables.phase)
+        if grid is not self.grid:
+            return stacked(self.problem.scenarios, grid.theta + phase)
+        if phase not in self._stacks:
+            self._stacks = {phase: stacked(self.problem.scenarios, grid.theta + phase)}
+        return self._stacks[phase]
+
+    def shape(self, names: frozenset[str] | None = None) -> Function:
+        """Limits on the shape of the cam."""
+        return partial(_shape, self.problem.ratings, names)
+
+    def loads(self, scenario: Scenario, names: frozenset[str] | None = None) -> Function:
+        """Limits on the loads of stacked scenarios."""
+        return partial(_loads, scenario, self.problem.ratings, names)
+
+    def loads_at(
+        self,
+        state: State,
+        rows: NDArray[np.intp],
+        points: NDArray[np.intp],
+        names: frozenset[str],
+    ) -> Function:
+        """Limits on the loads at pairs (m,) of scenario and angle of the grid."""
+        stack = self.stack(self.grid, state.variables)
+        shape = (len(self.problem.scenarios), self.grid.theta.size)
+        pairs = taken(stack, lambda each: np.broadcast_to(each, shape)[rows, points])
+        return self.loads(pairs, names)
+
+    def torque(
+        self, variables: DesignVariables, weighted: NDArray[np.intp] | None = None
+    ) -> Function:
+        """Cam torque of weighted scenarios, all or some, at the points of the turn, (w, n)."""
+        stack = self._weighted_stack(variables, weighted)
+        return partial(_torque, stack, self.problem.ratings.offset)
+
+    def _weighted_stack(
+        self, variables: DesignVariables, weighted: NDArray[np.intp] | None
+    ) -> Scenario:
+        rows, points = np.array(self.weighted, dtype=np.intp), self.problem.points
+        rows = rows if weighted is None else rows[weighted]
+        return taken(self.stack(self.grid, variables), lambda each: each[rows, :points])
+
+    def point(self, state: State, highest: float, points: NDArray[np.intp]) -> Point:
+        """Arguments of a function at some angles of the grid."""
+        energy = self.grid.energy(state.coefficients)
+        return Point(tuple(part[points] for part in energy), highest, state.variables)
 
     def utilisations(
         self, coefficients: Array, variables: DesignVariables, grid: Grid
     ) -> dict[str, Array]:
-        """Utilisations on a grid, (n,), or (1,) for means; the greatest of the scenarios."""
+        """Greatest of the scenarios at the angles of a uniform grid, (n,); (1,) for means."""
+        pointwise, means = self._uses(coefficients, variables, grid, grid.theta.size)
+        worst = {name: value.max(axis=0) for name, value in pointwise.items()}
+        return worst | {name: value.max(keepdims=True) for name, value in means.items()}
+
+    def pointwise(
+        self, coefficients: Array, variables: DesignVariables, grid: Grid
+    ) -> dict[str, Array]:
+        """Greatest of the scenarios at any cam angles, (n,), without limits on means."""
+        values, _ = self._uses(coefficients, variables, grid, 0)
+        return {name: value.max(axis=0) for name, value in values.items()}
+
+    def _uses(
+        self, coefficients: Array, variables: DesignVariables, grid: Grid, points: int
+    ) -> tuple[dict[str, Array], dict[str, Array]]:
+        """Utilisations (s, n) at the angles of a grid; (s,) of means over its first points."""
+        highest = self.highest(coefficients, variables)
         jet = lift_jet(grid.energy(coefficients), variables)
-        top = self.highest(coefficients, variables)
-        uses: dict[str, Array] = {}
-        for function in self._functions(grid, variables):
-            for name, value in function(jet, top, variables).items():
-                if name not in self.problem.left_out:
-                    use = value.value if isinstance(value, Mean) else value
-                    uses[name] = np.maximum(uses[name], use) if name in uses else use
-        return uses
+        shape = self.shape()(jet, highest, variables)
+        loads = self.loads(self.stack(grid, variables))(jet, highest, variables)
+        pointwise: dict[str, Array] = {}
+        means: dict[str, Array] = {}
+        for name, value in (*shape.items(), *loads.items()):
+            if name in self.problem.left_out:
+                continue
+            if isinstance(value, Mean):
+                if points:
+                    terms = np.atleast_2d(value.terms)[:, :points]
+                    means[name] = Mean(terms, value.power).value[:, 0]
+            else:
+                pointwise[name] = np.atleast_2d(value)
+        return pointwise, means
 
     def state(self, coefficients: Array, variables: DesignVariables) -> State:
         """State at coefficients, J, and variables."""
-        uses = self.utilisations(coefficients, variables, self.turn)
-        most = {name: float(np.max(value)) for name, value in uses.items()}
-        if self.extra.theta.size:
-            more = self.utilisations(coefficients, variables, self.extra)
-            for name, value in more.items():
-                if uses[name].size > 1:  # a mean over the extra angles is none over the turn
-                    most[name] = max(most[name], float(np.max(value)))
+        problem = self.problem
+        pointwise, means = self._uses(coefficients, variables, self.grid, problem.points)
+        most = {name: float(value.max()) for name, value in (pointwise | means).items()}
         energy = self.turn.energy(coefficients)
-        if np.isfinite(self.problem.energy[1]):
-            over = float(energy[0].min()) - self.problem.energy[1]
+        if np.isfinite(problem.energy[1]):
+            over = float(energy[0].min()) - problem.energy[1]
             most[INITIAL_ENERGY] = 1.0 - RESERVE + over / self.scale
-        ripple = 0.0
-        for item, left in self.residual_torque(coefficients, variables):
-            ripple = max(
-                ripple, item.weight * float(np.linalg.norm(ripple_of(self.problem, item, left)))
-            )
-            if self.problem.ceiling is not None:
-                over = float(np.linalg.norm(torque_ripple(item, left))) - self.problem.ceiling
-                used = 1.0 - RESERVE + over
-                most[TORQUE_REDUCTION.id] = max(most.get(TORQUE_REDUCTION.id, used), used)
+        left = self.residual_torque(coefficients, variables)
+        items = [problem.scenarios[k] for k in self.weighted]
+        ripples = np.array(
+            [
+                item.weight * float(np.linalg.norm(ripple_of(problem, item, values)))
+                for item, values in zip(items, left, strict=True)
+            ]
+        )
+        if problem.ceiling is not None and items:
+            by_torque = [
+                float(np.linalg.norm(torque_ripple(item, values)))
+                for item, values in zip(items, left, strict=True)
+            ]
+            most[TORQUE_REDUCTION.id] = 1.0 - RESERVE + max(by_torque) - problem.ceiling
         jerk = self._jerk_scale * lift_jet(energy, variables).jerk
-        return State(coefficients, variables, ripple, 0.5 * float(jerk @ jerk), most)
-
-    def residual_torque(
-        self, coefficients: Array, variables: DesignVariables
-    ) -> list[tuple[Scenario, Array]]:
-        """Crank torque with the cam (n,), N m, of each scenario whose ripple counts."""
-        jet = lift_jet(self.turn.energy(coefficients), variables)
-        top = self.highest(coefficients, variables)
-        problem, residuals = self.problem, []
-        for item in self._scenarios(self.turn, variables):
-            if item.weight > 0:
-                torque = delivered_torque(jet, top, variables, item, problem.ratings.offset)
-                engine = item.torque_at(float(variables.phase))[0]
-                residuals.append((item, engine - torque / problem.gear_ratio))
-        return residuals
-
-    def model(self, state: State) -> Model:
-        """Linear models of ripple and limits, quadratic model of the jerk, at a state."""
-        summit = self._summit(state.coefficients, state.variables)
-        energy = self.turn.energy(state.coefficients)
-        freed = bool(self.problem.freed)
-        gradient = differentiated(_jerk, energy, 0.0, state.variables, freed)["jerk"]
-        jerk = self._jerk_scale * self._dense(gradient, state, summit)
-        return Model(
-            norms=self._norms(state, summit),
-            limits=self._limits(state, summit),
-            curvature=jerk.T @ jerk,
-            slope=jerk.T @ (self._jerk_scale * gradient.value),
+        return State(
+            coefficients=coefficients,
+            variables=variables,
+            ripple=float(ripples.max(initial=0.0)),
+            ripples=ripples,
+            jerk=0.5 * float(jerk @ jerk),
+            utilisation=most,
+            pointwise=pointwise,
+            means=means,
         )
 
-    def _norms(self, state: State, summit: Summit) -> list[Norm]:
+    def residual_torque(self, coefficients: Array, variables: DesignVariables) -> Array:
+        """Crank torque with the cam (w, n), N m, of each scenario whose ripple counts."""
+        jet = lift_jet(self.turn.energy(coefficients), variables)
+        top = self.highest(coefficients, variables)
+        stack = self._weighted_stack(variables, None)
+        cam = delivered_torque(jet, top, variables, stack, self.problem.ratings.offset)
+        return self._engine(variables) - cam / self.problem.gear_ratio
+
+    def _engine(self, variables: DesignVariables) -> Array:
+        """Engine torque of the weighted scenarios at the points of the turn, (w, n)."""
+        phase = float(variables.phase)
+        if phase not in self._engines:
+            items = [self.problem.scenarios[k] for k in self.weighted]
+            turned = [item.torque_at(phase)[0] for item in items]
+            self._engines = {phase: np.reshape(turned, (-1, self.problem.points))}
+        return self._engines[phase]
+
+    def near(self, state: State) -> dict[str, NDArray[np.bool_]]:
+        """Rows of each limit near it, and not far behind another scenario at the same angle."""
+        rows = {}
+        for name, value in state.pointwise.items():
+            level = value - 1.0 + RESERVE
+            rows[name] = (level >= -_NEAR) & (level >= level.max(axis=0) - _BEHIND)
+        return rows
+
+    def model(self, state: State) -> Model:
+        """Models of the ripples and of the limits near them, at a state."""
+        summit = self.summit(state)
+        at = self.point(state, 0.0, self.every)
+        gradient = differentiated(_jerk, at, self.freed)["jerk"]
+        jerk = self._jerk_scale * self._dense(gradient.local, gradient.shared, state, summit)
+        near = {name: value - 1.0 + RESERVE >= -_NEAR for name, value in state.means.items()}
+        limits = [*self.rows(state, summit, self.near(state)), *self.means(state, summit, near)]
+        return Model(
+            summit=summit,
+            norms=self.norms(
+                state, summit, np.flatnonzero(state.ripples >= state.ripple - _RIPPLE_BEHIND)
+            ),
+            limits=[*limits, *self._least_energy(state)],
+            curvature=jerk.T @ jerk,
+            slope=jerk.T @ (self._jerk_scale * gradient.terms),
+        )
+
+    def norms(self, state: State, summit: Summit, wanted: NDArray[np.intp]) -> list[Norm]:
+        """Models of the ripples of some of the weighted scenarios."""
         problem, variables = self.problem, state.variables
-        energy = self.turn.energy(state.coefficients)
-        weighted = [item for item in self._scenarios(self.turn, variables) if item.weight > 0]
+        at = self.point(state, summit.lift, self.every)
+        gradient = differentiated(self.torque(variables, wanted), at, self.freed)["torque"]
+        engine = self._engine(variables)
         norms = []
-        for item in weighted:
-            torque = partial(_torque, item, problem.ratings.offset)
-            freed = bool(problem.freed)
-            gradient = differentiated(torque, energy, summit.lift, variables, freed)["torque"]
-            engine, by_phase = item.torque_at(float(variables.phase))
-            left = engine - gradient.value / problem.gear_ratio
-            slopes = -self._dense(gradient, state, summit) / problem.gear_ratio
+        for place, k in enumerate(wanted):
+            item = problem.scenarios[self.weighted[k]]
+            left = engine[k] - gradient.terms[place] / problem.gear_ratio
+            local, shared = gradient.local[:, place], gradient.shared[:, place]
+            slopes = self._dense(local, shared, state, summit)
+            slopes /= -problem.gear_ratio
             if "phase" in problem.freed:
-                slopes[:, problem.coefficients + list(problem.freed).index("phase")] += by_phase
+                column = problem.coefficients + list(problem.freed).index("phase")
+                slopes[:, column] += item.torque_at(float(variables.phase))[1]
             columns = np.column_stack([slopes, left])
             charged = triangle(ripple_of(problem, item, columns))
-            if problem.speed_weight == 0.0 and problem.torque_weight == 1.0:
-                norms.append(Norm(*charged, item.weight, problem.ceiling))
-                continue
-            norms.append(Norm(*charged, item.weight))
-            if problem.ceiling is not None:
+            same = problem.speed_weight == 0.0 and problem.torque_weight == 1.0
+            ceiling = problem.ceiling
+            norms.append(Norm(*charged, item.weight, ceiling if same else None, int(k)))
+            if ceiling is not None and not same:
                 bounded = triangle(torque_ripple(item, columns))
-                norms.append(Norm(*bounded, weight=0.0, ceiling=problem.ceiling))
+                norms.append(Norm(*bounded, 0.0, ceiling, int(k)))
         return norms
 
-    def _dense(self, gradient: Gradient, state: State, summit: Summit) -> Array:
-        model = self._linear("", gradient, self.turn, state, summit)
-        every = np.ones(model.level.size, dtype=bool)
-        return np.asarray(model.matrix(every, self.size).toarray())
+    def _dense(self, local: Array, shared: Array, state: State, summit: Summit) -> Array:
+        """Derivatives (n, size) of values at the points of the turn."""
+        entries, columns = self._entries(self.every, local, shared, state, summit)
+        dense = np.zeros((self.every.size, self.size))
+        np.add.at(dense, (self.every[:, None], columns), entries)
+        return dense
 
-    def _linear(
-        self, name: str, gradient: Gradient, grid: Grid, state: State, summit: Summit
-    ) -> Linear:
-        """Linear model of one limit in the scaled unknowns: coefficients, then free variables."""
-        own = grid.chained(gradient.local)
-        columns: NDArray[np.intp] = grid.columns
-        height = gradient.value.size
-        if gradient.mean:
-            count = self.problem.coefficients
-            own = np.asarray(np.bincount(columns.ravel(), own.ravel(), count)[None], dtype=float)
-            columns = np.arange(count, dtype=np.intp)[None]
-        entries, places = [own * self.scale], [columns]
-        by_top = gradient.shared[0]
-        if by_top.any():
-            entries.append(self.scale * by_top[:, None] * summit.entries)
-            places.append(np.broadcast_to(summit.columns, (height, summit.columns.size)))
-        for number, freed in enumerate(self.problem.freed):
-            if freed in FREED:
-                k = 1 + FREED.index(freed)
-                side = gradient.shared[k] + by_top * summit.shared[k]
-                entries.append(side[:, None] * getattr(state.variables, freed))
-                places.append(np.full((height, 1), self.problem.coefficients + number))
-        level = gradient.value - 1.0 + RESERVE
-        return Linear(name, level, np.hstack(entries), np.hstack(places))
+    def _entries(
+        self, points: NDArray[np.intp], local: Array, shared: Array, state: State, summit: Summit
+    ) -> tuple[Array, NDArray[np.intp]]:
+        """Derivatives by the scaled unknowns, (m, w), and their columns, of rows at angles (m,).
 
-    def _limits(self, state: State, summit: Summit) -> list[Linear]:
-        problem, models = self.problem, []
-        for grid in (self.turn, self.extra):
-            if not grid.theta.size:
+        local (4, m), shared (1 or 4, m): see `Gradient`.
+        """
+        own = self.scale * np.einsum("km,kmj->mj", local, self.grid.entries[:, points])
+        by_unknowns, places = self._shared(shared, state, summit)
+        return (
+            np.hstack([own, by_unknowns]),
+            np.hstack(
+                [self.grid.columns[points], np.broadcast_to(places, (points.size, places.size))]
+            ),
+        )
+
+    def _shared(
+        self, shared: Array, state: State, summit: Summit
+    ) -> tuple[Array, NDArray[np.intp]]:
+        """Derivatives (m, w) by way of the maximum lift and of the free variables; columns (w,)."""
+        matrix = self.shared_columns(state, summit)
+        used = np.flatnonzero(np.any(matrix[np.any(shared, axis=1)] != 0.0, axis=0))
+        return shared.T @ matrix[:, used], used.astype(np.intp)
+
+    def shared_columns(self, state: State, summit: Summit) -> Array:
+        """Derivatives (q, size) of the maximum lift and of k, P, r0 by the scaled unknowns."""
+        freed = self.problem.freed
+        matrix = np.zeros((1 + (len(FREED) if freed else 0), self.size))
+        np.add.at(matrix[0], summit.columns, self.scale * summit.entries)
+        for number, name in enumerate(freed):
+            if name in FREED:
+                column, unit = self.problem.coefficients + number, getattr(state.variables, name)
+                k = 1 + FREED.index(name)
+                matrix[k, column] = unit
+                matrix[0, column] = summit.shared[k] * unit
+        return matrix
+
+    def rows(
+        self, state: State, summit: Summit, wanted: Mapping[str, NDArray[np.bool_]]
+    ) -> list[Linear]:
+        """Linear models of the wanted rows, (s, n) by limit."""
+        models = []
+        for shape in (True, False):
+            names = frozenset(
+                name
+                for name, rows in wanted.items()
+                if (name in SHAPE_LIMITS) == shape and rows.any()
+            )
+            if not names:
                 continue
-            energy = grid.energy(state.coefficients)
-            for function in self._functions(grid, state.variables):
-                gradients = differentiated(
-                    function, energy, summit.lift, state.variables, bool(problem.freed)
-                )
-                for name, gradient in gradients.items():
-                    kept = name not in problem.left_out
-                    if kept and not (gradient.mean and grid is self.extra):
-                        models.append(self._linear(name, gradient, grid, state, summit))
-        return models + self._least_energy(state)
+            any_row = np.any(np.broadcast_arrays(*(wanted[name] for name in names)), axis=0)
+            scenario, point = np.nonzero(any_row)
+            function = self.shape(names) if shape else self.loads_at(state, scenario, point, names)
+            at = self.point(state, summit.lift, point)
+            for name, gradient in differentiated(function, at, self.freed).items():
+                here = np.broadcast_to(wanted[name], any_row.shape)[scenario, point]
+                if here.any():
+                    entries = self._entries(
+                        point[here], gradient.local[:, here], gradient.shared[:, here],
+                        state, summit,
+                    )  # fmt: skip
+                    level = gradient.terms[here] - 1.0 + RESERVE
+                    models.append(Linear(name, level, *entries, scenario[here], point[here]))
+        return models
+
+    def means(
+        self, state: State, summit: Summit, wanted: Mapping[str, NDArray[np.bool_]]
+    ) -> list[Linear]:
+        """Linear models of the wanted limits on means, (s,) by limit."""
+        models: list[Linear] = []
+        names = frozenset(name for name, rows in wanted.items() if rows.any())
+        if not names:
+            return models
+        rows = np.flatnonzero(np.any([wanted[name] for name in names], axis=0))
+        points = self.problem.points
+        stack = taken(self.stack(self.grid, state.variables), lambda each: each[rows, :points])
+        at = self.point(state, summit.lift, self.every)
+        for name, gradient in differentiated(self.loads(stack, names), at, self.freed).items():
+            for k in np.flatnonzero(wanted[name][rows]):
+                power = gradient.power or 1.0
+                mean = float(gradient.terms[k].mean())
+                front = power * mean ** (power - 1.0) / points if mean > 0.0 else 0.0
+                own = front * self.scale * self.turn.chained(gradient.local[:, k])
+                entries = np.zeros(self.size)
+                np.add.at(entries, self.turn.columns, own)
+                shared = front * gradient.shared[:, k].sum(axis=1)
+                entries += shared @ self.shared_columns(state, summit)
+                level = state.means[name][[rows[k]]] - 1.0 + RESERVE
+                every, none = np.arange(self.size, dtype=np.intp)[None], np.array([-1])
+                models.append(Linear(name, level, entries[None], every, rows[[k]], none, power))
+        return models
 
     def _least_energy(self, state: State) -> list[Linear]:
         low, high = self.problem.energy
         energy = self.turn.energy(state.coefficients)[0]
         entries, columns = self.turn.entries[0], self.turn.columns
-        models = [Linear(LEAST_ENERGY, (low - energy) / self.scale, -entries, columns, False)]
+        points = np.arange(energy.size)
+        level = (low - energy) / self.scale
+        # A step of one in each coefficient changes the energy by one.
+        near = np.flatnonzero(level >= -_FARTHEST)
+        none = np.full(points.size, -1)
+        models = [
+            Linear(LEAST_ENERGY, level[near], -entries[near], columns[near], none[near], near,
+                   elastic=False)
+        ]  # fmt: skip
         if np.isfinite(high):
-            k = int(np.argmin(energy))
-            level = (energy[[k]] - high) / self.scale
-            models.append(Linear(INITIAL_ENERGY, level, entries[[k]], columns[[k]]))
+            k = points[[int(np.argmin(energy))]]
+            level = (energy[k] - high) / self.scale
+            models.append(Linear(INITIAL_ENERGY, level, entries[k], columns[k], none[k], k))
         return models
 
     def after(self, state: State, step: Array) -> tuple[Array, DesignVariables]:
@@ -292,11 +462,11 @@ def _unit(name: str, variables: DesignVariables) -> float:
     return 1.0 if name == "phase" else float(getattr(variables, name))
 
 
-def _lift(jet: Jet, _top: float, _machine: DesignVariables) -> Mapping[str, Array | Mean]:
+def _lift(jet: Jet, _top: float, _variables: DesignVariables) -> Mapping[str, Array | Mean]:
     return {"lift": jet.lift}
 
 
-def _jerk(jet: Jet, _top: float, _machine: DesignVariables) -> Mapping[str, Array | Mean]:
+def _jerk(jet: Jet, _top: float, _variables: DesignVariables) -> Mapping[str, Array | Mean]:
     return {"jerk": jet.jerk}
 
 
@@ -307,12 +477,14 @@ def _torque(
 
 
 def _shape(
-    ratings: Ratings, jet: Jet, _top: float, variables: DesignVariables
-) -> Mapping[str, Array | Mean]:
-    return shape_utilisations(jet, variables, ratings)
+    ratings: Ratings, names: frozenset[str] | None, jet: Jet, _top: float,
+    variables: DesignVariables,
+) -> Mapping[str, Array | Mean]:  # fmt: skip
+    return shape_utilisations(jet, variables, ratings, names)
 
 
 def _loads(
-    scenario: Scenario, ratings: Ratings, jet: Jet, top: float, variables: DesignVariables
-) -> Mapping[str, Array | Mean]:
-    return load_utilisations(jet, top, variables, ratings, scenario)
+    scenario: Scenario, ratings: Ratings, names: frozenset[str] | None, jet: Jet, top: float,
+    variables: DesignVariables,
+) -> Mapping[str, Array | Mean]:  # fmt: skip
+    return load_utilisations(jet, top, variables, ratings, scenario, names)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
 from camwright.pipeline.case.limits import AnyLimit
+
+Value = float | Array
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,7 @@ class Correction:
 
 @dataclass(frozen=True, eq=False)
 class Scenario:
-    """One load case, or one tolerance corner of it.
+    """One load case, or one tolerance corner of it; or several at once, see `stacked`.
 
     Parameters
     ----------
@@ -138,19 +140,19 @@ class Scenario:
     """
 
     name: str
-    cam_speed: float
+    cam_speed: Value
     torque: Array
-    mass: float
-    guide_spacing: float
-    overhang: float
-    friction_a: float
-    friction_b: float
-    viscous_damping: float = 0.0
-    rate_factor: float = 1.0
-    preload_factor: float = 1.0
+    mass: Value
+    guide_spacing: Value
+    overhang: Value
+    friction_a: Value
+    friction_b: Value
+    viscous_damping: Value = 0.0
+    rate_factor: Value = 1.0
+    preload_factor: Value = 1.0
     weight: float = 1.0
     torque_reduction: float | None = None
-    friction_worst: tuple[float, float] | None = None
+    friction_worst: tuple[Value, Value] | None = None
     correction: Correction = field(default_factory=lambda: Correction.none(8))
 
     def torque_at(self, phase: float) -> tuple[Array, Array]:
@@ -161,3 +163,63 @@ class Scenario:
             order[-1] = 0.0  # the last harmonic of an even count has no phase of its own
         turned, count = spectrum * np.exp(order * phase), self.torque.size
         return np.fft.irfft(turned, n=count), np.fft.irfft(order * turned, n=count)
+
+
+def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
+    """Scenarios at once: numbers (s, 1), corrections (s, n) at cam angles theta (n,), rad.
+
+    The maximum friction is known in all of them, or left out.
+    """
+    corrections = [each.correction.at(theta) for each in scenarios]
+    worst = [each.friction_worst for each in scenarios if each.friction_worst is not None]
+    greatest = None
+    if len(worst) == len(scenarios):
+        greatest = (_column(a for a, _ in worst), _column(b for _, b in worst))
+    return replace(
+        scenarios[0],
+        cam_speed=_column(each.cam_speed for each in scenarios),
+        mass=_column(each.mass for each in scenarios),
+        guide_spacing=_column(each.guide_spacing for each in scenarios),
+        overhang=_column(each.overhang for each in scenarios),
+        friction_a=_column(each.friction_a for each in scenarios),
+        friction_b=_column(each.friction_b for each in scenarios),
+        viscous_damping=_column(each.viscous_damping for each in scenarios),
+        rate_factor=_column(each.rate_factor for each in scenarios),
+        preload_factor=_column(each.preload_factor for each in scenarios),
+        friction_worst=greatest,
+        correction=Correction(
+            *(
+                np.stack([getattr(each, item.name) for each in corrections])
+                for item in fields(Correction)
+            )
+        ),
+    )
+
+
+def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
+    """Some of the stacked scenarios, or some of their angles: `take` of each number, correction."""
+
+    def of(value: Value) -> Array:
+        return take(np.asarray(value))
+
+    worst = stack.friction_worst
+    return replace(
+        stack,
+        cam_speed=of(stack.cam_speed),
+        mass=of(stack.mass),
+        guide_spacing=of(stack.guide_spacing),
+        overhang=of(stack.overhang),
+        friction_a=of(stack.friction_a),
+        friction_b=of(stack.friction_b),
+        viscous_damping=of(stack.viscous_damping),
+        rate_factor=of(stack.rate_factor),
+        preload_factor=of(stack.preload_factor),
+        friction_worst=None if worst is None else (of(worst[0]), of(worst[1])),
+        correction=Correction(
+            *(of(getattr(stack.correction, item.name)) for item in fields(Correction))
+        ),
+    )
+
+
+def _column(values: Iterable[Value]) -> Array:
+    return np.array([[float(value)] for value in values])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +25,9 @@ from camwright.pipeline.smoothing.objective import (
 )
 from camwright.pipeline.smoothing.objective import torque_ripple as torque_ripple
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+
+if TYPE_CHECKING:
+    from camwright.pipeline.smoothing.lagrangian import Lagrangian
 
 RESERVE = 1e-3  # of each limit, for extremes between the points
 FEASIBLE = 1e-5  # tolerance on a utilisation at the reserve
@@ -59,6 +63,7 @@ class Problem:
     freed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     energy: tuple[float, float] = (0.0, np.inf)
     coefficients: int = 96
+    convergence: float | None = None
     points: int = 720
     objective: Objective = (Weighted(TORQUE, 1.0),)
     jerk_weight: float = 1e-5
@@ -110,6 +115,7 @@ class Design:
     strip : mapping         cam angle, rad, and utilisation at it, by limit
     steps : int             of the search
     converged : bool
+    lagrangian : Lagrangian   of the optimum; None: no program was solved
     """
 
     coefficients: Array
@@ -120,6 +126,12 @@ class Design:
     strip: Mapping[str, tuple[Array, Array]]
     steps: int
     converged: bool
+    lagrangian: Lagrangian | None = None
+
+    @property
+    def violation(self) -> float:
+        """Sum of the excess of each limit."""
+        return sum(max(0.0, value - 1.0) for value in self.utilisation.values())
 
     @property
     def feasible(self) -> bool:
@@ -156,6 +168,26 @@ def thinned(torque: Array, points: int) -> Array:
 def ripple_of(problem: Problem, item: Scenario, values: Array) -> Array:
     """Residuals of columns of crank torque, weighted, over those of the engine."""
     return residuals(problem.objective, item, values)
+
+
+def ripple_slope(problem: Problem, item: Scenario, values: Array) -> Array:
+    """Derivative (n,) of the norm of `ripple_of` by the crank torque (n,)."""
+    before = item.torque - item.torque.mean()
+    size = float(np.linalg.norm(ripple_of(problem, item, values)))
+    slope = (problem.torque_weight / np.std(before) ** 2) * (values - values.mean())
+    if problem.speed_weight > 0:
+        # the integral is antisymmetric
+        twice = _integral(_integral(values))
+        slope -= (problem.speed_weight / np.std(_integral(before)) ** 2) * twice
+    return np.asarray(slope / (before.size * size)) if size > 0.0 else np.zeros_like(values)
+
+
+def torque_slope(item: Scenario, values: Array) -> Array:
+    """Derivative (n,) of the norm of `torque_ripple` by the crank torque (n,)."""
+    level = torque_ripple(item, values)
+    size = float(np.linalg.norm(level))
+    spread = np.sqrt(values.size) * float(np.std(item.torque))
+    return np.asarray(level / (size * spread)) if size > 0.0 else np.zeros_like(values)
 
 
 def triangle(columns: Array) -> tuple[Array, Array]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +11,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.smoothing.cone_program import ConeSolution, Reach, solved
+from camwright.pipeline.smoothing.lagrangian import lagrangian_curvature
 from camwright.pipeline.smoothing.linear_model import Model, State
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import FEASIBLE, RESERVE
@@ -17,104 +20,162 @@ PENALTY, _PENALTY_MAX = 20.0, 2e3
 _STEPS_MAX = 60
 _CONVERGED = 2e-6
 _TRUST, _TRUST_LEAST = 0.3, 1e-7
-# Distance from the limit of the rows in the first program, and of those added to it.
-_NEAR, _ADDED = 0.05, 0.01
-_VIOLATED = 1e-9
+_PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
+_ADDITIONS = 4
+_CORRECTED = 0.9  # of the foreseen gain: below, the step is corrected
+_VIOLATED = 1e-6
 
 
 class Descent(NamedTuple):
-    """End of a descent: state, last accepted program, number of steps."""
+    """End of a descent: state, last model and its program, number of steps."""
 
     state: State
+    model: Model | None
     program: ConeSolution | None
     steps: int
     converged: bool
 
 
-def descended(search: Search, ripple_weight: float) -> Descent:
+def descended(search: Search, ripple_weight: float, earlier: Descent | None = None) -> Descent:
     """Local optimum of a search from its start.
 
     Parameters
     ----------
     ripple_weight : float   0: any cam within the limits
+    earlier : Descent       end of a search with fewer extra angles, to go on from
 
     References
     ----------
     Fletcher, Practical Methods of Optimization (1987), sec. 14.4: sequential programming with an
-    exact penalty and a trust region.
+    exact penalty, second derivatives of the Lagrangian and a trust region.
     """
-    state = search.state(search.start, search.problem.variables)
-    trust, penalty, last = _TRUST, PENALTY, None
+    start = search.start, search.problem.variables
+    model: Model | None = None
+    program: ConeSolution | None = None
+    if earlier is not None:
+        start = earlier.state.coefficients, earlier.state.variables
+        model, program = earlier.model, earlier.program
+    state, trust, penalty = search.state(*start), _TRUST, PENALTY
     for step in range(1, _STEPS_MAX + 1):
+        before, priced = model, program
         model = search.model(state)
+        if before is not None and priced is not None:
+            bend = lagrangian_curvature(search, state, model.summit, before, priced)
+            model = model._replace(curvature=_convex(model.curvature + bend))
+        proven = False
         while True:
-            # The box alone does not bound short waves, which a speed ripple does not contain.
-            reach = Reach(search.bend, trust)
-            program = _solved(model, search.box(state, trust), reach, penalty, ripple_weight)
+            program, there, model = _program(search, state, model, trust, penalty, ripple_weight)
             if program is None:
                 trust *= 0.3
                 if trust < _TRUST_LEAST:
-                    return Descent(state, last, step, False)
+                    return Descent(state, before, priced, step, False)
                 continue
-            there = search.state(*search.after(state, program.step))
             now = state.merit(penalty, ripple_weight)
             predicted = now - program.objective - state.jerk
             actual = now - there.merit(penalty, ripple_weight)
+            if predicted > _CONVERGED and actual < _CORRECTED * predicted:
+                other = _program(
+                    search, state, _corrected(model, program, there), trust, penalty, ripple_weight
+                )
+                if other[0] is not None:
+                    gain = now - other[1].merit(penalty, ripple_weight)
+                    if gain > actual:
+                        (_, there, _), actual = other, gain
             if predicted <= _CONVERGED:
+                if trust < _PROOF and not proven:
+                    trust, proven = _PROOF, True
+                    continue
                 if penalty < _PENALTY_MAX and not _within(state):
                     penalty *= 10.0
                     trust = max(trust, 0.1)
                     continue
-                return Descent(there if actual > 0 else state, program, step, True)
+                converged = trust >= _PROOF
+                return Descent(there if actual > 0 else state, model, program, step, converged)
             share = actual / predicted
             if share > 0.05:
-                state, last = there, program
+                state = there
                 trust = min(trust * (2.0 if share > 0.7 else 1.0 if share > 0.25 else 0.5), 1.0)
                 break
             trust *= 0.35
             if trust < _TRUST_LEAST:
-                return Descent(state, last, step, False)
-    return Descent(state, last, _STEPS_MAX, False)
+                return Descent(state, model, program, step, False)
+    return Descent(state, model, program, _STEPS_MAX, False)
+
+
+def _corrected(model: Model, program: ConeSolution, there: State) -> Model:
+    """The model with levels that its rows have after the step: a second-order correction."""
+    limits = []
+    for each in model.limits:
+        if each.power is not None:
+            value = there.means[each.name][each.scenario]
+        elif each.name in there.pointwise:
+            value = there.pointwise[each.name][each.scenario, each.point]
+        else:
+            limits.append(each)
+            continue
+        limits.append(replace(each, level=value - 1.0 + RESERVE - each.change(program.step)))
+    return model._replace(limits=limits)
 
 
 def _within(state: State) -> bool:
     return all(value <= 1.0 - RESERVE + FEASIBLE for value in state.utilisation.values())
 
 
-def _solved(
-    model: Model, box: Array, bend: Reach, penalty: float, ripple_weight: float
-) -> ConeSolution | None:
-    """Solution with all rows that can be active in the box; violated rows are added in turn."""
-    reach, size = np.abs(box).max(axis=0), box.shape[1]
-    active = [limit.highest(reach) >= 0.0 for limit in model.limits]
-    chosen = [
-        useful & (limit.level >= -_NEAR) for useful, limit in zip(active, model.limits, strict=True)
-    ]
-    while True:
-        rows = [
-            limit.rows(taken, size)
-            for limit, taken in zip(model.limits, chosen, strict=True)
-            if taken.any()
-        ]
+def _convex(curvature: Array) -> Array:
+    """Nearest positive semidefinite matrix."""
+    values, vectors = np.linalg.eigh(0.5 * (curvature + curvature.T))
+    return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T)
+
+
+def _program(
+    search: Search, state: State, model: Model, trust: float, penalty: float, ripple_weight: float
+) -> tuple[ConeSolution | None, State, Model]:
+    """Solution within a trust region, the state there, and the model with the rows it needed.
+
+    Rows that the state there violates more than those of the model are added to it.
+    """
+    # The box alone does not bound short waves, which a speed ripple does not contain.
+    reach, box = Reach(search.bend, trust), search.box(state, trust)
+    for _ in range(_ADDITIONS):
         program = solved(
-            model.norms, rows, model.curvature, model.slope, box, penalty, ripple_weight, bend
+            model.norms, [each.rows(search.size) for each in model.limits],
+            model.curvature, model.slope, box, penalty, ripple_weight, reach,
+        )  # fmt: skip
+        if program is None:
+            return None, state, model
+        there = search.state(*search.after(state, program.step))
+        rows = _missing(model, program, there)
+        ripples = _missing_ripples(model, program, there)
+        if not rows and not ripples.size:
+            break
+        model = model._replace(
+            limits=[*model.limits, *search.rows(state, model.summit, rows)],
+            norms=[*model.norms, *search.norms(state, model.summit, ripples)],
         )
-        if program is None or not _violated_rows_added(model, program, active, chosen):
-            return program
+    return program, there, model
 
 
-def _violated_rows_added(
-    model: Model,
-    program: ConeSolution,
-    active: list[NDArray[np.bool_]],
-    chosen: list[NDArray[np.bool_]],
-) -> bool:
-    """Add the rows that a solution violates, and those near them; whether there are any."""
-    added = False
-    for place, limit in enumerate(model.limits):
-        over = limit.at(program.step) - program.slack.get(limit.name, 0.0)
-        left_out = active[place] & ~chosen[place]
-        if (over[left_out] > _VIOLATED).any():
-            chosen[place] = chosen[place] | (active[place] & (over > -_ADDED))
-            added = True
-    return added
+def _missing(model: Model, program: ConeSolution, there: State) -> Mapping[str, NDArray[np.bool_]]:
+    """Rows by limit that are violated by more than the rows of the model, and not in it."""
+    missing = {}
+    for name, value in there.pointwise.items():
+        level = value - 1.0 + RESERVE
+        allowed = program.slack.get(name, 0.0) + _VIOLATED
+        if level.max() <= allowed:
+            continue
+        own = np.zeros(level.shape, dtype=bool)
+        for each in model.limits:
+            if each.name == name and each.power is None:
+                own[each.scenario, each.point] = True
+        worst = max(allowed, float(level[own].max(initial=-np.inf)) + _VIOLATED)
+        rows = ~own & (level > worst)
+        if rows.any():
+            missing[name] = rows & (level >= level.max(axis=0))
+    return missing
+
+
+def _missing_ripples(model: Model, program: ConeSolution, there: State) -> NDArray[np.intp]:
+    """Weighted scenario whose ripple is the greatest, if it is not in the model."""
+    known = [norm.number for norm in model.norms]
+    greatest = max(program.ripple, float(there.ripples[known].max(initial=0.0))) + _VIOLATED
+    return np.flatnonzero(there.ripples > greatest)[:1]

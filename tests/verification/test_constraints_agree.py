@@ -25,6 +25,7 @@ from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.solution import Solution, solution
 from camwright.pipeline.follower.roller_parts import Fork
 from camwright.pipeline.smoothing.allowables import force_limits, ratings_of, travel_limits
+from camwright.pipeline.smoothing.cone_program import ConeSolution
 from camwright.pipeline.smoothing.constraints import (
     Jet,
     Mean,
@@ -32,6 +33,8 @@ from camwright.pipeline.smoothing.constraints import (
     shape_utilisations,
 )
 from camwright.pipeline.smoothing.objective import objective_of
+from camwright.pipeline.smoothing.lagrangian import Lagrangian, lagrangian_curvature
+from camwright.pipeline.smoothing.linear_model import Model
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import INITIAL_ENERGY, LEAST_ENERGY, Search
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
@@ -317,18 +320,31 @@ def test_gradients_match_differences(free, crown):
     step = np.random.default_rng(5).normal(size=size)
     step[24:] *= 1e-2  # the rest moves as much for a hundredth of k, P and r0
 
-    def beside(side):
-        return search.model(search.state(*search.after(state, side * h * step))).limits
-
+    summit = search.summit(state)
+    every = {name: np.ones(value.shape, dtype=bool) for name, value in state.pointwise.items()}
+    means = {name: np.ones(value.shape, dtype=bool) for name, value in state.means.items()}
+    up, down = (search.state(*search.after(state, side * h * step)) for side in (1, -1))
     seen = set()
-    for limit, up, down in zip(search.model(state).limits, beside(1), beside(-1), strict=True):
-        exact = limit.at(step) - limit.level
-        differences = (up.level - down.level) / (2 * h)
-        assert np.abs(exact).max() > 0, limit.name
-        smooth = np.abs(differences - exact) < 1e-6 * np.abs(exact).max()
+    for limit in (*search.rows(state, summit, every), *search.means(state, summit, means)):
+        exact = limit.change(step)
+        if limit.power is None:
+            one, other = (each.pointwise[limit.name][limit.scenario, limit.point]
+                          for each in (up, down))  # fmt: skip
+        else:
+            one, other = (each.means[limit.name][limit.scenario] for each in (up, down))
+        size = max(np.abs(exact).max(), 1e-3)
+        smooth = np.abs((one - other) / (2 * h) - exact) < 1e-6 * size
         # |s'|, |alpha| and the sign of the motion turn at a few points
         assert smooth.mean() > 0.95, limit.name
         seen.add(limit.name)
+    for limit in search.model(state).limits:
+        if limit.name in (LEAST_ENERGY, INITIAL_ENERGY):
+            sign = -1.0 if limit.name == LEAST_ENERGY else 1.0
+            one, other = (search.turn.energy(each.coefficients)[0][limit.point]
+                          for each in (up, down))  # fmt: skip
+            differences = sign * (one - other) / (2 * h * search.scale)
+            np.testing.assert_allclose(limit.change(step), differences, atol=1e-8)
+            seen.add(limit.name)
     shape = set(SHAPE) | {LEAST_ENERGY, INITIAL_ENERGY, "contact_pressure"}
     assert seen == shape | set(LOAD) - FORCE
 
@@ -356,3 +372,41 @@ def test_gradient_of_each_term_of_the_objective(free, term):
         differences = (up.ripple - down.ripple) / (2 * h)
     assert abs(slope) > 0
     assert slope == pytest.approx(differences, rel=1e-6)
+
+
+@pytest.mark.parametrize("free", [(), tuple(RANGES)])
+def test_second_derivatives_of_the_lagrangian_match_its_differences(free):
+    """Of every limit and ripple at once; the norms' own part of the curvature added."""
+    given = Problem(
+        (scenario(), replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.7)),
+        EVERY, DesignVariables(24.2e3, 242.0, 0.05), freed={name: RANGES[name] for name in free},
+        coefficients=24, points=180, speed_weight=0.5, torque_reduction=0.5,
+    )  # fmt: skip
+    search = Search(given, extra=np.array([0.31, 2.17]))
+    state = search.state(search.start + 2.0, given.variables)
+    summit, random = search.summit(state), np.random.default_rng(3)
+    some = {name: random.random(value.shape) < 0.01 for name, value in state.pointwise.items()}
+    means = {name: np.ones(value.shape, dtype=bool) for name, value in state.means.items()}
+    limits = [*search.rows(state, summit, some), *search.means(state, summit, means)]
+    norms = search.norms(state, summit, np.arange(2))
+    model = Model(summit, norms, limits, np.zeros((0, 0)), np.zeros(0))
+    prices = [random.random(limit.level.size) for limit in limits]
+    program = ConeSolution(np.zeros(0), 0.0, {}, prices, [(0.6, 0.0), (0.0, 0.3)] * 2, 0.0)
+    exact = lagrangian_curvature(search, state, summit, model, program)
+    lagrangian = Lagrangian.of(search, state, model, program)
+    step, h = random.normal(size=search.size), 1e-4
+    step[24:] *= 1e-2
+
+    def along(side):
+        coefficients, variables = search.after(state, side * h * step)
+        return replace(lagrangian, coefficients=coefficients, variables=variables).at(given)
+
+    differences = (along(1) - 2 * along(0) + along(-1)) / h**2
+    own = 0.0
+    for norm, (weight, ceiling) in zip(norms, program.norms, strict=True):
+        item, slope = given.scenarios[norm.number].weight, norm.slopes @ step
+        size = np.linalg.norm(norm.level)
+        bend = slope @ slope / size - (norm.level @ slope) ** 2 / size**3
+        own += (weight * item + ceiling) * bend
+    # left out: the second derivative of the maximum lift
+    assert step @ exact @ step + own == pytest.approx(differences, rel=2e-3)

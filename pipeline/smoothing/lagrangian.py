@@ -1,0 +1,220 @@
+"""Lagrangian of a synthesis: its value for other numbers of the machine, its second derivatives.
+
+Ripples and limits are functions of the energy and its derivatives at each cam angle, of the maximum
+lift and of the free variables. Their second derivatives are small matrices by cam angle, which the
+splines assemble.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array
+from camwright.pipeline.smoothing.cone_program import ConeSolution
+from camwright.pipeline.smoothing.gradients import second_derivatives
+from camwright.pipeline.smoothing.linear_model import Linear, Model, State, Summit
+from camwright.pipeline.smoothing.sampled_problem import SHAPE_LIMITS, Search
+from camwright.pipeline.smoothing.scenario import DesignVariables
+from camwright.pipeline.smoothing.synthesis_problem import (
+    Problem,
+    ripple_of,
+    ripple_slope,
+    torque_ripple,
+    torque_slope,
+)
+
+_PHASE_STEP = 1e-4  # rad
+_PRICE_LEAST = 1e-9  # multiplier below which a row does not count
+
+
+@dataclass(frozen=True, eq=False)
+class Lagrangian:
+    """Ripples and limits at an optimum, each times its multiplier.
+
+    By the envelope theorem the derivative of the ripple by a number of the machine is that of the
+    Lagrangian at the optimum.
+
+    Parameters
+    ----------
+    coefficients, variables   of the optimum
+    extra : array (e,)        cam angles between the points, rad
+    limits : sequence         rows and their multipliers (m,)
+    ripples : sequence        number of a weighted scenario, multipliers of its ripple and ceiling
+    """
+
+    coefficients: Array
+    variables: DesignVariables
+    extra: Array
+    limits: Sequence[tuple[Linear, Array]]
+    ripples: Sequence[tuple[int, float, float]]
+
+    @classmethod
+    def of(cls, search: Search, state: State, model: Model, program: ConeSolution) -> Lagrangian:
+        """Lagrangian at the last state of a search."""
+        return cls(
+            coefficients=state.coefficients,
+            variables=state.variables,
+            extra=search.extra,
+            limits=[
+                pair
+                for pair in zip(model.limits, program.rows, strict=True)
+                if (pair[1] > _PRICE_LEAST).any() and (pair[0].scenario >= 0).all()
+            ],
+            ripples=[
+                (norm.number, *prices)
+                for norm, prices in zip(model.norms, program.norms, strict=True)
+            ],
+        )
+
+    def at(self, problem: Problem) -> float:
+        """Value for a problem of the same limits and splines, ratio to the ripple of the engine."""
+        search = Search(problem, self.extra)
+        state = search.state(self.coefficients, self.variables)
+        total = 0.0
+        for limit, prices in self.limits:
+            if limit.power is None:
+                uses = state.pointwise[limit.name][limit.scenario, limit.point]
+            else:
+                uses = state.means[limit.name][limit.scenario]
+            total += float(prices @ uses)
+        left = search.residual_torque(self.coefficients, self.variables)
+        for number, objective, ceiling in self.ripples:
+            item, values = problem.scenarios[search.weighted[number]], left[number]
+            ripple = float(np.linalg.norm(ripple_of(problem, item, values)))
+            total += objective * item.weight * ripple
+            total += ceiling * float(np.linalg.norm(torque_ripple(item, values)))
+        return total
+
+
+def lagrangian_curvature(
+    search: Search, state: State, summit: Summit, model: Model, program: ConeSolution
+) -> Array:
+    """Second derivatives (size, size) of the Lagrangian by the scaled unknowns, at a state.
+
+    Without those of the norms by their linear residuals, which the cone program has. The second
+    derivative of the maximum lift is left out.
+
+    Parameters
+    ----------
+    state : State            after the step of the program
+    summit : Summit          there
+    model : Model            of the program; its rows have the multipliers
+    program : ConeSolution
+    """
+    total = np.zeros((search.size, search.size))
+    priced = [
+        (limit, price)
+        for limit, price in zip(model.limits, program.rows, strict=True)
+        if (price > _PRICE_LEAST).any()
+    ]
+    pointwise = [pair for pair in priced if pair[0].power is None and (pair[0].scenario >= 0).all()]
+    means = [pair for pair in priced if pair[0].power is not None]
+    total += _of_rows(search, state, summit, pointwise)
+    total += _of_means(search, state, summit, means)
+    return total + _of_ripples(search, state, summit, model, program)
+
+
+def _of_rows(
+    search: Search, state: State, summit: Summit, priced: Sequence[tuple[Linear, Array]]
+) -> Array:
+    """Of limits at single angles, each row alone with its own limit."""
+    total = np.zeros((search.size, search.size))
+    for shape in (True, False):
+        own = [pair for pair in priced if (pair[0].name in SHAPE_LIMITS) == shape]
+        if not own:
+            continue
+        kept = [price > _PRICE_LEAST for _, price in own]
+        point = np.concatenate([each.point[k] for (each, _), k in zip(own, kept, strict=True)])
+        row = np.concatenate([each.scenario[k] for (each, _), k in zip(own, kept, strict=True)])
+        starts = np.cumsum([0, *(int(k.sum()) for k in kept)])
+        names = frozenset(each.name for each, _ in own)
+        weights = {name: np.zeros(point.size) for name in names}
+        for (each, price), k, start in zip(own, kept, starts, strict=False):
+            weights[each.name][start : start + int(k.sum())] = price[k]
+        function = search.shape(names) if shape else search.loads_at(state, row, point, names)
+        second = second_derivatives(
+            function, search.point(state, summit.lift, point), search.freed, weights
+        )
+        total += _assembled(search, state, summit, second, point)
+    return total
+
+
+def _of_means(
+    search: Search, state: State, summit: Summit, priced: Iterable[tuple[Linear, Array]]
+) -> Array:
+    """Of limits on means over the turn: a power of a mean, and the mean."""
+    total = np.zeros((search.size, search.size))
+    points = search.every
+    for limit, prices in priced:
+        use = float(state.means[limit.name][limit.scenario[0]])
+        if use <= 0.0 or limit.power is None:
+            continue
+        power, price = limit.power, float(prices[0])
+        front = price * power * use ** (1.0 - 1.0 / power) / points.size
+        row = np.repeat(limit.scenario, points.size)
+        function = search.loads_at(state, row, points, frozenset([limit.name]))
+        at = search.point(state, summit.lift, points)
+        second = second_derivatives(
+            function, at, search.freed, {limit.name: np.full(points.size, front)}
+        )
+        total += _assembled(search, state, summit, second, points)
+        slope = limit.entries[0]
+        total += price * (power - 1.0) / (power * use) * np.outer(slope, slope)
+    return total
+
+
+def _of_ripples(
+    search: Search, state: State, summit: Summit, model: Model, program: ConeSolution
+) -> Array:
+    """Of the delivered torque, weighted by the slope of the ripples by the crank torque."""
+    problem, variables = search.problem, state.variables
+    left = search.residual_torque(state.coefficients, variables)
+    slope = np.zeros_like(left)
+    for norm, (objective, ceiling) in zip(model.norms, program.norms, strict=True):
+        item = problem.scenarios[search.weighted[norm.number]]
+        values = left[norm.number]
+        if objective > _PRICE_LEAST:
+            slope[norm.number] += objective * item.weight * ripple_slope(problem, item, values)
+        if ceiling > _PRICE_LEAST:
+            slope[norm.number] += ceiling * torque_slope(item, values)
+    if not slope.any():
+        return np.zeros((search.size, search.size))
+    priced = np.flatnonzero(slope.any(axis=1))
+    points = search.every
+    second = second_derivatives(
+        search.torque(variables, priced),
+        search.point(state, summit.lift, points),
+        search.freed,
+        {"torque": -slope[priced] / problem.gear_ratio},
+    )
+    total = _assembled(search, state, summit, second.sum(axis=2), points)
+    if "phase" in problem.freed:
+        place = problem.coefficients + list(problem.freed).index("phase")
+        for k in priced:
+            item, phase = problem.scenarios[search.weighted[k]], float(variables.phase)
+            ends = [item.torque_at(phase + side * _PHASE_STEP)[1] for side in (1.0, -1.0)]
+            total[place, place] += float(slope[k] @ (ends[0] - ends[1])) / (2.0 * _PHASE_STEP)
+    return total
+
+
+def _assembled(
+    search: Search, state: State, summit: Summit, second: Array, points: NDArray[np.intp]
+) -> Array:
+    """Second derivatives by the scaled unknowns from those (q, q, m) at angles (m,) of the grid."""
+    size, orders = search.size, search.grid.entries.shape[0]
+    entries = search.scale * search.grid.entries[:, points]
+    columns = search.grid.columns[points]
+    local = np.einsum("abm,bmj->amj", second[:orders, :orders], entries)
+    blocks = np.einsum("ami,amj->mij", entries, local)
+    place = columns[:, :, None] * size + columns[:, None, :]
+    total = np.bincount(place.ravel(), blocks.ravel(), size * size).reshape(size, size)
+    shared = search.shared_columns(state, summit)
+    sides = np.einsum("sam,amj->smj", second[orders:, :orders], entries)
+    mixed = np.stack([np.bincount(columns.ravel(), side.ravel(), size) for side in sides])
+    cross = mixed.T @ shared
+    common = second[orders:, orders:].sum(axis=2)
+    return np.asarray(total + cross + cross.T + shared.T @ common @ shared)
