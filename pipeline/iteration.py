@@ -40,7 +40,7 @@ from camwright.pipeline.smoothing.fe_correction import (
     redrawn,
 )
 from camwright.pipeline.smoothing.infeasibility import infeasibility
-from camwright.pipeline.smoothing.multistart import Starts, explored
+from camwright.pipeline.smoothing.multistart import Explored, explored
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.roller_alternatives import roller_problems
@@ -172,6 +172,7 @@ class _Task:
         smoothing: SmoothingRecord,
         synthesis: SynthesisRecord | None = None,
         uses: tuple[Array, Mapping[str, Array]] | None = None,
+        gain: float | None = None,
     ) -> Trial:
         """Trial of a lift; uses: see `Trial.limits_in_use`."""
         self.progress.stage(f"trial {number}: lift and contour")
@@ -180,6 +181,7 @@ class _Task:
             case.contour(lift),
             tier=self.tier,
             torques=self.torques,
+            synthesis_gain=gain,
             store=self.sink.store(number),
             progress=_Prefixed(self.progress, f"trial {number}: "),
         )
@@ -239,7 +241,7 @@ def _constrained(task: _Task) -> Iteration:
     case, torques = task.case, task.torques
     problem = problem_of(case, torques)
     why = "least ripple within all limits"
-    starts: Starts | None = None
+    first: Explored | None = None
     comparisons: list[Comparison] = []
     points: list[TrialPoint] = []
     best: tuple[Rank, Trial] | None = None
@@ -249,8 +251,9 @@ def _constrained(task: _Task) -> Iteration:
         if number > 1:  # starts from the optimum of the trial before
             design = synthesise(problem)
         else:
-            design, starts = explored(problem, case.smoothing.starts)
-        record = design_record(design, problem, starts if number == 1 else None)
+            first = explored(problem, case.smoothing.starts)
+            design, problem = first.design, replace(problem, coefficients=first.splines)
+        record = design_record(design, problem, first if number == 1 else None)
         trial = task.solved(
             number,
             redrawn(case, design),
@@ -259,6 +262,7 @@ def _constrained(task: _Task) -> Iteration:
             CONSTRAINED,
             synthesis=record,
             uses=limits_in_use(design),
+            gain=design.gain,
         )
         comparisons.append(compared(problem, design, trial.cycles))
         unmeshed = task.tier is Tier.CYCLE and trial.mesh is None
@@ -280,7 +284,8 @@ def _constrained(task: _Task) -> Iteration:
             final = best[1]
             parts = [_ending(final, number, comparisons[-1], settled=ends)]
             parts += [] if conflict is None else [conflict.sentence]
-            parts += [] if starts is None or conflict is not None else [starts.sentence]
+            if first is not None and conflict is None:
+                parts += [first.starts.sentence, first.resolution.sentence]
             return Iteration(final, "; ".join(parts), tuple(points))
         del trial  # its solution takes most of the memory
         why = comparisons[-1].sentence

@@ -62,13 +62,18 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         rank,
         redrawn,
     )
+    from camwright.pipeline.smoothing.multistart import explored
     from camwright.pipeline.smoothing.problem_setup import problem_of
 
     problem = problem_of(case, torques)
     comparisons: list[Comparison] = []
     best: tuple[Rank, Trial] | None = None
     while True:
-        design = synthesise(problem)
+        if comparisons:
+            design = synthesise(problem)
+        else:
+            first = explored(problem, 1)
+            design, problem = first.design, replace(problem, coefficients=first.splines)
         drawn = redrawn(case, design)
         contour = drawn.contour(design.lift())
         trial = replace(
@@ -78,6 +83,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
                 tier=Tier.PREVIEW,
                 torques=torques,
                 corners=False,
+                synthesis_gain=design.gain,
                 progress=progress,
             ),
             smoothing=CONSTRAINED,

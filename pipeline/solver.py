@@ -35,6 +35,7 @@ def solve(
     torques: Mapping[str, Torque] | None = None,
     positions: int | None = None,
     corners: bool = True,
+    synthesis_gain: float | None = None,
     store: ContactStore = NOT_STORED,
     progress: Progress = SILENT,
     jobs: int | None = 1,
@@ -49,6 +50,7 @@ def solve(
     torques : mapping     engine torque by load case; None: computed from the case
     positions : int       per cam turn; None: those of the case
     corners : bool        judge each check at its worst tolerance corner; not in a screening
+    synthesis_gain : float   see `Solution`
     store : ContactStore  of partial contact solutions, to resume an interrupted run
     progress : Progress
     jobs : int            processes for the certificate; None: number of processors, at most 4
@@ -71,6 +73,7 @@ def solve(
         store=store,
         progress=progress,
     )
+    solved = replace(solved, synthesis_gain=synthesis_gain)
     if tier is Tier.CERTIFIED:
         with crew(jobs) as workers:
             solved = certified_solution(solved, workers, progress=progress)

@@ -49,7 +49,8 @@ class Smoothing(Section):
     the prime radius. harmonic_orders are periods per crank turn. robust_weight is that of the
     torque ripple at speeds and loads of 1 -+ robust_speed and 1 -+ robust_load. The phase is that
     of the cam on its shaft, in cam angle. The optimisation starts from `starts` points, all but one
-    random, to find several local optima.
+    random, to find several local optima. coefficients is the number of splines of the turn; where
+    it is missing it rises until the ripple changes by less than ripple_convergence.
     """
 
     kind: Literal[
@@ -73,7 +74,8 @@ class Smoothing(Section):
     preload_range: Annotated[tuple[Preload, Preload], Field(strict=False)] | None = None
     prime_radius_range: Annotated[tuple[Length, Length], Field(strict=False)] | None = None
     phase_range: Annotated[tuple[Phase, Phase], Field(strict=False)] | None = None
-    coefficients: Annotated[int, Field(ge=12, le=240)] = 96
+    coefficients: Annotated[int, Field(ge=12, le=240)] | None = None
+    ripple_convergence: Annotated[float, In(at_least=1e-5, at_most=0.1)] = 0.005
     starts: Annotated[int, Field(ge=1, le=40)] = 4
     torque_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 1.0
     speed_weight: Annotated[float, In(at_least=0, at_most=1e6)] = 0.0

@@ -33,6 +33,7 @@ SPACINGS_PER_EDGE = 2.0  # a quadratic edge has a middle node
 LEAST_SPACINGS = 10.0  # the maximum shear is then within 1.3 %: 0.5 % at 16, of second order
 BENCHMARK = 0.03  # of the reference: 2 to 3 % usual
 KNOTS_TRIED = (7, 13, 25)  # twice as many each time, the ends counted once
+SYNTHESIS_GAIN = 1e-5  # of the engine's ripple; a converged search foresees at most a fifth
 NO_CERTIFICATE = "this trial has no certificate"
 
 
@@ -123,6 +124,23 @@ def hertz_difference(solution: Solution) -> Demand:
     """Maximum difference of the contact pressure from Hertz, relative."""
     worst = greatest(solution.cycles, lambda cycle: np.abs(cycle.contact.p0_difference))
     return Demand(worst.value, HERTZ_DIFFERENCE, worst)
+
+
+@check(
+    title="Convergence of the constrained synthesis",
+    formula="d <= 1e-5; d: ripple and costs that another step of the synthesis foresees to gain,"
+    " over the ripple of the engine",
+    reason="A search that ended early leaves ripple that the limits do not ask for.",
+    unit="-",
+    source=VERIFICATION,
+    method="gain by the convex program of another step, with second derivatives",
+    evidence=True,
+    tier=Tier.SCREENING,
+)
+def synthesis_converged(solution: Solution) -> Demand | None:
+    """Gain that another step of the synthesis foresees, over the ripple of the engine."""
+    gain = solution.synthesis_gain
+    return None if gain is None else Demand(gain, SYNTHESIS_GAIN)
 
 
 def _certified(

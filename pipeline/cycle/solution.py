@@ -79,6 +79,8 @@ class Solution:
     crank_speed_halved : mapping   the same of the torque at every second crank angle
     bore_error : float           discretisation error of the bore stress, relative; None: not known
     coarse : bool                coarse guide mesh, constant crank speed: for ratios of demands
+    synthesis_gain : float       of its lift: what another step of the synthesis would gain, of the
+                                 engine's ripple; None: not a synthesis
     """
 
     case: Case
@@ -93,6 +95,7 @@ class Solution:
     crank_speed_halved: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     bore_error: float | None = None
     coarse: bool = False
+    synthesis_gain: float | None = None
 
     @property
     def machine(self) -> Machine:

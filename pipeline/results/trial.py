@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -82,7 +83,7 @@ class TrialPoint:
             trial.number,
             None if after is None else float(np.std(after)),
             "" if worst is None else worst.id,
-            None if worst is None else worst.utilisation,
+            None if worst is None or worst.utilisation == math.inf else worst.utilisation,
             screen(within_depth(trial.checks)) == "open",
         )
 

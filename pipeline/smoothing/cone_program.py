@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import clarabel
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from camwright.geometry.arrays import Array
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
@@ -17,13 +18,26 @@ _ACCEPTED = ("Solved", "AlmostSolved")
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
-    """Linear constraints of one limit: level + slopes @ x <= slack; level (m,), slopes (m, n)."""
+class Linear:
+    """Rows of one limit: level + entries @ x[columns] <= slack; level (m,), entries (m, w).
+
+    scenario, point (m,): of each row, -1 for a mean over the turn; power: of that mean. A cost has
+    its greatest row in the objective, a row that is not elastic has no slack.
+    """
 
     name: str
     level: Array
-    slopes: scipy.sparse.csr_array
+    entries: Array
+    columns: NDArray[np.intp]
+    scenario: NDArray[np.intp]
+    point: NDArray[np.intp]
+    power: float | None = None
     elastic: bool = True
+    cost: bool = False
+
+    def change(self, step: Array) -> Array:
+        """Change after a step, (m,)."""
+        return np.asarray(np.sum(self.entries * step[self.columns], axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +64,7 @@ class Reach:
 
 @dataclass(frozen=True, eq=False)
 class ConeSolution:
-    """Solution of a convex program: unknowns x, slack by limit, multipliers.
+    """Solution of a convex program: unknowns x, slack by limit and value by cost, multipliers.
 
     rows: multipliers (m,) of each of the rows, in their order; norms: of each norm in the objective
     and of its ceiling.
@@ -62,6 +76,22 @@ class ConeSolution:
     rows: list[Array]
     norms: list[tuple[float, float]]
     objective: float
+
+
+class _Block(NamedTuple):
+    """Entries of a matrix by row and column, (e,), and the right side (m,)."""
+
+    rows: NDArray[np.intp]
+    columns: NDArray[np.intp]
+    values: Array
+    side: Array
+
+    @classmethod
+    def of(cls, matrix: scipy.sparse.csr_array, side: ArrayLike) -> _Block:
+        """Entries of a sparse matrix."""
+        rows = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
+        whole = np.broadcast_to(np.asarray(side, dtype=float), matrix.shape[:1])
+        return cls(rows, matrix.indices.astype(np.intp), matrix.data, whole)
 
 
 class Cones:
@@ -76,8 +106,8 @@ class Cones:
         self.size = size
         self.cost = np.zeros(size)
         self._quadratic = np.zeros((size, size))
-        self._linear: list[tuple[scipy.sparse.csr_array, Array]] = []
-        self._cones: list[tuple[scipy.sparse.csr_array, Array, int]] = []
+        self._linear: list[_Block] = []
+        self._cones: list[tuple[_Block, int]] = []
 
     def columns(self, matrix: scipy.sparse.csr_array, start: int) -> scipy.sparse.csr_array:
         """Matrix (m, size) of all unknowns from one (m, w) of those from `start` on."""
@@ -96,18 +126,27 @@ class Cones:
 
     def at_most(self, matrix: scipy.sparse.csr_array, bound: ArrayLike) -> None:
         """matrix (m, size) @ x <= bound (m,)."""
-        self._linear.append((matrix, np.broadcast_to(bound, matrix.shape[:1])))
+        self._linear.append(_Block.of(matrix, bound))
+
+    def rows_at_most(self, entries: ArrayLike, columns: NDArray[np.intp], bound: ArrayLike) -> None:
+        """Sum of entries (m, w) times x[columns] <= bound (m,)."""
+        rows = np.broadcast_to(np.arange(len(columns))[:, None], columns.shape)
+        values = np.broadcast_to(np.asarray(entries, dtype=float), columns.shape)
+        side = np.broadcast_to(np.asarray(bound, dtype=float), (len(columns),))
+        self._linear.append(_Block(rows.ravel(), columns.ravel(), values.ravel(), side))
 
     def norm_at_most(
         self, slopes: Array, level: Array, variable: int | None, ceiling: float = 0.0
     ) -> None:
         """|level + slopes @ x| <= ceiling + x[variable]; slopes (m, w) of the first unknowns."""
-        block = np.zeros((level.size + 1, self.size))
+        rows, columns = np.nonzero(slopes)
+        values = -slopes[rows, columns]
+        rows = rows + 1
         if variable is not None:
-            block[0, variable] = -1.0
-        block[1:, : slopes.shape[1]] = -slopes
+            rows, columns = np.append(rows, 0), np.append(columns, variable)
+            values = np.append(values, -1.0)
         side = np.concatenate([[ceiling], level])
-        self._cones.append((scipy.sparse.csr_array(block), side, side.size))
+        self._cones.append((_Block(rows, columns, values, side), side.size))
 
     def square_at_most(
         self, matrix: scipy.sparse.csr_array, room: scipy.sparse.csr_array, level: float
@@ -118,24 +157,30 @@ class Cones:
         side = np.concatenate([np.full(rows, level + 1.0), np.full(rows, level - 1.0),
                                np.zeros(rows)])  # fmt: skip
         order = np.arange(3 * rows).reshape(3, rows).T.ravel()
-        self._cones.append((stacked[order], side[order], 3))
+        self._cones.append((_Block.of(stacked[order], side[order]), 3))
 
     def solved(self) -> tuple[Array, Array, float] | None:
         """x, multipliers of the linear constraints in order, cost; None if not solved."""
-        blocks = [block for block, _ in self._linear] + [block for block, _, _ in self._cones]
-        sides = [side for _, side in self._linear] + [side for _, side, _ in self._cones]
-        linear = sum(side.size for _, side in self._linear)
+        blocks = [*self._linear, *(block for block, _ in self._cones)]
+        linear = sum(block.side.size for block in self._linear)
         cones = [clarabel.NonnegativeConeT(linear)]
-        for _, side, height in self._cones:
-            cones += [clarabel.SecondOrderConeT(height)] * (side.size // height)
+        for block, height in self._cones:
+            cones += [clarabel.SecondOrderConeT(height)] * (block.side.size // height)
+        starts = np.cumsum([0, *(block.side.size for block in blocks)])
+        rows = [block.rows + start for block, start in zip(blocks, starts, strict=False)]
+        columns, values = (
+            np.concatenate([getattr(block, name) for block in blocks])
+            for name in ("columns", "values")
+        )
+        matrix = scipy.sparse.csc_array(
+            (values, (np.concatenate(rows), columns)), shape=(int(starts[-1]), self.size)
+        )
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_threads = 1
-        matrix = scipy.sparse.csc_array(scipy.sparse.vstack(blocks, format="csc"))
-        matrix.sum_duplicates()
         result = clarabel.DefaultSolver(
             scipy.sparse.csc_array(np.triu(self._quadratic)), self.cost, matrix,
-            np.concatenate(sides),
+            np.concatenate([block.side for block in blocks]),
             cones, settings,
         ).solve()  # fmt: skip
         if str(result.status) not in _ACCEPTED:
@@ -145,7 +190,7 @@ class Cones:
 
 def solved(
     norms: Sequence[Norm],
-    rows: Sequence[Rows],
+    rows: Sequence[Linear],
     curvature: Array,
     slope: Array,
     box: Array,
@@ -153,12 +198,12 @@ def solved(
     ripple_weight: float = 1.0,
     reach: Reach | None = None,
 ) -> ConeSolution | None:
-    """Least ripple_weight max(weight |norm|) + x'Hx/2 + h'x + penalty (sum of slacks).
+    """Least ripple_weight (max(weight |norm|) + costs) + x'Hx/2 + h'x + penalty (sum of slacks).
 
     Parameters
     ----------
     norms : sequence of Norm   the greatest is minimised; those with a ceiling stay below it
-    rows : sequence of Rows    rows of one limit share one slack: its penalty is exact
+    rows : sequence of Linear  rows of one limit share one slack: its penalty is exact
     curvature, slope : arrays (n, n), (n,)   H, positive semidefinite, and h
     box : array (2, n)         least and greatest x
     penalty : float            of a unit of slack
@@ -173,28 +218,31 @@ def solved(
     Fletcher, Practical Methods of Optimization (1987), sec. 14.3: the exact penalty.
     """
     size = slope.size
-    names = list(dict.fromkeys(row.name for row in rows if row.elastic))
+    costs = list(dict.fromkeys(row.name for row in rows if row.cost))
+    names = costs + list(dict.fromkeys(r.name for r in rows if r.elastic and not r.cost))
     if any(norm.ceiling is not None for norm in norms):
         names.append(TORQUE_REDUCTION.id)
     bounded = size + 1 + len(names)
     program = Cones(bounded + len(norms))  # x, ripple, slacks, bound of each norm
     program.charge_square(curvature)
-    program.charge(np.concatenate([slope, [ripple_weight], np.full(len(names), penalty)]))
+    charges = [ripple_weight] * (1 + len(costs)) + [penalty] * (len(names) - len(costs))
+    program.charge(np.concatenate([slope, charges]))
     for row in rows:
-        matrix = program.columns(row.slopes, 0)
+        entries, columns = row.entries, row.columns
         if row.elastic:
-            relief = scipy.sparse.csr_array(np.ones((row.level.size, 1)))
-            matrix = matrix - program.columns(relief, size + 1 + names.index(row.name))
-        program.at_most(matrix, -row.level)
-    identity = scipy.sparse.eye_array(program.size, format="csr")
+            slack = np.full((len(columns), 1), size + 1 + names.index(row.name))
+            entries = np.hstack([entries, np.full(slack.shape, -1.0)])
+            columns = np.hstack([columns, slack])
+        program.rows_at_most(entries, columns, -row.level)
     for k, norm in enumerate(norms):
-        bound = identity[[bounded + k]]
-        program.at_most(norm.weight * bound - identity[[size]], 0.0)
+        program.rows_at_most([[norm.weight, -1.0]], np.array([[bounded + k, size]]), 0.0)
         if norm.ceiling is not None:
-            program.at_most(bound - identity[[bounded - 1]], norm.ceiling)
-    program.at_most(identity[:size], box[1])
-    program.at_most(-identity[:size], -box[0])
-    program.at_most(-identity[size + 1 : bounded], 0.0)
+            columns = np.array([[bounded + k, bounded - 1]])
+            program.rows_at_most([[1.0, -1.0]], columns, norm.ceiling)
+    every = np.arange(bounded)[:, None]
+    program.rows_at_most(1.0, every[:size], box[1])
+    program.rows_at_most(-1.0, every[:size], -box[0])
+    program.rows_at_most(-1.0, every[size + 1 + len(costs) :], 0.0)
     if reach is not None:
         rows_of = reach.slopes.shape[0]
         program.norm_at_most(reach.slopes, np.zeros(rows_of), None, reach.bound)

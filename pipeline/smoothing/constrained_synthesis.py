@@ -14,7 +14,6 @@ from dataclasses import replace
 import numpy as np
 
 from camwright.geometry.arrays import Array, readonly
-from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
 from camwright.pipeline.smoothing.energy_spline import Grid
 from camwright.pipeline.smoothing.lagrangian import Lagrangian
@@ -100,11 +99,12 @@ def _design(search: Search, descent: Descent, steps: int, fine: Grid) -> Design:
         coefficients=readonly(state.coefficients),
         variables=state.variables,
         ripple=state.ripple,
+        cost=state.cost,
         utilisation=dict(state.utilisation) | most,
         multipliers=_multipliers(descent),
         strip={name: (theta, np.broadcast_to(use, theta.shape)) for name, use in on_points.items()},
         steps=steps,
-        converged=descent.converged,
+        gain=descent.gain,
         lagrangian=None
         if descent.model is None or descent.program is None
         else Lagrangian.of(search, state, descent.model, descent.program),
@@ -116,8 +116,9 @@ def _multipliers(descent: Descent) -> dict[str, float]:
     model, program = descent.model, descent.program
     if model is None or program is None:
         return {}
-    totals = {TORQUE_REDUCTION.id: sum(ceiling for _, ceiling in program.norms)}
+    totals: dict[str, float] = {}
     for limit, prices in zip(model.limits, program.rows, strict=True):
+        if limit.cost or limit.name == LEAST_ENERGY:
+            continue
         totals[limit.name] = totals.get(limit.name, 0.0) + float(prices.sum())
-    totals.pop(LEAST_ENERGY, None)
     return {name: total for name, total in totals.items() if total > _MULTIPLIER_LEAST}

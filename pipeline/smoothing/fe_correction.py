@@ -15,7 +15,12 @@ from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import Check, depends_on_lift, within_depth
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.smoothing.infeasibility import ConflictRecord
-from camwright.pipeline.smoothing.multistart import NEGLIGIBLE, Starts, StartsRecord
+from camwright.pipeline.smoothing.multistart import (
+    NEGLIGIBLE,
+    Explored,
+    ResolutionRecord,
+    StartsRecord,
+)
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Correction
 from camwright.pipeline.smoothing.shadow_prices import PriceRecord, prices
@@ -44,6 +49,7 @@ class SynthesisRecord(TypedDict):
     phase_deg: float
     reserve: float
     starts: StartsRecord | None
+    resolution: ResolutionRecord | None
     corrections: dict[str, dict[str, list[float]]]
     utilisation: dict[str, float]
     prices: list[PriceRecord]
@@ -287,14 +293,16 @@ def redrawn(case: Case, design: Design) -> Case:
 
 
 def design_record(
-    design: Design, problem: Problem, starts: Starts | None = None
+    design: Design,
+    problem: Problem,
+    first: Explored | None = None,
 ) -> SynthesisRecord:
     """Record of a synthesis in ``trial.json``.
 
     Parameters
     ----------
     problem : Problem   of the design, with its corrections
-    starts : Starts     of the first trial; None for a design started from the trial before
+    first : Explored    of the first trial; None for a design started from the trial before
     """
     least = float(design.lift().lowest.value)
     variables = design.variables
@@ -310,7 +318,8 @@ def design_record(
         "prime_radius_mm": in_unit(variables.prime_radius, "mm"),
         "phase_deg": in_unit(variables.phase, "deg"),
         "reserve": RESERVE,
-        "starts": None if starts is None else starts.as_record(),
+        "starts": None if first is None else first.starts.as_record(),
+        "resolution": None if first is None else first.resolution.as_record(),
         "corrections": _corrections_record(problem),
         "utilisation": dict(sorted(design.utilisation.items(), key=lambda item: -item[1])),
         "prices": prices(design, problem) if design.feasible else [],

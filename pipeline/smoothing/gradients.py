@@ -77,11 +77,11 @@ def second_derivatives(
     weights : mapping   of the terms (...) by name; values without a weight do not count
     """
 
-    def slope(point: Point) -> Array:
-        """Gradient (q, ...)."""
+    def slopes(point: Point, first: int) -> Array:
+        """Gradient (q - first, ...) by the directions from `first` on."""
         sides = []
-        for stepped in _steps(point, 1j * _STEP, freed):
-            values = _values(function, stepped)
+        for place in range(first, len(steps)):
+            values = _values(function, _step(point, place, 1j * _STEP))
             parts = [weight * np.imag(_terms(values[name])) for name, weight in weights.items()]
             sides.append(np.sum(np.broadcast_arrays(*parts), axis=0) / _STEP)
         return np.stack(sides)
@@ -90,13 +90,14 @@ def second_derivatives(
     sizes.append(at.highest or 1.0)
     sizes += [getattr(at.variables, name) for name in FREED] if freed else []
     steps = [_SHARE * size for size in sizes]
-    second = np.stack(
-        [
-            (slope(_step(at, k, step)) - slope(_step(at, k, -step))) / (2.0 * step)
-            for k, step in enumerate(steps)
-        ]
-    )
-    return np.asarray(0.5 * (second + np.swapaxes(second, 0, 1)))
+    second: Array = np.zeros(0)
+    for k, step in enumerate(steps):
+        up, down = (slopes(_step(at, k, side * step), k) for side in (1.0, -1.0))
+        column = (up - down) / (2.0 * step)
+        if not second.size:
+            second = np.zeros((len(steps), len(steps), *column.shape[1:]))
+        second[k, k:] = second[k:, k] = column
+    return second
 
 
 def _values(function: Function, at: Point) -> Mapping[str, Array | Mean]:

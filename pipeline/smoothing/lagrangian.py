@@ -7,17 +7,17 @@ splines assemble.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
-from camwright.pipeline.smoothing.cone_program import ConeSolution
+from camwright.pipeline.smoothing.cone_program import ConeSolution, Linear
 from camwright.pipeline.smoothing.gradients import second_derivatives
-from camwright.pipeline.smoothing.linear_model import Linear, Model, State, Summit
-from camwright.pipeline.smoothing.sampled_problem import SHAPE_LIMITS, Search
+from camwright.pipeline.smoothing.linear_model import Model, State, Summit
+from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import DesignVariables
 from camwright.pipeline.smoothing.synthesis_problem import (
     Problem,
@@ -123,47 +123,43 @@ def _of_rows(
 ) -> Array:
     """Of limits at single angles, each row alone with its own limit."""
     total = np.zeros((search.size, search.size))
-    for shape in (True, False):
-        own = [pair for pair in priced if (pair[0].name in SHAPE_LIMITS) == shape]
-        if not own:
-            continue
+    for names in search.families(limit.name for limit, _ in priced):
+        own = [pair for pair in priced if pair[0].name in names]
         kept = [price > _PRICE_LEAST for _, price in own]
         point = np.concatenate([each.point[k] for (each, _), k in zip(own, kept, strict=True)])
         row = np.concatenate([each.scenario[k] for (each, _), k in zip(own, kept, strict=True)])
         starts = np.cumsum([0, *(int(k.sum()) for k in kept)])
-        names = frozenset(each.name for each, _ in own)
         weights = {name: np.zeros(point.size) for name in names}
         for (each, price), k, start in zip(own, kept, starts, strict=False):
             weights[each.name][start : start + int(k.sum())] = price[k]
-        function = search.shape(names) if shape else search.loads_at(state, row, point, names)
-        second = second_derivatives(
-            function, search.point(state, summit.lift, point), search.freed, weights
-        )
+        function = search.function(names, state.variables, search.pairs(row, point))
+        at = search.point(state, summit.lift, point)
+        second = second_derivatives(function, at, search.freed, weights)
         total += _assembled(search, state, summit, second, point)
     return total
 
 
 def _of_means(
-    search: Search, state: State, summit: Summit, priced: Iterable[tuple[Linear, Array]]
+    search: Search, state: State, summit: Summit, priced: Sequence[tuple[Linear, Array]]
 ) -> Array:
-    """Of limits on means over the turn: a power of a mean, and the mean."""
+    """Of limits and costs that are powers of means over the turn."""
     total = np.zeros((search.size, search.size))
-    points = search.every
-    for limit, prices in priced:
-        use = float(state.means[limit.name][limit.scenario[0]])
-        if use <= 0.0 or limit.power is None:
-            continue
-        power, price = limit.power, float(prices[0])
-        front = price * power * use ** (1.0 - 1.0 / power) / points.size
-        row = np.repeat(limit.scenario, points.size)
-        function = search.loads_at(state, row, points, frozenset([limit.name]))
-        at = search.point(state, summit.lift, points)
-        second = second_derivatives(
-            function, at, search.freed, {limit.name: np.full(points.size, front)}
-        )
-        total += _assembled(search, state, summit, second, points)
-        slope = limit.entries[0]
-        total += price * (power - 1.0) / (power * use) * np.outer(slope, slope)
+    for names in search.families(limit.name for limit, _ in priced):
+        own = [pair for pair in priced if pair[0].name in names]
+        rows = np.unique([int(limit.scenario[0]) for limit, _ in own]).astype(np.intp)
+        weights = {name: np.zeros((rows.size, 1)) for name in names}
+        for limit, prices in own:
+            row, price, power = int(limit.scenario[0]), float(prices[0]), limit.power or 1.0
+            use = float(state.means[limit.name][row])
+            if use > 0.0:
+                front = price * power * use ** (1.0 - 1.0 / power) / search.every.size
+                weights[limit.name][np.searchsorted(rows, row)] = front
+                bend = price * (power - 1.0) / (power * use)
+                total += bend * np.outer(limit.entries[0], limit.entries[0])
+        function = search.function(names, state.variables, search.turns(rows))
+        at = search.point(state, summit.lift, search.every)
+        second = second_derivatives(function, at, search.freed, weights)
+        total += _assembled(search, state, summit, second.sum(axis=2), search.every)
     return total
 
 

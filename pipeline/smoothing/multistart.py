@@ -134,11 +134,16 @@ class Resolution:
 
 
 class Explored(NamedTuple):
-    """Best design, agreement of the starts, and change with the number of splines."""
+    """Best design, agreement of the starts, change with the number of splines."""
 
     design: Design
     starts: Starts
     resolution: Resolution
+
+    @property
+    def splines(self) -> int:
+        """Number of splines of the design."""
+        return int(self.design.coefficients.size)
 
 
 def explored(problem: Problem, count: int) -> Explored:
@@ -156,9 +161,7 @@ def explored(problem: Problem, count: int) -> Explored:
     random = np.random.default_rng(_SEED)
     designs, resolution = resolved(problem, synthesise(coarse))
     fine = replace(problem, coefficients=resolution.coefficients)
-    others = [
-        continued(fine, synthesise(_random(coarse, random))) for _ in range(count - 1)
-    ]
+    others = [continued(fine, synthesise(_random(coarse, random))) for _ in range(count - 1)]
     alike = [designs[-1], *others]
     ripples = tuple(each.ripple if each.feasible else None for each in alike)
     best = _best([*alike, *designs]) or min(alike, key=lambda each: each.violation)
@@ -194,7 +197,7 @@ def continued(problem: Problem, design: Design) -> Design:
 
 def _best(designs: Sequence[Design]) -> Design | None:
     kept = [each for each in designs if each.feasible and each.converged]
-    return min(kept, key=lambda each: each.ripple) if kept else None
+    return min(kept, key=lambda each: each.objective) if kept else None
 
 
 def _random(problem: Problem, random: np.random.Generator) -> Problem:

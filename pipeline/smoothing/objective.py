@@ -19,7 +19,7 @@ from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import magnitude
 from camwright.pipeline.follower.roller_motion import rolling_share
 from camwright.pipeline.smoothing.constraints import Forces, Jet, Mean, Motion, forces, motion
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, Value
 
 
 class Scale(NamedTuple):
@@ -237,20 +237,22 @@ def costs(
     scale: Scale,
     ratings: Ratings,
     item: Scenario,
+    weight: Value,
     jet: Jet,
     highest: float,
     variables: DesignVariables,
 ) -> Mapping[str, Array | Mean]:
-    """Weighted costs of a scenario by key; each (n,), or a `Mean` of the turn.
+    """Weighted costs by key; each (..., n), or a `Mean` of the turn.
 
     Parameters
     ----------
+    item : Scenario   one, or several at once, of the `weight` (..., 1) of their ripples
     highest : float   maximum lift, m
     """
     terms = [
-        (each.term, each.weight * (1.0 if each.term.everywhere else item.weight))
+        (each.term, each.weight * (1.0 if each.term.everywhere else weight))
         for each in objective
-        if isinstance(each.term, Cost) and (each.term.everywhere or item.weight > 0)
+        if isinstance(each.term, Cost)
     ]
     if not terms:
         return {}
@@ -260,7 +262,7 @@ def costs(
     return {term.key: _times(term.value(at), weight) for term, weight in terms}
 
 
-def _times(value: Array | Mean, weight: float) -> Array | Mean:
+def _times(value: Array | Mean, weight: Value) -> Array | Mean:
     """Weighted cost; the power of a mean of a cost is 1."""
     return value._replace(terms=weight * value.terms) if isinstance(value, Mean) else weight * value
 

@@ -20,7 +20,7 @@ from camwright.pipeline.follower.guide_friction import FrictionRange
 from camwright.pipeline.smoothing.allowables import ratings_of
 from camwright.pipeline.smoothing.objective import KEYS, Objective, objective_of
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
-from camwright.pipeline.smoothing.synthesis_problem import Problem
+from camwright.pipeline.smoothing.synthesis_problem import COEFFICIENTS, Problem
 
 POINTS = 720
 
@@ -73,7 +73,8 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
         gear_ratio=case.mechanism.gear_ratio,
         freed=freed,
         energy=(0.0, np.inf if "initial_energy" in smoothing.free else 0.0),
-        coefficients=smoothing.coefficients,
+        coefficients=smoothing.coefficients or COEFFICIENTS,
+        convergence=smoothing.ripple_convergence if smoothing.coefficients is None else None,
         points=POINTS,
         objective=_objective(case),
         jerk_weight=smoothing.jerk_weight,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.pipeline.case.limits import PRESSURE_ANGLE, TORQUE_REDUCTION
-from camwright.pipeline.smoothing.cone_program import Norm
+from camwright.pipeline.smoothing.cone_program import Linear, Norm
 from camwright.pipeline.smoothing.constraints import (
     SHAPE,
     Jet,
@@ -22,8 +22,15 @@ from camwright.pipeline.smoothing.constraints import (
     shape_utilisations,
 )
 from camwright.pipeline.smoothing.energy_spline import Grid, basis_matrix, exact_start
-from camwright.pipeline.smoothing.gradients import FREED, Function, Point, differentiated
-from camwright.pipeline.smoothing.linear_model import Linear, Model, State, Summit
+from camwright.pipeline.smoothing.gradients import (
+    FREED,
+    Function,
+    Gradient,
+    Point,
+    differentiated,
+)
+from camwright.pipeline.smoothing.linear_model import Model, State, Summit
+from camwright.pipeline.smoothing.objective import Cost, costs
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, stacked, taken
 from camwright.pipeline.smoothing.synthesis_problem import (
     RESERVE,
@@ -59,6 +66,11 @@ class Search:
         self.grid = Grid.at(np.concatenate([theta, self.extra]), count)
         self.every = np.arange(problem.points, dtype=np.intp)
         self.weighted = [k for k, item in enumerate(problem.scenarios) if item.weight > 0]
+        self._weights = np.array([[item.weight] for item in problem.scenarios])
+        self._scale = problem.scale
+        self.costs = frozenset(
+            each.term.key for each in problem.objective if isinstance(each.term, Cost)
+        )
         self._stacks: dict[float, Scenario] = {}
         self._engines: dict[float, Array] = {}
         self.exact = self._exact()
@@ -148,18 +160,34 @@ class Search:
         """Limits on the loads of stacked scenarios."""
         return partial(_loads, scenario, self.problem.ratings, names)
 
-    def loads_at(
-        self,
-        state: State,
-        rows: NDArray[np.intp],
-        points: NDArray[np.intp],
-        names: frozenset[str],
+    def function(
+        self, names: frozenset[str], variables: DesignVariables, take: Callable[[Array], Array]
     ) -> Function:
-        """Limits on the loads at pairs (m,) of scenario and angle of the grid."""
-        stack = self.stack(self.grid, state.variables)
+        """Limits of the shape, limits of the loads, or costs, of part of the stacked scenarios."""
+        if names <= SHAPE_LIMITS:
+            return self.shape(names)
+        stack = taken(self.stack(self.grid, variables), take)
+        if names <= self.costs:
+            return partial(self._costs, names, stack, take(self._weights))
+        return self.loads(stack, names)
+
+    def _costs(
+        self, names: frozenset[str], stack: Scenario, weights: Array, jet: Jet, top: float,
+        variables: DesignVariables,
+    ) -> Mapping[str, Array | Mean]:  # fmt: skip
+        """Costs of those names, of stacked scenarios of these weights (s, 1)."""
+        problem = self.problem
+        objective = tuple(each for each in problem.objective if each.term.key in names)
+        return costs(objective, self._scale, problem.ratings, stack, weights, jet, top, variables)
+
+    def pairs(self, rows: NDArray[np.intp], points: NDArray[np.intp]) -> Callable[[Array], Array]:
+        """Values at pairs (m,) of scenario and angle of the grid."""
         shape = (len(self.problem.scenarios), self.grid.theta.size)
-        pairs = taken(stack, lambda each: np.broadcast_to(each, shape)[rows, points])
-        return self.loads(pairs, names)
+        return lambda each: np.broadcast_to(each, shape)[rows, points]
+
+    def level(self, name: str, value: Array) -> Array:
+        """Level of the rows of a limit, <= 0 within its reserve; of a cost its value."""
+        return value if name in self.costs else value - 1.0 + RESERVE
 
     def torque(
         self, variables: DesignVariables, weighted: NDArray[np.intp] | None = None
@@ -171,9 +199,9 @@ class Search:
     def _weighted_stack(
         self, variables: DesignVariables, weighted: NDArray[np.intp] | None
     ) -> Scenario:
-        rows, points = np.array(self.weighted, dtype=np.intp), self.problem.points
+        rows = np.array(self.weighted, dtype=np.intp)
         rows = rows if weighted is None else rows[weighted]
-        return taken(self.stack(self.grid, variables), lambda each: each[rows, :points])
+        return taken(self.stack(self.grid, variables), self.turns(rows))
 
     def point(self, state: State, highest: float, points: NDArray[np.intp]) -> Point:
         """Arguments of a function at some angles of the grid."""
@@ -202,10 +230,16 @@ class Search:
         highest = self.highest(coefficients, variables)
         jet = lift_jet(grid.energy(coefficients), variables)
         shape = self.shape()(jet, highest, variables)
-        loads = self.loads(self.stack(grid, variables))(jet, highest, variables)
+        stack = self.stack(grid, variables)
+        loads = self.loads(stack)(jet, highest, variables)
+        charged = (
+            self._costs(self.costs, stack, self._weights, jet, highest, variables)
+            if self.costs
+            else {}
+        )
         pointwise: dict[str, Array] = {}
         means: dict[str, Array] = {}
-        for name, value in (*shape.items(), *loads.items()):
+        for name, value in (*shape.items(), *loads.items(), *charged.items()):
             if name in self.problem.left_out:
                 continue
             if isinstance(value, Mean):
@@ -220,7 +254,8 @@ class Search:
         """State at coefficients, J, and variables."""
         problem = self.problem
         pointwise, means = self._uses(coefficients, variables, self.grid, problem.points)
-        most = {name: float(value.max()) for name, value in (pointwise | means).items()}
+        greatest = {name: float(value.max()) for name, value in (pointwise | means).items()}
+        most = {name: value for name, value in greatest.items() if name not in self.costs}
         energy = self.turn.energy(coefficients)
         if np.isfinite(problem.energy[1]):
             over = float(energy[0].min()) - problem.energy[1]
@@ -245,6 +280,7 @@ class Search:
             variables=variables,
             ripple=float(ripples.max(initial=0.0)),
             ripples=ripples,
+            cost=sum(greatest[name] for name in sorted(self.costs)),
             jerk=0.5 * float(jerk @ jerk),
             utilisation=most,
             pointwise=pointwise,
@@ -272,8 +308,17 @@ class Search:
         """Rows of each limit near it, and not far behind another scenario at the same angle."""
         rows = {}
         for name, value in state.pointwise.items():
-            level = value - 1.0 + RESERVE
-            rows[name] = (level >= -_NEAR) & (level >= level.max(axis=0) - _BEHIND)
+            level = self.level(name, value)
+            least = level.max() * (1.0 - _NEAR) if name in self.costs else -_NEAR
+            rows[name] = (level >= least) & (level >= level.max(axis=0) - _BEHIND)
+        return rows
+
+    def near_means(self, state: State) -> dict[str, NDArray[np.bool_]]:
+        """Scenarios of each limit on a mean that are near it."""
+        rows = {}
+        for name, value in state.means.items():
+            level = self.level(name, value)
+            rows[name] = level >= (level.max() * (1.0 - _NEAR) if name in self.costs else -_NEAR)
         return rows
 
     def model(self, state: State) -> Model:
@@ -282,8 +327,10 @@ class Search:
         at = self.point(state, 0.0, self.every)
         gradient = differentiated(_jerk, at, self.freed)["jerk"]
         jerk = self._jerk_scale * self._dense(gradient.local, gradient.shared, state, summit)
-        near = {name: value - 1.0 + RESERVE >= -_NEAR for name, value in state.means.items()}
-        limits = [*self.rows(state, summit, self.near(state)), *self.means(state, summit, near)]
+        limits = [
+            *self.rows(state, summit, self.near(state)),
+            *self.means(state, summit, self.near_means(state)),
+        ]
         return Model(
             summit=summit,
             norms=self.norms(
@@ -369,17 +416,10 @@ class Search:
     ) -> list[Linear]:
         """Linear models of the wanted rows, (s, n) by limit."""
         models = []
-        for shape in (True, False):
-            names = frozenset(
-                name
-                for name, rows in wanted.items()
-                if (name in SHAPE_LIMITS) == shape and rows.any()
-            )
-            if not names:
-                continue
+        for names in self.families(name for name, rows in wanted.items() if rows.any()):
             any_row = np.any(np.broadcast_arrays(*(wanted[name] for name in names)), axis=0)
             scenario, point = np.nonzero(any_row)
-            function = self.shape(names) if shape else self.loads_at(state, scenario, point, names)
+            function = self.function(names, state.variables, self.pairs(scenario, point))
             at = self.point(state, summit.lift, point)
             for name, gradient in differentiated(function, at, self.freed).items():
                 here = np.broadcast_to(wanted[name], any_row.shape)[scenario, point]
@@ -388,36 +428,67 @@ class Search:
                         point[here], gradient.local[:, here], gradient.shared[:, here],
                         state, summit,
                     )  # fmt: skip
-                    level = gradient.terms[here] - 1.0 + RESERVE
-                    models.append(Linear(name, level, *entries, scenario[here], point[here]))
+                    level = self.level(name, gradient.terms[here])
+                    models.append(
+                        Linear(name, level, *entries, scenario[here], point[here],
+                               cost=name in self.costs)
+                    )  # fmt: skip
         return models
+
+    def families(self, names: Iterable[str]) -> list[frozenset[str]]:
+        """Names of limits on the shape, of limits on the loads, of costs; without empty ones."""
+        every = frozenset(names)
+        shape, charged = every & SHAPE_LIMITS, every & self.costs
+        return [each for each in (shape, every - shape - charged, charged) if each]
 
     def means(
         self, state: State, summit: Summit, wanted: Mapping[str, NDArray[np.bool_]]
     ) -> list[Linear]:
         """Linear models of the wanted limits on means, (s,) by limit."""
         models: list[Linear] = []
-        names = frozenset(name for name, rows in wanted.items() if rows.any())
-        if not names:
-            return models
-        rows = np.flatnonzero(np.any([wanted[name] for name in names], axis=0))
-        points = self.problem.points
-        stack = taken(self.stack(self.grid, state.variables), lambda each: each[rows, :points])
-        at = self.point(state, summit.lift, self.every)
-        for name, gradient in differentiated(self.loads(stack, names), at, self.freed).items():
-            for k in np.flatnonzero(wanted[name][rows]):
-                power = gradient.power or 1.0
-                mean = float(gradient.terms[k].mean())
-                front = power * mean ** (power - 1.0) / points if mean > 0.0 else 0.0
-                own = front * self.scale * self.turn.chained(gradient.local[:, k])
-                entries = np.zeros(self.size)
-                np.add.at(entries, self.turn.columns, own)
-                shared = front * gradient.shared[:, k].sum(axis=1)
-                entries += shared @ self.shared_columns(state, summit)
-                level = state.means[name][[rows[k]]] - 1.0 + RESERVE
-                every, none = np.arange(self.size, dtype=np.intp)[None], np.array([-1])
-                models.append(Linear(name, level, entries[None], every, rows[[k]], none, power))
+        for names in self.families(name for name, rows in wanted.items() if rows.any()):
+            rows = np.flatnonzero(np.any([wanted[name] for name in names], axis=0))
+            function = self.function(names, state.variables, self.turns(rows))
+            at = self.point(state, summit.lift, self.every)
+            for name, gradient in differentiated(function, at, self.freed).items():
+                models += [
+                    self._mean(name, gradient, int(k), state, summit, rows[[k]])
+                    for k in np.flatnonzero(wanted[name][rows])
+                ]
         return models
+
+    def turns(self, rows: NDArray[np.intp]) -> Callable[[Array], Array]:
+        """Values of scenarios (m,) at the points of the turn."""
+        return lambda each: each[rows, : self.problem.points]
+
+    def _mean(
+        self,
+        name: str,
+        gradient: Gradient,
+        place: int,
+        state: State,
+        summit: Summit,
+        scenario: NDArray[np.intp],
+    ) -> Linear:
+        """Linear model of a power of a mean over the turn."""
+        power, terms = gradient.power or 1.0, gradient.terms[place]
+        mean = float(terms.mean())
+        front = power * mean ** (power - 1.0) / terms.size if mean > 0.0 else 0.0
+        entries = np.zeros(self.size)
+        own = front * self.scale * self.turn.chained(gradient.local[:, place])
+        np.add.at(entries, self.turn.columns, own)
+        shared = front * gradient.shared[:, place].sum(axis=1)
+        entries += shared @ self.shared_columns(state, summit)
+        return Linear(
+            name,
+            self.level(name, state.means[name][scenario]),
+            entries[None],
+            np.arange(self.size, dtype=np.intp)[None],
+            scenario,
+            np.array([-1]),
+            power,
+            cost=name in self.costs,
+        )
 
     def _least_energy(self, state: State) -> list[Linear]:
         low, high = self.problem.energy

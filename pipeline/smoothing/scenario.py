@@ -170,7 +170,10 @@ def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
 
     The maximum friction is known in all of them, or left out.
     """
-    corrections = [each.correction.at(theta) for each in scenarios]
+    # The corners of a load case share its correction.
+    different = {id(each.correction): each.correction for each in scenarios}
+    different = {key: each.at(theta) for key, each in different.items()}
+    corrections = [different[id(each.correction)] for each in scenarios]
     worst = [each.friction_worst for each in scenarios if each.friction_worst is not None]
     greatest = None
     if len(worst) == len(scenarios):

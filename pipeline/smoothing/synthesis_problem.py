@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
@@ -26,12 +26,11 @@ from camwright.pipeline.smoothing.objective import (
 from camwright.pipeline.smoothing.objective import torque_ripple as torque_ripple
 from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
 
-if TYPE_CHECKING:
-    from camwright.pipeline.smoothing.lagrangian import Lagrangian
-
 RESERVE = 1e-3  # of each limit, for extremes between the points
 FEASIBLE = 1e-5  # tolerance on a utilisation at the reserve
 COARSE_COEFFICIENTS, COARSE_POINTS = 36, 240  # for a ranking of cams
+CONVERGED = 2e-6  # greatest foreseen gain of a converged search, of the engine's ripple
+COEFFICIENTS = 64  # of the first synthesis where their number is chosen
 FINEST = 10  # refinement of the points for extremes between them
 
 
@@ -101,6 +100,14 @@ class Problem:
         return min((each for each in counting if each is not None), default=None)
 
 
+class OfProblems(Protocol):
+    """Lagrangian at an optimum, as a function of the problem."""
+
+    def at(self, problem: Problem) -> float:
+        """Value for a problem of the same limits and splines, ratio to the ripple of the engine."""
+        ...
+
+
 @dataclass(frozen=True, eq=False)
 class Design:
     """Result of a constrained synthesis.
@@ -110,23 +117,35 @@ class Design:
     coefficients : array    of the energy, J
     variables : DesignVariables
     ripple : float          greatest weighted residual ripple over that of the engine
+    cost : float            weighted costs of the objective
     utilisation : mapping   greatest of each limit over all scenarios, refined between points
     multipliers : mapping   decrease of the ripple per unit of utilisation, by limit
     strip : mapping         cam angle, rad, and utilisation at it, by limit
     steps : int             of the search
-    converged : bool
-    lagrangian : Lagrangian   of the optimum; None: no program was solved
+    gain : float            decrease of the objective that another step of the search foresees
+    lagrangian : OfProblems   of the optimum; None: no program was solved
     """
 
     coefficients: Array
     variables: DesignVariables
     ripple: float
+    cost: float
     utilisation: Mapping[str, float]
     multipliers: Mapping[str, float]
     strip: Mapping[str, tuple[Array, Array]]
     steps: int
-    converged: bool
-    lagrangian: Lagrangian | None = None
+    gain: float
+    lagrangian: OfProblems | None = None
+
+    @property
+    def converged(self) -> bool:
+        """Whether another step would gain next to nothing."""
+        return self.gain <= CONVERGED
+
+    @property
+    def objective(self) -> float:
+        """Ripple and costs, which the synthesis minimises."""
+        return self.ripple + self.cost
 
     @property
     def violation(self) -> float:
@@ -172,14 +191,12 @@ def ripple_of(problem: Problem, item: Scenario, values: Array) -> Array:
 
 def ripple_slope(problem: Problem, item: Scenario, values: Array) -> Array:
     """Derivative (n,) of the norm of `ripple_of` by the crank torque (n,)."""
-    before = item.torque - item.torque.mean()
-    size = float(np.linalg.norm(ripple_of(problem, item, values)))
-    slope = (problem.torque_weight / np.std(before) ** 2) * (values - values.mean())
-    if problem.speed_weight > 0:
-        # the integral is antisymmetric
-        twice = _integral(_integral(values))
-        slope -= (problem.speed_weight / np.std(_integral(before)) ** 2) * twice
-    return np.asarray(slope / (before.size * size)) if size > 0.0 else np.zeros_like(values)
+    level = ripple_of(problem, item, values)
+    size = float(np.linalg.norm(level))
+    if size == 0.0:
+        return np.zeros_like(values)
+    # the residuals are linear in the torque
+    return ripple_of(problem, item, np.eye(values.size)).T @ level / size
 
 
 def torque_slope(item: Scenario, values: Array) -> Array:

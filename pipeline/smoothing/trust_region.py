@@ -14,11 +14,10 @@ from camwright.pipeline.smoothing.cone_program import ConeSolution, Reach, solve
 from camwright.pipeline.smoothing.lagrangian import lagrangian_curvature
 from camwright.pipeline.smoothing.linear_model import Model, State
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.synthesis_problem import FEASIBLE, RESERVE
+from camwright.pipeline.smoothing.synthesis_problem import CONVERGED, FEASIBLE, RESERVE
 
 PENALTY, _PENALTY_MAX = 20.0, 2e3
 _STEPS_MAX = 60
-_CONVERGED = 2e-6
 _TRUST, _TRUST_LEAST = 0.3, 1e-7
 _PROOF = 0.03  # least trust region in which a foreseen gain proves convergence
 _ADDITIONS = 4
@@ -27,13 +26,16 @@ _VIOLATED = 1e-6
 
 
 class Descent(NamedTuple):
-    """End of a descent: state, last model and its program, number of steps."""
+    """End of a descent: state, last model and its program, number of steps.
+
+    gain: decrease of the merit that another step foresees.
+    """
 
     state: State
     model: Model | None
     program: ConeSolution | None
     steps: int
-    converged: bool
+    gain: float
 
 
 def descended(search: Search, ripple_weight: float, earlier: Descent | None = None) -> Descent:
@@ -62,26 +64,33 @@ def descended(search: Search, ripple_weight: float, earlier: Descent | None = No
         if before is not None and priced is not None:
             bend = lagrangian_curvature(search, state, model.summit, before, priced)
             model = model._replace(curvature=_convex(model.curvature + bend))
-        proven = False
+        proven, gain = False, np.inf
         while True:
             program, there, model = _program(search, state, model, trust, penalty, ripple_weight)
             if program is None:
                 trust *= 0.3
                 if trust < _TRUST_LEAST:
-                    return Descent(state, before, priced, step, False)
+                    return Descent(state, before, priced, step, gain)
                 continue
             now = state.merit(penalty, ripple_weight)
             predicted = now - program.objective - state.jerk
+            if trust >= _PROOF or gain == np.inf:
+                gain = predicted
             actual = now - there.merit(penalty, ripple_weight)
-            if predicted > _CONVERGED and actual < _CORRECTED * predicted:
+            if predicted > CONVERGED and actual < _CORRECTED * predicted:
                 other = _program(
-                    search, state, _corrected(model, program, there), trust, penalty, ripple_weight
+                    search,
+                    state,
+                    _corrected(search, model, program, there),
+                    trust,
+                    penalty,
+                    ripple_weight,
                 )
                 if other[0] is not None:
                     gain = now - other[1].merit(penalty, ripple_weight)
                     if gain > actual:
                         (_, there, _), actual = other, gain
-            if predicted <= _CONVERGED:
+            if predicted <= CONVERGED:
                 if trust < _PROOF and not proven:
                     trust, proven = _PROOF, True
                     continue
@@ -89,8 +98,7 @@ def descended(search: Search, ripple_weight: float, earlier: Descent | None = No
                     penalty *= 10.0
                     trust = max(trust, 0.1)
                     continue
-                converged = trust >= _PROOF
-                return Descent(there if actual > 0 else state, model, program, step, converged)
+                return Descent(there if actual > 0 else state, model, program, step, gain)
             share = actual / predicted
             if share > 0.05:
                 state = there
@@ -98,11 +106,11 @@ def descended(search: Search, ripple_weight: float, earlier: Descent | None = No
                 break
             trust *= 0.35
             if trust < _TRUST_LEAST:
-                return Descent(state, model, program, step, False)
-    return Descent(state, model, program, _STEPS_MAX, False)
+                return Descent(state, model, program, step, gain)
+    return Descent(state, model, program, _STEPS_MAX, gain)
 
 
-def _corrected(model: Model, program: ConeSolution, there: State) -> Model:
+def _corrected(search: Search, model: Model, program: ConeSolution, there: State) -> Model:
     """The model with levels that its rows have after the step: a second-order correction."""
     limits = []
     for each in model.limits:
@@ -113,7 +121,8 @@ def _corrected(model: Model, program: ConeSolution, there: State) -> Model:
         else:
             limits.append(each)
             continue
-        limits.append(replace(each, level=value - 1.0 + RESERVE - each.change(program.step)))
+        level = search.level(each.name, value) - each.change(program.step)
+        limits.append(replace(each, level=level))
     return model._replace(limits=limits)
 
 
@@ -138,13 +147,13 @@ def _program(
     reach, box = Reach(search.bend, trust), search.box(state, trust)
     for _ in range(_ADDITIONS):
         program = solved(
-            model.norms, [each.rows(search.size) for each in model.limits],
+            model.norms, model.limits,
             model.curvature, model.slope, box, penalty, ripple_weight, reach,
         )  # fmt: skip
         if program is None:
             return None, state, model
         there = search.state(*search.after(state, program.step))
-        rows = _missing(model, program, there)
+        rows = _missing(search, model, program, there)
         ripples = _missing_ripples(model, program, there)
         if not rows and not ripples.size:
             break
@@ -155,11 +164,13 @@ def _program(
     return program, there, model
 
 
-def _missing(model: Model, program: ConeSolution, there: State) -> Mapping[str, NDArray[np.bool_]]:
+def _missing(
+    search: Search, model: Model, program: ConeSolution, there: State
+) -> Mapping[str, NDArray[np.bool_]]:
     """Rows by limit that are violated by more than the rows of the model, and not in it."""
     missing = {}
     for name, value in there.pointwise.items():
-        level = value - 1.0 + RESERVE
+        level = search.level(name, value)
         allowed = program.slack.get(name, 0.0) + _VIOLATED
         if level.max() <= allowed:
             continue

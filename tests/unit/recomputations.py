@@ -9,6 +9,7 @@ _GUIDES = "verification/test_guides_audit.py"
 _ROLLER = "verification/test_roller_audit.py"
 _SHAFT = "verification/test_camshaft_audit.py"
 _SPRING = "verification/test_spring_audit.py"
+_SYNTHESIS = "unit/test_solution_verification.py"
 _RUN = "end_to_end/test_run.py"
 _SHAPE = "unit/test_numerics_recomputed.py"
 _NUMERICS = "unit/test_numerics_audit.py"
@@ -30,6 +31,7 @@ _BY_TEST: dict[tuple[str, str], tuple[str, ...]] = {
         "phase_tolerance",
     ),
     (_SHAPE, "test_friction_balance_by_reactions_and_travel"): ("friction_balance",),
+    (_SYNTHESIS, "test_another_method_gains_what_the_check_tells"): ("synthesis_converged",),
     (_NUMERICS, "test_the_torque_of_the_pressures_by_summing_r_x_f"): (
         "contact_torque", "contact_work",
     ),

@@ -236,6 +236,15 @@ for _part in ("nafems", "hertz"):
         1.0,
         "one per cent off",
     )
+tried(
+    "synthesis_converged",
+    lambda gain: made.solution(synthesis_gain=1e-5 * gain),
+    None,
+    lambda: made.solution(synthesis_gain=np.nan),
+    0.2e-5,
+    "a fifth of it: the gain at which a search ends",
+    base=lambda: made.solution(synthesis_gain=2e-6),
+)
 # what a plane model cannot see
 tried(
     "edge_factor",

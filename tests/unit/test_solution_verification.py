@@ -5,15 +5,23 @@ from dataclasses import replace
 import made_trial as made
 import numpy as np
 import pytest
+import scipy
 from made_check import made_check
+from synthesis_ratings import rated
 from trial_variants import with_benchmark, with_certificate
 
+from camwright.geometry.arrays import uniform_turn
 from camwright.pipeline.checks import guide_strength
 from camwright.pipeline.checks import solution_verification as verification
 from camwright.pipeline.checks.contact_strength import contact_pressure
 from camwright.pipeline.checks.error_bars import with_error_bars
 from camwright.pipeline.contact import contact_benchmarks
 from camwright.pipeline.contact.elasticity.mesh_convergence import converged
+from camwright.pipeline.smoothing import trust_region
+from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.sampled_problem import Search
+from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 MESHED = {
     "p0": verification.mesh_p0,
@@ -92,3 +100,36 @@ def test_error_bar_of_a_guide_is_that_of_its_reaction():
     # Half a per cent of the mesh, and what rounding leaves.
     assert with_error_bars(solution, [guide, mesh])[0].error == pytest.approx(0.01)
     assert with_error_bars(solution, [guide])[0].error is None
+
+
+@pytest.mark.parametrize(("steps", "status"), [(60, "pass"), (1, "fail")])
+def test_another_method_gains_what_the_check_tells(monkeypatch, steps, status):
+    """Sequential quadratic programs of SciPy go on from the design; limits at their reserve."""
+    monkeypatch.setattr(trust_region, "_STEPS_MAX", steps)
+    theta = uniform_turn(90)
+    torque = 12.0 * np.sin(2 * theta) + 6.0 * np.cos(3 * theta + 0.4) + 3.0 * np.sin(5 * theta)
+    load = Scenario("one", 78.0, torque, 0.175, 0.08, 0.03, 0.15, 0.12)
+    ratings = rated(roller_radius=0.008, travel=0.045, pressure_angle=0.5, normal_force=1000.0)
+    given = Problem(
+        (load,), ratings, DesignVariables(24.2e3, 242.0, 0.05), coefficients=24, points=90,
+        jerk_weight=0.0, seed=np.full(24, 8.0),
+    )  # fmt: skip
+    design = synthesise(given)
+    search = Search(given, design.lagrangian.extra)
+
+    def state(x):
+        return search.state(design.coefficients + search.scale * x, design.variables)
+
+    def left(x):
+        uses = state(x).pointwise
+        return np.concatenate([1.0 - 1e-3 - use.max(axis=0) for use in uses.values()])
+
+    other = scipy.optimize.minimize(
+        lambda x: state(x).ripple, np.zeros(24), method="SLSQP",
+        constraints=[{"type": "ineq", "fun": left}], options={"maxiter": 15, "ftol": 1e-9},
+    )  # fmt: skip
+    assert left(other.x).min() > -1e-5
+    gained = design.ripple - other.fun
+    judged = verification.synthesis_converged(made.solution(synthesis_gain=design.gain))
+    assert judged.status == status
+    assert (gained <= judged.limit) == (status == "pass")

@@ -32,9 +32,9 @@ from camwright.pipeline.smoothing.constraints import (
     load_utilisations,
     shape_utilisations,
 )
-from camwright.pipeline.smoothing.objective import objective_of
 from camwright.pipeline.smoothing.lagrangian import Lagrangian, lagrangian_curvature
 from camwright.pipeline.smoothing.linear_model import Model
+from camwright.pipeline.smoothing.objective import KEYS, objective_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import INITIAL_ENERGY, LEAST_ENERGY, Search
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
@@ -378,9 +378,13 @@ def test_gradient_of_each_term_of_the_objective(free, term):
 def test_second_derivatives_of_the_lagrangian_match_its_differences(free):
     """Of every limit and ripple at once; the norms' own part of the curvature added."""
     given = Problem(
-        (scenario(), replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.7)),
+        (
+            replace(scenario(), torque_reduction=0.5),
+            replace(scenario(), rate_factor=1.1, cam_speed=150.0, weight=0.7, torque_reduction=0.4),
+        ),
         EVERY, DesignVariables(24.2e3, 242.0, 0.05), freed={name: RANGES[name] for name in free},
-        coefficients=24, points=180, speed_weight=0.5, torque_reduction=0.5,
+        coefficients=24, points=180,
+        objective=objective_of(dict.fromkeys(KEYS, 0.5), (3, 5)),
     )  # fmt: skip
     search = Search(given, extra=np.array([0.31, 2.17]))
     state = search.state(search.start + 2.0, given.variables)

@@ -201,7 +201,7 @@ def test_worst_corner_keeps_what_the_nominal_does_not():
 
 
 def test_random_starts_agree():
-    design, starts = explored(problem(engine(2)), 4)
+    design, starts, _ = explored(problem(engine(2)), 4)
     assert design.feasible and starts.agree, starts.sentence
     assert len(starts.ripples) == 4
 
@@ -210,7 +210,7 @@ def test_random_starts_agree():
 def test_twenty_random_starts_agree_on_the_soft_spring(monkeypatch):
     monkeypatch.setattr(multistart, "_SEED", 7)  # other starts than a run's
     case = read_case(DATA / "soft_spring.toml")
-    _, starts = explored(problem_of(case, engine_torques(case)), 20)
+    _, starts, _ = explored(problem_of(case, engine_torques(case)), 20)
     assert len(starts.ripples) == 20
     assert starts.agree, starts.sentence
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from camwright.geometry.arrays import Array, uniform_turn
 from camwright.geometry.errors import ResultError
 from camwright.pipeline.case.cards.bearing_cards import BearingCard
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import ROLLER_LOAD_SHARE, ROLLER_STATIC_SAFETY
-from camwright.pipeline.smoothing.cone_program import Norm, Rows, solved
-from camwright.pipeline.smoothing.energy_spline import basis_matrix
+from camwright.pipeline.smoothing.cone_program import Linear, Norm, solved
+from camwright.pipeline.smoothing.energy_spline import basis_matrix, basis_rows
 from camwright.pipeline.smoothing.scenario import Scenario
 from camwright.pipeline.smoothing.synthesis_problem import thinned
 
@@ -46,12 +45,14 @@ class RippleBound:
         engine = thinned(self.torque, _POINTS)
         engine = engine - engine.mean()
         scale = float(np.linalg.norm(engine))
-        level = basis_matrix(theta, _COEFFICIENTS)
+        level, columns = basis_rows(theta, _COEFFICIENTS)
         slope = basis_matrix(theta, _COEFFICIENTS, 1).toarray()
         norm = Norm(engine / scale, -slope * (energy / (self.gear_ratio * scale)))
-        one = np.ones(_POINTS)
-        rows = [Rows("least", 0.0 * one, csr_array(-level), elastic=False),
-                Rows("most", -one, csr_array(level), elastic=False)]  # fmt: skip
+        one, point = np.ones(_POINTS), np.arange(_POINTS)
+        rows = [
+            Linear("least", 0.0 * one, -level, columns, point, point, elastic=False),
+            Linear("most", -one, level, columns, point, point, elastic=False),
+        ]
         none, box = np.zeros(_COEFFICIENTS), np.full((2, _COEFFICIENTS), 10.0)
         box[0] *= -1.0
         program = solved([norm], rows, np.diag(none), none, box, 1.0)
