@@ -385,4 +385,4 @@ def cam_mesh(
         x, y = counter_hole.centre.tolist()
         turn = 2 * np.pi
         loops.append([arc("counter_hole", counter_hole.radius, turn, 0.0, (x, y))])
-    return _body(triangulate(_discretised(loops, size), size))
+    return _body(triangulate(_discretised(loops, size), size, on_grid=True))

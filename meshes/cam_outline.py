@@ -16,6 +16,7 @@ from camwright.meshes.outline import Piece, Zone, arc, line
 _SAMPLES = 7200  # of the contour, 0.05 deg apart
 _WALL_MIN = 0.01  # over the bore radius
 _EDGES_ACROSS_HOLE_WALL = 4
+_WALL_DECIMALS = 9  # of a wall, m: walls nearer to each other are equal
 
 
 class ContourLike(Protocol):
@@ -169,13 +170,14 @@ def _finer_at_fillets(size: SizeField, bore_radius: float, keyway: KeywayLike) -
 
 
 def least_wall(path: Trace, bore_radius: float, keyway: KeywayLike | None) -> tuple[float, Array]:
-    """Minimum distance from bore and keyway to the contour, m, and its contour point (2,), m.
+    """Minimum distance from bore and keyway to the contour, m, and the sample (2,), m, there.
 
     Negative where the bore or the keyway crosses the contour.
     """
     from scipy.optimize import minimize_scalar
 
-    worst = int(np.argmin(wall_at(path.points, bore_radius, keyway)))
+    # rounded: on a dwell all are equal but for round-off, and the first is taken
+    worst = int(np.argmin(np.round(wall_at(path.points, bore_radius, keyway), _WALL_DECIMALS)))
     step = FULL_TURN / _SAMPLES
     nearest = minimize_scalar(
         lambda theta: wall_at(path.contour.points(np.array([theta])), bore_radius, keyway)[0],
@@ -186,7 +188,7 @@ def least_wall(path: Trace, bore_radius: float, keyway: KeywayLike | None) -> tu
     wall = float(nearest.fun)
     if not _winds_around_origin(path.points):
         wall = -bore_radius
-    return wall, path.contour.points(np.array([nearest.x]))[:, 0]
+    return wall, path.points[:, worst]
 
 
 def wall_at(points: Array, bore_radius: float, keyway: KeywayLike | None) -> Array:

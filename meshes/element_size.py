@@ -13,6 +13,7 @@ from camwright.geometry.errors import InputError
 EDGES_PER_TURN = 40  # minimum element edges around a full circle
 MILLIMETRE = 1e-3  # unit of lengths in gmsh, whose tolerances suit numbers around one
 _SPOTS_MAX = 40  # longer formulas slow the mesher
+_DECIMALS = 6  # of a size over its limit: sizes nearer to each other are equal
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -157,6 +158,21 @@ class SizeField:
         """Field with elements of at most `size` within `extent` of `point`, m."""
         return replace(self, spots=(*self.spots, Spot(finite("spot", point), size, extent)))
 
+    def on_grid(self, step: float) -> SizeField:
+        """Field whose sizes and places are multiples of a step, m."""
+
+        def near(value: float) -> float:
+            return float(np.rint(value / step)) * step
+
+        return replace(
+            self,
+            far_size=near(self.far_size),
+            spots=tuple(
+                Spot(np.rint(each.point / step) * step, near(each.size), near(each.extent))
+                for each in self.spots
+            ),
+        )
+
     def capped(self, size: float) -> SizeField:
         """Field of at most `size`, m."""
         return replace(self, far_size=min(self.far_size, size))
@@ -168,7 +184,7 @@ class SizeField:
         """
         result = self
         while len(result.spots) < _SPOTS_MAX:
-            excess = result(points) / limits
+            excess = np.round(result(points) / limits, _DECIMALS)  # equal on an arc: the first
             worst = int(np.argmax(excess))
             if not excess[worst] > slack:
                 return result

@@ -43,6 +43,8 @@ _OPTIONS = {
     "Mesh.Smoothing": 1,
 }
 
+_GRID_BITS = 12  # of the shortest edge of the outline, whose coordinates are rounded for gmsh
+
 
 @contextmanager
 def session() -> Iterator[ModuleType]:
@@ -85,10 +87,17 @@ class Triangulation:
     boundaries: Mapping[str, Index]
 
 
-def triangulate(loops: Sequence[Sequence[Facets]], size: SizeField) -> Triangulation:
+def triangulate(
+    loops: Sequence[Sequence[Facets]], size: SizeField, *, on_grid: bool = False
+) -> Triangulation:
     """Quadratic triangles of the region on the left of the `loops`, the outer one first.
 
     Corners are numbered first, those on the outline in its order, then mid-side nodes.
+
+    Parameters
+    ----------
+    on_grid : bool   give gmsh outline and sizes rounded to a grid, so that round-off of the outline
+                     does not change the triangles; the corners on it remain exact
 
     Raises
     ------
@@ -104,9 +113,14 @@ def triangulate(loops: Sequence[Sequence[Facets]], size: SizeField) -> Triangula
         x, y = crossed / MILLIMETRE
         where = f"({x:.3f}, {y:.3f}) mm"
         raise GeometryError(f"outline = crosses itself at {where}, must be free of crossings")
+    rounded = corners
+    if on_grid:
+        step = _grid_step(corners, rings)
+        rounded, size = np.rint(corners / step) * step, size.on_grid(step)
     try:
         with session() as gmsh:
-            points, triangles = _fill(gmsh, corners, rings, size)
+            points, triangles = _fill(gmsh, rounded, rings, size)
+            points[:, : corners.shape[1]] = corners  # exact
     except MeshError:
         raise
     except Exception as error:
@@ -155,9 +169,18 @@ def _fill(
     if not connectivity.size or not np.array_equal(known[:fixed], np.arange(1, fixed + 1)):
         raise MeshError("mesh of gmsh = empty or without nodes of the outline, must fill it")
     points = coordinates.reshape(-1, 3)[order, :2].T * MILLIMETRE
-    points[:, :fixed] = corners  # without the round-off of the unit conversion
     triangles = np.searchsorted(known, connectivity.astype(np.int64)).reshape(-1, 3).T
     return points, _counter_clockwise(points, triangles)
+
+
+def _grid_step(corners: Array, rings: Sequence[Index]) -> float:
+    """Step, m, of the grid on which gmsh, which decides by the last bit, sees no round-off.
+
+    A power of two, at most 2^-12 of the shortest edge, so that the shape of the elements is kept.
+    """
+    edges = [corners[:, np.roll(ring, -1)] - corners[:, ring] for ring in rings]
+    shortest = min(float(np.hypot(*edge).min()) for edge in edges)
+    return float(2.0 ** (int(np.frexp(shortest)[1]) - 1 - _GRID_BITS))
 
 
 def _impose(gmsh: ModuleType, size: SizeField) -> None:

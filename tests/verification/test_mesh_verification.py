@@ -57,6 +57,31 @@ def test_cam_area_is_that_of_contour_less_bore_and_keyway(cam):
     assert mesh_area(cam) == pytest.approx(outer - np.pi * bore**2 - slot, rel=1e-6)
 
 
+def risen(theta):
+    """Lift of 15 mm between dwells, m; on the dwells curvature and wall are constant."""
+    share = np.clip((theta - 1.0) / 1.5, 0.0, 1.0) - np.clip((theta - 3.5) / 1.5, 0.0, 1.0)
+    return 0.015 * share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+
+
+@pytest.mark.parametrize("lift", [risen, lambda theta: 0.0165 * (1 - np.cos(theta))])
+@pytest.mark.parametrize("half_width", [None, HALF_WIDTH])
+def test_round_off_of_the_lift_does_not_change_the_triangles_of_a_cam(lift, half_width):
+    """A change by 1e-13 of the lift moves the nodes by its own size, and gmsh decides the same."""
+    draw, meshes = np.random.default_rng(1), []
+    for change in (0.0, 1e-13, 1e-13, 1e-13):
+        values = lift(THETA) * (1.0 + change * draw.uniform(-1.0, 1.0, THETA.size))
+        contour = RollerContour(PitchCurve(Lift(THETA, values), 0.05, 0.004), 0.008)
+        sizing = Sizing(far_size=3e-3)
+        if half_width is not None:
+            point = contour.points(np.array([2.0]))[:, 0]
+            sizing = Sizing.from_half_width(half_width, 3e-3, contact_point=point)
+        meshes.append(cam_mesh(contour, 0.01, Keyway(6e-3, 3e-3, 0.3), sizing))
+    for mesh in meshes[1:]:
+        assert np.array_equal(mesh.triangles, meshes[0].triangles)
+        # 1e-13 of the lift is 3e-15 m; arc length and foot of the contact add to it
+        np.testing.assert_allclose(mesh.points, meshes[0].points, rtol=0.0, atol=1e-12)
+
+
 def boundary_integral(mesh, integrand):
     """Exact integral of `integrand` (x, y, dx, dy) over the curved facets, by their triples."""
     total = 0.0
