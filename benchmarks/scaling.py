@@ -15,6 +15,7 @@ import tempfile
 import time
 import tomllib
 import tracemalloc
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -22,13 +23,16 @@ import numpy as np
 from camwright.pipeline.base.files import write_atomic
 from camwright.pipeline.base.progress import Silent
 from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.screening.design_screening import screen_designs
+from camwright.pipeline.studies.batch.case_template import read_templates
 from camwright.pipeline.studies.batch.dataset import DATASET, SHARDS, parquet_bytes, read_parquet
 from camwright.pipeline.studies.batch.design_plan import Plan, Settings
+from camwright.pipeline.studies.batch.design_rows import DesignSolver
 from camwright.pipeline.studies.batch.row_selection import Figures
 from camwright.pipeline.studies.batch.sampling import Designs
 from camwright.pipeline.studies.batch.study_file import study_of
-from camwright.pipeline.studies.batch.study_run import run_study
+from camwright.pipeline.studies.batch.study_run import planned, run_study
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARD, TASKS, BYTES = 500, 1000, 400_000
@@ -52,6 +56,7 @@ def main() -> None:
         rows(folder)
         answers(folder)
     shard()
+    depths()
     plan()
     scheduler()
 
@@ -140,6 +145,34 @@ def shard() -> None:
               f"{', first one of a process' if attempt == 0 else ''}")  # fmt: skip
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
     print(f"worker: {peak:.0f} MB")
+
+
+def depths() -> None:
+    """CPU of a row at each depth in a worker; the first row of the process is left out."""
+    tables = tomllib.loads(MADE)
+    tables |= {"case": ["cases/gx120.toml"], "depth": "preview", "corners": False}
+    tables["factor"] = [
+        {"key": "spring.rate", "range": {"low": "20 kN/m", "high": "30 kN/m"}},
+        {"key": "cam.prime_radius", "range": {"low": "45 mm", "high": "55 mm"}},
+    ]
+    study = study_of(tables)
+    templates = read_templates(ROOT, study.cases)
+    designs = planned(study, templates)
+    solver = DesignSolver(templates, designs.settings)
+    for tier, count in ((Tier.PREVIEW, 9), (Tier.CYCLE, 3), (Tier.CERTIFIED, 1)):
+        rows_of = ((task, row) for task in designs.tasks(tier) for row in range(len(task.ids)))
+        spent = []
+        for task, row in islice(rows_of, count + 1):
+            began = used()
+            solver.solved(task, row)
+            spent.append(used() - began)
+        print(f"worker: {np.mean(spent[1:]):.2f} s CPU a row at the depth {tier.word}")
+
+
+def used() -> float:
+    """CPU time of this process and those below it, s."""
+    spent = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(each.ru_utime + each.ru_stime for each in spent)
 
 
 def plan() -> None:
