@@ -10,7 +10,7 @@ import tempfile
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import IO, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -51,14 +51,40 @@ def read_toml(path: Path, field: str, most: int) -> dict[str, Any]:
         Naming `field`, if the file is larger, unreadable, nested too deeply or not TOML in UTF-8.
     """
     try:
-        if path.stat().st_size > most:
+        with path.open("rb") as file:
+            content = file.read(most + 1)
+        if len(content) > most:
             raise InputError(field, "larger", f"at most {most // 1024} KiB")
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(content.decode("utf-8-sig"))
     except RecursionError:
         raise InputError(field, "nested too deeply", "a few tables deep") from None
     except (OSError, ValueError) as error:  # UnicodeDecodeError and TOMLDecodeError alike
-        reason = " ".join(str(error).split())
+        words = error.strerror if isinstance(error, OSError) else None
+        reason = " ".join((words or str(error)).split())
         raise InputError(field, reason, "a readable TOML file") from None
+
+
+def locked(path: Path, busy: str) -> IO[str] | None:
+    """Lock of a file for this process until it is closed, at the latest when the process ends.
+
+    None on Windows, which has no such lock.
+
+    Raises
+    ------
+    ResultError
+        In the words of `busy`, if another process holds it.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        return None
+    lock = path.open("w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        lock.close()
+        raise ResultError(busy) from None
+    return lock
 
 
 def write_atomic(path: Path, content: bytes | str) -> Path:

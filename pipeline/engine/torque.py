@@ -105,7 +105,7 @@ class Torque:
         if n == self.theta_crank.size:
             return self
         step, rest = divmod(self.theta_crank.size, n)
-        if rest == 0:  # exactly, so that an inertia of zero stays zero
+        if rest == 0:  # exactly: without the round-off of a spline
             parts = {name: part[::step] for name, part in self.components.items()}
             varying = self.varying_inertia
             return Torque(
@@ -115,7 +115,7 @@ class Torque:
         parts = {name: _periodic(part, theta) for name, part in self.components.items()}
         varying = self.varying_inertia
         if varying is not None:
-            varying = np.maximum(_periodic(varying, theta), 0.0)  # zero at the dead centres
+            varying = np.maximum(_periodic(varying, theta), 0.0)  # undershoots at a dead centre
         return Torque(theta, parts, varying)
 
 

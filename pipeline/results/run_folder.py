@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import importlib.metadata
-import io
 import json
 import os
 import platform
@@ -16,7 +15,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import IO, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +29,7 @@ from camwright.pipeline.base.files import (
     Json,
     file_hashes,
     json_text,
+    locked,
     npz_bytes,
     read_json,
     write_atomic,
@@ -100,7 +100,7 @@ class RunFolder:
         self.versions = versions()
         self.resumed = False
         self._created: list[Path] = []
-        self._lock: io.TextIOWrapper | None = None
+        self._lock: IO[str] | None = None
         _refuse_strangers(self.out, case)
         self._open(resume)
 
@@ -304,20 +304,10 @@ class RunFolder:
         }
 
     def _take_lock(self) -> None:
-        """Lock the folder for this process; the system unlocks it when the process ends."""
-        if self._lock is not None:
-            return
-        try:
-            import fcntl
-        except ImportError:  # Windows has no such lock
-            return
-        lock = (self.path / _LOCK).open("w")
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            lock.close()
-            raise ResultError(f"{self.out}: another run is writing to it") from None
-        self._lock = lock
+        """Lock the folder for this process."""
+        if self._lock is None:
+            busy = f"{self.out}: another run is writing to it"
+            self._lock = locked(self.path / _LOCK, busy)
 
     def _unlock(self) -> None:
         if self._lock is not None:

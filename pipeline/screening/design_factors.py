@@ -19,6 +19,7 @@ from camwright.pipeline.case.case_values import quantity_of, replaced, value_of,
 from camwright.pipeline.case.consistency import check_numbers
 from camwright.pipeline.case.limits import LIMITS
 from camwright.pipeline.case.machine import machine
+from camwright.pipeline.case.requirements_section import Tolerances
 from camwright.pipeline.case.toml_text import TomlValue
 from camwright.pipeline.follower.guide_reactions import require_fit
 from camwright.pipeline.follower.spring import INDEX_MAX, INDEX_MIN, Treatment, WoundWire
@@ -278,7 +279,7 @@ def _suspects(case: Case, values: Mapping[str, Array], highest: Array) -> NDArra
             friction = at(f"guides.{side}.friction")
             wrong |= at(f"guides.{side}.friction_min") > friction
             wrong |= at(f"guides.{side}.friction_max") < friction
-            usual = (1.0 + 0.5) * friction
+            usual = (1.0 + Tolerances().friction) * friction
             if not case.tolerances.source.strip():
                 wrong |= at(f"guides.{side}.friction_max") < usual
         mouth = at("follower.overhang_at_max_lift")

@@ -104,5 +104,5 @@ def test_linkage_that_cannot_turn_is_refused(tmp_path):
 
 
 def test_missing_case_is_refused(tmp_path):
-    with pytest.raises(InputError, match="readable file"):
+    with pytest.raises(InputError, match=r"none\.toml = No such file .* a readable TOML file"):
         load_comparison(tmp_path / "none.toml")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Literal, Self
@@ -13,6 +12,7 @@ import tomli_w
 from pydantic import Field, PlainValidator, ValidationError, model_validator
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.files import read_toml
 from camwright.pipeline.base.quantities import Characters, In
 from camwright.pipeline.case.error_text import first_error
 from camwright.pipeline.case.section import Name, Section, Text, refusal
@@ -330,20 +330,7 @@ def read_study_tables(path: Path) -> dict[str, object]:
     InputError
         If it cannot be read.
     """
-    try:
-        with path.open("rb") as file:
-            content = file.read(STUDY_BYTES + 1)
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError("study", f"{path} ({reason})", "a readable file") from None
-    if len(content) > STUDY_BYTES:
-        raise InputError("study", f"{path} is larger", f"at most {STUDY_BYTES // 1024} KiB")
-    try:
-        return tomllib.loads(content.decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        words = "nested too deeply" if isinstance(error, RecursionError) else error
-        reason = " ".join(str(words).split())
-        raise InputError("study", f"{path} ({reason})", "UTF-8 text in TOML") from None
+    return read_toml(path, f"study {path}", STUDY_BYTES)
 
 
 def case_path(folder: Path, name: str) -> Path:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.errors import ResultError
-from camwright.pipeline.base.files import Json, json_text, read_json, write_atomic
+from camwright.pipeline.base.files import Json, json_text, locked, read_json, write_atomic
 from camwright.pipeline.studies.batch.case_template import Template
 from camwright.pipeline.studies.batch.dataset import (
     ANSWERS,
@@ -88,7 +88,8 @@ class StudyFolder:
             raise ResultError(f"{self.path}: holds a study; --resume completes it")
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            self._take_lock()
+            busy = f"{self.path}: another study is writing to it"
+            self._lock = locked(self.path / _LOCK, busy)
             (self.path / SHARDS).mkdir(exist_ok=True)  # first: by it a study is known
             for each in self.path.rglob(".*.tmp"):  # of a process that was killed
                 shutil.rmtree(each) if each.is_dir() else each.unlink()
@@ -100,20 +101,6 @@ class StudyFolder:
         if self._lock is not None:
             self._lock.close()
             (self.path / _LOCK).unlink(missing_ok=True)
-
-    def _take_lock(self) -> None:
-        """Lock the folder for this process; the system unlocks it when the process ends."""
-        try:
-            import fcntl
-        except ImportError:  # Windows has no such lock
-            return
-        lock = (self.path / _LOCK).open("w")
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            lock.close()
-            raise ResultError(f"{self.path}: another study is writing to it") from None
-        self._lock = lock
 
     def write_inputs(self, text: str, templates: Sequence[Template]) -> None:
         """Write the study file and the cases; those of an earlier study are replaced."""

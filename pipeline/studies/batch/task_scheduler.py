@@ -66,7 +66,7 @@ def cluster(jobs: int, address: str | None) -> Iterator[Client]:
         "distributed.scheduler.allowed-failures": DEATHS_MAX - 1,
         "distributed.comm.timeouts.connect": f"{_CONNECT_S}s",
         "distributed.worker.memory.spill": False,
-        "distributed.worker.profile.enabled": False,  # it samples a hundred times a second
+        "distributed.worker.profile.enabled": False,  # a sample every 10 ms in each process
         "distributed.admin.log-format": "%(message)s",
     }
     with contextlib.ExitStack() as stack:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -13,8 +12,10 @@ from pydantic import Field, ValidationError
 from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.eccentric import Eccentric
 from camwright.geometry.errors import InputError
+from camwright.pipeline.base.files import read_toml
 from camwright.pipeline.base.quantities import FileName, Force, In, Length, Mass
 from camwright.pipeline.case.case_file import CASE_BYTES
+from camwright.pipeline.case.error_text import first_error
 from camwright.pipeline.case.section import Name, Section, Text
 from camwright.pipeline.studies.papers.friction_identification import (
     Pendulum,
@@ -182,26 +183,11 @@ def load_comparison(path: Path) -> ComparisonCase:
     InputError
         Naming the first invalid field.
     """
-    try:
-        with path.open("rb") as file:
-            content = file.read(CASE_BYTES + 1)
-        if len(content) > CASE_BYTES:
-            raise InputError("case", str(path), f"at most {CASE_BYTES // 1024} KiB")
-        data = tomllib.loads(content.decode("utf-8-sig"))
-    except OSError as error:
-        raise InputError("case", f"{path} ({error.strerror})", "a readable file") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError("case", " ".join(str(error).split()), "UTF-8 text in TOML") from None
+    data = read_toml(path, f"case {path}", CASE_BYTES)
     try:
         return ComparisonCase.model_validate(data)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        context = first.get("ctx", {})
-        field = ".".join(str(part) for part in first["loc"]) or "case"
-        field = ".".join(filter(None, (field, context.get("unknown_key"))))
-        value = first["input"] if isinstance(first["input"], (str, int, float)) else "a table"
-        limit = context.get("limit", first["msg"])
-        raise InputError(field, value, str(limit)) from None
+        raise first_error(error) from None
 
 
 def compared(path: Path) -> Document:
