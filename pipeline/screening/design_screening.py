@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +28,7 @@ from camwright.pipeline.smoothing.smoothers import Smoother, smoothed
 
 BLOCK = 500
 """Designs solved at once: arrays of some megabytes."""
+KIND = "follower.kind"
 Column = NDArray[np.float64] | NDArray[np.object_]
 
 
@@ -64,6 +65,7 @@ def screen_designs(
     InputError
         If a key is unknown, the factors differ in length, or the follower has no roller.
     """
+    require_roller(case, factors)
     if not 36 <= positions <= 7200:
         raise InputError("positions", positions, "36 to 7200")
     count = count_of(factors)
@@ -82,6 +84,22 @@ def screen_designs(
         for rows, own in blocks.screened():
             _put(columns, rows, own)
     return columns
+
+
+def require_roller(case: Case, factors: Collection[str] = ()) -> None:
+    """Refuse a flat face, whose contour and width are not solved as arrays.
+
+    Parameters
+    ----------
+    factors : collection   keys that vary: the kind of the follower may be one
+
+    Raises
+    ------
+    InputError
+    """
+    if case.roller_given is None and KIND not in factors:
+        limit = '"roller" at the depth screening; a flat face needs the depth preview'
+        raise InputError(KIND, case.follower.kind, limit)
 
 
 def _put(
@@ -108,8 +126,7 @@ class _Blocks:
 
     @classmethod
     def of(cls, case: Case, group: Group, positions: int) -> _Blocks:
-        if case.roller_given is None:
-            raise InputError("follower.kind", case.follower.kind, '"roller" for screening')
+        require_roller(case)
         energy = None
         if case.lift is None and case.smoothing.kind == "constrained":
             case, energy = synthesis(case)

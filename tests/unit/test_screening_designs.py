@@ -28,6 +28,12 @@ def case() -> Case:
     return read_case(CASES / "gx120.toml")
 
 
+def test_a_flat_face_is_refused_by_name() -> None:
+    flat = read_case(CASES / "papers" / "petrescu_c.toml")
+    with pytest.raises(InputError, match=r'follower\.kind = flat, must be "roller" at the depth'):
+        screen_designs(flat, {"spring.preload": np.array([20.0, 40.0])})
+
+
 def test_refused_designs_are_rows_that_name_field_value_and_limit() -> None:
     factors = {
         "spring.rate": ["24.2 kN/m", "-1 kN/m", *["24.2 kN/m"] * 3, "5 mm", "24.2 kN/m"],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -92,6 +92,9 @@ class UnpackedTemplates:
         self._templates = {each.name: each for each in templates}
         self._folder = tempfile.TemporaryDirectory(prefix="camwright-study-")
         self._cases: dict[str, Case] = {}
+
+    def __iter__(self) -> Iterator[Case]:
+        return (self[name] for name in self._templates)
 
     def __getitem__(self, name: str) -> Case:
         if name not in self._cases:

@@ -94,13 +94,15 @@ def planned(study: Study, templates: Sequence[Template]) -> Plan:
     Raises
     ------
     InputError
-        If a factor does not fit the first case, the sampling does not fit the factors, or an
-        objective is no column of numbers.
+        If a factor does not fit the first case, the sampling does not fit the factors, an
+        objective is no column of numbers, or the follower of a screened case has no roller.
     """
     designs: Designs | None = None
     if study.sampling is not None:
-        base = UnpackedTemplates(templates)[templates[0].name]
+        cases = UnpackedTemplates(templates)
+        base = cases[templates[0].name]
         axes = [axis_of(factor, base) for factor in study.factors]
+        _require_screened(study, cases)
         designs = designs_of(axes, study.sampling, study.correlations)
     wanted = [each.column for each in study.objectives]
     settings = Settings(
@@ -117,6 +119,16 @@ def planned(study: Study, templates: Sequence[Template]) -> Plan:
     for name in wanted:
         _require_numbers(name, plan.units)
     return plan
+
+
+def _require_screened(study: Study, cases: UnpackedTemplates) -> None:
+    """Refuse a case that cannot be screened, before all of its designs are refused."""
+    if study.tier is Tier.SCREENING:
+        from camwright.pipeline.screening.design_screening import require_roller
+
+        keys = [factor.key for factor in study.factors]
+        for each in cases:
+            require_roller(each, keys)
 
 
 def _require_numbers(name: str, units: Mapping[str, str | None]) -> None:
