@@ -21,6 +21,7 @@ import pytest
 from camwright.geometry.errors import InputError, ResultError
 from camwright.pipeline.base.files import file_hashes
 from camwright.pipeline.cli import app
+from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.results.run_reader import read_run, read_verdict
 from camwright.pipeline.studies.batch import study_run
 from camwright.pipeline.studies.batch.answers import answered
@@ -31,7 +32,7 @@ from camwright.pipeline.studies.batch.dataset import (
     table_of,
     timings_of,
 )
-from camwright.pipeline.studies.batch.design_plan import Task
+from camwright.pipeline.studies.batch.design_plan import SHARD_OF, Task
 from camwright.pipeline.studies.batch.design_rows import completed
 from camwright.pipeline.studies.batch.study_file import read_study
 
@@ -326,10 +327,11 @@ class EveryThirdRefused:
 
     def shards(self, tasks: Iterable[Task]) -> Iterator[tuple[Task, tuple[bytes, bytes]]]:
         for task in tasks:
-            screens = [("open", "fail", "error")[(self.solved + k) % 3] for k in range(10)]
-            self.solved += 10
+            count = len(task.ids)
+            screens = [("open", "fail", "error")[(self.solved + k) % 3] for k in range(count)]
+            self.solved += count
             rows = completed(task, {"screen": screens}, ())
-            clock = parquet_bytes(timings_of(rows, [0.0] * 10))
+            clock = parquet_bytes(timings_of(rows, [0.0] * count))
             yield task, (parquet_bytes(table_of(rows, task.units)), clock)
 
 
@@ -349,7 +351,7 @@ def test_the_stop_rule_counts_as_the_answers(
     assert share["without_result"] == len(data) // 3
     low, high = share["interval"]
     assert high - low == pytest.approx(Yield(share["passed"], share["count"]).width, abs=1e-12)
-    screens = data["screen"][:-10]
+    screens = data["screen"][: -SHARD_OF[Tier.PREVIEW]]
     before = Yield(int((screens == "open").sum()), int((screens != "error").sum()))
     assert high - low <= 0.25 < before.width
 
