@@ -84,8 +84,8 @@ class Comparison:
     applied : tuple of Correction       in the synthesis, by scenario
     corrections : tuple of Correction   by scenario, of this cam alone
     shifts : tuple of LimitShift        of each limit
-    ripple_shift : float                change of the residual ripple by a further trial, relative,
-                                        to first order: multipliers times shifts
+    ripple_shift : float                change of ripple and costs by a further trial, relative, to
+                                        first order: that of the Lagrangian
     converged : bool                    of the synthesis; else the shift of the ripple is not known
     """
 
@@ -165,8 +165,13 @@ def compared(problem: Problem, design: Design, cycles: Sequence[Cycle]) -> Compa
     )
     before, after = (_utilisation(problem, design, each) for each in (applied, corrections))
     shifts = tuple(LimitShift(name, use, after[name]) for name, use in before.items())
-    by_limits = sum(design.multipliers.get(each.limit, 0.0) * each.change for each in shifts)
-    ripple_shift = by_limits / max(design.ripple, NEGLIGIBLE)
+    ripple_shift = np.inf
+    if design.lagrangian is not None:
+        now, then = (
+            design.lagrangian.at(_with_corrections(problem, each))
+            for each in (applied, corrections)
+        )
+        ripple_shift = (then - now) / max(design.objective, NEGLIGIBLE)
     return Comparison(applied, corrections, shifts, ripple_shift, design.converged)
 
 
@@ -265,11 +270,15 @@ def _over_turn(problem: Problem, design: Design, corrections: Sequence[Correctio
 
 
 def _search(problem: Problem, design: Design, corrections: Sequence[Correction]) -> Search:
+    return Search(replace(_with_corrections(problem, corrections), seed=design.coefficients))
+
+
+def _with_corrections(problem: Problem, corrections: Sequence[Correction]) -> Problem:
     scenarios = tuple(
         replace(each, correction=correction)
         for each, correction in zip(problem.scenarios, corrections, strict=True)
     )
-    return Search(replace(problem, scenarios=scenarios, seed=design.coefficients))
+    return replace(problem, scenarios=scenarios)
 
 
 def _corrections_record(problem: Problem) -> dict[str, dict[str, list[float]]]:

@@ -183,7 +183,8 @@ def resolved(problem: Problem, design: Design) -> tuple[list[Design], Resolution
         finer = min(round(_REFINEMENT * count), COEFFICIENTS_MAX)
         designs.append(continued(replace(problem, coefficients=finer), before))
         after = designs[-1]
-        change = (before.ripple - after.ripple) / max(after.ripple, NEGLIGIBLE)
+        least = max(after.ripple, NEGLIGIBLE)  # below, ripples are equal
+        change = max(before.ripple, NEGLIGIBLE) / least - 1.0
         settled = abs(change) <= problem.convergence
         if settled or finer == COEFFICIENTS_MAX or not (before.feasible and after.feasible):
             return designs, Resolution(finer, count, change, settled)

@@ -22,13 +22,14 @@ from camwright.pipeline.follower.camshaft_loads import unbalance
 from camwright.pipeline.preview import preview_case
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.fe_correction import redrawn
+from camwright.pipeline.smoothing.multistart import continued
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.synthesis_problem import coarsened
 
 
 @dataclass(frozen=True)
 class Rough:
-    """Result on a coarse turn: residual over engine torque ripple, cam radius m, mass kg."""
+    """Result of the synthesis alone: residual over engine torque ripple, cam radius m, mass kg."""
 
     feasible: bool
     ripple: float
@@ -132,15 +133,16 @@ def point_of(case: Case) -> Point:
 
 
 def rough_point(case: Case, torques: Mapping[str, Torque]) -> Rough:
-    """Point of a case on a coarse turn with the limits of the synthesis, without checks.
+    """Point of a case by the synthesis, without its corrections and checks.
 
     The limit of the ripple is compared with its minimum afterwards: as a constraint it would hide
     the ripple of an infeasible case.
     """
-    problem = coarsened(problem_of(case, torques))
-    design = synthesise(replace(problem, left_out=frozenset({TORQUE_REDUCTION.id})))
-    contour = redrawn(case, design).contour(design.lift(problem.points))
-    enough = problem.ceiling is None or design.ripple <= problem.ceiling
+    every = problem_of(case, torques)
+    problem = replace(every, left_out=frozenset({TORQUE_REDUCTION.id}))
+    design = continued(problem, synthesise(coarsened(problem)))
+    contour = redrawn(case, design).contour(design.lift())
+    enough = every.ceiling is None or design.ripple <= every.ceiling
     return Rough(
         design.feasible and enough,
         design.ripple,

@@ -1,6 +1,6 @@
 """Search order of the catalogue, by bounds and by solved points.
 
-Points on a coarse turn: for each roller the best spring and bush without a limit on the cam radius,
+Points of the synthesis alone: for each roller the best spring and bush, the cam radius without limit,
 then under decreasing limits. The choices depend on the case alone, not on the processes.
 """
 

@@ -23,7 +23,7 @@ SOLVED = "solved"
 
 @dataclass(frozen=True)
 class Task:
-    """A case as text, to be solved on a coarse turn or in full.
+    """A case as text, to be solved by the synthesis alone or in full.
 
     base: the original case, whose torque all variants share; folder: of the included files and of
     the cache ``solved/``; version: of the source.

@@ -126,7 +126,7 @@ def _prepare(search: Search) -> None:
 def _searched(
     search: Search, running: Mapping[str, Branch], workers: ProcessPoolExecutor, progress: Progress
 ) -> list[Tried]:
-    """All choices of the branches with their points on a coarse turn, by choice."""
+    """All choices of the branches with their points of the synthesis alone, by choice."""
     tried: list[Tried] = []
     refusals: list[InputError] = []
     waiting: dict[Future[Record], tuple[Branch, Choice]] = {}
@@ -165,7 +165,7 @@ def _searched(
 
 
 def _chosen(tried: Sequence[Tried], against: str) -> list[Choice]:
-    """Choices on the front of the points on a coarse turn."""
+    """Choices on the front of the points of the synthesis alone."""
     feasible = [(choice, record) for choice, record in tried if record["feasible"]]
     size = "cam_radius" if against == "size" else "mass"
     figures = [(record[size], record["ripple"]) for _, record in feasible]
