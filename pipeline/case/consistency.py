@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 
 _ROUND_OFF = 1e-9  # of a share of the friction
+_SHARES = 1e-6  # of the sum of the duty
 
 
 def check_sections(case: Case) -> None:
@@ -41,6 +42,7 @@ def check_numbers(case: Case) -> None:
     _check_start(case)
     _check_geometry(case)
     _check_names(case)
+    _check_duty(case)
     _check_film(case)
     _check_tolerances(case)
     _check_mass(case)
@@ -244,6 +246,20 @@ def _check_roller(cam: CamBody, roller: Roller) -> None:
 def _require(field: str, value: float, holds: bool, limit: str) -> None:
     if not holds:
         raise InputError(field, f"{value:.6g} m", limit)
+
+
+def _check_duty(case: Case) -> None:
+    """The duty is that of all load cases or of none, and its shares add to 1."""
+    shares = [load_case.duty for load_case in case.load_cases]
+    stated = [share for share in shares if share is not None]
+    if not stated:
+        return
+    for k, share in enumerate(shares):
+        if share is None:
+            limit = "given, 0 where it takes no time, as other load cases have one"
+            raise InputError(f"load_case[{k}].duty", "missing", limit)
+    if not abs(sum(stated) - 1.0) <= _SHARES:
+        raise InputError("load_case.duty", f"{sum(stated):.6g} in sum", "1 in sum")
 
 
 def _check_names(case: Case) -> None:

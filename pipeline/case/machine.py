@@ -78,6 +78,7 @@ class Machine:
     gear_ratio : float         crank turns per cam turn
     ripple_weight : float      weight of its torque ripple in the synthesis
     torque_reduction, speed_reduction : float   required of the ripple; None: none is required
+    duty : float               share of the operating time; None: not known
     cam : CamBody
     follower : FollowerKind    the part that touches the cam, roller or flat face
     mass : float               that moves with the follower, kg, spring_mass of it of the spring
@@ -100,6 +101,7 @@ class Machine:
     ripple_weight: float
     torque_reduction: float | None
     speed_reduction: float | None
+    duty: float | None
     cam: CamBody
     follower: FollowerKind
     mass: float
@@ -258,8 +260,10 @@ def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:
 
     Lowest and highest running speed are those of the case. Standstill and over-speed are judged
     at every preload, without an engine torque; over-speed only where the case limits the speed.
+    They have no share of a duty that the case states.
     """
     stated, over = case.load_cases, case.limits[OVERSPEED]
+    duty = None if stated[0].duty is None else 0.0
     added = []
     for name, speed in ((STANDSTILL, 0.0), (OVER_SPEED, over)):
         if speed is None:
@@ -270,7 +274,7 @@ def judged_load_cases(case: Case) -> tuple[LoadCase, ...]:
             if preload in known:
                 continue
             label = name if len(preloads) == 1 else f"{name}-{list(preloads).index(preload) + 1}"
-            state = {"name": label, "speed": speed, "preload": preload} | _UNLOADED
+            state = {"name": label, "speed": speed, "preload": preload, "duty": duty} | _UNLOADED
             added.append(stated[0].model_copy(update=state))
     return (*stated, *added)
 
@@ -288,6 +292,7 @@ def machine(case: Case, state: LoadCase) -> Machine:
         ripple_weight=state.ripple_weight,
         torque_reduction=_required(case, state, TORQUE_REDUCTION),
         speed_reduction=_required(case, state, SPEED_REDUCTION),
+        duty=state.duty,
         cam=case.cam,
         follower=case.facing,
         mass=follower.mass,

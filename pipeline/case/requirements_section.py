@@ -192,7 +192,8 @@ class LoadCase(Section):
     At speed 0 spring and friction act, inertia does not. The torque ripple counts in the synthesis
     with its weight. torque_reduction and speed_reduction are those required in the load case, 0:
     none; left out, those of `limits` at a weight above 0, none at weight 0. A preload acts on the
-    cam designed for spring.preload.
+    cam designed for spring.preload. duty is the share of the operating time: the shares add to 1,
+    and life and wear count each load case with its own; without any, the worst one all the time.
     With a cylinder model the intake pressure sets the engine load, and an unfired load case is
     motored, at cranking speed if its speed is 0.
     """
@@ -206,4 +207,5 @@ class LoadCase(Section):
     ripple_weight: Annotated[float, In(at_least=0, at_most=1000)] = 1.0
     torque_reduction: Annotated[float, In(at_least=0, below=1)] | None = None
     speed_reduction: Annotated[float, In(at_least=0, below=1)] | None = None
+    duty: Annotated[float, In(at_least=0, at_most=1)] | None = None
     source: Text = ""

@@ -21,6 +21,10 @@ Screen = Literal["open", "fail"]
 Error = Literal["sampling", "contact", "guides", "guide_edges", "bore", "unknown"]
 Record = dict[str, str | float | bool | list[str] | None]
 EVERY = "all, standstill and over-speed included"
+BY_DUTY = (
+    "by load_case.duty, 1/L = sum q_i/L_i with q_i the shares; without a duty the worst load case"
+    " counts for the whole life"
+)
 NONE = "none: the shape of the cam or a part as drawn"
 RIPPLE = "those with an engine torque and a required reduction"
 SPEED_RANGE = "every speed from standstill to over-speed"

@@ -176,9 +176,12 @@ def edge_factors(cycle: Cycle) -> Array:
 
 
 def life_turns(machines: tuple[Machine, ...]) -> float:
-    """Cam turns in the target life at the fastest load case; 0 without a target life."""
+    """Cam turns in the target life by the duty, else at the fastest load case; 0 without a life."""
     life = machines[0].limits[TARGET_LIFE] or 0.0
-    return life * max(machine.cam_speed for machine in machines) / FULL_TURN
+    speed = max(machine.cam_speed for machine in machines)
+    if all(machine.duty is not None for machine in machines):
+        speed = sum((machine.duty or 0.0) * machine.cam_speed for machine in machines)
+    return life * speed / FULL_TURN
 
 
 def load_cycles(machines: tuple[Machine, ...], contour: Contour) -> LoadCycles:
@@ -347,8 +350,9 @@ def shakedown(solution: Solution) -> Demand:
     id="contact_pressure_at_life",
     title="Peak contact pressure vs. endurance limit at target life",
     unit="MPa",
-    method="greatest contact pressure over the turn; one load cycle per turn of the cam and per"
-    " turn of the roller, all in the worst load case; least of cam and follower",
+    method="greatest contact pressure of the load cases in operation; one load cycle per turn of"
+    " the cam and per turn of the roller, by the duty, without one all in the fastest load case;"
+    " least of cam and follower",
     lift_can_help=True,
     error="contact",
     formula="p0 <= sqrt(K E*/pi) / S; log10 K = (B - log10 n)/A with K in psi, n: load cycles of"
@@ -358,7 +362,9 @@ def shakedown(solution: Solution) -> Demand:
 )
 def contact_pressure_at_life(solution: Solution) -> Demand:
     """Maximum contact pressure, Pa, against the endurance at the target life."""
-    worst, limit = peak_pressure(solution), _limit(solution, "contact_pressure_at_life")
+    operating = (each for each in solution.cycles if each.machine.duty != 0.0)
+    worst = greatest(operating, lambda cycle: cycle.surface.p0)
+    limit = _limit(solution, "contact_pressure_at_life")
     if limit is None:
         note, cards = "no target life is given", solution.machine.bodies.values()
         figures = tuple(f"{card.name}: {card.source}" for card in cards)

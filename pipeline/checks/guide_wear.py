@@ -8,7 +8,7 @@ from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
 from camwright.pipeline.checks.check import Declaration, Demand, check, not_given
-from camwright.pipeline.checks.extremes import worst_case
+from camwright.pipeline.checks.extremes import over_duty
 from camwright.pipeline.checks.guide_strength import Side, guide_of, hottest, mean_pv
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_friction import bore_closure
@@ -75,12 +75,13 @@ def _guide_wear(side: Side) -> Declaration:
         WEAR_DEPTH,
         id=f"guide_wear_{side}",
         title=f"Wear depth of guide {side} at target life",
-        method="wear rate times mean pressure times sliding distance, all of the life in the worst"
-        " load case",
+        method="wear rate times mean pressure times sliding distance, over the load cases by their"
+        " duty; without a duty all of the life in the worst load case",
         lift_can_help=True,
         part="guides",
-        formula="K PV t <= h; K: guides.*.wear_rate, volume per load and distance, PV: mean PV"
-        " value of the guide, t: limits.target_life, h: limits.wear_depth.",
+        formula="K t sum q_i PV_i <= h; K: guides.*.wear_rate, volume per load and distance, PV_i:"
+        " mean PV value of the guide in a load case, q_i: load_case.duty, t: limits.target_life, h:"
+        " limits.wear_depth. Without a duty the greatest PV_i counts for the whole life.",
         reason="wear opens the clearance that jamming and edge pressure are computed"
         " with, and no other check limits it over the life.",
     )
@@ -88,7 +89,7 @@ def _guide_wear(side: Side) -> Declaration:
         """Wear depth of a guide over the target life, m."""
         guide, limits = guide_of(solution.machine, side), solution.machine.limits
         rate, life = guide.wear_rate, limits[TARGET_LIFE]
-        worst = worst_case(solution.cycles, lambda cycle: mean_pv(cycle, side))
+        worst = over_duty(solution.cycles, lambda cycle: mean_pv(cycle, side))
         values = {f"guides.{side.lower()}.wear_rate": rate, "limits.target_life": life}
         missing = not_given(values)
         return Demand(

@@ -1,7 +1,7 @@
 """Checks of the roller bearing: ratings, life, speed, outer ring, lubrication.
 
-The load of the bearing is the normal force: radial, without an axial share. A life is that in the
-worst load case, run all the time.
+The load of the bearing is the normal force: radial, without an axial share. A life is that by the
+duty of the load cases; without one that in the worst load case, run all the time.
 """
 
 from __future__ import annotations
@@ -23,8 +23,15 @@ from camwright.pipeline.case.limits import (
     VISCOSITY_RATIO,
 )
 from camwright.pipeline.case.machine import Machine
-from camwright.pipeline.checks.check import NONE, Declaration, Demand, check, not_given
-from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest, worst_case
+from camwright.pipeline.checks.check import BY_DUTY, NONE, Declaration, Demand, check, not_given
+from camwright.pipeline.checks.extremes import (
+    NOWHERE,
+    Extreme,
+    duty_parts,
+    greatest,
+    over_duty,
+    worst_case,
+)
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
@@ -143,16 +150,21 @@ def roller_load_share(solution: Solution) -> Demand:
     needs="roller",
     part="roller_bearing",
     formula="(C/P_m)^3 10^6/n >= L; C: dynamic rating, P_m: cube mean of the normal force over the"
-    " revolutions of the roller, n: its mean speed, L: limits.roller_life. The worst load case"
-    " counts for the whole life.",
+    " revolutions of the roller, n: its mean speed, L: limits.roller_life. Over the load cases"
+    f" {BY_DUTY}.",
     reason="the bearing has to last; a clean bearing that lasts longer is not credited",
 )
 def roller_life(solution: Solution) -> Demand:
     """L10 rating life of the bearing, s."""
     bearing, target = bearing_of(solution), solution.machine.limits[ROLLER_LIFE]
-    worst = worst_case(solution.cycles, lambda c: _life(c, bearing.C), at_least=True)
+
+    def life(cycle: Cycle) -> float:
+        return _life(cycle, bearing.C)
+
+    worst = over_duty(solution.cycles, life, life=True)
     missing = ["no dynamic rating is given"] if bearing.C is None else []
     missing += ["no life is required"] if target is None else []
+    missing += damage_note(solution, life)
     return Demand(
         worst.value,
         target,
@@ -160,6 +172,16 @@ def roller_life(solution: Solution) -> Demand:
         note="; ".join(missing),
         figures=_card(bearing),
     )
+
+
+def damage_note(solution: Solution, life: Callable[[Cycle], float]) -> list[str]:
+    """Shares of the load cases in the damage of a life; none without a duty."""
+    parts = duty_parts(solution.cycles, life, life=True)
+    whole = sum(parts.values())
+    if not whole > 0.0:
+        return []
+    shares = (f"{part / whole:.0%} {name}" for name, part in parts.items())
+    return [f"damage by duty: {', '.join(shares)}"]
 
 
 def _life(cycle: Cycle, rating: float | None) -> float:
@@ -181,7 +203,7 @@ def _life(cycle: Cycle, rating: float | None) -> float:
     part="roller_bearing",
     formula="a1 a_ISO (C/P)^3 10^6/n >= L; a1: of limits.roller_reliability, a_ISO: of the"
     " viscosity ratio and of e_C P_u/P, e_C: of roller.bearing.contamination, P_u: fatigue load"
-    " limit, L: limits.roller_life. The worst load case counts for the whole life.",
+    f" limit, L: limits.roller_life. Over the load cases {BY_DUTY}.",
     reason="a thin or dirty film shortens the life to a tenth",
 )
 def roller_modified_life(solution: Solution) -> Demand:
@@ -213,9 +235,11 @@ def roller_modified_life(solution: Solution) -> Demand:
                 force, spin(cycle), rating, share * endured, kappa, limits[ROLLER_RELIABILITY]
             )
 
-        worst = worst_case(solution.cycles, life, at_least=True)
+        worst = over_duty(solution.cycles, life, life=True)
         if np.isnan(worst.value):
             missing.append("not known for a viscosity ratio below 0.1: outside of ISO 281")
+        else:
+            missing += damage_note(solution, life)
     return Demand(
         worst.value,
         limits[ROLLER_LIFE],
@@ -361,7 +385,8 @@ def _mean_speed(cycle: Cycle) -> float:
     formula="log10 F = 6.10 - 4.40e-6 D n - 2.50 (P/C - 0.05) - (0.021 - 1.80e-8 D n) T; F >= L;"
     " D: outer diameter in mm, n: mean speed in rpm, P: equivalent load, C: dynamic rating, T:"
     " temperature in degC, L: limits.target_life of a bearing greased for life, else"
-    " roller.bearing.relubrication_interval. Oil has no such life.",
+    " roller.bearing.relubrication_interval. Oil has no such life. Over the load cases"
+    f" {BY_DUTY}.",
     reason="a bearing greased for life ends with its grease",
     load_cases=NONE,
 )
@@ -379,7 +404,7 @@ def grease_life(solution: Solution) -> Demand | None:
         stated = Extreme(bearing.grease_life)
         return Demand(stated.value, target, stated, "; ".join(missing), _card(bearing))
     missing += not_given({"dynamic rating": bearing.C, "temperature": bearing.temperature})
-    worst = worst_case(solution.cycles, lambda cycle: _grease_life(cycle, solution), at_least=True)
+    worst = over_duty(solution.cycles, lambda cycle: _grease_life(cycle, solution), life=True)
     if np.isnan(worst.value) and not missing:
         missing.append("outside the range of the estimate: give roller.bearing.grease_life")
     return Demand(worst.value, target, worst, "; ".join(missing), _card(bearing))

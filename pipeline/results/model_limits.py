@@ -42,8 +42,8 @@ MODEL_LIMITS = (
     ModelLimit(
         "The roller is solid on its hub unless the case states outer ring and balls; the ring then"
         " has one thickness, its balls no clearance, and the contact is over a ball. Bearing"
-        " ratings are those of the manufacturer; its load is radial, the normal force, and every"
-        " load case counts as if it ran for the whole life.",
+        " ratings are those of the manufacturer; its load is radial, the normal force. Without"
+        " load_case.duty the worst load case counts as if it ran for the whole life.",
         "roller_radial",
     ),
     ModelLimit(

@@ -73,13 +73,15 @@ class State(NamedTuple):
     """A load case of many designs: crank speed, rad/s, and preload, N, (m, 1).
 
     torque (m or 1, n): of the engine less its mean, crank N m, at the cam angles of the loads; None
-    without one. required: reduction of its ripple, (m,) or (); None: none is required.
+    without one. required: reduction of its ripple, (m,) or (); None: none is required. duty:
+    share of the operating time; None: not known.
     """
 
     speed: Array
     preload: Array
     torque: Array | None
     required: Array | None
+    duty: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,12 +287,13 @@ class Designs:
             torque = self.torques.get(k)
             torque = None if torque is None else self.at_loads(torque)
             speed = self.value(f"load_case[{k}].speed")
-            states.append(State(speed, preload, torque, self._required(each)))
+            states.append(State(speed, preload, torque, self._required(each), each.duty))
         over = self.value(f"limits.{OVERSPEED.id}")
+        idle = None if stated[0].duty is None else 0.0
         for speed in (np.zeros_like(over), over):
             if np.isnan(speed).all():
                 continue
-            states += [State(speed, preload, None, None) for preload in preloads]
+            states += [State(speed, preload, None, None, idle) for preload in preloads]
         return tuple(states)
 
     def _required(self, state: LoadCase) -> Array | None:

@@ -269,10 +269,15 @@ def _roller_life(designs: Designs) -> Judged:
     rating = _bearing("C", designs)
     known = np.where(np.isnan(rating), 1.0, rating)
     lives = [
-        rating_life(turns.loads.normal_force, _spin(designs, turns), known).seconds
+        (rating_life(turns.loads.normal_force, _spin(designs, turns), known).seconds, each.duty)
         for turns in designs.turns
+        if (each := turns.state).duty != 0.0
     ]
-    return np.where(np.isnan(rating), np.nan, np.min(lives, axis=0)), designs.limit(ROLLER_LIFE)
+    if all(duty is None for _, duty in lives):
+        life = np.min([each for each, _ in lives], axis=0)
+    else:
+        life = 1.0 / np.sum([(duty or 0.0) / each for each, duty in lives], axis=0)
+    return np.where(np.isnan(rating), np.nan, life), designs.limit(ROLLER_LIFE)
 
 
 def _area(designs: Designs, side: Side) -> Array:

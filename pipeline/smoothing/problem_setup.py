@@ -107,6 +107,7 @@ def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scen
         preload_factor=machine.spring.preload / case.spring.preload,
         weight=0.0 if torque is None else machine.ripple_weight,
         torque_reduction=None if torque is None else machine.torque_reduction,
+        duty=machine.duty,
         friction_worst=friction.greatest,
         correction=Correction.none(POINTS),
     )
@@ -140,6 +141,7 @@ def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
                 torque=values - values.mean(),
                 weight=nominal.weight * smoothing.robust_weight,
                 torque_reduction=None,
+                duty=None if nominal.duty is None else 0.0,
             )
         )
     return scenarios

@@ -132,6 +132,7 @@ class Scenario:
     torque : array (n,)      engine torque at n equal cam angles, of zero mean, crank N m
     weight : float           of its ripple in the objective; 0: limits only
     torque_reduction : float   required of its torque ripple; None: none is required
+    duty : float             share of the operating time; None: not known
     mass, viscous_damping, guide_spacing, overhang : float   of the follower, SI
     friction_a, friction_b : float
     friction_worst : two floats   maximum friction of guides A and B; None: not known
@@ -152,6 +153,7 @@ class Scenario:
     preload_factor: Value = 1.0
     weight: float = 1.0
     torque_reduction: float | None = None
+    duty: float | None = None
     friction_worst: tuple[Value, Value] | None = None
     correction: Correction = field(default_factory=lambda: Correction.none(8))
 

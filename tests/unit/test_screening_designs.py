@@ -15,10 +15,12 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.case_values import quantity_of, replaced, value_of, with_values
 from camwright.pipeline.checks.check import Check
 from camwright.pipeline.checks.registry import CHECKS
+from camwright.pipeline.preview import preview_case
 from camwright.pipeline.screening import design_screening
 from camwright.pipeline.screening.design_arrays import Designs, TorqueOfSpeed
 from camwright.pipeline.screening.design_factors import ARRAYS, groups
 from camwright.pipeline.screening.design_screening import screen_designs, utilisations
+from camwright.pipeline.screening.screened_checks import SCREENED
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -208,3 +210,20 @@ def test_the_torque_between_speeds_is_that_of_the_engine() -> None:
         np.testing.assert_allclose(
             between.at(speeds)[k], known, rtol=0.0, atol=5e-4 * np.ptp(known)
         )
+
+
+def test_the_roller_lives_by_the_duty_as_in_the_preview() -> None:
+    base = case()
+    idle = base.load_cases[0]
+    states = (
+        idle.model_copy(update={"duty": 0.7}),
+        idle.model_copy(update={"name": "slow", "speed": 0.6 * idle.speed, "duty": 0.3}),
+    )
+    own = base.model_copy(update={"load_cases": states})
+    columns = screen_designs(own, {"spring.rate": [own.spring.rate]})
+    checks = {each.id: each for each in preview_case(own, corners=False).checks}
+    hours = checks["roller_life"].as_record()["demand"]
+    deviation = next(each.deviation for each in SCREENED if each.check == "roller_life")
+    assert columns["roller_life.demand"][0] == pytest.approx(hours, rel=deviation)
+    worst = screen_designs(base, {"spring.rate": [own.spring.rate]})["roller_life.demand"][0]
+    assert columns["roller_life.demand"][0] > 1.1 * worst

@@ -9,7 +9,10 @@ import pytest
 from camwright.geometry.errors import InputError
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.smoothing.constraints import lift_jet, load_utilisations
 from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.sampled_problem import Search
+from camwright.pipeline.smoothing.scenario import Correction
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -55,6 +58,27 @@ def test_weight_and_required_reduction_of_a_load_case_are_apart(case, torques):
     assert own.ceiling_of(own.scenarios[0]) is None
     left_out = replace(own, left_out=frozenset({"torque_reduction"}))
     assert left_out.ceiling_of(own.scenarios[1]) is None and left_out.ceiling is None
+
+
+def test_life_of_the_roller_is_kept_in_the_load_cases_of_the_duty(case, torques):
+    idle, over = case.load_cases
+    states = section(idle, duty=1.0), section(over, duty=0.0)
+    problem = problem_of(section(case, load_cases=states), torques)
+    assert [item.duty for item in problem.scenarios] == [1.0, 0.0, 0.0, 0.0]
+
+    def kept(given):
+        search = Search(given)
+        energy = search.turn.energy(search.exact)
+        jet, top = lift_jet(energy, given.variables), search.highest(search.exact, given.variables)
+        names = []
+        for item in given.scenarios:
+            at = replace(item, correction=Correction.none(given.points))
+            uses = load_utilisations(jet, top, given.variables, given.ratings, at)
+            names += [item.name] if "roller_life" in uses else []
+        return names
+
+    assert kept(problem) == ["idle"]
+    assert kept(problem_of(case, torques)) == ["idle", "overspeed", "standstill", "over-speed"]
 
 
 def test_corners_are_all_of_spring_and_friction_and_each_of_mass_and_phase(case, torques):
