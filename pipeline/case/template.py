@@ -178,8 +178,8 @@ source = "assumed"
 
 # --- Smoothing, limits and solver
 [smoothing]
-# or none, gaussian, harmonic, savitzky_golay, smoothing_spline; "constrained" minimises the
-# ripple within all limits, over the values that `free` names, such as spring_rate
+# or none, gaussian, harmonic, savitzky_golay, smoothing_spline; "constrained" minimises ripple
+# and loss by their weights within all limits, over the values that `free` names
 kind = "moving_average"
 points = 12
 spacing = "5 deg"                    # crank angle: 12 points make a window of 60 deg
@@ -208,4 +208,5 @@ table_step = "0.5 deg"               # step of the contour table, 0.1 to 1 deg
 [[load_case]]
 name = "idle"
 speed = "1500 rpm"
+# duty = 1.0                         # share of the operating time, 1 in sum, for life and wear
 """
