@@ -213,10 +213,11 @@ def _lines(figure: LineFigure) -> Canvas:
                 figure.x, curve.values, "o-", color=COLOURS[curve.colour], label=curve.label,
                 linewidth=1.5, markersize=2.6, zorder=3,
             )  # fmt: skip
-            for note, place in zip(curve.notes, zip(figure.x, curve.values, strict=True),
-                                   strict=False):  # fmt: skip
+            for note, x, y in zip(curve.notes, figure.x, curve.values, strict=False):
+                if not np.isfinite(y):
+                    continue
                 ax.annotate(
-                    note, place, xytext=(0, 4), textcoords="offset points", ha="center",
+                    note, (x, y), xytext=(0, 4), textcoords="offset points", ha="center",
                     va="bottom", fontsize=7.0, color=COLOURS["muted"], zorder=4,
                 )  # fmt: skip
         _vertical(ax, panel, strokes=False)

@@ -254,6 +254,7 @@ class LineFigure:
                     shown = ", ".join(
                         f"{value:.4g} {panel.unit}".rstrip() + f" at {at:g}{note}"
                         for (at, value), note in zip(points, notes, strict=True)
+                        if np.isfinite(value)
                     )
                 else:
                     low, high = np.nanmin(curve.values), np.nanmax(curve.values)

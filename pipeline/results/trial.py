@@ -58,7 +58,7 @@ class TrialPoint:
     ripple : float        std of the crank torque with the cam in the design load case, N m; None:
                           without an engine torque
     limit : str           id of the worst must-have check that depends on the lift; "": none
-    utilisation : float   of it; None: infinite, or no such check
+    utilisation : float   of it, infinite included; None: no such check
     passes : bool         no must-have check within the depth of the trial fails
     """
 
@@ -76,8 +76,7 @@ class TrialPoint:
             for one in within_depth(trial.checks)
             if one.must_have and depends_on_lift(one) and one.status in ("pass", "fail")
         ]
-        # A utilisation of None is infinite.
-        worst = max(judged, key=lambda one: _or_infinite(one.utilisation), default=None)
+        worst = max(judged, key=lambda one: one.utilisation or 0.0, default=None)
         after = trial.cycles[0].turn.torque_after
         return cls(
             trial.number,
@@ -88,18 +87,15 @@ class TrialPoint:
         )
 
     def as_record(self) -> TrialPointRecord:
-        """The JSON record."""
+        """The JSON record; a utilisation of null is infinite, or that of no check."""
+        use = self.utilisation
         return {
             "trial": self.number,
             "ripple_Nm": self.ripple,
             "limit": self.limit,
-            "utilisation": self.utilisation,
+            "utilisation": None if use is None or np.isinf(use) else use,
             "passes": self.passes,
         }
-
-
-def _or_infinite(utilisation: float | None) -> float:
-    return np.inf if utilisation is None else utilisation
 
 
 @dataclass(frozen=True, eq=False)

@@ -125,14 +125,15 @@ class Comparison:
 
 
 class Rank(NamedTuple):
-    """Order of trials; the least is the best."""
+    """Order of trials, the least the best: infinite and greatest finite violation, ripple."""
 
+    infinite: int
     violation: float
     ripple: float
 
 
 def rank(checks: Sequence[Check], ripple: float) -> Rank:
-    """Rank of a trial: greatest violation of the checks that depend on the lift, then ripple.
+    """Rank of a trial by the must-have checks that depend on the lift, then by its ripple.
 
     Of trials without a violation that of the least ripple is the best. A check that a deeper
     solution judges does not count.
@@ -141,13 +142,14 @@ def rank(checks: Sequence[Check], ripple: float) -> Rank:
     ----------
     ripple : float   residual ripple over that of the engine
     """
-    over = [
-        max((np.inf if one.utilisation is None else one.utilisation) - 1.0, 0.0)
+    uses = [
+        np.inf if one.utilisation is None else one.utilisation
         for one in within_depth(checks)
         if one.must_have and one.status == "fail" and depends_on_lift(one)
     ]
-    # A check fails by its error bar too: a violation of zero that is none the less one.
-    return Rank(max(over) + RESERVE if over else 0.0, ripple)
+    # A check fails by its error bar too: its violation is at least the reserve.
+    over = [max(use - 1.0, RESERVE) for use in uses if np.isfinite(use)]
+    return Rank(len(uses) - len(over), max(over, default=0.0), ripple)
 
 
 def compared(problem: Problem, design: Design, cycles: Sequence[Cycle]) -> Comparison:

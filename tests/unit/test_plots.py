@@ -265,3 +265,14 @@ def test_points_of_a_sweep_are_named_on_axes_of_its_quantity():
     assert "use: 1.2 at 1 (jump), 0.9 at 2 (travel)" in sweep(whole=True).alt
     assert "ripple, high: 3 to 5 N m" in sweep().alt
     assert sweep().span == pytest.approx((0.97, 2.03))
+
+
+def test_a_point_without_a_value_has_no_name():
+    use = Curve("", np.array([np.nan, 0.9]), notes=("jump", "travel"))
+    made = LineFigure("x", "X", "", "trial", "", np.array([1.0, 2.0]), (Panel("use", "", (use,)),),
+                      whole=True)  # fmt: skip
+    assert "jump" not in words(drawn(made))
+    assert "jump" not in made.alt
+    assert "travel" in words(drawn(made))
+    (note,) = specification(made)["layout"]["annotations"]
+    assert note["text"] == "travel"

@@ -104,6 +104,11 @@ def test_the_best_trial_passes_with_the_least_ripple_else_violates_least():
     passing, gentler = rank([check(0.99)], 0.5), rank([check(0.9)], 0.6)
     slightly, strongly = rank([check(1.001)], 0.3), rank([check(1.4), check(1.001)], 0.2)
     assert sorted([strongly, gentler, slightly, passing]) == [passing, gentler, slightly, strongly]
+    # where contact is lost, the other limits still count
+    lost_contact = check(np.inf)
+    lost_and_far = rank([lost_contact, check(1.4)], 0.2)
+    assert sorted([lost_and_far, rank([lost_contact], 0.5), strongly])[0] == strongly
+    assert rank([lost_contact], 0.5) < lost_and_far
     # a check that no lift changes, or that a deeper solution judges, does not count
     assert rank([check(1.4, lift_can_help=False)], 0.5) == passing
     lost = made_check("torque_reduction", 0.3, 0.4, sense="at_least", lift_can_help=False)
