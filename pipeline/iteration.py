@@ -268,7 +268,7 @@ def _constrained(task: _Task) -> Iteration:
         unmeshed = task.tier is Tier.CYCLE and trial.mesh is None
         # Without corrections the synthesis sees lower bounds: limits that conflict there conflict.
         conflicts = number == 1 and not design.feasible
-        ends = conflicts or unmeshed or comparisons[-1].settled(trial.checks)
+        ends = conflicts or unmeshed or comparisons[-1].settled
         last = ends or number == case.solver.max_trials
         conflict = None
         if last and not design.feasible:
@@ -282,7 +282,7 @@ def _constrained(task: _Task) -> Iteration:
             best = (ranked, trial)
         if last:
             final = best[1]
-            parts = [_ending(final, number, comparisons[-1], settled=ends)]
+            parts = [_ending(final, number, comparisons[-1], settled=ends or comparisons[-1].agree)]
             parts += [] if conflict is None else [conflict.sentence]
             if first is not None and conflict is None:
                 parts += [first.starts.sentence, first.resolution.sentence]

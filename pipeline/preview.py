@@ -94,7 +94,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         if best is None or ranked <= best[0]:
             best = (ranked, trial)
         last = not design.feasible or len(comparisons) == _ROUNDS
-        if last or comparisons[-1].settled(trial.checks):
+        if last or comparisons[-1].settled:
             return best[1]
         problem = corrected(problem, design, comparisons)
 

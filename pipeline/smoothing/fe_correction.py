@@ -102,26 +102,24 @@ class Comparison:
         return tuple(sorted(used, key=lambda each: -abs(each.change)))
 
     @property
-    def size(self) -> float:
-        """Greatest change of a utilisation above one half."""
-        return abs(self.used[0].change) if self.used else 0.0
-
-    @property
     def sentence(self) -> str:
         """The greatest change in words."""
         if not self.used:
             return "finite elements change no utilisation above one half"
         return self.used[0].sentence
 
-    def settled(self, checks: Sequence[Check]) -> bool:
-        """Whether finite elements and synthesis agree.
-
-        To 0.5 % of each limit and 0.2 % of the ripple; to the reserve of the synthesis where a
-        check fails that a gentler lift can pass.
-        """
-        fails = any(c.must_have and c.lift_can_help and c.status == "fail" for c in checks)
+    @property
+    def agree(self) -> bool:
+        """Whether finite elements change the ripple by 0.2 % at most and no limit by 0.5 %."""
         within = self.converged and abs(self.ripple_shift) < SETTLED_RIPPLE
-        return within and self.size < (RESERVE if fails else SETTLED)
+        return within and all(abs(each.change) < SETTLED for each in self.used)
+
+    @property
+    def settled(self) -> bool:
+        """Whether no further trial can help: they agree, and exceed no limit by the difference."""
+        return self.agree and all(
+            each.after <= 1.0 or abs(each.change) < RESERVE for each in self.used
+        )
 
 
 class Rank(NamedTuple):

@@ -9,11 +9,9 @@ from made_check import made_check
 from camwright.geometry.errors import GeometryError, InputError
 from camwright.pipeline.checks.check import Check, verdict
 from camwright.pipeline.run import restated
-from camwright.pipeline.smoothing.fe_correction import SETTLED, Comparison, LimitShift
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Next, Stop, best_attempt, next_smoother
 from camwright.pipeline.smoothing.smoothing_forecast import Attempt, keeps_torque, score
-from camwright.pipeline.smoothing.synthesis_problem import RESERVE
 
 Model = Callable[[float], tuple[Check, ...]]
 BOUND = 6
@@ -169,15 +167,6 @@ def test_a_demand_that_is_not_proven_is_smoothed_until_it_is():
     assert stop.reason.endswith(
         "mesh at 0.99 of its limit now, independent of the smoothing, not proven"
     )
-
-
-def test_missing_data_do_not_hold_the_synthesis_to_its_reserve():
-    """A change of 0.4 % is settled unless a check fails that a lift can help."""
-    comparison = Comparison((), (), (LimitShift("pressure_angle", 0.9, 0.904),), 0.0)
-    assert RESERVE < comparison.size < SETTLED
-    assert comparison.settled([made_check("guide_pv_B", 2.0, None, lift_can_help=True)])
-    assert comparison.settled([made_check("mesh", 2.0, 1.0), made_check("angle", 0.9, 1.0)])
-    assert not comparison.settled([check("pressure_angle", 1.001)])
 
 
 def test_the_stopping_criterion_names_what_certificate_and_corners_add():

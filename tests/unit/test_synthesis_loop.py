@@ -16,7 +16,7 @@ from camwright.pipeline.smoothing.fe_correction import (
     shares,
 )
 from camwright.pipeline.smoothing.scenario import Correction, DesignVariables, Scenario
-from camwright.pipeline.smoothing.synthesis_problem import Design, Problem
+from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
 
 def comparison(ripple_shift=0.0, converged=True, **shifts):
@@ -75,17 +75,20 @@ def check(demand, lift_can_help=True, name="x") -> Check:
 
 
 @pytest.mark.parametrize(
-    ("share", "checks", "ends"),
+    ("before", "after", "ends"),
     [
-        (0.99 * SETTLED, [check(0.9)], True),
-        (1.01 * SETTLED, [check(0.9)], False),
-        (0.99 * SETTLED, [check(1.1)], False),  # a limit fails that the lift may still meet
-        (0.99 * SETTLED, [check(1.1, lift_can_help=False)], True),
-        (0.0009, [check(1.1)], True),
+        (0.9, 0.9 + 0.99 * SETTLED, True),
+        (0.9, 0.9 + 1.01 * SETTLED, False),
+        (1.0 - 0.99 * SETTLED, 1.001, False),  # a limit is exceeded that the lift may still meet
+        (1.001 - 0.99 * RESERVE, 1.001, True),
+        (0.4, 0.49, True),  # used by less than one half
     ],
 )
-def test_trials_end_where_no_shift_is_left_that_the_lift_can_help(share, checks, ends):
-    assert comparison(jump=share).settled(checks) is ends
+def test_trials_end_where_no_used_limit_shifts(before, after, ends):
+    still = LimitShift("jump", 0.9, 0.9)
+    made = Comparison((), (), (still, LimitShift("travel", before, after)), 0.0)
+    assert made.settled is ends
+    assert made.agree is (abs(after - before) < SETTLED or after < 0.5)
 
 
 @pytest.mark.parametrize(
@@ -97,7 +100,7 @@ def test_trials_end_where_no_shift_is_left_that_the_lift_can_help(share, checks,
     ],
 )
 def test_trials_end_where_a_further_one_leaves_the_ripple(ripple, converged, ends):
-    assert comparison(ripple, converged, jump=0.0).settled([check(0.9)]) is ends
+    assert comparison(ripple, converged, jump=0.0).settled is ends
 
 
 def test_the_best_trial_passes_with_the_least_ripple_else_violates_least():
