@@ -277,7 +277,7 @@ def _constrained(task: _Task) -> Iteration:
             record["infeasible"] = conflict.as_record()
         task.sink.keep(trial)
         points.append(TrialPoint.of(trial))
-        ranked = rank(trial.checks, design.ripple)
+        ranked = rank(trial.checks, trial.cycles)
         if best is None or ranked <= best[0]:
             best = (ranked, trial)
         if last:

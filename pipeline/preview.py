@@ -90,7 +90,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
             synthesis=design_record(design, problem),
         )
         comparisons.append(compared(problem, design, trial.cycles))
-        ranked = rank(trial.checks, design.ripple)
+        ranked = rank(trial.checks, trial.cycles)
         if best is None or ranked <= best[0]:
             best = (ranked, trial)
         last = not design.feasible or len(comparisons) == _ROUNDS

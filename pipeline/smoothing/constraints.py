@@ -356,15 +356,14 @@ def _jam_index_friction_max(at: Loads, limit: float) -> Array | None:
     return demands.jam_outward(at.jet.slope, factor * magnitude(at.path.tangent)) / limit
 
 
-def _roller_life(at: Loads, limit: float) -> Mean | None:
+def _roller_life(at: Loads, limit: float) -> Mean:
     """Of L10 = (C / P_m)^3 1e6 turns / mean spin, where P_m^3 mean spin is the mean of N^3 |n|.
 
     With a duty each load case in operation is kept to the whole life, an upper bound of the damage
     of all by their shares.
     """
-    if at.scenario.duty == 0.0:
-        return None
-    terms: Array = wear(at.force.normal, at.spin)
+    running = 1.0 if at.scenario.duty is None else np.sign(at.scenario.duty)
+    terms: Array = running * wear(at.force.normal, at.spin)
     return Mean(terms / limit, 1.0 / BALL_LIFE_EXPONENT)
 
 

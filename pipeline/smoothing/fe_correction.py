@@ -130,7 +130,7 @@ class Rank(NamedTuple):
     ripple: float
 
 
-def rank(checks: Sequence[Check], ripple: float) -> Rank:
+def rank(checks: Sequence[Check], cycles: Sequence[Cycle]) -> Rank:
     """Rank of a trial by the must-have checks that depend on the lift, then by its ripple.
 
     Of trials without a violation that of the least ripple is the best. A check that a deeper
@@ -138,7 +138,7 @@ def rank(checks: Sequence[Check], ripple: float) -> Rank:
 
     Parameters
     ----------
-    ripple : float   residual ripple over that of the engine
+    cycles : sequence   solved, one a load case
     """
     uses = [
         np.inf if one.utilisation is None else one.utilisation
@@ -147,7 +147,13 @@ def rank(checks: Sequence[Check], ripple: float) -> Rank:
     ]
     # A check fails by its error bar too: its violation is at least the reserve.
     over = [max(use - 1.0, RESERVE) for use in uses if np.isfinite(use)]
-    return Rank(len(uses) - len(over), max(over, default=0.0), ripple)
+    ripples = [
+        cycle.machine.ripple_weight * float(np.std(after) / np.std(before))
+        for cycle in cycles
+        for before, after in ((cycle.turn.torque_before, cycle.turn.torque_after),)
+        if before is not None and after is not None and cycle.machine.ripple_weight > 0
+    ]
+    return Rank(len(uses) - len(over), max(over, default=0.0), max(ripples, default=0.0))
 
 
 def compared(problem: Problem, design: Design, cycles: Sequence[Cycle]) -> Comparison:

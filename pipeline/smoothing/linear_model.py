@@ -24,7 +24,8 @@ class State:
     coefficients : array
     variables : DesignVariables
     ripple : float          greatest weighted ripple of the scenarios
-    ripples : array (w,)    ripple of each weighted scenario
+    ripples : array (w,)    weighted ripple of each scenario whose ripple counts or is limited
+    excess : array (w,)     of its torque ripple over its ceiling; -inf: it has none
     cost : float            sum of the costs
     jerk : float
     utilisation : mapping   greatest of each limit
@@ -36,6 +37,7 @@ class State:
     variables: DesignVariables
     ripple: float
     ripples: Array
+    excess: Array
     cost: float
     jerk: float
     utilisation: Mapping[str, float]

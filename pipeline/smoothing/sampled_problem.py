@@ -65,7 +65,11 @@ class Search:
         self.turn = Grid.at(theta, count)
         self.grid = Grid.at(np.concatenate([theta, self.extra]), count)
         self.every = np.arange(problem.points, dtype=np.intp)
-        self.weighted = [k for k, item in enumerate(problem.scenarios) if item.weight > 0]
+        self.weighted = [
+            k
+            for k, item in enumerate(problem.scenarios)
+            if item.weight > 0 or problem.ceiling_of(item) is not None
+        ]
         self._weights = np.array([[item.weight] for item in problem.scenarios])
         self._scale = problem.scale
         self.costs = frozenset(
@@ -268,18 +272,24 @@ class Search:
                 for item, values in zip(items, left, strict=True)
             ]
         )
-        if problem.ceiling is not None and items:
-            by_torque = [
-                float(np.linalg.norm(torque_ripple(item, values)))
+        excess = np.array(
+            [
+                -np.inf
+                if ceiling is None
+                else np.linalg.norm(torque_ripple(item, values)) - ceiling
                 for item, values in zip(items, left, strict=True)
+                for ceiling in (problem.ceiling_of(item),)
             ]
-            most[TORQUE_REDUCTION.id] = 1.0 - RESERVE + max(by_torque) - problem.ceiling
+        )
+        if np.isfinite(excess).any():
+            most[TORQUE_REDUCTION.id] = 1.0 - RESERVE + float(excess.max())
         jerk = self._jerk_scale * lift_jet(energy, variables).jerk
         return State(
             coefficients=coefficients,
             variables=variables,
             ripple=float(ripples.max(initial=0.0)),
             ripples=ripples,
+            excess=excess,
             cost=sum(greatest[name] for name in sorted(self.costs)),
             jerk=0.5 * float(jerk @ jerk),
             utilisation=most,
@@ -333,13 +343,17 @@ class Search:
         ]
         return Model(
             summit=summit,
-            norms=self.norms(
-                state, summit, np.flatnonzero(state.ripples >= state.ripple - _RIPPLE_BEHIND)
-            ),
+            norms=self.norms(state, summit, self._near_ripples(state)),
             limits=[*limits, *self._least_energy(state)],
             curvature=jerk.T @ jerk,
             slope=jerk.T @ (self._jerk_scale * gradient.terms),
         )
+
+    def _near_ripples(self, state: State) -> NDArray[np.intp]:
+        """Scenarios of the greatest ripple, or near their ceiling."""
+        greatest = state.ripples >= state.ripple - _RIPPLE_BEHIND
+        most = max(float(state.excess.max(initial=-np.inf)), -_NEAR)
+        return np.flatnonzero(greatest | (state.excess >= most - _RIPPLE_BEHIND))
 
     def norms(self, state: State, summit: Summit, wanted: NDArray[np.intp]) -> list[Norm]:
         """Models of the ripples of some of the weighted scenarios."""
@@ -359,10 +373,11 @@ class Search:
                 slopes[:, column] += item.torque_at(float(variables.phase))[1]
             columns = np.column_stack([slopes, left])
             charged = triangle(ripple_of(problem, item, columns))
-            same = problem.speed_weight == 0.0 and problem.torque_weight == 1.0
-            ceiling = problem.ceiling
-            norms.append(Norm(*charged, item.weight, ceiling if same else None, int(k)))
-            if ceiling is not None and not same:
+            ceiling = problem.ceiling_of(item)
+            norms.append(
+                Norm(*charged, item.weight, ceiling if problem.torque_alone else None, int(k))
+            )
+            if ceiling is not None and not problem.torque_alone:
                 bounded = triangle(torque_ripple(item, columns))
                 norms.append(Norm(*bounded, 0.0, ceiling, int(k)))
         return norms

@@ -153,7 +153,7 @@ class Scenario:
     preload_factor: Value = 1.0
     weight: float = 1.0
     torque_reduction: float | None = None
-    duty: float | None = None
+    duty: Value | None = None
     friction_worst: tuple[Value, Value] | None = None
     correction: Correction = field(default_factory=lambda: Correction.none(8))
 
@@ -177,6 +177,7 @@ def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
     different = {key: each.at(theta) for key, each in different.items()}
     corrections = [different[id(each.correction)] for each in scenarios]
     worst = [each.friction_worst for each in scenarios if each.friction_worst is not None]
+    duties = [each.duty for each in scenarios]
     greatest = None
     if len(worst) == len(scenarios):
         greatest = (_column(a for a, _ in worst), _column(b for _, b in worst))
@@ -191,6 +192,7 @@ def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
         viscous_damping=_column(each.viscous_damping for each in scenarios),
         rate_factor=_column(each.rate_factor for each in scenarios),
         preload_factor=_column(each.preload_factor for each in scenarios),
+        duty=None if None in duties else _column(each for each in duties if each is not None),
         friction_worst=greatest,
         correction=Correction(
             *(
@@ -219,6 +221,7 @@ def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
         viscous_damping=of(stack.viscous_damping),
         rate_factor=of(stack.rate_factor),
         preload_factor=of(stack.preload_factor),
+        duty=None if stack.duty is None else of(stack.duty),
         friction_worst=None if worst is None else (of(worst[0]), of(worst[1])),
         correction=Correction(
             *(of(getattr(stack.correction, item.name)) for item in fields(Correction))

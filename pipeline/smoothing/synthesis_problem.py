@@ -14,7 +14,6 @@ from camwright.geometry.lift import Lift
 from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.smoothing.energy_spline import basis_matrix
 from camwright.pipeline.smoothing.objective import (
-    SPEED,
     TORQUE,
     Objective,
     Residual,
@@ -70,17 +69,10 @@ class Problem:
     seed: Array | None = None
 
     @property
-    def torque_weight(self) -> float:
-        """Weight of the torque ripple."""
-        return self._weight(TORQUE)
-
-    @property
-    def speed_weight(self) -> float:
-        """Weight of the speed ripple."""
-        return self._weight(SPEED)
-
-    def _weight(self, term: Residual) -> float:
-        return sum(each.weight for each in self.objective if each.term is term)
+    def torque_alone(self) -> bool:
+        """Whether the torque ripple is the only ripple in the objective, at a weight of 1."""
+        ripples = [each for each in self.objective if isinstance(each.term, Residual)]
+        return ripples == [Weighted(TORQUE, 1.0)]
 
     @property
     def scale(self) -> Scale:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.case.limits import TORQUE_REDUCTION
 from camwright.pipeline.smoothing.cone_program import ConeSolution, Reach, solved
 from camwright.pipeline.smoothing.lagrangian import lagrangian_curvature
 from camwright.pipeline.smoothing.linear_model import Model, State
@@ -186,7 +187,12 @@ def _missing(
 
 
 def _missing_ripples(model: Model, program: ConeSolution, there: State) -> NDArray[np.intp]:
-    """Weighted scenario whose ripple is the greatest, if it is not in the model."""
+    """Scenarios of the greatest ripple and over their ceiling the most, if not in the model."""
     known = [norm.number for norm in model.norms]
-    greatest = max(program.ripple, float(there.ripples[known].max(initial=0.0))) + _VIOLATED
-    return np.flatnonzero(there.ripples > greatest)[:1]
+    allowed = (program.ripple, program.slack.get(TORQUE_REDUCTION.id, 0.0))
+    missing = []
+    for values, least in zip((there.ripples, there.excess), allowed, strict=True):
+        greatest = max(least, float(values[known].max(initial=-np.inf))) + _VIOLATED
+        if values.size and values.max() > greatest:
+            missing.append(int(values.argmax()))
+    return np.unique(missing).astype(np.intp)

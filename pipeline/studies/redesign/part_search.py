@@ -1,6 +1,6 @@
 """Search order of the catalogue, by bounds and by solved points.
 
-Points of the synthesis alone: for each roller the best spring and bush, the cam radius without limit,
+For each roller the best spring and bush by the synthesis alone, without a limit on the cam radius,
 then under decreasing limits. The choices depend on the case alone, not on the processes.
 """
 
