@@ -44,7 +44,7 @@ from camwright.pipeline.smoothing.multistart import Explored, explored
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.required_lift import cam_lift
 from camwright.pipeline.smoothing.roller_alternatives import roller_problems
-from camwright.pipeline.smoothing.shadow_prices import limits_in_use
+from camwright.pipeline.smoothing.shadow_prices import limits_in_use, machine_prices
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Stop, next_smoother
 from camwright.pipeline.smoothing.smoothing_forecast import Attempt
@@ -254,6 +254,7 @@ def _constrained(task: _Task) -> Iteration:
             first = explored(problem, case.smoothing.starts)
             design, problem = first.design, replace(problem, coefficients=first.splines)
         record = design_record(design, problem, first if number == 1 else None)
+        record["machine_prices"] = machine_prices(design, problem, case, torques)
         trial = task.solved(
             number,
             redrawn(case, design),

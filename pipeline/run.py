@@ -166,6 +166,7 @@ def _summary(
         "scope": case.scope.as_record(),
         "headline": headline(torques, final),
         "prices": None if final.synthesis is None else final.synthesis["prices"],
+        "machine_prices": None if final.synthesis is None else final.synthesis["machine_prices"],
         "mesh_quality": None if final.mesh is None else asdict(final.mesh.quality),
         **crank_speed,
         "ripple_map": _ripple_map_record(torques, final),

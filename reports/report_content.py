@@ -272,12 +272,24 @@ def _trials(material: Material) -> Section:
     table = Table("Trials", TRIALS_HEAD, [_trial(trial) for trial in run.trials], 2, 2)
     prices = verification_tables.prices(run.summary["prices"])
     lead = (
-        "First-order change of the torque ripple at the crank when a limit is relaxed. Limits not "
-        "listed are inactive."
+        "First-order change of the torque ripple at the crank, with losses and jerk where they are "
+        "weighted, when a limit is relaxed. Limits not listed are inactive."
+    )
+    machine = verification_tables.machine_prices(run.summary["machine_prices"])
+    machine_lead = (
+        "First-order change of the torque ripple at the crank, with losses and jerk where they are "
+        "weighted, when a number of the machine is greater and the lift synthesised anew: the "
+        "greatest change would help most. A greater roller keeps the base radius."
     )
     return Section(
         "trials", "Trials and shadow prices",
-        [Block(Tabular(table)), *_tables((prices, "Shadow prices of the limits", lead))],
+        [
+            Block(Tabular(table)),
+            *_tables(
+                (prices, "Shadow prices of the limits", lead),
+                (machine, "Prices of the numbers of the machine", machine_lead),
+            ),
+        ],
         "Each trial recomputes all stages from its own lift; "
         f"trial {run.final.number} is the result.",
         "Trials",

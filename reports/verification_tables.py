@@ -19,6 +19,7 @@ PRICES_HEAD = (
     "Limit", "Value", "Ripple per unit of relaxation", "Ripple per 1 % of relaxation",
     "Active at cam angle",
 )  # fmt: skip
+MACHINE_PRICES_HEAD = ("Number", "Value", "Ripple per unit more", "Ripple per 1 % more")
 CONSISTENCY_HEAD = ("Quantity", "Load case", "Derivation", "Input", "Implied", "Difference")
 SPEED_HEAD = ("Load case", "State", "Standard deviation", "Peak to peak", "Fluctuation")
 VALVE_HEAD = ("Quantity", "Load case", "Definition", "Value")
@@ -59,6 +60,19 @@ def prices(records: Json) -> Table:
         for record in _records(records)
     ]  # fmt: skip
     return Table("Shadow prices of the limits", PRICES_HEAD, rows)
+
+
+def machine_prices(records: Json) -> Table:
+    """Prices of the numbers of the machine as recorded, greatest first."""
+    rows = [
+        [
+            str(record["words"]), quantity(record["value"], _unit(record)),
+            _change(record["ripple_per_unit_Nm"], f"per {_unit(record) or 'unit'}"),
+            _change(record["ripple_per_percent_Nm"]),
+        ]
+        for record in _records(records)
+    ]  # fmt: skip
+    return Table("Prices of the numbers of the machine", MACHINE_PRICES_HEAD, rows)
 
 
 def consistency(records: Sequence[Record] | None) -> tuple[Table, bool]:

@@ -146,6 +146,7 @@ class SummaryOfAnyRun(TypedDict):
     statement: str
     headline: dict[str, float | None]
     prices: Json
+    machine_prices: Json
     benchmarks: Json
     speed: Json
     ripple_map: dict[str, Json] | None

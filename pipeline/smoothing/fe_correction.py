@@ -23,7 +23,7 @@ from camwright.pipeline.smoothing.multistart import (
 )
 from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import Correction
-from camwright.pipeline.smoothing.shadow_prices import PriceRecord, prices
+from camwright.pipeline.smoothing.shadow_prices import MachinePriceRecord, PriceRecord, prices
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
 SETTLED = 5e-3  # of a limit: maximum change of a utilisation at convergence
@@ -36,7 +36,10 @@ _SUM = 1e3  # weight of the sum of the shares in their least squares
 
 
 class SynthesisRecord(TypedDict):
-    """JSON record of a synthesis; ``infeasible`` where its limits conflict."""
+    """JSON record of a synthesis.
+
+    ``infeasible`` where its limits conflict; ``machine_prices`` of a run.
+    """
 
     feasible: bool
     converged: bool
@@ -53,6 +56,7 @@ class SynthesisRecord(TypedDict):
     corrections: dict[str, dict[str, list[float]]]
     utilisation: dict[str, float]
     prices: list[PriceRecord]
+    machine_prices: NotRequired[list[MachinePriceRecord]]
     infeasible: NotRequired[ConflictRecord]
 
 

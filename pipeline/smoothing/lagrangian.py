@@ -70,10 +70,16 @@ class Lagrangian:
             ],
         )
 
-    def at(self, problem: Problem) -> float:
-        """Value for a problem of the same limits and splines, ratio to the ripple of the engine."""
+    def at(self, problem: Problem, variables: DesignVariables | None = None) -> float:
+        """Value for a problem of the same limits and splines, ratio to the ripple of the engine.
+
+        Parameters
+        ----------
+        variables : DesignVariables   of the design; None: those of the optimum
+        """
         search = Search(problem, self.extra)
-        state = search.state(self.coefficients, self.variables)
+        variables = self.variables if variables is None else variables
+        state = search.state(self.coefficients, variables)
         total = 0.0
         for limit, prices in self.limits:
             if limit.power is None:
@@ -81,7 +87,7 @@ class Lagrangian:
             else:
                 uses = state.means[limit.name][limit.scenario]
             total += float(prices @ uses)
-        left = search.residual_torque(self.coefficients, self.variables)
+        left = search.residual_torque(self.coefficients, variables)
         for number, objective, ceiling in self.ripples:
             item, values = problem.scenarios[search.weighted[number]], left[number]
             ripple = float(np.linalg.norm(ripple_of(problem, item, values)))

@@ -1,18 +1,30 @@
-"""Shadow prices: change of the torque ripple per unit of a bound."""
+"""Shadow prices: change of the torque ripple per unit of a bound or of a number of the machine."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from camwright.geometry.arrays import FULL_TURN, Array
+from camwright.geometry.errors import InputError
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.base.units import in_unit
+from camwright.pipeline.case.case import Case
+from camwright.pipeline.case.case_values import replaced, value_of
+from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.smoothing.bounds import Bound, bounds_of
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
 BINDING = 2e-3  # of a limit: a constraint this near to its reserve is active
+FLOOR = 1e-4  # of the engine's ripple, by 1 % of a value: the optima are converged to 1e-6
+_STEP = 1e-4  # of a number of the machine, for its difference quotient
+_WEIGHTED = 1e-3  # of the ripple: least other terms of an objective that is no ripple alone
 
 
 class PriceRecord(TypedDict):
@@ -25,15 +37,175 @@ class PriceRecord(TypedDict):
     ripple_per_unit_Nm: float
     ripple_per_percent_Nm: float
     binds_at_deg: list[tuple[float, float]]
+    of: str
     sentence: str
 
 
+class MachinePriceRecord(TypedDict):
+    """JSON record of the price of a number of the machine: decrease of the ripple by more of it."""
+
+    parameter: str
+    words: str
+    value: float
+    unit: str
+    ripple_per_unit_Nm: float
+    ripple_per_percent_Nm: float
+    of: str
+    sentence: str
+
+
+@dataclass(frozen=True)
+class MachineNumber:
+    """A number of the machine with a price.
+
+    Parameters
+    ----------
+    key : str          in the case file
+    words : str
+    unit : str         "-": a pure number
+    keys : tuple       numbers that increase with it; value: the first less those of `less`
+    less : tuple       keys
+    free : str         free variable of the synthesis that it is; "": none
+    """
+
+    key: str
+    words: str
+    unit: str
+    keys: tuple[str, ...]
+    less: tuple[str, ...] = ()
+    free: str = ""
+
+    def value(self, case: Case) -> float:
+        """Value in a case, SI."""
+        return _number(case, self.keys[0]) - sum(_number(case, key) for key in self.less)
+
+    def increased(self, case: Case, step: float) -> Case:
+        """Case with the number greater by a step, SI."""
+        return replaced(case, {key: _number(case, key) + step for key in self.keys})
+
+
+def _number(case: Case, key: str) -> float:
+    value: float = value_of(case, key)
+    return value
+
+
+def _own(key: str, words: str, unit: str, free: str = "") -> MachineNumber:
+    """A number that stands in the case as it is."""
+    return MachineNumber(key, words, unit, (key,), free=free)
+
+
+_PRIME, _ROLLER = "cam.prime_radius", "roller.radius"
+NUMBERS = (
+    _own("follower.mass", "follower mass", "g"),
+    _own("spring.rate", "spring rate", "N/mm", "rate"),
+    _own("spring.preload", "preload", "N", "preload"),
+    MachineNumber("cam.base_radius", "base radius", "mm", (_PRIME,), (_ROLLER,), "prime_radius"),
+    MachineNumber(_ROLLER, "roller radius", "mm", (_ROLLER, _PRIME)),
+    _own("guides.spacing", "spacing of the guides", "mm"),
+    _own("follower.overhang_at_max_lift", "overhang at maximum lift", "mm"),
+    _own("guides.a.friction", "friction of guide A", "-"),
+    _own("guides.b.friction", "friction of guide B", "-"),
+)
+"""Numbers of the machine with a price. The phase has none: the lift may shift on the shaft."""
+
+
+def machine_prices(
+    design: Design, problem: Problem, case: Case, torques: Mapping[str, Torque]
+) -> list[MachinePriceRecord]:
+    """Prices of the numbers of the machine, greatest first; none of an unconverged design.
+
+    The price is the decrease of the crank-torque ripple (std, N m) per unit more of the number, to
+    first order and at a new optimum: the derivative of the Lagrangian at the optimum, by a
+    difference quotient. With costs or a jerk weight it is that of their sum, the objective. A
+    greater roller keeps the base radius. The finite-element corrections are constant; a number that
+    is free in the synthesis has no price, nor is one below `FLOOR` listed.
+
+    Parameters
+    ----------
+    design : Design     of the problem
+    problem : Problem   with its finite-element corrections
+    case : Case         of the problem
+    torques : mapping   engine torque by load case
+
+    References
+    ----------
+    Fletcher, Practical Methods of Optimization (1987), sec. 9.1; the envelope theorem.
+    """
+    lagrangian = design.lagrangian
+    if lagrangian is None or not (design.converged and design.feasible):
+        return []
+    before, of = _before(problem), objective(design, problem)
+    freed = {name: getattr(design.variables, name) for name in problem.freed}
+
+    def level(changed: Case) -> float:
+        """Lagrangian and jerk term of a changed case at the optimum and its free variables."""
+        other = problem_like(problem, changed, torques)
+        other = replace(other, variables=replace(other.variables, **freed))
+        jerk = Search(other).state(design.coefficients, other.variables).jerk
+        return lagrangian.at(other, other.variables) + jerk
+
+    at_optimum = level(case)
+    records: list[MachinePriceRecord] = []
+    for number in NUMBERS:
+        value = number.value(case)
+        if number.free in problem.freed or value <= 0.0:
+            continue
+        changed, share = _changed(number, case)
+        per_percent = before * (at_optimum - level(changed)) / (100.0 * share)
+        if abs(per_percent) < FLOOR * before:
+            continue
+        shown = in_unit(value, number.unit)
+        bound = Bound(number.words, shown, number.unit, 1.0)
+        price = 100.0 * per_percent / shown
+        records.append(
+            {
+                "parameter": number.key,
+                "words": number.words,
+                "value": shown,
+                "unit": number.unit,
+                "ripple_per_unit_Nm": price,
+                "ripple_per_percent_Nm": per_percent,
+                "of": of,
+                "sentence": _sentence(bound, price, of),
+            }
+        )
+    return sorted(records, key=lambda record: -abs(record["ripple_per_percent_Nm"]))
+
+
+def _changed(number: MachineNumber, case: Case) -> tuple[Case, float]:
+    """Case with a number changed by a small share, and the share; smaller at its upper bound."""
+    step = _STEP * number.value(case)
+    try:
+        return number.increased(case, step), _STEP
+    except InputError:
+        return number.increased(case, -step), -_STEP
+
+
+def problem_like(problem: Problem, case: Case, torques: Mapping[str, Torque]) -> Problem:
+    """Problem of a changed case with the finite-element corrections of another."""
+    other = problem_of(case, torques)
+    scenarios = tuple(
+        replace(each, correction=known.correction)
+        for each, known in zip(other.scenarios, problem.scenarios, strict=True)
+    )
+    return replace(
+        other, scenarios=scenarios, coefficients=problem.coefficients, points=problem.points
+    )
+
+
+def objective(design: Design, problem: Problem) -> str:
+    """What the prices of a design are decreases of, in words."""
+    state = Search(problem).state(design.coefficients, design.variables)
+    return "objective" if state.cost + state.jerk > _WEIGHTED * state.ripple else "ripple"
+
+
 def prices(design: Design, problem: Problem) -> list[PriceRecord]:
-    """Shadow prices of the active limits, highest first.
+    """Shadow prices of the active limits, highest first; none of an unconverged design.
 
     The price is the decrease of the crank-torque ripple (std, N m) per unit of the limit, to
-    first order: the multiplier times the slope of the utilisation. Of the utilisation of the
-    contact pressure, r kappa + N/F_lim, only the second part depends on the limit, by its square;
+    first order: the multiplier times the slope of the utilisation. With costs or a jerk
+    weight it is that of their sum, the objective. Of the utilisation of the contact
+    pressure, r kappa + N/F_lim, only the second part depends on the limit, by its square;
     its mean over the active angles is taken. A mean over the turn has no active angles.
 
     Parameters
@@ -45,10 +217,14 @@ def prices(design: Design, problem: Problem) -> list[PriceRecord]:
     ----------
     Fletcher, Practical Methods of Optimization (1987), sec. 9.1: multipliers as sensitivities.
     """
+    if not (design.converged and design.feasible):
+        return []
     bounds = bounds_of(problem.ratings)
-    before = max(float(np.std(item.torque)) for item in problem.scenarios if item.weight > 0)
+    before, of = _before(problem), objective(design, problem)
     records: list[PriceRecord] = []
     for name, multiplier in design.multipliers.items():
+        if multiplier < 100.0 * FLOOR:
+            continue
         known = bounds.get(name, Bound(name.replace("_", " "), 1.0, "-", 1.0))
         slope = known.slope
         if name == "contact_pressure":
@@ -63,7 +239,8 @@ def prices(design: Design, problem: Problem) -> list[PriceRecord]:
                 "ripple_per_unit_Nm": price,
                 "ripple_per_percent_Nm": multiplier * before / 100.0,
                 "binds_at_deg": _ranges_record(*design.strip[name]) if name in design.strip else [],
-                "sentence": _sentence(known, price),
+                "of": of,
+                "sentence": _sentence(known, price, of),
             }
         )
     return sorted(records, key=lambda record: -record["ripple_per_percent_Nm"])
@@ -82,6 +259,11 @@ def limits_in_use(design: Design) -> tuple[Array, dict[str, Array]]:
     return angles[order], uses
 
 
+def _before(problem: Problem) -> float:
+    """Ripple of the engine, N m."""
+    return max(float(np.std(item.torque)) for item in problem.scenarios if item.weight > 0)
+
+
 def _load_share(design: Design, problem: Problem) -> float:
     """N / F_lim of the contact pressure, mean over the active angles."""
     theta, use = design.strip["contact_pressure"]
@@ -93,13 +275,13 @@ def _load_share(design: Design, problem: Problem) -> float:
     return float(np.mean(np.asarray(use)[binds] - bend))
 
 
-def _sentence(known: Bound, price: float) -> str:
+def _sentence(known: Bound, price: float, of: str) -> str:
     shown = "" if known.unit == "-" else f" {known.unit}"
     if price < 0.0:
         one = f"one{shown} less" if shown else "one less"
     else:
         one = f"one more{shown}" if shown else "one unit more"
-    off = f"takes {abs(price):.3g} N m off the ripple"
+    off = f"takes {abs(price):.3g} N m off the {of}"
     return f"{known.words} of {known.value:.4g}{shown}: {one} {off}"
 
 

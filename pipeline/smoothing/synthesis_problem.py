@@ -95,7 +95,7 @@ class Problem:
 class OfProblems(Protocol):
     """Lagrangian at an optimum, as a function of the problem."""
 
-    def at(self, problem: Problem) -> float:
+    def at(self, problem: Problem, variables: DesignVariables | None = None) -> float:
         """Value for a problem of the same limits and splines, ratio to the ripple of the engine."""
         ...
 

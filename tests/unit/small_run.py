@@ -100,6 +100,7 @@ def summary(verdict: str = "pass", trials: int = 1) -> dict[str, Any]:
         "statement": "",
         "headline": dict.fromkeys(run_reader.HEADLINE, 1.0),
         "prices": None,
+        "machine_prices": None,
         "benchmarks": None,
         "speed": None,
         "consistency": [],

@@ -56,6 +56,23 @@ def test_a_price_is_the_ripple_that_goes_when_a_limit_gives_way() -> None:
     assert verification_tables.prices(None).rows == []
 
 
+def test_a_price_of_the_machine_is_the_change_by_more_of_a_number() -> None:
+    record = {
+        "words": "spring rate", "value": 180.0, "unit": "N/mm", "ripple_per_unit_Nm": -0.0083,
+        "ripple_per_percent_Nm": -0.015,
+    }  # fmt: skip
+    friction = {"words": "friction of guide A", "value": 0.06, "unit": "-"}
+    table = verification_tables.machine_prices(
+        [record, friction | {"ripple_per_unit_Nm": 3.3, "ripple_per_percent_Nm": 0.002}]
+    )
+    assert table.rows[0] == [
+        "spring rate", "180\u00a0N/mm", "0.0083\u00a0N\u00a0m per N/mm", "0.015\u00a0N\u00a0m",
+    ]  # fmt: skip
+    assert table.rows[1][2] == "−3.3\u00a0N\u00a0m per unit"
+    assert all(len(row) == len(table.head) for row in table.rows)
+    assert verification_tables.machine_prices(None).rows == []
+
+
 def test_inputs_that_contradict_each_other_are_told() -> None:
     record = {
         "load_case": "idle", "id": "inertia", "title": "inertia at the crank", "given": 0.0026,

@@ -1,6 +1,7 @@
 """What limits cost: the radius of the cam as a limit, and prices against designs solved again."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,11 +11,22 @@ from camwright.geometry.arrays import uniform_turn
 from camwright.geometry.contour import RollerContour
 from camwright.geometry.lift import Lift
 from camwright.geometry.pitch_curve import PitchCurve
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.bounds import bounds_of
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import Jet, shape_utilisations
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.sampled_problem import Search
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
-from camwright.pipeline.smoothing.shadow_prices import limits_in_use, prices
+from camwright.pipeline.smoothing.shadow_prices import (
+    FLOOR,
+    NUMBERS,
+    limits_in_use,
+    machine_prices,
+    prices,
+    problem_like,
+)
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 
 
@@ -112,3 +124,110 @@ def test_limits_in_use_stand_at_the_cam_angles_of_the_lift():
         # the lift is sampled at 1440 angles and interpolated
         np.testing.assert_allclose(uses["spring_travel"], lift / 0.018, atol=1e-4)
     assert next(iter(uses)) == "spring_travel"  # the most used is named first
+
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def optimum_of(jerk_weight):
+    """The redesigned case without tolerance corners: case, torques, problem, design."""
+    case = read_case(CASES / "gx120-redesign.toml")
+    changed = {"corners": False, "jerk_weight": jerk_weight, "loss_weight": 0.0}
+    case = case.model_copy(update={"smoothing": case.smoothing.model_copy(update=changed)})
+    torques = engine_torques(case)
+    problem = problem_of(case, torques)
+    return case, torques, problem, synthesise(problem)
+
+
+@pytest.fixture(scope="module")
+def optimum():
+    """An optimum whose objective is the ripple."""
+    return optimum_of(1e-5)
+
+
+def objective_of(problem, design):
+    state = Search(problem).state(design.coefficients, design.variables)
+    return state.ripple + state.cost + state.jerk
+
+
+def difference_of_new_optima(optimum, key):
+    """Decrease of the objective by 1 % more of a number, N m: 1 % less and more, solved again."""
+    case, torques, problem, design = optimum
+    number, share = next(each for each in NUMBERS if each.key == key), 1e-2
+
+    def solved_again(side):
+        changed = number.increased(case, side * share * number.value(case))
+        other = replace(problem_like(problem, changed, torques), seed=design.coefficients)
+        solved = synthesise(other)
+        assert solved.converged
+        assert solved.feasible
+        return objective_of(other, solved)
+
+    before = max(np.std(item.torque) for item in problem.scenarios if item.weight > 0)
+    return before * (solved_again(-1.0) - solved_again(1.0)) / (200.0 * share)
+
+
+def price_of(optimum, key):
+    case, torques, problem, design = optimum
+    records = machine_prices(design, problem, case, torques)
+    return next(each for each in records if each["parameter"] == key)
+
+
+@pytest.mark.parametrize(
+    "key",
+    [
+        "roller.radius",
+        *(
+            pytest.param(key, marks=pytest.mark.slow)
+            for key in ("spring.rate", "cam.base_radius", "follower.mass")
+        ),
+    ],
+)
+def test_price_of_a_number_of_the_machine_is_the_difference_of_new_optima(optimum, key):
+    """Within 1 %: second order in the step, and optima converged to 1e-6 of the ripple."""
+    expected = difference_of_new_optima(optimum, key)
+    record = price_of(optimum, key)
+    assert record["ripple_per_percent_Nm"] == pytest.approx(expected, rel=0.01)
+    per_percent = record["ripple_per_unit_Nm"] * record["value"] / 100.0
+    assert per_percent == pytest.approx(record["ripple_per_percent_Nm"], rel=1e-12)
+    assert record["sentence"].endswith("N m off the ripple")
+
+
+@pytest.mark.slow
+def test_price_with_a_jerk_weight_is_that_of_the_objective():
+    weighted = optimum_of(4.0)
+    for key in ("roller.radius", "spring.preload"):
+        record = price_of(weighted, key)
+        expected = difference_of_new_optima(weighted, key)
+        # second order in the step, and optima converged to 1e-6 of the ripple
+        assert record["ripple_per_percent_Nm"] == pytest.approx(expected, rel=0.01)
+        assert record["sentence"].endswith("N m off the objective")
+
+
+def test_numbers_stand_as_in_the_case_and_change_together(optimum):
+    case, *_ = optimum
+    radius = {each.key: each for each in NUMBERS if "radius" in each.key}
+    assert radius["cam.base_radius"].value(case) == case.cam.prime_radius - case.roller.radius
+    larger = radius["roller.radius"].increased(case, 1e-3)
+    assert larger.roller.radius == pytest.approx(case.roller.radius + 1e-3, abs=1e-15)
+    # the base radius stays
+    base = radius["cam.base_radius"]
+    assert base.value(larger) == pytest.approx(base.value(case), abs=1e-15)
+
+
+def test_prices_belong_to_a_converged_feasible_design_alone(optimum):
+    case, torques, problem, design = optimum
+    for changed in ({"gain": 1.0}, {"utilisation": {"jump": 1.1}}):
+        other = replace(design, **changed)
+        assert machine_prices(other, problem, case, torques) == []
+        assert prices(other, problem) == []
+
+
+def test_prices_below_the_floor_and_of_free_numbers_are_left_out(optimum):
+    case, torques, problem, design = optimum
+    keys = [each["parameter"] for each in machine_prices(design, problem, case, torques)]
+    freed = replace(problem, freed={"rate": (1e4, 1e5)})
+    left = [each["parameter"] for each in machine_prices(design, freed, case, torques)]
+    assert "spring.rate" in keys
+    assert left == [key for key in keys if key != "spring.rate"]
+    assert prices(replace(design, multipliers={"jump": 0.5 * 100.0 * FLOOR}), problem) == []
