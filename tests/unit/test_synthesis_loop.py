@@ -129,7 +129,7 @@ def test_next_trial_starts_from_the_design_with_the_mean_of_two_cams_that_altern
     ratings = rated(roller_radius=0.016, guide_pressure=(1e4, None), guide_area=(4e-4, 4e-4))
     problem = Problem((running,), ratings, variables, coefficients=12, points=12)
     energy = 0.3 + 0.2 * np.cos(2 * np.pi * np.arange(12) / 12)
-    design = Design(energy, variables, 0.5, {}, {}, {}, 3, True)
+    design = Design(energy, variables, 0.5, 0.0, {}, {}, {}, 3, 0.0)
     low, high = (Correction(*np.full((6, 12), level)) for level in (1.2, 1.4))
     after = corrected(
         problem,
