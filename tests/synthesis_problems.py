@@ -1,0 +1,143 @@
+"""Problems of constrained synthesis for comparisons: two measured machines, seeded variants."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from oracle_limits import LIMITS
+from synthesis_ratings import rated
+
+from camwright.pipeline.case.case_file import read_case
+from camwright.pipeline.case.load_case_torque import engine_torques
+from camwright.pipeline.smoothing.constraints import CONSTRAINTS
+from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
+from camwright.pipeline.smoothing.synthesis_problem import Problem
+
+ROOT = Path(__file__).parents[1]
+KEPT = frozenset({
+    "spring_travel", "pressure_angle", "curvature_ratio", "undercut", "concave_radius",
+    "cam_radius", "contact_pressure", "contact_force_margin", "contact_at_overspeed", "jump",
+    "jump_speed", "jam_index", "jam_index_friction_max", "roller_static", "roller_speed",
+    "roller_life", "guide_pressure_A", "guide_pressure_B", "guide_pv_A", "guide_pv_B",
+})  # fmt: skip
+"""Constraints of the measured machines beside the torque reduction.
+
+The curvature rate was one too, without a limit in either case.
+"""
+COMMON = {
+    "roller_radius": 0.0175, "travel": 0.045, "hollow_radius": 0.0275, "pressure": 1.610e9 / 1.3,
+    "contact_width": 0.0147, "contact_modulus": 210e9 / (2 * (1 - 0.3**2)), "normal_force": 3400.0,
+    "force_safety": 1.5, "dynamic_rating": 8500.0, "roller_spin": 9800.0 * np.pi / 30,
+    "guide_pressure": (14e6, 14e6), "guide_pv": (1.8e6, 1.8e6), "guide_area": (0.00064, 0.00064),
+    "curvature_ratio": 1.5, "undercut_factor": 0.3, "contact_force_margin": 0.2, "jump": 1.0,
+    "jam_index": 0.5,
+}  # fmt: skip
+FOLLOWER = {
+    "mass": 0.25, "guide_spacing": 0.132, "overhang": 0.0445, "friction_a": 0.06,
+    "friction_b": 0.06, "friction_worst": (0.12, 0.12),
+}  # fmt: skip
+JUMP_MARGIN = 1.3
+
+
+def life_force_cubed(hours):
+    """Limit of the mean of N^3 |n|, N^3 rad/s, for a rating of 8500 N."""
+    return 8500.0**3 * 2e6 * np.pi / (3600.0 * hours)
+
+
+MEASURED = {
+    "v08": {
+        "ripple": 0.20698,
+        "ratings": {"pressure_angle": np.radians(33.35), "cam_radius": 0.08757,
+                        "life_force_cubed": life_force_cubed(800.2)},
+        "spring": DesignVariables(56.67e3, 102.6, 0.06459),
+        "speeds": {"idle": 2809.0, "overspeed": 3090.0},
+        "weights": {"idle": 1.0, "overspeed": 1.0},
+        "torque_reduction": 0.306,
+    },
+    "v10": {
+        "ripple": 0.41784,
+        "ratings": {"pressure_angle": np.radians(34.29), "cam_radius": 0.1027,
+                        "life_force_cubed": life_force_cubed(63.16)},
+        "spring": DesignVariables(47.14e3, 390.3, 0.0548),
+        "speeds": {"idle": 1994.0, "overspeed": 4283.0},
+        "weights": {"idle": 1.0, "overspeed": 0.0},
+        "torque_reduction": 0.472,
+    },
+}  # fmt: skip
+"""Least ripple, limits and machine of `tests/data/v08.toml` and `v10.toml`, crank speeds in rpm."""
+
+
+def measured(name):
+    """Problem of a measured machine: its torque from the case file, all else as stated here."""
+    about = MEASURED[name]
+    torques = engine_torques(read_case(ROOT / "tests" / "data" / f"{name}.toml"))
+    scenarios = []
+    for each, speed in about["speeds"].items():
+        values = torques[each].without_mean().resampled(720).total
+        scenarios.append(Scenario(
+            each, speed * np.pi / 60, values - values.mean(), weight=about["weights"][each],
+            **FOLLOWER,
+        ))  # fmt: skip
+    overspeed = about["speeds"]["overspeed"] * np.pi / 60
+    return Problem(
+        scenarios=tuple(scenarios),
+        ratings=rated(
+            **COMMON, **about["ratings"], overspeed=overspeed, jump_speed=JUMP_MARGIN * overspeed
+        ),
+        variables=about["spring"],
+        torque_reduction=about["torque_reduction"],
+        left_out=frozenset(each.check for each in CONSTRAINTS) - KEPT,
+    )
+
+
+def signed():
+    """Problem of the signed case, with the constraints that the oracle has."""
+    case = read_case(ROOT / "cases" / "gx120-redesign.toml")
+    unknown = {each.check for each in CONSTRAINTS} - {each.check for each in LIMITS}
+    return replace(problem_of(case, engine_torques(case)), left_out=frozenset(unknown))
+
+
+def thinned(problem, coefficients, points):
+    """The problem at every so many cam angles, with fewer splines."""
+    step = problem.points // points
+    scenarios = tuple(replace(s, torque=s.torque[::step]) for s in problem.scenarios)
+    scenarios = tuple(replace(s, torque=s.torque - s.torque.mean()) for s in scenarios)
+    return replace(problem, scenarios=scenarios, coefficients=coefficients, points=points)
+
+
+def variant(problem, seed):
+    """Seeded machine and limits about those of a problem; some have no cam within the limits."""
+    random = np.random.default_rng(seed)
+
+    def factor(spread):
+        return float(np.exp(random.uniform(-spread, spread)))
+
+    ratings, spring, speed = problem.ratings, problem.variables, factor(0.15)
+    limits = {
+        row: value * (factor(0.12) if row.id in ("pressure_angle", "cam_radius") else 1.0)
+        for row, value in ratings.limits.items()
+    }
+    ratings = replace(
+        ratings,
+        limits=limits,
+        life_force_cubed=ratings.life_force_cubed * factor(0.5),
+        pressure=ratings.pressure * factor(0.25),
+        normal_force=ratings.normal_force * factor(0.5),
+        roller_spin=ratings.roller_spin * factor(0.4),
+        guide_pv=tuple(each * factor(0.8) for each in ratings.guide_pv),
+        overspeed=ratings.overspeed * speed,
+        jump_speed=ratings.jump_speed * speed * factor(0.3),
+        roller_radius=ratings.roller_radius * factor(0.08),
+        travel=ratings.travel * factor(0.15),
+    )
+    return replace(
+        problem,
+        ratings=ratings,
+        variables=replace(
+            spring, preload=spring.preload * factor(0.3), rate=spring.rate * factor(0.3)
+        ),
+        scenarios=tuple(replace(s, cam_speed=s.cam_speed * speed) for s in problem.scenarios),
+        jerk_weight=problem.jerk_weight * float(10 ** random.uniform(-5, 0)),
+        torque_reduction=float(random.uniform(0.3, 0.6)),
+    )
