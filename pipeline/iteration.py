@@ -38,6 +38,7 @@ from camwright.pipeline.smoothing.fe_correction import (
     design_record,
     rank,
     redrawn,
+    solved_ripple,
 )
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.multistart import Explored, explored
@@ -278,7 +279,7 @@ def _constrained(task: _Task) -> Iteration:
             record["infeasible"] = conflict.as_record()
         task.sink.keep(trial)
         points.append(TrialPoint.of(trial))
-        ranked = rank(trial.checks, trial.cycles)
+        ranked = rank(trial.checks, solved_ripple(trial.cycles))
         if best is None or ranked <= best[0]:
             best = (ranked, trial)
         if last:

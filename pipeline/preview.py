@@ -61,6 +61,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
         design_record,
         rank,
         redrawn,
+        solved_ripple,
     )
     from camwright.pipeline.smoothing.multistart import explored
     from camwright.pipeline.smoothing.problem_setup import problem_of
@@ -90,7 +91,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
             synthesis=design_record(design, problem),
         )
         comparisons.append(compared(problem, design, trial.cycles))
-        ranked = rank(trial.checks, trial.cycles)
+        ranked = rank(trial.checks, solved_ripple(trial.cycles))
         if best is None or ranked <= best[0]:
             best = (ranked, trial)
         last = not design.feasible or len(comparisons) == _ROUNDS

@@ -134,7 +134,18 @@ class Rank(NamedTuple):
     ripple: float
 
 
-def rank(checks: Sequence[Check], cycles: Sequence[Cycle]) -> Rank:
+def solved_ripple(cycles: Sequence[Cycle]) -> float:
+    """Greatest weighted torque ripple of solved cycles, one a load case, over the engine's."""
+    ripples = [
+        cycle.machine.ripple_weight * float(np.std(after) / np.std(before))
+        for cycle in cycles
+        for before, after in ((cycle.turn.torque_before, cycle.turn.torque_after),)
+        if before is not None and after is not None and cycle.machine.ripple_weight > 0
+    ]
+    return max(ripples, default=0.0)
+
+
+def rank(checks: Sequence[Check], ripple: float) -> Rank:
     """Rank of a trial by the must-have checks that depend on the lift, then by its ripple.
 
     Of trials without a violation that of the least ripple is the best. A check that a deeper
@@ -142,7 +153,7 @@ def rank(checks: Sequence[Check], cycles: Sequence[Cycle]) -> Rank:
 
     Parameters
     ----------
-    cycles : sequence   solved, one a load case
+    ripple : float   see `solved_ripple`
     """
     uses = [
         np.inf if one.utilisation is None else one.utilisation
@@ -151,13 +162,7 @@ def rank(checks: Sequence[Check], cycles: Sequence[Cycle]) -> Rank:
     ]
     # A check fails by its error bar too: its violation is at least the reserve.
     over = [max(use - 1.0, RESERVE) for use in uses if np.isfinite(use)]
-    ripples = [
-        cycle.machine.ripple_weight * float(np.std(after) / np.std(before))
-        for cycle in cycles
-        for before, after in ((cycle.turn.torque_before, cycle.turn.torque_after),)
-        if before is not None and after is not None and cycle.machine.ripple_weight > 0
-    ]
-    return Rank(len(uses) - len(over), max(over, default=0.0), max(ripples, default=0.0))
+    return Rank(len(uses) - len(over), max(over, default=0.0), ripple)
 
 
 def compared(problem: Problem, design: Design, cycles: Sequence[Cycle]) -> Comparison:
