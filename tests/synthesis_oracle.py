@@ -39,6 +39,8 @@ from scipy.interpolate import BSpline
 from scipy.optimize import brentq
 from sparse_program import SparseProgram
 
+from camwright.pipeline.smoothing.objective import TORQUE, Weighted
+
 RESERVE = 1e-3  # of each limit, as the product keeps it
 DEGREE = 5
 _NEAR, _MEAN_NEAR = 0.1, 0.01  # distance from the limit of the first rows, and those of means
@@ -101,8 +103,7 @@ class Oracle:
     def __init__(self, problem, **changed):
         assert problem.ratings.offset == 0.0
         assert problem.ratings.crown_radius is None
-        assert problem.speed_weight == 0.0
-        assert problem.torque_weight == 1.0
+        assert problem.objective == (Weighted(TORQUE, 1.0),)
         assert not np.isfinite(problem.energy[1])
         self.count, self.points = problem.coefficients, problem.points
         self.theta = 2 * np.pi * np.arange(self.points) / self.points
@@ -522,7 +523,7 @@ def numbers_of(problem):
     known = {
         "rate": variables.rate, "preload": variables.preload,
         "prime_radius": variables.prime_radius, "gear_ratio": problem.gear_ratio,
-        "torque_reduction": problem.torque_reduction,
+        "torque_reduction": required_reduction(problem),
     }  # fmt: skip
     numbers = {}
     for name in NUMBERS:
@@ -533,6 +534,13 @@ def numbers_of(problem):
         else:
             numbers[name] = rows[name] if name in rows else getattr(ratings, name, None)
     return numbers
+
+
+def required_reduction(problem):
+    """Reduction of the torque ripple, the same wherever the ripple counts; None: none is."""
+    (required,) = {item.torque_reduction for item in problem.scenarios if item.weight > 0}
+    assert all(item.torque_reduction is None for item in problem.scenarios if item.weight == 0)
+    return required
 
 
 def _vector(numbers):

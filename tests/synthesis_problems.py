@@ -10,6 +10,7 @@ from synthesis_ratings import rated
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.constraints import CONSTRAINTS
+from camwright.pipeline.smoothing.objective import TORQUE, Weighted
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
@@ -77,6 +78,7 @@ def measured(name):
         values = torques[each].without_mean().resampled(720).total
         scenarios.append(Scenario(
             each, speed * np.pi / 60, values - values.mean(), weight=about["weights"][each],
+            torque_reduction=about["torque_reduction"] if about["weights"][each] else None,
             **FOLLOWER,
         ))  # fmt: skip
     overspeed = about["speeds"]["overspeed"] * np.pi / 60
@@ -86,7 +88,6 @@ def measured(name):
             **COMMON, **about["ratings"], overspeed=overspeed, jump_speed=JUMP_MARGIN * overspeed
         ),
         variables=about["spring"],
-        torque_reduction=about["torque_reduction"],
         left_out=frozenset(each.check for each in CONSTRAINTS) - KEPT,
     )
 
@@ -95,7 +96,10 @@ def signed():
     """Problem of the signed case, with the constraints that the oracle has."""
     case = read_case(ROOT / "cases" / "gx120-redesign.toml")
     unknown = {each.check for each in CONSTRAINTS} - {each.check for each in LIMITS}
-    return replace(problem_of(case, engine_torques(case)), left_out=frozenset(unknown))
+    problem = problem_of(case, engine_torques(case))
+    return replace(
+        problem, coefficients=96, objective=(Weighted(TORQUE, 1.0),), left_out=frozenset(unknown)
+    )
 
 
 def thinned(problem, coefficients, points):
@@ -104,6 +108,13 @@ def thinned(problem, coefficients, points):
     scenarios = tuple(replace(s, torque=s.torque[::step]) for s in problem.scenarios)
     scenarios = tuple(replace(s, torque=s.torque - s.torque.mean()) for s in scenarios)
     return replace(problem, scenarios=scenarios, coefficients=coefficients, points=points)
+
+
+def requiring(scenarios, reduction):
+    """The scenarios with the same reduction of the torque ripple wherever it counts."""
+    return tuple(
+        replace(item, torque_reduction=reduction if item.weight > 0 else None) for item in scenarios
+    )
 
 
 def variant(problem, seed):
@@ -137,7 +148,9 @@ def variant(problem, seed):
         variables=replace(
             spring, preload=spring.preload * factor(0.3), rate=spring.rate * factor(0.3)
         ),
-        scenarios=tuple(replace(s, cam_speed=s.cam_speed * speed) for s in problem.scenarios),
         jerk_weight=problem.jerk_weight * float(10 ** random.uniform(-5, 0)),
-        torque_reduction=float(random.uniform(0.3, 0.6)),
+        scenarios=requiring(
+            [replace(s, cam_speed=s.cam_speed * speed) for s in problem.scenarios],
+            float(random.uniform(0.3, 0.6)),
+        ),
     )

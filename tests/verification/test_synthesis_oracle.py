@@ -15,6 +15,7 @@ from camwright.pipeline.smoothing.shadow_prices import prices
 AGREE = 1e-3  # of ripple and objective; local optima of both are solved to 1e-6
 AGREE_PRICE = 1e-2  # of multipliers: the search stops at 2e-6 of the merit
 AGREE_VIOLATION = 1e-2
+STEPS_MAX = 40
 ACTIVE = 5e-3  # multiplier of an active limit
 FREED = {
     "rate": {"rate": (120e3, 260e3)},
@@ -112,10 +113,14 @@ def test_nonlinear_program_ends_at_one_optimum_from_each_start(name):
 
 
 @pytest.mark.slow
-def test_measured_machine_ends_at_the_optimum_with_its_prices():
-    problem = measured("v10")
+@pytest.mark.parametrize("name", MEASURED)
+def test_measured_machine_converges_to_the_optimum_with_its_prices(name):
+    problem = measured(name)
     optimum = Oracle(problem).solved()
     design = agree_on_optimum(problem, optimum)
+    assert design.ripple == pytest.approx(MEASURED[name]["ripple"], rel=AGREE)
+    assert design.converged
+    assert design.steps <= STEPS_MAX
     agree_on_multipliers(design, optimum)
     agree_on_prices(problem, design, optimum)
 
