@@ -135,7 +135,7 @@ def hertz_difference(solution: Solution) -> Demand:
     source=VERIFICATION,
     method="gain by the convex program of another step, with second derivatives",
     evidence=True,
-    tier=Tier.SCREENING,
+    tier=Tier.PREVIEW,
 )
 def synthesis_converged(solution: Solution) -> Demand | None:
     """Gain that another step of the synthesis foresees, over the ripple of the engine."""

@@ -78,7 +78,7 @@ def test_a_verdict_is_not_written_into_a_shallow_run(shallow: Path, tmp_path: Pa
     with pytest.raises(ResultError, match=r"run\.json says pass, the checks of .* None"):
         read_verdict(shallow)
     (shallow / "run.json").write_text(json.dumps(record | {"depth": "certified"}))
-    with pytest.raises(ResultError, match=r"run\.json says certified, the last trial "):
+    with pytest.raises(ResultError, match=r"run\.json says certified, the final trial "):
         read_verdict(shallow)
     (shallow / "run.json").write_text(json.dumps(record))
 
