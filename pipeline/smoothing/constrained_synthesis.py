@@ -15,7 +15,7 @@ import numpy as np
 
 from camwright.geometry.arrays import Array, readonly
 from camwright.pipeline.smoothing.convex_relaxation import convex_start
-from camwright.pipeline.smoothing.energy_spline import Grid
+from camwright.pipeline.smoothing.energy_spline import Grid, lowest
 from camwright.pipeline.smoothing.lagrangian import Lagrangian
 from camwright.pipeline.smoothing.linear_model import State
 from camwright.pipeline.smoothing.sampled_problem import LEAST_ENERGY, Search
@@ -91,6 +91,10 @@ def _between(search: Search, state: State, fine: Grid) -> Array:
 
 def _design(search: Search, descent: Descent, steps: int, fine: Grid) -> Design:
     state, theta = descent.state, search.turn.theta
+    # Between the points the energy may dip below its least value by their spacing squared.
+    rise = search.problem.energy[0] - lowest(state.coefficients)
+    if rise > 0.0:
+        state = search.state(state.coefficients + rise, state.variables)
     on_points = search.utilisations(state.coefficients, state.variables, search.turn)
     # The checks refine between points.
     peaks = search.pointwise(state.coefficients, state.variables, fine)

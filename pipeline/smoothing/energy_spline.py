@@ -16,6 +16,7 @@ from camwright.geometry.errors import InputError
 DEGREE = 5
 LEAST_COEFFICIENTS = 12
 _FIT_ANGLES = 1440
+_REFINEMENTS = 3
 ORDERS = 4  # E, E', E'', E'''
 
 
@@ -126,9 +127,18 @@ def fitted_energy(cam_torque: ArrayLike, count: int) -> Array:
 
 
 def lowest(coefficients: Array) -> float:
-    """Minimum of the energy, J, on a grid finer than the knots."""
+    """Minimum of the energy, J: on a grid finer than the knots, refined between its angles."""
     theta = uniform_turn(max(_FIT_ANGLES, 16 * coefficients.size))
-    return float((basis_matrix(theta, coefficients.size) @ coefficients).min())
+    values = basis_matrix(theta, coefficients.size) @ coefficients
+    near = theta[(values <= np.roll(values, 1)) & (values <= np.roll(values, -1))]
+    for _ in range(_REFINEMENTS):  # Newton on E' = 0
+        slope, bend = (
+            basis_matrix(near, coefficients.size, order) @ coefficients for order in (1, 2)
+        )
+        shift = np.divide(slope, bend, out=np.zeros_like(slope), where=bend > 0.0)
+        near = near - np.clip(shift, -theta[1], theta[1])
+    between = basis_matrix(near, coefficients.size) @ coefficients
+    return float(min(values.min(), between.min(initial=np.inf)))
 
 
 def force_moment(energy: ArrayLike, rate: float, preload: float, prime_radius: float) -> Array:

@@ -67,8 +67,12 @@ def test_start_attains_the_pressure_angle():
 
 
 def test_start_without_need_is_not_raised():
-    energy = basis_matrix(uniform_turn(1440), 48) @ start(angle_deg=80.0)
+    coefficients, theta = start(angle_deg=80.0), uniform_turn(1440)
+    lowest = theta[np.argmin(basis_matrix(theta, 48) @ coefficients)]
+    between = lowest + np.linspace(-theta[1], theta[1], 10_001)
+    energy = basis_matrix(between, 48) @ coefficients
     assert energy.min() == pytest.approx(0.0, abs=1e-9)
+    assert energy.min() >= -1e-12
 
 
 def test_start_keeps_the_travel():

@@ -16,6 +16,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing import multistart
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
+from camwright.pipeline.smoothing.constraints import lift_jet
 from camwright.pipeline.smoothing.energy_spline import Grid, exact_start, fitted_energy
 from camwright.pipeline.smoothing.multistart import explored
 from camwright.pipeline.smoothing.objective import objective_of
@@ -235,3 +236,14 @@ def test_reduction_of_the_torque_holds_while_the_speed_is_lowered():
     assert design.feasible
     by_torque = Search(problem(asked)).state(design.coefficients, design.variables)
     assert by_torque.ripple <= 1.05 * least
+
+
+def test_lift_of_a_lowest_cam_has_no_kink(soft):
+    """The energy is zero at one angle, between the points: the acceleration goes on there."""
+    design = synthesise(replace(soft, energy=(0.0, 0.0)))
+    theta = uniform_turn(20_000)
+    energy = Grid.at(theta, design.coefficients.size).energy(design.coefficients)
+    assert 0.0 <= energy[0].min() < 1e-6
+    lift = design.lift(1440).derivatives(theta, 2)[2]
+    exact = lift_jet(energy, design.variables).bend
+    np.testing.assert_allclose(lift, exact, atol=2e-3 * np.ptp(exact))
