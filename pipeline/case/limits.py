@@ -135,7 +135,7 @@ SHAKEDOWN_SAFETY = Limit(
     "elastic shakedown, Johnson (1985) sec. 9.2",
 )  # fmt: skip
 CONTACT_FORCE_MARGIN = Limit(
-    "contact_force_margin", "minimum contact force over preload", _INNER_SHARE, 0.2,
+    "contact_force_margin", "minimum contact force over least spring force", _INNER_SHARE, 0.2,
     "0.2 to 0.3 of the preload at the highest speed, Norton (2009)", "at_least", "unit",
 )  # fmt: skip
 JUMP = Limit(

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.pitch_curve import magnitude
 
 
@@ -33,9 +33,9 @@ def unloading(inertia: Array, spring: Array) -> Array:
     return -inertia / spring
 
 
-def force_left(spring: Array, inertia: Array, preload: float | Array) -> Array:
-    """Sum of spring and inertia force over the preload, without friction."""
-    return (spring + inertia) / preload
+def force_left(spring: Array, inertia: Array, least_spring: float | Array) -> Array:
+    """Sum of spring and inertia force over the least spring force, without friction."""
+    return (spring + inertia) / least_spring
 
 
 def jam_outward(lift_slope: Array, jam_index: Array) -> Array:
@@ -54,6 +54,16 @@ def guide_pressure(bearing_load: Array, area: float | Array) -> Array:
 def guide_pv(normal_load: Array, velocity: Array, area: float | Array) -> Array:
     """PV value, Pa m/s, from the normal load, N, sliding speed, m/s, and projected area, m^2."""
     return magnitude(normal_load * velocity) / area
+
+
+def waviness_force(
+    mass: float | Array, amplitude: float | Array, speed: Array, length: float | Array
+) -> Array:
+    """Inertia force of the follower, N, on waves of an amplitude and a length, m, at a speed, m/s.
+
+    speed: of the contact along the contour.
+    """
+    return mass * amplitude * (FULL_TURN * speed / length) ** 2
 
 
 def contour_radius(along: Array, across: Array, offset: float | Array, inset: Array) -> Array:

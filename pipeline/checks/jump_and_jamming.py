@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,7 @@ from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import SPEED_RANGE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, least
 from camwright.pipeline.contact.tiers import Tier
-from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.cycle import Cycle, least_spring_force
 from camwright.pipeline.cycle.elastic_response import ElasticHistory
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import SpeedSweep, highest_speed
@@ -32,18 +33,19 @@ _TIE = 1e-9  # relative difference up to which two forces are equal, and one is 
 
 @check(
     CONTACT_FORCE_MARGIN,
-    title="Minimum contact force / preload",
+    title="Minimum contact force / least spring force",
     method="least normal force over the turn, guide friction and inertia included",
     lift_can_help=True,
     tier=Tier.SCREENING,
     forecast=True,
-    formula="N_min / P >= limits.contact_force_margin; N_min: least normal force over all load"
-    " cases and angles with guide friction and inertia, without surge, P: preload",
+    formula="N_min / F_0 >= limits.contact_force_margin; N_min: least normal force over all load"
+    " cases and angles with guide friction and inertia, without surge, F_0: spring force at minimum"
+    " lift",
     reason="A follower that leaves the cam lands on it with an impact.",
 )
 def contact_force_margin(solution: Solution) -> Demand:
-    """Minimum contact force over the preload."""
-    worst = least(solution.cycles, lambda c: c.loads.normal_force / c.machine.spring.preload)
+    """Minimum contact force over the least spring force."""
+    worst = least(solution.cycles, lambda c: c.loads.normal_force / c.least_spring_force)
     return Demand(worst.value, solution.machine.limits[CONTACT_FORCE_MARGIN], worst)
 
 
@@ -143,27 +145,27 @@ def jump_speed(solution: Solution) -> Demand:
 @check(
     CONTACT_FORCE_MARGIN,
     id="contact_at_overspeed",
-    title="Minimum contact force / preload at overspeed",
+    title="Minimum contact force / least spring force at overspeed",
     method="least spring force plus m w^2 s'' at the overspeed, without friction",
     lift_can_help=True,
     tier=Tier.SCREENING,
-    formula="min(F_s + m w^2 s'') / P >= limits.contact_force_margin at w of limits.overspeed; F_s:"
-    " spring force, m: moving mass, s'': second derivative of the lift, P: preload",
+    formula="min(F_s + m w^2 s'') / F_0 >= limits.contact_force_margin at w of limits.overspeed;"
+    " F_s: spring force, m: moving mass, s'': second derivative of the lift, F_0: spring force at"
+    " minimum lift",
     reason="The synthesis keeps the contact by this closed form; the sweep adds friction"
     " and surge.",
     load_cases=SPEED_RANGE,
 )
 def contact_at_overspeed(solution: Solution) -> Demand:
-    """Minimum contact force at the overspeed over the preload."""
+    """Minimum contact force at the overspeed over the least spring force."""
     limit, over = solution.machine.limits[CONTACT_FORCE_MARGIN], overspeed(solution.machines)
     if over is None:
         return Demand(None, limit, note=NO_OVERSPEED)
 
     def force(cycle: Cycle) -> Array:
         scale, loads = (over / cycle.machine.crank_speed) ** 2, cycle.loads
-        preload = cycle.machine.spring.preload
-        inertia = scale * loads.inertia_force
-        return np.asarray(demands.force_left(loads.spring_force, inertia, preload))
+        inertia, held = scale * loads.inertia_force, cycle.least_spring_force
+        return np.asarray(demands.force_left(loads.spring_force, inertia, held))
 
     worst = least(solution.cycles, force)._replace(load_case="")
     return Demand(worst.value, limit, worst)
@@ -172,23 +174,23 @@ def contact_at_overspeed(solution: Solution) -> Demand:
 @check(
     CONTACT_FORCE_MARGIN,
     id="contact_over_speed",
-    title="Minimum contact force / preload over the speed range",
+    title="Minimum contact force / least spring force over the speed range",
     method="normal force of the rigid follower with inertia, guide friction and the surge of the"
     " spring by the wave equation, at each speed from standstill to over-speed",
     lift_can_help=True,
     part="spring",
-    formula="min N(w, theta) / P >= limits.contact_force_margin over all speeds from standstill to"
-    " over-speed; N = (P + k s + m w^2 s'' + c w s' + F_w) / ((1 - j) cos(alpha)), F_w: sum over"
-    " the harmonics of k (phi cot phi - 1) s_h, phi = pi h w / w_1 sqrt(1 - 2 i zeta), j: jam"
-    " index with the sign of the motion, w_1: first natural frequency of the spring, zeta:"
-    " spring.design.damping_ratio; if the case does not state it, 0.01 with an error bar down to"
-    " 0.002",
+    formula="min N(w, theta) / F_0 >= limits.contact_force_margin over all speeds from standstill"
+    " to over-speed; N = (P + k s + m w^2 s'' + c w s' + F_w) / ((1 - j) cos(alpha)), F_0: spring"
+    " force at minimum lift, F_w: sum over the harmonics of k (phi cot phi - 1) s_h,"
+    " phi = pi h w / w_1 sqrt(1 - 2 i zeta), j: jam index with the sign of the motion, w_1: first"
+    " natural frequency of the spring, zeta: spring.design.damping_ratio; if the case does not"
+    " state it, 0.01 with an error bar down to 0.002",
     reason="Between the load cases a harmonic of the lift may meet a natural frequency of"
     " the spring and lift the follower off the cam.",
     load_cases=SPEED_RANGE,
 )
 def contact_over_speed(solution: Solution) -> Demand:
-    """Minimum contact force over the preload, surge included, from standstill to over-speed."""
+    """Minimum contact force over the least spring force, surge included, over all speeds."""
     swept = _least_over_speed(
         solution,
         lambda sweep: (sweep.contact_force_min, sweep.contact_angle, sweep.contact_error),
@@ -200,22 +202,23 @@ def contact_over_speed(solution: Solution) -> Demand:
 @check(
     CONTACT_FORCE_MARGIN,
     id="elastic_contact",
-    title="Minimum contact force / preload with elastic stem",
+    title="Minimum contact force / least spring force with elastic stem",
     method="one mass on the stiffness of the stem, without friction",
     lift_can_help=True,
     tier=Tier.PREVIEW,
-    formula="min N(w, theta) / P >= limits.contact_force_margin over all speeds from standstill to"
-    " over-speed and over the load cases at their varying speed; N: contact force of one mass on"
-    " the stiffness between cam and mass, on the spring with its surge",
+    formula="min N(w, theta) / F_0 >= limits.contact_force_margin over all speeds from standstill"
+    " to over-speed and over the load cases at their varying speed; N: contact force of one mass on"
+    " the stiffness between cam and mass, on the spring with its surge, F_0: spring force at"
+    " minimum lift",
     reason="The resonance of the follower on its own stiffness unloads the contact more"
     " than the rigid follower shows.",
     load_cases=SPEED_RANGE,
 )
 def elastic_contact(solution: Solution) -> Demand:
-    """Minimum contact force with an elastic stem over the preload."""
+    """Minimum contact force with an elastic stem over the least spring force."""
     worst = least(
         solution.cycles,
-        lambda c: c.parts.elastic.response.contact_force / c.machine.spring.preload,
+        lambda c: c.parts.elastic.response.contact_force / c.least_spring_force,
     )
     swept = _least_over_speed(
         solution,
@@ -239,7 +242,7 @@ def elastic_contact(solution: Solution) -> Demand:
 
 
 class Swept(NamedTuple):
-    """Least force over the preload over the speed; `least_damped`: at the least damping."""
+    """Least force over that of the spring over the speed; `least_damped`: at the least damping."""
 
     worst: Extreme
     least_damped: float
@@ -256,17 +259,21 @@ class Swept(NamedTuple):
 def _least_over_speed(
     solution: Solution, measure: Callable[[SpeedSweep], tuple[Array, Array, Array]]
 ) -> Swept:
-    """Least force over the preload in all sweeps with its angle, and its speed in words.
+    """Least force over the least spring force in all sweeps with its angle, and its speed in words.
 
     Parameters
     ----------
     measure : callable   sweep -> force, N, cam angle and sampling error of the force, (m,)
     """
-    worst, at = Extreme(np.inf), 0.0
+    worst, at, spring = Extreme(np.inf), 0.0, solution.machine.spring
+
+    def held(sweep: SpeedSweep) -> float:
+        return least_spring_force(replace(spring, preload=sweep.preload), solution.contour)
+
     for sweep in solution.speed_sweeps:
         force, angle, error = measure(sweep)
         k = int(np.argmin(force))  # the first NaN, where there is one
-        value = float(force[k]) / sweep.preload
+        value = float(force[k]) / held(sweep)
         if np.isnan(value) or value < worst.value:
             share = float(error[k] / abs(force[k])) if force[k] else 0.0
             worst = Extreme(value, "", float(angle[k]), share)
@@ -275,9 +282,7 @@ def _least_over_speed(
             break
     damped = solution.least_damped
     sweeps = () if damped is None else damped.speed_sweeps
-    least_damped = min(
-        (float(measure(one)[0].min()) / one.preload for one in sweeps), default=np.inf
-    )
+    least_damped = min((float(measure(one)[0].min()) / held(one) for one in sweeps), default=np.inf)
     top = max(float(sweep.crank_speed[-1]) for sweep in solution.speed_sweeps)
     stated = overspeed(solution.machines) is not None
     end = shown(top, "rpm", 4) + ("" if stated else f", the fastest load case: {NO_OVERSPEED}")

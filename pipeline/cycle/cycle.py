@@ -25,11 +25,17 @@ from camwright.pipeline.cycle.turn import Turn
 from camwright.pipeline.follower.follower_forces import Loads, share_left
 from camwright.pipeline.follower.guide_effects import GuideShares, guide_shares
 from camwright.pipeline.follower.guide_reactions import GuideReactions
+from camwright.pipeline.follower.spring import Spring
 
 LIFT = Column("lift", "mm", "Lift")
 PRESSURE_ANGLE = Column("pressure_angle", "deg", "Pressure angle")
 PITCH_RADIUS = Column("pitch_radius_of_curvature", "mm", "Radius of curvature of the pitch curve")
 CONTOUR_RADIUS = Column("contour_radius_of_curvature", "mm", "Radius of curvature of the contour")
+
+
+def least_spring_force(spring: Spring, contour: Contour) -> float:
+    """Spring force at minimum lift, N."""
+    return float(spring.force(np.asarray(contour.pitch.lift.lowest.value)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +79,11 @@ class Cycle:
     def guides(self) -> GuideReactions:
         """Reactions of the guides."""
         return self.turn.guides
+
+    @property
+    def least_spring_force(self) -> float:
+        """Spring force at minimum lift, N: the preload where the minimum lift is zero."""
+        return least_spring_force(self.machine.spring, self.contour)
 
     @property
     def surged_force(self) -> Array:

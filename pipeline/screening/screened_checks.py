@@ -148,8 +148,13 @@ def _guide_length(designs: Designs) -> Judged:
     return spread / overhang, designs.limit(GUIDE_LENGTH)
 
 
+def _least_spring_force(turns: Turns) -> Array:
+    """Spring force at minimum lift (m, 1), N."""
+    return sampled_least(turns.loads.spring_force)[:, None]
+
+
 def _contact_force_margin(designs: Designs) -> Judged:
-    least = _least(designs, lambda turns: turns.loads.normal_force / turns.state.preload)
+    least = _least(designs, lambda turns: turns.loads.normal_force / _least_spring_force(turns))
     return np.maximum(least, 0.0), designs.limit(CONTACT_FORCE_MARGIN)
 
 
@@ -180,7 +185,7 @@ def _contact_at_overspeed(designs: Designs) -> Judged:
 
     def force(turns: Turns) -> Array:
         inertia = (over / turns.crank_speed) ** 2 * turns.loads.inertia_force
-        return demands.force_left(turns.loads.spring_force, inertia, turns.state.preload)
+        return demands.force_left(turns.loads.spring_force, inertia, _least_spring_force(turns))
 
     return _least(designs, force), designs.limit(CONTACT_FORCE_MARGIN)
 
@@ -332,8 +337,8 @@ def _profile_waviness(designs: Designs) -> Judged:
     along = designs.at_loads(designs.pitch_speed * designs.undercut_factor)
 
     def share(turns: Turns) -> Array:
-        rate = FULL_TURN * turns.cam_speed * along / length
-        added = designs.value("follower.mass") * 0.5 * band * rate**2
+        speed = turns.cam_speed * along
+        added = demands.waviness_force(designs.value("follower.mass"), 0.5 * band, speed, length)
         force = turns.loads.normal_force
         return np.divide(added, force, out=np.full_like(force, np.inf), where=force > 0.0)
 

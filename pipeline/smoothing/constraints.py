@@ -176,7 +176,8 @@ class Shape(NamedTuple):
 class Loads(NamedTuple):
     """Cam in one scenario at n cam angles.
 
-    spin: of the roller, rad/s; side: side force on the stem, N; preload of the scenario, N.
+    spin: of the roller, rad/s; side: side force on the stem, N; least_spring: spring force at
+    minimum lift, N.
     """
 
     jet: Jet
@@ -186,7 +187,7 @@ class Loads(NamedTuple):
     force: Forces
     spin: Array
     side: Array
-    preload: Value
+    least_spring: Value
 
 
 State = TypeVar("State", Shape, Loads)
@@ -253,7 +254,8 @@ def load_utilisations(
         force,
         spin=scenario.cam_speed * rolling_share(path.speed, ratings.roller_radius),
         side=force.axial * path.tangent,
-        preload=variables.preload * scenario.preload_factor,
+        least_spring=variables.preload * scenario.preload_factor
+        + variables.rate * scenario.rate_factor * scenario.correction.least_lift,
     )
     return _utilisations(LOADS, loads, names)
 
@@ -344,7 +346,7 @@ def _contact_at_overspeed(at: Loads, limit: float) -> Array | None:
     if at.ratings.overspeed is None:
         return None
     thrown = _inertia(at, at.ratings.overspeed)
-    return 1.0 + limit - demands.force_left(at.force.spring, thrown, at.preload)
+    return 1.0 + limit - demands.force_left(at.force.spring, thrown, at.least_spring)
 
 
 def _jam_index_friction_max(at: Loads, limit: float) -> Array | None:
@@ -413,7 +415,7 @@ LOADS: tuple[Constraint[Loads], ...] = (
     Constraint(
         "contact_force_margin",
         CONTACT_FORCE_MARGIN,
-        lambda at, limit: 1.0 + limit - at.force.normal / at.preload,
+        lambda at, limit: 1.0 + limit - at.force.normal / at.least_spring,
     ),
     Constraint("contact_at_overspeed", CONTACT_FORCE_MARGIN, _contact_at_overspeed),
     Constraint(

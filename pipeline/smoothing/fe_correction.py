@@ -259,6 +259,7 @@ def _correction(cycle: Cycle) -> Correction:
         rubbing_a=_ratio(guides.rubbing_load_a, guides.statics_a, _RUBBING),
         rubbing_b=_ratio(guides.rubbing_load_b, guides.statics_b, _RUBBING),
         jam=_ratio(worst.jam_index, worst.jam_index_statics),
+        least_lift=np.full(cycle.theta.size, cycle.contour.pitch.lift.lowest.value),
     )
 
 

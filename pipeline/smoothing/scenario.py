@@ -85,6 +85,10 @@ class Correction:
     Of the contact pressure, the bearing loads and the normal loads of guides A and B, and the jam
     index at maximum friction. Point supports have neither length nor opposite pushes: without the
     correction the synthesis sees a lower bound of the guide pressure.
+
+    Parameters
+    ----------
+    least_lift : array   minimum lift, m, of the base of the contact force margin; one value
     """
 
     contact: Array
@@ -93,11 +97,13 @@ class Correction:
     rubbing_a: Array
     rubbing_b: Array
     jam: Array
+    least_lift: Array
 
     @classmethod
     def none(cls, count: int) -> Correction:
-        one = readonly(np.ones(count))
-        return cls(one, one, one, one, one, one)
+        """A correction without effect at so many cam angles."""
+        one, zero = readonly(np.ones(count)), readonly(np.zeros(count))
+        return cls(one, one, one, one, one, one, least_lift=zero)
 
     def towards(self, other: Correction, share: float) -> Correction:
         """Linear interpolation to another correction, at the angles of that one."""

@@ -1,6 +1,7 @@
 """A preload of a load case's own, and a cam cut for a share of the torque."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,8 +51,17 @@ def test_a_load_case_with_its_own_preload_changes_the_spring_force_by_the_differ
     plain = cam(parse_case(GX120), torques)
     np.testing.assert_array_equal(contour.pitch.lift.values, plain.pitch.lift.values)
     solution = solved_turns(case, contour, (soft,), Tier.PREVIEW, {})
-    expected = float(soft.loads.normal_force.min()) / 121.0
+    least = 121.0 + case.spring.rate * contour.pitch.lift.lowest.value
+    expected = float(soft.loads.normal_force.min()) / least
     assert contact_force_margin(solution).demand == pytest.approx(expected, rel=1e-12)
+    pitch = contour.pitch
+    raised = replace(
+        contour, pitch=replace(pitch, lift=replace(pitch.lift, values=pitch.lift.values + 2e-3))
+    )
+    higher = turn(machines(case)[1], raised, torques["idle"], 72)
+    solution = solved_turns(case, raised, (higher,), Tier.PREVIEW, {})
+    expected = float(higher.loads.normal_force.min()) / (least + 2e-3 * case.spring.rate)
+    assert contact_force_margin(solution).demand == pytest.approx(expected, rel=1e-9)
 
 
 def test_there_is_a_machine_for_every_load_case_with_its_speed_and_preload():

@@ -130,7 +130,7 @@ def test_next_trial_starts_from_the_design_with_the_mean_of_two_cams_that_altern
     problem = Problem((running,), ratings, variables, coefficients=12, points=12)
     energy = 0.3 + 0.2 * np.cos(2 * np.pi * np.arange(12) / 12)
     design = Design(energy, variables, 0.5, 0.0, {}, {}, {}, 3, 0.0)
-    low, high = (Correction(*np.full((6, 12), level)) for level in (1.2, 1.4))
+    low, high = (Correction(*np.full((7, 12), level)) for level in (1.2, 1.4))
     after = corrected(
         problem,
         design,
@@ -141,7 +141,7 @@ def test_next_trial_starts_from_the_design_with_the_mean_of_two_cams_that_altern
 
 
 def test_part_of_the_way_from_one_correction_to_another():
-    coarse, fine = Correction.none(8), Correction(*np.full((6, 12), 1.4))
+    coarse, fine = Correction.none(8), Correction(*np.full((7, 12), 1.4))
     half = coarse.towards(fine, 0.5)
     assert half.contact.shape == (12,)
     np.testing.assert_allclose(half.jam, 1.2)

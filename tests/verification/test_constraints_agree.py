@@ -119,6 +119,7 @@ def corrected(scenario, cycle):
         np.abs(guides.rubbing_load_a / guides.statics_a),
         np.abs(guides.rubbing_load_b / guides.statics_b),
         worst.jam_index / worst.jam_index_statics,
+        np.full(POSITIONS, cycle.contour.pitch.lift.lowest.value),
     )  # fmt: skip
     return replace(scenario, correction=correction)
 

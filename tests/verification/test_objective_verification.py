@@ -72,7 +72,7 @@ def cost_by_scenario(case, solved, objective=EVERY_COST):
             np.abs(guides.rubbing_load_a / guides.statics_a),
             np.abs(guides.rubbing_load_b / guides.statics_b),
         )
-        scenario = replace(item, correction=Correction(one, one, one, *rubbing, one))
+        scenario = replace(item, correction=Correction(one, one, one, *rubbing, one, 0.0 * one))
         found[item.name] = costs(
             objective, problem.scale, problem.ratings, scenario, item.weight, jet,
             pitch.lift.highest.value, problem.variables,
