@@ -42,9 +42,8 @@ from camwright.pipeline.smoothing.fe_correction import (
 )
 from camwright.pipeline.smoothing.infeasibility import infeasibility
 from camwright.pipeline.smoothing.multistart import Explored, explored
-from camwright.pipeline.smoothing.problem_setup import problem_of
+from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 from camwright.pipeline.smoothing.required_lift import cam_lift
-from camwright.pipeline.smoothing.roller_alternatives import roller_problems
 from camwright.pipeline.smoothing.shadow_prices import limits_in_use, machine_prices
 from camwright.pipeline.smoothing.smoothers import Smoother
 from camwright.pipeline.smoothing.smoothing_feedback import Stop, next_smoother
@@ -266,7 +265,7 @@ def _constrained(task: _Task) -> Iteration:
             uses=limits_in_use(design),
             gain=design.gain,
         )
-        comparisons.append(compared(problem, design, trial.cycles))
+        comparisons.append(compared(problem, design, trial.solution))
         unmeshed = task.tier is Tier.CYCLE and trial.mesh is None
         # Without corrections the synthesis sees lower bounds: limits that conflict there conflict.
         conflicts = number == 1 and not design.feasible

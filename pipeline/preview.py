@@ -90,7 +90,7 @@ def _synthesised(case: Case, torques: Mapping[str, Torque], progress: Progress) 
             smoothing=CONSTRAINED,
             synthesis=design_record(design, problem),
         )
-        comparisons.append(compared(problem, design, trial.cycles))
+        comparisons.append(compared(problem, design, trial.solution))
         ranked = rank(trial.checks, solved_ripple(trial.cycles))
         if best is None or ranked <= best[0]:
             best = (ranked, trial)

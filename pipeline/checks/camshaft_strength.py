@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.errors import InputError
@@ -407,15 +408,10 @@ def gear_contact(solution: Solution) -> Demand:
     """Contact pressure on the tooth flanks of the driving gear, Pa."""
     shaft = _camshaft(solution.machine)
     gear = _gear(shaft)
-    card, mate = gear.material, gear.pinion_material or gear.material
-    ratio = max(gear.teeth, gear.pinion_teeth) / min(gear.teeth, gear.pinion_teeth)
-    pinion = 2.0 * shaft.gear_radius * min(1.0, gear.pinion_teeth / gear.teeth)
-    modulus = contact_modulus(card.E, card.nu, mate.E, mate.nu)
+    card = gear.material
 
     def stress(cycle: Cycle) -> Array:
-        force = _tooth_force(cycle, shaft, gear)
-        angle = shaft.pressure_angle
-        return tooth_contact_stress(force, gear.width, pinion, ratio, angle, modulus)
+        return _flank_pressure(_tooth_force(cycle, shaft, gear), shaft, gear)
 
     limits = {"gear": gear.contact_limit, "pinion": gear.pinion_contact_limit}
     known = [limit for limit in limits.values() if limit is not None]
@@ -429,6 +425,41 @@ def gear_contact(solution: Solution) -> Demand:
         note="; ".join(missing),
         figures=(f"{card.name}: {gear.source}".rstrip(": "),),
     )
+
+
+def tooth_torque_limits(machine: Machine) -> dict[str, float]:
+    """Greatest torque of the driving gear allowed by each of its checks, N m, by its id."""
+    shaft = machine.camshaft
+    gear = None if shaft is None else shaft.gear
+    if shaft is None or gear is None or not machine.scope.covers("gear"):
+        return {}
+    module, force = (
+        2.0 * shaft.gear_radius / gear.teeth,
+        gear.application_factor / shaft.gear_radius,
+    )
+    safety, allowed = machine.limits[GEAR_BENDING_SAFETY], {}
+    for name, teeth, limit in (
+        ("gear_bending", gear.teeth, gear.bending_limit),
+        ("pinion_bending", gear.pinion_teeth, gear.pinion_bending_limit),
+    ):
+        if limit is not None:
+            stress = float(tooth_root_stress(force, gear.width, module, teeth))
+            allowed[name] = REVERSED * limit / safety / stress
+    contact, other = gear.contact_limit, gear.pinion_contact_limit
+    if contact is not None and other is not None:
+        least = min(contact, other) / machine.limits[GEAR_CONTACT_SAFETY]
+        # the pressure grows with the root of the torque
+        allowed["gear_contact"] = (least / float(_flank_pressure(force, shaft, gear))) ** 2
+    return allowed
+
+
+def _flank_pressure(force: ArrayLike, shaft: Camshaft, gear: CamshaftGear) -> Array:
+    """Hertz pressure of the teeth (...), Pa, under a force on the pitch circle, N."""
+    card, mate = gear.material, gear.pinion_material or gear.material
+    ratio = max(gear.teeth, gear.pinion_teeth) / min(gear.teeth, gear.pinion_teeth)
+    pinion = 2.0 * shaft.gear_radius * min(1.0, gear.pinion_teeth / gear.teeth)
+    modulus = contact_modulus(card.E, card.nu, mate.E, mate.nu)
+    return tooth_contact_stress(force, gear.width, pinion, ratio, shaft.pressure_angle, modulus)
 
 
 def _tooth_force(cycle: Cycle, shaft: Camshaft, gear: CamshaftGear) -> Array:

@@ -23,6 +23,7 @@ from camwright.pipeline.follower.guide_friction import NYLON_PV, GuideHeat
 from camwright.pipeline.follower.guide_reactions import Guide
 
 Side = Literal["A", "B"]
+GUIDES: tuple[Side, ...] = ("A", "B")
 
 
 def guide_of(machine: Machine, side: Side) -> Guide:

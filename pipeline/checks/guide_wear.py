@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from camwright.pipeline.base.material import ROOM
+from camwright.pipeline.base.material import ROOM, Material
 from camwright.pipeline.base.units import shown
-from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH
+from camwright.pipeline.case.limits import TARGET_LIFE, WEAR_DEPTH, LimitValues
 from camwright.pipeline.checks.check import Declaration, Demand, check, not_given
 from camwright.pipeline.checks.extremes import over_duty
 from camwright.pipeline.checks.guide_strength import Side, guide_of, hottest, mean_pv
 from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.follower.guide_friction import bore_closure
+from camwright.pipeline.follower.guide_reactions import Guide
 
 
 def _guide_expansion(side: Side) -> Declaration:
@@ -53,14 +54,11 @@ def _guide_expansion(side: Side) -> Declaration:
             or moisture is None
         ):
             return Demand(None, guide.clearance, note="; ".join(missing))
-        warmer = hot.value - ROOM
-        swelling = guide.diameter * (bush.expansion * warmer + moisture)
-        free, held = (c * swelling for c in bore_closure(guide.wall_share, bush.nu))
-        of_stem = guide.diameter * growth_of_stem * warmer
+        free, held = closures(guide, bush.expansion, growth_of_stem, moisture, hot.value)
         if not missing:
-            missing = [f"{shown(free + of_stem, 'mm', 3)} with a bush free to lengthen"]
+            missing = [f"{shown(free, 'mm', 3)} with a bush free to lengthen"]
         return Demand(
-            max(free, held) + of_stem,
+            max(free, held),
             guide.clearance,
             hot,
             note="; ".join(missing),
@@ -68,6 +66,46 @@ def _guide_expansion(side: Side) -> Declaration:
         )
 
     return expansion
+
+
+def closures(
+    guide: Guide, of_bush: float, of_stem: float, moisture: float, temperature: float
+) -> tuple[float, float]:
+    """Loss of clearance of a guide at a temperature, K, m: bush free to lengthen, and held.
+
+    Parameters
+    ----------
+    of_bush, of_stem : float   thermal expansion, 1/K
+    moisture : float           free strain of the bush by moisture
+    """
+    warmer = temperature - ROOM
+    swelling = guide.diameter * (of_bush * warmer + moisture)
+    grown = guide.diameter * of_stem * warmer
+    free, held = (c * swelling + grown for c in bore_closure(guide.wall_share, guide.material.nu))
+    return free, held
+
+
+def greatest_temperatures(guide: Guide, stem: Material) -> dict[str, float]:
+    """Greatest temperature of a guide, K, that each of its checks allows, by its name."""
+    bush, allowed = guide.material, {}
+    if bush.temperature_limit is not None:
+        allowed["guide_temperature"] = bush.temperature_limit
+    values = (bush.expansion, stem.expansion, bush.moisture_growth)
+    of_bush, of_stem, moisture = values
+    if guide.wall is None or of_bush is None or of_stem is None or moisture is None:
+        return allowed
+    cold, warm = (
+        max(closures(guide, of_bush, of_stem, moisture, ROOM + rise)) for rise in (0.0, 1.0)
+    )
+    if warm > cold:  # linear in the temperature
+        allowed["guide_expansion"] = ROOM + (guide.clearance - cold) / (warm - cold)
+    return allowed
+
+
+def pv_of_wear(guide: Guide, limits: LimitValues) -> float | None:
+    """PV value of the greatest wear in the target life, Pa m/s; None without the data."""
+    rate, life = guide.wear_rate, limits[TARGET_LIFE]
+    return None if not rate or not life else limits[WEAR_DEPTH] / (rate * life)
 
 
 def _guide_wear(side: Side) -> Declaration:

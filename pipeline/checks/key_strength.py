@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import Array, Values
 from camwright.pipeline.base.material import Material
 from camwright.pipeline.base.units import shown
 from camwright.pipeline.case.limits import (
@@ -16,6 +17,7 @@ from camwright.pipeline.case.limits import (
     KEYWAY_SAFETY,
     SHAFT_RELIABILITY,
 )
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import Demand, check
 from camwright.pipeline.checks.extremes import greatest, least
 from camwright.pipeline.contact.cam_body import Key
@@ -151,18 +153,16 @@ def keyway_root(solution: Solution) -> Demand:
     """Fatigue safety factor of the keyway's root in the cam."""
     machine = solution.machine
     cam, limit, card = machine.cam, machine.limits[KEYWAY_SAFETY], machine.cam.material
-    keyway, key, flanks, radius = cam.keyway, cam.key, cam.key_flanks, cam.keyway_root_radius
     endurance, tensile = card.fatigue_bending, card.tensile_strength
     missing = [f"no {_DATA[name]} is given" for name, v in cam.key_data.items() if v is None]
-    missing += [] if radius is not None else ["no root radius of the keyway is given"]
+    missing += (
+        [] if cam.keyway_root_radius is not None else ["no root radius of the keyway is given"]
+    )
     if endurance is None or tensile is None:
         missing += [f"the card of {card.name} gives no fatigue or tensile strength"]
-    if keyway is None or key is None or flanks is None or radius is None:
+    root = keyway_root_of(machine)
+    if root is None:
         return Demand(None, limit, note="; ".join(missing))
-    if endurance is None or tensile is None:
-        return Demand(None, limit, note="; ".join(missing))
-    strength = surface_factor("machined", tensile) * endurance
-    strength *= reliability_factor(machine.limits[SHAFT_RELIABILITY])
     wall = float(solution.contour.radius_min().value) - cam.held_radius
     thin, thick = (share * cam.held_radius for share in WALLS)
     if not wall >= thin:
@@ -173,17 +173,11 @@ def keyway_root(solution: Solution) -> Demand:
         loads = cycle.loads
         if not np.isfinite([loads.cam_torque, loads.normal_force]).all():
             return np.full(cycle.theta.size, np.nan)
-        torque = key.application_factor * loads.cam_torque
-        pressure = np.abs(key_stress(torque, 2.0 * cam.bore_radius, flanks).hub)
-        force = np.abs(loads.normal_force)
-        stress = keyway_root_stress(
-            pressure, force, cam.width, min(wall, thick), keyway.depth, radius
-        )
-        used = 0.5 * stress * (1.0 / strength + 1.0 / tensile)
+        used = root.used_by(np.abs(loads.cam_torque), np.abs(loads.normal_force), min(wall, thick))
         return np.asarray(1.0 / np.maximum(used, TINY))
 
     worst = least(solution.cycles, safety)
-    note = f"root radius {shown(radius, 'mm')}, wall {shown(wall, 'mm')}"
+    note = f"root radius {shown(root.root_radius, 'mm')}, wall {shown(wall, 'mm')}"
     figures = (machine.limits.source(SHAFT_RELIABILITY), f"{card.name}: {card.source}")
     return Demand(worst.value, limit, worst, note=note, figures=figures)
 
@@ -199,17 +193,15 @@ def _judged(
     """A stress of the key against the yield strength of the weaker of the key and its mate."""
     machine = solution.machine
     cam, flanks = machine.cam, machine.cam.key_flanks
-    key = cam.key or Key()
+    key, reverses = cam.key or Key(), _reverses(solution)
     missing += tuple(f"no {_DATA[name]} is given" for name, v in cam.key_data.items() if v is None)
     missing += () if key.material is not None else ("no material of the key is given",)
     cards = [card for card in (key.material, mate) if card is not None]
     figures = tuple(f"{card.name}: {card.source}" for card in cards)
-    share = machine.limits[KEY_SHARE]
-    if _reverses(solution):
-        share *= machine.limits[KEY_REVERSAL]
+    if reverses:
         figures = (machine.limits.source(KEY_REVERSAL), *figures)
-    weakest = min((card.core_yield_strength or card.yield_strength for card in cards), default=None)
-    allowed = None if weakest is None or missing else factor * share * weakest
+    strength = _strength(machine, mate, reverses=reverses)
+    allowed = None if strength is None or missing else factor * strength
     if flanks is None:
         return Demand(None, allowed, note="; ".join(missing), figures=figures)
     diameter = 2.0 * cam.bore_radius
@@ -222,6 +214,85 @@ def _judged(
 
     worst = greatest(solution.cycles, stress)
     return Demand(worst.value, allowed, worst, note="; ".join(missing), figures=figures)
+
+
+def _strength(machine: Machine, mate: Material | None, *, reverses: bool) -> float | None:
+    """Allowed normal stress of the key and its mate, Pa; None without a material."""
+    key = machine.cam.key
+    cards = [card for card in (None if key is None else key.material, mate) if card is not None]
+    share = machine.limits[KEY_SHARE] * (machine.limits[KEY_REVERSAL] if reverses else 1.0)
+    weakest = min((card.core_yield_strength or card.yield_strength for card in cards), default=None)
+    return None if weakest is None else share * weakest
+
+
+def torque_limits(machine: Machine) -> dict[str, float]:
+    """Greatest reversing cam torque allowed by each check of key and seat, N m, by its id."""
+    cam, shaft, covers = machine.cam, machine.camshaft, machine.scope.covers
+    key, flanks, allowed = cam.key, cam.key_flanks, {}
+    factor = 1.0 if key is None else key.application_factor
+    if key is not None and key.material is not None and flanks is not None and covers("key"):
+        stress = key_stress(factor, 2.0 * cam.bore_radius, flanks)
+        shaft_card = None if shaft is None else shaft.material
+        limits = {
+            "key_pressure": (stress.hub, _strength(machine, cam.material, reverses=True)),
+            "key_shear": (np.sqrt(3.0) * stress.shear, _strength(machine, None, reverses=True)),
+        }
+        if covers("camshaft") and shaft_card is not None:
+            strength = _strength(machine, shaft_card, reverses=True)
+            limits["key_pressure_shaft"] = stress.shaft, strength
+        allowed = {
+            name: strength / float(each)
+            for name, (each, strength) in limits.items()
+            if strength is not None
+        }
+    slip = None if shaft is None or not covers("camshaft") else shaft.slip_torque
+    if slip:
+        allowed["cam_slip"] = slip / (machine.limits[CAM_SLIP] * factor)
+    return allowed
+
+
+class KeywayRoot(NamedTuple):
+    """Stress at the root of the keyway in the cam: Pa per N m and, of a thick wall, per N.
+
+    held_radius: of the floor of the keyway, root_radius: of its corner, thick: greatest wall that
+    counts, m; per_stress: use of the fatigue strength, 1/Pa.
+    """
+
+    by_torque: float
+    by_force: float
+    held_radius: float
+    root_radius: float
+    thick: float
+    per_stress: float
+
+    def used_by(self, torque: Values, force: Values, wall: float | Values) -> Values:
+        """Stress over strength (...) by torque, N m, and force, N, at a wall of at most `thick`."""
+        stress: Values = self.by_torque * torque + self.by_force * force * (self.thick / wall)
+        return stress * self.per_stress
+
+
+def keyway_root_of(machine: Machine) -> KeywayRoot | None:
+    """Root of the keyway in the cam; None without its data, or outside the scope."""
+    cam, card = machine.cam, machine.cam.material
+    keyway, key, flanks, radius = cam.keyway, cam.key, cam.key_flanks, cam.keyway_root_radius
+    endurance, tensile = card.fatigue_bending, card.tensile_strength
+    if keyway is None or key is None or flanks is None or radius is None:
+        return None
+    if endurance is None or tensile is None or not machine.scope.covers("key"):
+        return None
+    strength = surface_factor("machined", tensile) * endurance
+    strength *= reliability_factor(machine.limits[SHAFT_RELIABILITY])
+    pressure = key_stress(key.application_factor, 2.0 * cam.bore_radius, flanks).hub
+    thick = WALLS[1] * cam.held_radius
+    shape = cam.width, thick, keyway.depth, radius
+    return KeywayRoot(
+        by_torque=float(keyway_root_stress(pressure, 0.0, *shape)),
+        by_force=float(keyway_root_stress(0.0, 1.0, *shape)),
+        held_radius=cam.held_radius,
+        root_radius=radius,
+        thick=thick,
+        per_stress=0.5 * (1.0 / strength + 1.0 / tensile),
+    )
 
 
 def _reverses(solution: Solution) -> bool:

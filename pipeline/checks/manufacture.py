@@ -17,6 +17,7 @@ from camwright.pipeline.checks import demands
 from camwright.pipeline.checks.check import NONE, RIPPLE, Demand, check
 from camwright.pipeline.checks.extremes import NOWHERE, Extreme, greatest
 from camwright.pipeline.checks.torque_balance import least_reduction
+from camwright.pipeline.contact.cam_body import CamBody
 from camwright.pipeline.contact.tiers import Tier
 from camwright.pipeline.cycle.cycle import Cycle
 from camwright.pipeline.cycle.solution import Solution
@@ -67,6 +68,11 @@ def cam_radius(solution: Solution) -> Demand:
     )
 
 
+def wave_amplitude(cam: CamBody) -> float:
+    """Amplitude of the waves of the contour, m: half of the profile tolerance."""
+    return 0.5 * (cam.profile_tolerance or 0.0)
+
+
 @check(
     WAVINESS,
     id="profile_waviness",
@@ -85,9 +91,7 @@ def profile_waviness(solution: Solution) -> Demand:
 
     def force(cycle: Cycle) -> Array:
         along = cycle.cam_speed * np.abs(cycle.contour.speed(cycle.theta))
-        # the amplitude is half of the tolerance
-        amplitude = 0.5 * (band or 0.0)
-        added = cycle.machine.mass * amplitude * (FULL_TURN * along / length) ** 2
+        added = demands.waviness_force(cycle.machine.mass, wave_amplitude(cam), along, length)
         nominal = cycle.loads.normal_force
         held = nominal > 0
         share = np.where(held, added / np.where(held, nominal, 1.0), np.inf)

@@ -19,6 +19,7 @@ from camwright.pipeline.case.limits import (
     UNBALANCE,
     LimitValues,
 )
+from camwright.pipeline.case.machine import Machine
 from camwright.pipeline.checks.check import NONE, Demand, check
 from camwright.pipeline.checks.extremes import Extreme, greatest, worst_case
 from camwright.pipeline.cycle.cam_balance import Balance, balance, rotor_unbalance
@@ -345,6 +346,20 @@ def roller_ring_fatigue(solution: Solution) -> Demand:
     )
 
 
+def ring_force_limit(machine: Machine) -> float | None:
+    """Normal force at the bending fatigue of the outer ring, N; None without its data."""
+    roller = machine.roller
+    ring = None if roller is None else roller.bearing.ring
+    solved = roller and roller.ring(machine.contact_width, machine.spring.preload)
+    if ring is None or not solved or ring.fatigue_bending is None or ring.tensile_strength is None:
+        return None
+    bending, endured = solved.bending, ring.fatigue_bending
+    # Goodman: a N / (1 - m N / R_m) = s_W
+    return endured / (
+        bending.stress_amplitude + endured * bending.stress_mean / ring.tensile_strength
+    )
+
+
 def _ring_amplitude(parts: PartLoads, tensile_strength: float | None) -> Array:
     amplitude, mean = _known(parts.ring_amplitude), _known(parts.ring_mean)
     if tensile_strength is None:
@@ -367,14 +382,7 @@ def bore_pressure(solution: Solution) -> Demand:
     """Mean pressure of the bore on the shaft, Pa."""
     machine = solution.machine
     worst = greatest(solution.cycles, lambda cycle: cycle.parts.bore_pressure)
-    shaft = machine.camshaft
-    cards = [machine.cam.material]
-    missing = []
-    if machine.scope.covers("camshaft"):
-        card = None if shaft is None else shaft.material
-        cards += [] if card is None else [card]
-        missing += ["no material of the camshaft is given"] if card is None else []
-    known = [card.tensile_strength for card in cards if card.tensile_strength is not None]
+    cards, missing = _bore_cards(machine)
     missing += [
         f"the card of {card.name} gives no tensile strength"
         for card in cards
@@ -382,11 +390,28 @@ def bore_pressure(solution: Solution) -> Demand:
     ]
     return Demand(
         worst.value,
-        None if missing else machine.limits[BORE_SHARE] * min(known),
+        bore_pressure_limit(machine),
         worst,
         note="; ".join(missing),
         figures=tuple(dict.fromkeys(f"{card.name}: {card.source}" for card in cards)),
     )
+
+
+def _bore_cards(machine: Machine) -> tuple[list[Material], list[str]]:
+    """Materials of cam and camshaft, and the missing one in words."""
+    shaft, cards = machine.camshaft, [machine.cam.material]
+    if not machine.scope.covers("camshaft"):
+        return cards, []
+    card = None if shaft is None else shaft.material
+    missing = ["no material of the camshaft is given"] if card is None else []
+    return [*cards, *([] if card is None else [card])], missing
+
+
+def bore_pressure_limit(machine: Machine) -> float | None:
+    """Allowed mean pressure of the bore on the shaft, Pa; None without the data."""
+    cards, missing = _bore_cards(machine)
+    known = [card.tensile_strength for card in cards if card.tensile_strength is not None]
+    return None if missing or len(known) < len(cards) else machine.limits[BORE_SHARE] * min(known)
 
 
 @check(

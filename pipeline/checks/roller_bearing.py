@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import scipy
 
-from camwright.geometry.arrays import Array
+from camwright.geometry.arrays import FULL_TURN, Array
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.limits import (
@@ -45,6 +46,7 @@ from camwright.pipeline.follower.roller_motion import (
 from camwright.pipeline.follower.roller_parts import Bearing
 
 STANDSTILL = 1.0  # rpm of the roller, below which the viscosity ratio does not apply
+FASTEST = 1e7  # rpm, of any roller
 
 
 def bearing_of(solution: Solution) -> Bearing:
@@ -356,6 +358,26 @@ def bearing_lubrication(solution: Solution) -> Demand:
     )
 
 
+def least_speed(viscosity: float, circle: float, ratio: float) -> float | None:
+    """Mean speed of the roller at a viscosity ratio, rad/s; None where every speed has more.
+
+    Parameters
+    ----------
+    viscosity : float   in operation, m2/s
+    circle : float      pitch diameter of the balls, m
+    """
+
+    def excess(log_speed: float) -> float:
+        rated = bearing_life.rated_viscosity(np.exp(np.asarray(log_speed)), circle)
+        return float(np.log(viscosity / rated / ratio))
+
+    ends = np.log(STANDSTILL), np.log(FASTEST)
+    if not excess(ends[0]) < 0.0 < excess(ends[1]):
+        return None
+    speed = float(np.exp(scipy.optimize.brentq(excess, *ends, xtol=1e-13)))
+    return speed * FULL_TURN / 60.0
+
+
 def _viscosity_ratio(cycle: Cycle, bearing: Bearing) -> float:
     """Viscosity ratio at the mean speed; infinite at rest, NaN without its data."""
     speed, viscosity, circle = _mean_speed(cycle), bearing.viscosity, bearing.ball_circle
@@ -363,7 +385,7 @@ def _viscosity_ratio(cycle: Cycle, bearing: Bearing) -> float:
         return np.nan
     if speed < STANDSTILL:
         return np.inf
-    return viscosity / bearing_life.rated_viscosity(speed, circle)
+    return viscosity / float(bearing_life.rated_viscosity(np.asarray(speed), circle))
 
 
 def _mean_speed(cycle: Cycle) -> float:

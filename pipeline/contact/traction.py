@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import Array, finite, freeze, positive
+from camwright.geometry.arrays import Array, Values, finite, freeze, positive
 from camwright.geometry.errors import InputError
 
 _TURNS_MAX = 50
@@ -92,7 +92,7 @@ class Drag:
         if not 0 < self.friction < np.inf:
             raise InputError("drag.friction", self.friction, "> 0")
 
-    def bearing_torque(self, normal_force: Array) -> Array:
+    def bearing_torque(self, normal_force: Values) -> Values:
         """Drag torque (n,) of the bearing, N m."""
         return self.torque + self.bearing_friction * self.pin_radius * normal_force
 
@@ -119,6 +119,14 @@ class RollingContact:
     def __post_init__(self) -> None:
         names = ("demand", "force", "slip", "creepage", "skidding", "utilisation")
         freeze(self, **{name: getattr(self, name) for name in names})
+
+
+def rolling_demand(
+    drag: Drag, normal_force: Values, spin: Values, spin_acceleration: Values, radius: float
+) -> Values:
+    """Tangential force of rolling without slip (...), N: inertia and bearing drag of the roller."""
+    resisting = np.sign(np.real(spin)) * drag.bearing_torque(normal_force)
+    return (drag.inertia * spin_acceleration + resisting) / radius
 
 
 def rolling_contact(
@@ -172,7 +180,7 @@ def rolling_contact(
     speed = np.abs(finite("rolling_speed", rolling_speed))
     step = period / force.size
     resisting = drag.bearing_torque(force)
-    demand = (drag.inertia * rate + np.sign(rolling) * resisting) / radius
+    demand = rolling_demand(drag, force, rolling, rate, radius)
     tangential, turning = _steps(rolling, demand, limit, resisting, drag.inertia, radius, step)
     slip = radius * (rolling - turning)
     sliding = np.abs(slip) > _SETTLED * radius * np.abs(rolling).max(initial=1e-300)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -149,8 +150,8 @@ def part_loads(
     nominal = machine.friction.nominal
     pin = None if machine.roller is None else machine.roller.pin_stress_per_newton
     return PartLoads(
-        guide_edge_pressure_a=_edge_pressure(machine, pair.a, guides.line_pressure_max_a),
-        guide_edge_pressure_b=_edge_pressure(machine, pair.b, guides.line_pressure_max_b),
+        guide_edge_pressure_a=edge_pressure_of(machine, pair.a)(guides.line_pressure_max_a),
+        guide_edge_pressure_b=edge_pressure_of(machine, pair.b)(guides.line_pressure_max_b),
         heat_a=_heat(machine, pair.a, nominal[0] * guides.rubbing_load_a, loads),
         heat_b=_heat(machine, pair.b, nominal[1] * guides.rubbing_load_b, loads),
         heat_max_a=_heat(machine, pair.a, friction.greatest.friction_force_a, friction.greatest),
@@ -200,10 +201,11 @@ def guide_bodies(machine: Machine, guide: Guide) -> tuple[Pin, Bush]:
     )
 
 
-def _edge_pressure(machine: Machine, guide: Guide, line_pressure: Array) -> Array:
+def edge_pressure_of(machine: Machine, guide: Guide) -> Callable[[Array], Array]:
+    """Pressure of the stem in the bore of a guide (...), Pa, by its line load, N/m."""
     radius, clearance = 0.5 * machine.stem.diameter, 0.5 * guide.clearance
-    peak, _ = peak_pressure(line_pressure, radius, clearance, *guide_bodies(machine, guide))
-    return peak
+    bodies = guide_bodies(machine, guide)
+    return lambda line_load: peak_pressure(line_load, radius, clearance, *bodies)[0]
 
 
 def _heat(machine: Machine, guide: Guide, friction_force: Array, loads: Loads) -> GuideHeat:

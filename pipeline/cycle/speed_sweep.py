@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,6 +137,29 @@ def speed_sweep(
         crank_speed=ratio * both[order],
         **{name: np.concatenate([swept[name], more[name]])[order] for name in swept},
     )
+
+
+class SweptForces(NamedTuple):
+    """Forces over a turn at one speed, (n,), N, at n equal cam angles.
+
+    surge: change of the spring force by its surge; elastic: axial contact force with an elastic
+    stem, without friction, less that of a rigid follower without surge.
+    """
+
+    surge: Array
+    elastic: Array
+
+
+def swept_forces(
+    machine: Machine, contour: Contour, rubbing: Rubbing, cam_speed: float
+) -> SweptForces:
+    """Forces of a sweep at one cam speed, rad/s; see `speed_sweep`."""
+    follower = _Follower.of(machine, contour.pitch, rubbing)
+    speed = np.array([cam_speed])
+    moving = follower.resonant.stiffness(speed).moving
+    surge = np.broadcast_to(follower.resonant.surge(moving)[0], ANGLES)
+    rigid = follower.spring + cam_speed**2 * follower.inertia
+    return SweptForces(surge, follower.elastic(speed[:, None], moving)[0] - rigid)
 
 
 def spring_sweep(
@@ -301,7 +325,7 @@ class _Follower:
         normal = push * self.gain
         torque = np.maximum(push, 0.0, out=push)
         torque *= self.arm
-        elastic = self._elastic(speed, moving)
+        elastic = self.elastic(speed, moving)
         lowest, soft = np.argmin(normal, axis=1), np.argmin(elastic, axis=1)
         return {
             "contact_force_min": normal.min(axis=1),
@@ -316,7 +340,7 @@ class _Follower:
             "torque_max": torque.max(axis=1),
         }
 
-    def _elastic(self, speed: Array, moving: NDArray[np.complex128]) -> Array:
+    def elastic(self, speed: Array, moving: NDArray[np.complex128]) -> Array:
         """Axial contact force (m, n) of the mass on its stem, N; the spring with its surge."""
         machine, spectrum = self.machine, self.resonant.spectrum
         stem, rate = machine.axial_stiffness, machine.spring.rate

@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from camwright.geometry.arrays import FULL_TURN, Array, finite
+from camwright.geometry.arrays import FULL_TURN, Array, Values, finite
 from camwright.geometry.errors import InputError
 from camwright.pipeline.base.units import celsius
 from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, RATED_REVOLUTIONS
@@ -33,16 +33,17 @@ CONTAMINATION: MappingProxyType[Cleanliness, tuple[float, float]] = MappingProxy
 SOURCE = "v1, e_C and a_ISO of ISO 281:2007, recalled: verify"
 
 
-def rated_viscosity(speed: float, pitch_diameter: float) -> float:
-    """Rated kinematic viscosity v1 of a bearing, m2/s, at a speed, rpm, > 0; diameter in m.
+def rated_viscosity(speed: Values, pitch_diameter: float) -> Values:
+    """Rated kinematic viscosity v1 of a bearing (...), m2/s, at a speed, rpm, > 0; diameter in m.
 
     References
     ----------
     ISO 281:2007, 9.3.3.2: 45000 n^-0.83 D^-0.5 below 1000 rpm, 4500 n^-0.5 D^-0.5 above, in
     mm2/s and mm; recalled: verify.
     """
-    slow = 45_000.0 * speed**-0.83 if speed < 1000.0 else 4500.0 * speed**-0.5
-    return float(1e-6 * slow / np.sqrt(1e3 * pitch_diameter))
+    slow, fast = 45_000.0 * speed**-0.83, 4500.0 * speed**-0.5
+    rated: Values = np.where(np.real(speed) < 1000.0, slow, fast)
+    return rated * (1e-6 / float(np.sqrt(1e3 * pitch_diameter)))
 
 
 def contamination_factor(cleanliness: Cleanliness, pitch_diameter: float) -> float:
@@ -91,15 +92,37 @@ def life_modification(viscosity_ratio: float, cleanliness_ratio: ArrayLike) -> A
     """
     if not viscosity_ratio >= LEAST_VISCOSITY_RATIO:
         raise InputError("viscosity ratio", viscosity_ratio, f">= {LEAST_VISCOSITY_RATIO:g}")
-    kappa = min(viscosity_ratio, GREATEST_VISCOSITY_RATIO)
-    if kappa < 0.4:
-        film = 2.2649 / kappa**0.054381
-    else:
-        film = 1.9987 / kappa ** (0.19087 if kappa < 1.0 else 0.071739)
-    load = finite("e_C P_u / P", cleanliness_ratio)
-    left = 1.0 - (2.5671 - film) ** 0.83 * np.cbrt(load)
+    kappa = np.asarray(viscosity_ratio, dtype=float)
+    return _modification(kappa, finite("e_C P_u / P", cleanliness_ratio))
+
+
+def _modification(viscosity_ratio: Values, load: Values) -> Values:
+    """a_ISO of kappa and e_C P_u / P, which a complex step may have changed."""
+    most = GREATEST_VISCOSITY_RATIO
+    kappa = np.where(np.real(viscosity_ratio) < most, viscosity_ratio, most)
+    size = np.real(kappa)
+    exponent = np.where(size < 0.4, 0.054381, np.where(size < 1.0, 0.19087, 0.071739))
+    film = np.where(size < 0.4, 2.2649, 1.9987) / kappa**exponent
+    left = 1.0 - (2.5671 - film) ** 0.83 * load ** (1.0 / 3.0)
     least = (0.1 / GREATEST_MODIFICATION) ** (1.0 / 9.3)
-    return np.asarray(0.1 * np.maximum(left, least) ** -9.3)
+    modified: Values = 0.1 * np.where(np.real(left) > least, left, least) ** -9.3
+    return modified
+
+
+def life_used(
+    force: Values, dynamic_rating: float, cleanliness_load: float, viscosity_ratio: Values
+) -> Values:
+    """(P/C)^3/a_ISO (...): share of a million revolutions used per revolution, times 1e6.
+
+    Parameters
+    ----------
+    force : array (...)             P, N, > 0
+    dynamic_rating : float          C, N, > 0
+    cleanliness_load : float        e_C P_u, N, >= 0
+    viscosity_ratio : array (...)   kappa, >= 0.1
+    """
+    modified = _modification(viscosity_ratio, cleanliness_load / force)
+    return (force / dynamic_rating) ** BALL_LIFE_EXPONENT / modified
 
 
 def modified_life(
@@ -129,8 +152,8 @@ def modified_life(
     """
     loaded = normal_force > 0.0
     force = normal_force[loaded]
-    modified = life_modification(viscosity_ratio, cleanliness_load / force)
-    used = (force / dynamic_rating) ** BALL_LIFE_EXPONENT / modified
+    life_modification(viscosity_ratio, 0.0)  # refuses a ratio outside of the standard
+    used = life_used(force, dynamic_rating, cleanliness_load, np.asarray(viscosity_ratio))
     rate = float(np.sum(used * np.abs(spin[loaded]))) / normal_force.size / FULL_TURN
     if rate == 0.0:
         return np.inf

@@ -171,11 +171,21 @@ class Roller(Part):
             rolling=driven,
         )
 
+    @property
+    def drag(self) -> Drag:
+        """Inertia and drag of the roller; without a friction coefficient it does not slip."""
+        return Drag(
+            inertia=self.rotor_inertia,
+            friction=_NO_SLIP if self.friction is None else self.friction,
+            torque=self.bearing.drag_torque or 0.0,
+            bearing_friction=self.bearing.friction or 0.0,
+            pin_radius=self.hub_radius,
+        )
+
     def _driven(
         self, motion: RollerMotion, contact: ContactHistory, force: Array, speed: float
     ) -> RollingContact:
         """Rolling contact under inertia and bearing drag."""
-        bearing = self.bearing
         return rolling_contact(
             force,
             motion.spin,
@@ -183,13 +193,7 @@ class Roller(Part):
             motion.rolling_speed,
             contact.half_width,
             contact.relative_radius,
-            drag=Drag(
-                inertia=self.rotor_inertia,
-                friction=_NO_SLIP if self.friction is None else self.friction,
-                torque=bearing.drag_torque or 0.0,
-                bearing_friction=bearing.friction or 0.0,
-                pin_radius=self.hub_radius,
-            ),
+            drag=self.drag,
             radius=self.radius,
             period=FULL_TURN / speed,
         )

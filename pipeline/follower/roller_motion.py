@@ -89,7 +89,8 @@ def roller_motion(
     speed = float(finite("cam_speed", cam_speed))
     lift, slope, bend = pitch.lift.derivatives(theta, 2)
     stretch, curvature = pitch.speed_and_curvature(theta)
-    stretch_rate = ((slope - pitch.offset) * bend + (pitch.height_base + lift) * slope) / stretch
+    along, across = slope - pitch.offset, pitch.height_base + lift
+    stretch_rate = path_speed_slope(along, across, slope, bend, stretch)
     spin_per_turn = rolling_share(stretch, roller_radius)
     return RollerMotion(
         theta=theta,
@@ -99,6 +100,13 @@ def roller_motion(
         pitch_speed=speed * stretch,
         rolling_speed=speed * stretch * (1.0 - roller_radius * curvature),
     )
+
+
+def path_speed_slope(
+    along: Values, across: Values, slope: Values, bend: Values, speed: Values
+) -> Values:
+    """Derivative of |dP/dtheta|, m/rad2, of the roller centre: s' - e along, d + s across."""
+    return (along * bend + across * slope) / speed
 
 
 def rolling_share(pitch_speed: Values, roller_radius: float | Array) -> Values:

@@ -9,14 +9,16 @@ In the order of the calculation:
 | `smoothing_forecast`    | checks of a wider smoother, forecast         | utilisation             |
 | `smoothing_feedback`    | smoother of the next trial                   | strength                |
 | `scenario`              | design variables, ratings, load cases        | k, N/m; P, N; r0, m     |
-| `constraints`           | limits of a synthesis by cam angle           | utilisation             |
+| `cam_state`             | motion and forces of a cam in a scenario     | s, m; F, N              |
+| `part_constraints`      | limits of the parts by cam angle             | utilisation             |
+| `constraints`           | all limits of a synthesis by cam angle       | utilisation             |
 | `objective`             | terms of the objective over their references | loss, force; ratio      |
 | `gradients`             | derivatives by complex steps                 | d/dE, d/dk, d/dP, d/dr0 |
 | `bounds`                | limits in drawing units; relaxed ratings     | as in the case file     |
 | `allowables`            | ratings of a case                            | SI                      |
 | `energy_spline`         | stored energy as a quintic B-spline          | E, J; E', N m           |
 | `synthesis_problem`     | problem, design, ripple of a crank torque    | ripple ratio            |
-| `problem_setup`         | problem of a case, with tolerance corners    |                         |
+| `problem_setup`         | problem of a case; with other rollers        |                         |
 | `cone_program`          | second-order cone programs                   | x, multipliers          |
 | `linear_model`          | state of a search and its linear models      |                         |
 | `sampled_problem`       | functions of a problem at sampled cam angles |                         |
@@ -27,7 +29,6 @@ In the order of the calculation:
 | `multistart`            | best design of several starts, agreement     | ripple                  |
 | `shadow_prices`         | change of the ripple per unit of a limit     | N m per unit            |
 | `infeasibility`         | conflicting limits, feasible relaxations     | factor                  |
-| `roller_alternatives`   | problems with the rollers of the catalogue   |                         |
 | `fe_correction`         | correction by finite elements; JSON record   | ratio                   |
 
 Imports `geometry`, `base`, `engine`, `contact`, `follower`, `case`, `cycle` and `checks`.

@@ -2,41 +2,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 import scipy
 
 from camwright.geometry.arrays import FULL_TURN
+from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import (
+    GUIDE_GAP,
     JAM_INDEX,
     JUMP_SPEED,
     PRESSURE_ANGLE,
     ROLLER_LIFE,
     ROLLER_LOAD_SHARE,
+    ROLLER_RELIABILITY,
     ROLLER_STATIC_SAFETY,
     SPRING_FATIGUE,
     SPRING_SOLID,
+    VISCOSITY_RATIO,
 )
-from camwright.pipeline.case.machine import machines
+from camwright.pipeline.case.machine import Machine, machines
+from camwright.pipeline.checks import camshaft_strength, part_strength, surface_durability
 from camwright.pipeline.checks.cam_shape import least_concave_radius
+from camwright.pipeline.checks.camshaft_strength import tooth_torque_limits
+from camwright.pipeline.checks.check import Declaration
 from camwright.pipeline.checks.contact_strength import LoadCycles, life_turns, pressure_allowables
 from camwright.pipeline.checks.guide_strength import pv_limit
+from camwright.pipeline.checks.guide_wear import greatest_temperatures, pv_of_wear
+from camwright.pipeline.checks.key_strength import keyway_root_of, torque_limits
+from camwright.pipeline.checks.manufacture import wave_amplitude
 from camwright.pipeline.checks.part_strength import (
     allowed_pin_stress,
+    bore_pressure_limit,
     fork_pressure,
     pin_shear,
+    ring_force_limit,
     seat_pressure,
 )
-from camwright.pipeline.checks.roller_bearing import allowed_spin
+from camwright.pipeline.checks.roller_bearing import allowed_spin, least_speed
 from camwright.pipeline.checks.spring_strength import Work, hardest_work, relaxation_allowed
+from camwright.pipeline.cycle.part_loads import edge_pressure_of
+from camwright.pipeline.cycle.solution import Solution
 from camwright.pipeline.cycle.speed_sweep import highest_speed
+from camwright.pipeline.follower.bearing_life import contamination_factor, reliability_factor
+from camwright.pipeline.follower.guide_friction import thermal_resistance
+from camwright.pipeline.follower.guide_reactions import Guide
 from camwright.pipeline.smoothing.constraints import ROWS
-from camwright.pipeline.smoothing.scenario import Ratings
+from camwright.pipeline.smoothing.scenario import ModifiedLife, Ratings
 
 MILLION_TURNS = 1e6 * FULL_TURN  # rad
 _TRAVEL_LEAST, _TRAVEL_MOST = 1e-6, 1.0  # m, of any spring
+_LINE_LOADS = (1.0, 1e9)  # N/m, of any guide
 
 
 def ratings_of(case: Case) -> Ratings:
@@ -59,7 +79,15 @@ def ratings_of(case: Case) -> Ratings:
     # Without a stated over-speed the contact is kept at the fastest load case.
     over = highest_speed(states) / machine.gear_ratio
     kept = [row for row in ROWS if row is not JAM_INDEX or covers("guides")]
-    pressures = (guides.a.pressure_limit, guides.b.pressure_limit)
+    by_guide: _GuideRatings = {}
+    if covers("guides"):
+        by_guide = _of_guides(case, machine, fastest=over)
+    torque, torque_by = _least(torque_limits(machine))
+    tooth, tooth_by = _least(tooth_torque_limits(machine))
+    shaft, cam = machine.camshaft, machine.cam
+    by_bearing: _BearingRatings = {}
+    if covers("roller_bearing"):
+        by_bearing = _of_bearing(machine)
     return Ratings(
         roller_radius=roller.radius,
         offset=machine.cam.offset,
@@ -72,19 +100,131 @@ def ratings_of(case: Case) -> Ratings:
         contact_modulus=machine.contact_modulus,
         crown_radius=roller.crown_radius,
         overspeed=over,
+        fastest=over,
         jump_speed=limits[JUMP_SPEED] * over,
         normal_force=normal_force,
         normal_force_by=normal_force_by or "roller_static",
         force_safety=limits[ROLLER_STATIC_SAFETY] if by_rating else 1.0,
         dynamic_rating=bearing.C,
-        bearing_drag=bearing.drag_torque or 0.0,
-        bearing_friction_arm=(bearing.friction or 0.0) * roller.hub_radius,
         life_force_cubed=cubed,
-        roller_spin=allowed_spin(machine) if covers("roller_bearing") else None,
-        guide_pressure=pressures if covers("guides") else (None, None),
-        guide_pv=((pv_limit(guides.a), pv_limit(guides.b)) if covers("guides") else (None, None)),
-        guide_area=(guides.a.projected_area, guides.b.projected_area),
+        guide_gap=limits[GUIDE_GAP],
+        guide_mouth=machine.overhang_at_max_lift - 0.5 * guides.a.length,
+        friction=roller.friction,
+        drag=roller.drag,
+        waves=None if cam.profile_tolerance is None else (wave_amplitude(cam), cam.waviness_length),
+        cam_torque=torque,
+        cam_torque_by=torque_by or "key_pressure",
+        tooth_torque=tooth,
+        tooth_torque_by=tooth_by or "gear_bending",
+        shaft_drag=0.0 if shaft is None else shaft.drag,
+        keyway=keyway_root_of(machine),
+        **by_bearing,
+        **by_guide,
     )
+
+
+class _BearingRatings(TypedDict, total=False):
+    roller_spin: float | None
+    modified: ModifiedLife
+    modified_rate: float
+    roller_spin_least: float
+
+
+def _of_bearing(machine: Machine) -> _BearingRatings:
+    """Ratings of the roller bearing by speed, film and cleanliness."""
+    rated: _BearingRatings = {"roller_spin": allowed_spin(machine)}
+    limits, roller = machine.limits, machine.roller
+    if roller is None:
+        return rated
+    bearing, life = roller.bearing, limits[ROLLER_LIFE]
+    viscosity, circle = bearing.viscosity, bearing.ball_circle
+    if viscosity is None or circle is None:
+        return rated
+    slowest = least_speed(viscosity, circle, limits[VISCOSITY_RATIO])
+    if slowest is not None:
+        rated["roller_spin_least"] = slowest
+    rating, endured, cleanliness = bearing.C, bearing.fatigue_load_limit, bearing.contamination
+    if rating and endured and cleanliness and life:
+        share = contamination_factor(cleanliness, circle)
+        rated["modified"] = ModifiedLife(rating, share * endured, viscosity, circle)
+        rated["modified_rate"] = (
+            reliability_factor(limits[ROLLER_RELIABILITY]) * MILLION_TURNS / life
+        )
+    return rated
+
+
+class _GuideRatings(TypedDict, total=False):
+    guide_pressure: tuple[float | None, float | None]
+    guide_pv: tuple[float | None, float | None]
+    guide_wear_pv: tuple[float | None, float | None]
+    guide_area: tuple[float, float]
+    guide_edge_load: tuple[float | None, float | None]
+    guide_power: tuple[float | None, float | None]
+    guide_power_by: tuple[str, str]
+    guide_slope: tuple[float | None, float | None]
+    guide_length: tuple[float, float]
+
+
+def _of_guides(case: Case, machine: Machine, fastest: float) -> _GuideRatings:
+    """Ratings of guides A and B; fastest: greatest cam speed of the load cases, rad/s."""
+    both = machine.guides.both
+    powers = [_least(power_limits(side, guide, case, machine)) for side, guide in both]
+    edges = [edge_load(machine, guide, ROOM) for _, guide in both]
+    slopes = [None if g.speed_limit is None else g.speed_limit / fastest for _, g in both]
+    (a, b) = (guide for _, guide in both)
+    return {
+        "guide_pressure": (a.pressure_limit, b.pressure_limit),
+        "guide_pv": (pv_limit(a), pv_limit(b)),
+        "guide_wear_pv": (pv_of_wear(a, machine.limits), pv_of_wear(b, machine.limits)),
+        "guide_area": (a.projected_area, b.projected_area),
+        "guide_edge_load": (edges[0], edges[1]),
+        "guide_power": (powers[0][0], powers[1][0]),
+        "guide_power_by": (powers[0][1], powers[1][1]),
+        "guide_slope": (slopes[0], slopes[1]),
+        "guide_length": (a.length, b.length),
+    }
+
+
+def power_limits(side: str, guide: Guide, case: Case, machine: Machine) -> dict[str, float]:
+    """Greatest mean friction power of a guide allowed by each of its checks, W, by its id.
+
+    Without those that no lift can pass, below the ambient temperature.
+    """
+    resistance, ambient = thermal_resistance(guide), machine.guides.ambient_temperature
+    if resistance is None or ambient is None:
+        return {}
+    allowed = greatest_temperatures(guide, case.follower.stem_material)
+    return {
+        f"{name}_{side}": (temperature - ambient) / resistance
+        for name, temperature in allowed.items()
+        if temperature > ambient
+    }
+
+
+def edge_load(machine: Machine, guide: Guide, temperature: float) -> float | None:
+    """Line load in a guide whose edge pressure is the yield strength, N/m; None if not known."""
+    strength, peak = guide.material.yield_strength_at(temperature), edge_pressure_of(machine, guide)
+    if not strength > 0.0 or guide.clearance <= 0.0:
+        return None
+
+    def excess(log_load: float) -> float:
+        return float(peak(np.exp([log_load]))[0]) / strength - 1.0
+
+    ends = np.log(_LINE_LOADS[0]), np.log(_LINE_LOADS[1])
+    if not excess(ends[0]) < 0.0 < excess(ends[1]):
+        return None
+    return float(np.exp(scipy.optimize.brentq(excess, *ends, xtol=1e-12)))
+
+
+def softening(machine: Machine, guide: Guide, temperature: float) -> tuple[float, float]:
+    """Shares of pressure limit and line load of a guide that are left at a temperature, K.
+
+    1 where they are not known at the temperature: the check is then not evaluated.
+    """
+    cold, hot = (edge_load(machine, guide, each) for each in (ROOM, temperature))
+    stated, left = guide.pressure_limit, guide.pressure_limit_at(temperature)
+    pressure = 1.0 if not stated or left is None or np.isnan(left) else left / stated
+    return pressure, 1.0 if cold is None or hot is None else hot / cold
 
 
 def greatest_cycles(case: Case) -> LoadCycles:
@@ -101,12 +241,102 @@ def greatest_cycles(case: Case) -> LoadCycles:
     return LoadCycles(turns, turns * max(path / case.roller.radius - 1.0, 1.0))
 
 
-def travel_limits(case: Case) -> dict[str, float]:
+class Surge(NamedTuple):
+    """Rise of the forces of the hardest spring by its surge at a lift, N.
+
+    travel: maximum lift, m; stress: of the greatest force; most, least: of greatest and least
+    force, where the wire is fatigued most.
+    """
+
+    travel: float
+    stress: float
+    most: float
+    least: float
+
+
+def surge_of(solved: Solution) -> Surge | None:
+    """Surge of the spring of a solved cam; None without a spring design."""
+    design, sweep = solved.machine.spring.design, solved.hardest_spring
+    if design is None or sweep is None:
+        return None
+    travel = solved.contour.pitch.lift.highest.value
+    preload = max(machine.spring.preload for machine in solved.machines)
+    work = hardest_work(solved.machine.spring, design, preload, travel)
+    end, speed = np.unravel_index(
+        np.argmax(design.fatigue_use(sweep.least, sweep.greatest)), sweep.least.shape
+    )
+    return Surge(
+        travel=travel,
+        stress=float(sweep.greatest.max()) - work.greatest,
+        most=float(sweep.greatest[end, speed]) - work.greatest,
+        least=float(sweep.least[end, speed]) - work.preload,
+    )
+
+
+_SCALED: Mapping[str, tuple[Declaration, float]] = {
+    each.id: (each, power)
+    for each, power in (
+        (part_strength.roller_pin_fatigue, 1.0),
+        (surface_durability.case_depth, 0.5),
+        (camshaft_strength.shaft_fatigue, 1.0),
+        (camshaft_strength.shaft_yield, 1.0),
+        (camshaft_strength.shaft_deflection, 1.0),
+        (camshaft_strength.shaft_slope, 1.0),
+        (camshaft_strength.shaft_bearing_static, 1.0),
+        (camshaft_strength.shaft_bearing_life, 3.0),
+    )
+}
+"""Checks whose utilisation grows about with a power of the greatest normal force."""
+_SCALED_PRESSURE = (surface_durability.hardened_case, surface_durability.case_shear)
+"""Checks whose utilisation grows about with the greatest contact pressure."""
+
+
+def scaled_limits(solved: Solution) -> tuple[dict[str, float], dict[str, float]]:
+    """Normal force, N, and contact pressure, Pa, at the limit of further checks, by their ids.
+
+    From their utilisation on a solved cam: they depend on the whole turn, on the unbalance or on
+    the stress below the surface, and have no closed form by cam angle.
+    """
+    force = max(float(cycle.loads.normal_force.max()) for cycle in solved.cycles)
+    pressure = max(float(cycle.surface.p0.max()) for cycle in solved.cycles)
+    forces = {name: (force, each, power) for name, (each, power) in _SCALED.items()}
+    pressures = {each.id: (pressure, each, 1.0) for each in _SCALED_PRESSURE}
+    limits = []
+    for known in (forces, pressures):
+        allowed = {}
+        for name, (value, declared, power) in known.items():
+            made = declared(solved)
+            use = None if made is None else made.utilisation
+            if use is not None and 0.0 < use < np.inf and value > 0.0:
+                allowed[name] = value / use ** (1.0 / power)
+        limits.append(allowed)
+    return limits[0], limits[1]
+
+
+def corrected_ratings(ratings: Ratings, solved: Solution) -> Ratings:
+    """Ratings with the limits that follow from a solved cam; see `surge_of`, `scaled_limits`."""
+    case = solved.case
+    forces, pressures = scaled_limits(solved)
+    pressure = _least(pressure_allowables(solved.machine, greatest_cycles(case)) | pressures)
+    force = _least(force_limits(case) | forces)
+    static = force[1] == "roller_static"
+    return replace(
+        ratings,
+        travel=_least(travel_limits(case, surge_of(solved)))[0],
+        pressure=pressure[0],
+        pressure_by=pressure[1],
+        normal_force=force[0],
+        normal_force_by=force[1] or "roller_static",
+        force_safety=case.limits[ROLLER_STATIC_SAFETY] if static else 1.0,
+    )
+
+
+def travel_limits(case: Case, surge: Surge | None = None) -> dict[str, float]:
     """Greatest lift allowed by each check of the spring, m, by its id.
 
     Where rate or preload is free, the spring design is open and the spring travel alone limits
-    the lift. Stress and fatigue are those without surge, which depends on the lift: a lower bound
-    of their demands.
+    the lift. Without a surge, which depends on the lift, stress and fatigue are a lower bound; a
+    surge grows with the lift.
     """
     spring, limits = case.spring, case.limits
     allowed = {}
@@ -116,11 +346,18 @@ def travel_limits(case: Case) -> dict[str, float]:
     if design is None or {"spring_rate", "preload"} & set(case.smoothing.free):
         return allowed
     preload = max(machine.spring.preload for machine in machines(case))
+    added = Surge(1.0, 0.0, 0.0, 0.0) if surge is None else surge
+
+    def fatigue(work: Work[float]) -> float:
+        share = work.travel / added.travel
+        least, most = work.preload + added.least * share, work.greatest + added.most * share
+        return limits[SPRING_FATIGUE] - design.fatigue_safety(least, most)
+
     over: dict[str, Callable[[Work[float]], float]] = {
-        "spring_stress": lambda work: design.static_use(work.greatest) - 1.0,
-        "spring_fatigue": lambda work: (
-            limits[SPRING_FATIGUE] - design.fatigue_safety(work.preload, work.greatest)
+        "spring_stress": lambda work: (
+            design.static_use(work.greatest + added.stress * work.travel / added.travel) - 1.0
         ),
+        "spring_fatigue": fatigue,
         "spring_solid": lambda work: (
             limits[SPRING_SOLID] - design.solid_clearance(work.preload, work.travel)
         ),
@@ -157,6 +394,7 @@ def force_limits(case: Case) -> dict[str, float]:
         "roller_radial": bearing.radial_limit,
         "roller_static_radial": bearing.static_radial_limit,
         "roller_load_share": None if bearing.C is None else bearing.C * limits[ROLLER_LOAD_SHARE],
+        "roller_ring_fatigue": ring_force_limit(machines(case)[0]),
     }
     allowed = {}
     if covers("roller_bearing"):
@@ -172,6 +410,9 @@ def force_limits(case: Case) -> dict[str, float]:
     for name, stress in stresses.items():
         if stress.allowed is not None:
             allowed[name] = stress.allowed / stress.per_newton
+    pressure = bore_pressure_limit(machines(case)[0])
+    if pressure is not None:
+        allowed["bore_pressure"] = pressure * 2.0 * case.cam.bore_radius * case.cam.width
     return allowed
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from camwright.pipeline.base.units import in_unit
-from camwright.pipeline.case.limits import TOOL_RADIUS, AnyLimit, utilisation_slope
+from camwright.pipeline.case.limits import GUIDE_GAP, TOOL_RADIUS, AnyLimit, utilisation_slope
 from camwright.pipeline.checks.cam_shape import TOOL_ALLOWANCE
 from camwright.pipeline.smoothing.constraints import CONSTRAINTS, FACTOR_MAX
 from camwright.pipeline.smoothing.scenario import Ratings
@@ -18,6 +18,8 @@ _PRESSURES = {
     "shakedown": "shakedown pressure",
     "shakedown_traction": "shakedown pressure with sliding",
     "edge_shakedown": "edge pressure at shakedown with sliding",
+    "hardened_case": "contact pressure at the strength of case and core",
+    "case_shear": "contact pressure at the shear fatigue of case and core",
 }
 _FORCES = {
     "roller_static": "static load rating of the roller",
@@ -28,6 +30,25 @@ _FORCES = {
     "roller_pin_shear": "normal force at the maximum shear stress of the roller pin",
     "roller_pin_pressure": "normal force at the maximum pressure in the bearing's bore",
     "cheek_pressure": "normal force at the maximum pressure of the pin in its fork",
+    "roller_ring_fatigue": "normal force at the bending fatigue of the roller's outer ring",
+    "bore_pressure": "normal force at the maximum pressure of the cam's bore",
+    "roller_pin_fatigue": "normal force at the bending fatigue of the roller pin",
+    "case_depth": "normal force at the least case depth",
+    "shaft_fatigue": "normal force at the fatigue of the camshaft",
+    "shaft_yield": "normal force at the yield of the camshaft",
+    "shaft_deflection": "normal force at the maximum deflection of the camshaft",
+    "shaft_slope": "normal force at the maximum slope of the camshaft",
+    "shaft_bearing_static": "normal force at the static load rating of the camshaft bearings",
+    "shaft_bearing_life": "normal force at the rating life of the camshaft bearings",
+}
+_TORQUES = {
+    "key_pressure": "cam torque at the maximum pressure of the key on the cam",
+    "key_pressure_shaft": "cam torque at the maximum pressure of the key on the camshaft",
+    "key_shear": "cam torque at the maximum shear stress of the key",
+    "cam_slip": "cam torque at the slip of the cam's seat",
+    "gear_bending": "torque at the maximum root stress of the driving gear",
+    "pinion_bending": "torque at the maximum root stress of the pinion",
+    "gear_contact": "torque at the maximum flank pressure of the driving gear",
 }
 
 Change = Callable[[Ratings, float], Ratings]
@@ -94,6 +115,21 @@ def _of_parts(ratings: Ratings) -> dict[str, Bound | None]:
             _times(ratings.normal_force, ratings.force_safety),
             lambda each, factor: replace(each, normal_force=_times(each.normal_force, factor)),
         ),
+        "traction_demand": _of_part(
+            "friction of the roller on the cam", "-", ratings.friction,
+            lambda each, factor: replace(each, friction=_times(each.friction, factor)),
+        ),
+        "key_pressure": _of_part(
+            _TORQUES[ratings.cam_torque_by], "N m", ratings.cam_torque,
+            lambda each, factor: replace(each, cam_torque=_times(each.cam_torque, factor)),
+        ),
+        "gear_bending": _of_part(
+            _TORQUES[ratings.tooth_torque_by], "N m", ratings.tooth_torque,
+            lambda each, factor: replace(each, tooth_torque=_times(each.tooth_torque, factor)),
+        ),
+        "guide_gap": _guide_gap(ratings),
+        "bearing_lubrication": _roller_spin_least(ratings),
+        "roller_modified_life": _modified_life(ratings),
         "roller_life": _roller_life(ratings),
         "concave_radius": _concave_radius(ratings),
         "jump_speed": _jump_speed(ratings),
@@ -117,12 +153,78 @@ def _of_guide(ratings: Ratings, place: int, side: str) -> dict[str, Bound | None
     def with_pv(each: Ratings, factor: float) -> Ratings:
         return replace(each, guide_pv=_side_times(each.guide_pv, place, factor))
 
+    def with_wear(each: Ratings, factor: float) -> Ratings:
+        return replace(each, guide_wear_pv=_side_times(each.guide_wear_pv, place, factor))
+
+    def with_load(each: Ratings, factor: float) -> Ratings:
+        return replace(each, guide_edge_load=_side_times(each.guide_edge_load, place, factor))
+
+    def with_power(each: Ratings, factor: float) -> Ratings:
+        return replace(each, guide_power=_side_times(each.guide_power, place, factor))
+
+    def with_slope(each: Ratings, factor: float) -> Ratings:
+        return replace(each, guide_slope=_side_times(each.guide_slope, place, factor))
+
     pressure, pv = ratings.guide_pressure[place], ratings.guide_pv[place]
-    words = f"bearing pressure of guide {side}"
+    load, power = ratings.guide_edge_load[place], ratings.guide_power[place]
+    expands = ratings.guide_power_by[place] != f"guide_temperature_{side}"
+    at = "clearance" if expands else "temperature"
+    heat = (
+        f"friction power of guide {side} at its least {at}"
+        if expands
+        else (f"friction power of guide {side} at its greatest {at}")
+    )
     return {
-        f"guide_pressure_{side}": _of_part(words, "MPa", pressure, with_pressure),
+        f"guide_pressure_{side}": _of_part(
+            f"bearing pressure of guide {side}", "MPa", pressure, with_pressure
+        ),
         f"guide_pv_{side}": _of_part(f"PV of guide {side}", "MPa m/s", pv, with_pv),
-    }
+        f"guide_wear_{side}": _of_part(
+            f"PV of guide {side} at its wear depth", "MPa m/s",
+            ratings.guide_wear_pv[place], with_wear,
+        ),
+        f"guide_edge_pressure_{side}": _of_part(
+            f"line load of guide {side} at the yield strength", "N/mm", load, with_load
+        ),
+        f"guide_temperature_{side}": _of_part(heat, "W", power, with_power),
+        f"guide_speed_{side}": _of_part(
+            f"lift per radian at the maximum sliding speed in guide {side}", "mm",
+            ratings.guide_slope[place], with_slope,
+        ),
+    }  # fmt: skip
+
+
+def _guide_gap(ratings: Ratings) -> Bound | None:
+    """Utilisation by the gap over the roller radius."""
+    if ratings.guide_gap is None:
+        return None
+
+    def with_gap(each: Ratings, factor: float) -> Ratings:
+        return replace(each, guide_gap=_times(each.guide_gap, factor))
+
+    slope = -1.0 / in_unit(ratings.roller_radius, "mm")
+    return Bound(GUIDE_GAP.title, in_unit(ratings.guide_gap, "mm"), "mm", slope, with_gap)
+
+
+def _roller_spin_least(ratings: Ratings) -> Bound | None:
+    if ratings.roller_spin_least is None:
+        return None
+    shown = in_unit(ratings.roller_spin_least, "rpm")
+    words = "mean speed of the roller at the least viscosity ratio"
+    return Bound(words, shown, "rpm", -1.0 / shown)
+
+
+def _modified_life(ratings: Ratings) -> Bound | None:
+    """Utilisation by the cube root of the rate of damage."""
+    if ratings.modified_rate is None:
+        return None
+    shown = in_unit(ratings.modified_rate, "rpm")
+
+    def with_rate(each: Ratings, factor: float) -> Ratings:
+        return replace(each, modified_rate=_times(each.modified_rate, factor))
+
+    words = "damage of the roller bearing at its modified life, as millions of ratings' turns"
+    return Bound(words, shown, "rpm", 1.0 / (3.0 * shown), with_rate)
 
 
 def _roller_life(ratings: Ratings) -> Bound | None:

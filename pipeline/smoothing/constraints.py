@@ -11,17 +11,16 @@ value, title, unit and slope from the row.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Container, Mapping
 from functools import lru_cache
 from math import inf
-from typing import Generic, Literal, NamedTuple, TypeVar
+from typing import Literal
 
 import numpy as np
 
 from camwright.geometry.arrays import Array
 from camwright.geometry.monotone_cubic import MonotoneCubic
-from camwright.geometry.pitch_curve import curvature_slope, magnitude, speed_and_curvature
+from camwright.geometry.pitch_curve import curvature_slope, magnitude
 from camwright.pipeline.case.limits import (
     CAM_RADIUS,
     CONTACT_FORCE_MARGIN,
@@ -32,197 +31,37 @@ from camwright.pipeline.case.limits import (
     PRESSURE_ANGLE,
     UNDERCUT_FACTOR,
     AnyLimit,
-    Limit,
-    OpenLimit,
 )
 from camwright.pipeline.checks import demands
 from camwright.pipeline.contact.elliptic_contact import pressure_cubed_per_force
 from camwright.pipeline.contact.hertz import peak_pressure_square
-from camwright.pipeline.follower.follower_forces import levers
-from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, rolling_share, wear
-from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario, Value
+from camwright.pipeline.follower.roller_motion import BALL_LIFE_EXPONENT, wear
+from camwright.pipeline.smoothing.cam_state import (
+    Constraint,
+    Forces,
+    Jet,
+    Loads,
+    Mean,
+    Motion,
+    Shape,
+    State,
+    forces,
+    lift_jet,
+    loaded,
+    motion,
+)
+from camwright.pipeline.smoothing.part_constraints import PART_SHAPE, PARTS
+from camwright.pipeline.smoothing.scenario import DesignVariables, Ratings, Scenario
+
+__all__ = [
+    "CONSTRAINTS", "FACTOR_MAX", "LOADS", "ROWS", "SHAPE", "Forces", "Jet", "Mean", "Motion",
+    "delivered_torque", "forces", "lift_jet", "load_utilisations", "motion", "shape_utilisations",
+]  # fmt: skip
 
 FACTOR_MAX = 4.0
 """Maximum factor of a relaxation."""
 _LEAST_FORCE = 1.0  # N, below which a crowned contact is far from any limit
 _CURVATURES, _CURVATURE_STEPS = (1.0, 1e6), 1500  # 1/m
-
-
-class Jet(NamedTuple):
-    """Lift and its derivatives by the cam angle, m/rad^k, each (n,)."""
-
-    lift: Array
-    slope: Array
-    bend: Array
-    jerk: Array
-
-
-def lift_jet(energy: tuple[Array, ...], variables: DesignVariables) -> Jet:
-    """Lift and three derivatives from the stored energy and its derivatives, J/rad^k.
-
-    F_s = sqrt(P^2 + 2 k E), s = 2 E / (F_s + P), and E' = F_s s' differentiated.
-    """
-    level, first, second, third = energy
-    force = np.sqrt(variables.preload**2 + 2.0 * variables.rate * level)
-    slope = first / force
-    bend = (second - variables.rate * slope**2) / force
-    return Jet(
-        lift=2.0 * level / (force + variables.preload),
-        slope=slope,
-        bend=bend,
-        jerk=(third - 3.0 * variables.rate * slope * bend) / force,
-    )
-
-
-class Motion(NamedTuple):
-    """Velocity of the roller centre along and across the follower axis, m/rad; pitch curve."""
-
-    along: Array
-    across: Array
-    speed: Array
-    curvature: Array
-
-    @property
-    def tangent(self) -> Array:
-        """Tangent of the pressure angle."""
-        return self.along / self.across
-
-
-def motion(jet: Jet, variables: DesignVariables, offset: float) -> Motion:
-    """Motion of the roller centre of a translating follower; see `PitchCurve`."""
-    along = jet.slope - offset
-    across = np.sqrt(variables.prime_radius**2 - offset**2) + jet.lift
-    return Motion(along, across, *speed_and_curvature(along, across, jet.slope, jet.bend))
-
-
-class Forces(NamedTuple):
-    """Forces of one scenario, N; factors of the side force on guides A and B.
-
-    lever: reactions of point supports; push: bearing load of the guides; rub: normal load of their
-    friction.
-    """
-
-    spring: Array
-    inertia: Array
-    axial: Array
-    normal: Array
-    jam: Array
-    lever: tuple[Array, Array]
-    push: tuple[Array, Array]
-    rub: tuple[Array, Array]
-
-
-def forces(
-    jet: Jet, path: Motion, highest: float, variables: DesignVariables, scenario: Scenario
-) -> Forces:
-    """Follower forces with implicit guide friction; see `follower_loads`.
-
-    Unlike there, the forces are not clipped at loss of contact and at jamming: the search needs
-    their slope beyond both.
-
-    Parameters
-    ----------
-    highest : float   maximum lift, m
-    """
-    spring = (
-        variables.preload * scenario.preload_factor
-        + variables.rate * scenario.rate_factor * jet.lift
-    )
-    inertia = scenario.mass * scenario.cam_speed**2 * jet.bend
-    viscous = scenario.viscous_damping * scenario.cam_speed * jet.slope
-    lever = levers(scenario.overhang + highest - jet.lift, scenario.guide_spacing)
-    fix = scenario.correction
-    rub = (lever[0] * fix.rubbing_a, lever[1] * fix.rubbing_b)
-    jam = (scenario.friction_a * rub[0] + scenario.friction_b * rub[1]) * magnitude(path.tangent)
-    axial = (spring + inertia + viscous) / (1.0 - np.sign(np.real(jet.slope)) * jam)
-    return Forces(
-        spring=spring,
-        inertia=inertia,
-        axial=axial,
-        normal=axial * np.sqrt(1.0 + path.tangent**2),
-        jam=jam,
-        lever=lever,
-        push=(lever[0] * fix.guide_a, lever[1] * fix.guide_b),
-        rub=rub,
-    )
-
-
-class Mean(NamedTuple):
-    """Power of a mean over the turn; terms (..., n) at equally spaced angles."""
-
-    terms: Array
-    power: float = 1.0
-
-    @property
-    def value(self) -> Array:
-        """(..., 1)"""
-        mean = np.mean(self.terms, axis=-1, keepdims=True)
-        return np.asarray(np.maximum(np.real(mean), 0.0) ** self.power)
-
-
-class Shape(NamedTuple):
-    """Unloaded cam at n cam angles."""
-
-    jet: Jet
-    path: Motion
-    ratings: Ratings
-
-    @property
-    def bend(self) -> Array:
-        """Roller radius times curvature of the pitch curve: 1 at a cusp."""
-        return self.ratings.roller_radius * self.path.curvature
-
-
-class Loads(NamedTuple):
-    """Cam in one scenario at n cam angles.
-
-    spin: of the roller, rad/s; side: side force on the stem, N; least_spring: spring force at
-    minimum lift, N.
-    """
-
-    jet: Jet
-    path: Motion
-    ratings: Ratings
-    scenario: Scenario
-    force: Forces
-    spin: Array
-    side: Array
-    least_spring: Value
-
-
-State = TypeVar("State", Shape, Loads)
-
-
-@dataclass(frozen=True)
-class Constraint(Generic[State]):
-    """A limit that the synthesis keeps.
-
-    Parameters
-    ----------
-    check : str              id of the check of the same demand
-    limit : Limit or callable   row of the table of limits; or ratings -> limit, SI, of a limit
-                             that a part sets. A value of None: not constrained
-    utilisation : callable   cam, limit -> (n,), or a `Mean` of the turn; None: does not apply
-    factor_max : float       maximum factor on a row's limit where limits conflict; 0: fixed
-    value_max : float        maximum value of a row's limit where limits conflict, SI
-    """
-
-    check: str
-    limit: AnyLimit | Callable[[Ratings], float | None]
-    utilisation: Callable[[State, float], Array | Mean | None] = field(repr=False)
-    factor_max: float = 0.0
-    value_max: float = inf
-
-    @property
-    def row(self) -> AnyLimit | None:
-        """Row of the table of limits; None: a part sets the limit."""
-        return self.limit if isinstance(self.limit, Limit | OpenLimit) else None
-
-    def value(self, ratings: Ratings) -> float | None:
-        """Limit, SI; None: not constrained."""
-        if isinstance(self.limit, Limit | OpenLimit):
-            return ratings.limits.get(self.limit)
-        return self.limit(ratings)
 
 
 def shape_utilisations(
@@ -244,19 +83,7 @@ def load_utilisations(
 
     Leading axes are those of stacked scenarios.
     """
-    path = motion(jet, variables, ratings.offset)
-    force = forces(jet, path, highest, variables, scenario)
-    loads = Loads(
-        jet,
-        path,
-        ratings,
-        scenario,
-        force,
-        spin=scenario.cam_speed * rolling_share(path.speed, ratings.roller_radius),
-        side=force.axial * path.tangent,
-        least_spring=variables.preload * scenario.preload_factor
-        + variables.rate * scenario.rate_factor * scenario.correction.least_lift,
-    )
+    loads = loaded(jet, highest, variables, ratings, scenario)
     return _utilisations(LOADS, loads, names)
 
 
@@ -365,7 +192,7 @@ def _roller_life(at: Loads, limit: float) -> Mean:
     of all by their shares.
     """
     running = 1.0 if at.scenario.duty is None else np.sign(at.scenario.duty)
-    terms: Array = running * wear(at.force.normal, at.spin)
+    terms: Array = running * wear(at.force.surged, at.spin)
     return Mean(terms / limit, 1.0 / BALL_LIFE_EXPONENT)
 
 
@@ -407,6 +234,7 @@ SHAPE: tuple[Constraint[Shape], ...] = (
     Constraint("concave_radius", lambda ratings: ratings.hollow_radius, _concave_radius),
     Constraint("curvature_rate", CURVATURE_RATE, _curvature_rate),
     Constraint("cam_radius", CAM_RADIUS, _cam_radius, factor_max=FACTOR_MAX),
+    *PART_SHAPE,
 )
 """Limits on the shape of the cam."""
 
@@ -448,6 +276,7 @@ LOADS: tuple[Constraint[Loads], ...] = (
     _guide_pv("A"),
     _guide_pressure("B"),
     _guide_pv("B"),
+    *PARTS,
 )
 """Limits on the loads of the cam in one scenario."""
 

@@ -10,10 +10,16 @@ import numpy as np
 import scipy
 
 from camwright.geometry.arrays import Array
+from camwright.pipeline.base.material import ROOM
 from camwright.pipeline.base.units import in_unit
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.checks.check import Check, depends_on_lift, within_depth
+from camwright.pipeline.checks.guide_strength import GUIDES, Side, hottest
 from camwright.pipeline.cycle.cycle import Cycle
+from camwright.pipeline.cycle.solution import Solution
+from camwright.pipeline.cycle.speed_sweep import SpeedSweep, SweptForces, swept_forces
+from camwright.pipeline.follower.roller_motion import rolling_share
+from camwright.pipeline.smoothing.allowables import corrected_ratings, softening
 from camwright.pipeline.smoothing.infeasibility import ConflictRecord
 from camwright.pipeline.smoothing.multistart import (
     NEGLIGIBLE,
@@ -22,7 +28,7 @@ from camwright.pipeline.smoothing.multistart import (
     StartsRecord,
 )
 from camwright.pipeline.smoothing.sampled_problem import Search
-from camwright.pipeline.smoothing.scenario import Correction
+from camwright.pipeline.smoothing.scenario import Correction, Ratings
 from camwright.pipeline.smoothing.shadow_prices import MachinePriceRecord, PriceRecord, prices
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
@@ -87,6 +93,7 @@ class Comparison:
     ----------
     applied : tuple of Correction       in the synthesis, by scenario
     corrections : tuple of Correction   by scenario, of this cam alone
+    ratings : Ratings                   with the limits that follow from this cam
     shifts : tuple of LimitShift        of each limit
     ripple_shift : float                change of ripple and costs by a further trial, relative, to
                                         first order: that of the Lagrangian
@@ -95,6 +102,7 @@ class Comparison:
 
     applied: tuple[Correction, ...]
     corrections: tuple[Correction, ...]
+    ratings: Ratings
     shifts: tuple[LimitShift, ...]
     ripple_shift: float
     converged: bool = True
@@ -165,29 +173,23 @@ def rank(checks: Sequence[Check], ripple: float) -> Rank:
     return Rank(len(uses) - len(over), max(over, default=0.0), ripple)
 
 
-def compared(problem: Problem, design: Design, cycles: Sequence[Cycle]) -> Comparison:
-    """Solved cycles of a design against its synthesis.
-
-    Parameters
-    ----------
-    cycles : sequence   of the design, one a load case
-    """
-    by_load_case = {cycle.load_case: _correction(cycle) for cycle in cycles}
+def compared(problem: Problem, design: Design, solved: Solution) -> Comparison:
+    """Solved cam of a design against its synthesis."""
+    by_load_case = corrections_of(solved)
     applied = tuple(each.correction for each in problem.scenarios)
     # A tolerance corner takes the correction of its load case.
     corrections = tuple(
         by_load_case.get(each.name.split(",")[0], each.correction) for each in problem.scenarios
     )
-    before, after = (_utilisation(problem, design, each) for each in (applied, corrections))
-    shifts = tuple(LimitShift(name, use, after[name]) for name, use in before.items())
+    ratings = corrected_ratings(problem.ratings, solved)
+    after = replace(_with_corrections(problem, corrections), ratings=ratings)
+    uses = [_utilisation(each, design) for each in (problem, after)]
+    shifts = tuple(LimitShift(name, use, uses[1][name]) for name, use in uses[0].items())
     ripple_shift = np.inf
     if design.lagrangian is not None:
-        now, then = (
-            design.lagrangian.at(_with_corrections(problem, each))
-            for each in (applied, corrections)
-        )
+        now, then = (design.lagrangian.at(each) for each in (problem, after))
         ripple_shift = (then - now) / max(design.objective, NEGLIGIBLE)
-    return Comparison(applied, corrections, shifts, ripple_shift, design.converged)
+    return Comparison(applied, corrections, ratings, shifts, ripple_shift, design.converged)
 
 
 def corrected(problem: Problem, design: Design, cams: Sequence[Comparison]) -> Problem:
@@ -215,7 +217,11 @@ def corrected(problem: Problem, design: Design, cams: Sequence[Comparison]) -> P
         for k, each in enumerate(problem.scenarios)
     )
     return replace(
-        problem, scenarios=scenarios, seed=design.coefficients, variables=design.variables
+        problem,
+        scenarios=scenarios,
+        ratings=cams[-1].ratings,
+        seed=design.coefficients,
+        variables=design.variables,
     )
 
 
@@ -249,16 +255,74 @@ def _mixed(corrections: Sequence[Correction], weights: Array) -> Correction:
     return mean
 
 
-def _correction(cycle: Cycle) -> Correction:
-    guides, contact = cycle.guides, cycle.contact
-    worst = cycle.parts.friction.greatest
-    return Correction(
+def corrections_of(solved: Solution) -> dict[str, Correction]:
+    """Corrections by load case."""
+    swept = {sweep.preload: _at_least_force(solved, sweep) for sweep in solved.speed_sweeps}
+    guides = zip(GUIDES, solved.machine.guides.both, strict=True)
+    left = [
+        softening(solved.machine, guide, _temperature(solved, side)) for side, (_, guide) in guides
+    ]
+    corrections = {}
+    for cycle in solved.cycles:
+        known = swept.get(cycle.machine.spring.preload, Correction.none(cycle.theta.size))
+        corrections[cycle.load_case] = _of_cycle(cycle, known.at(cycle.theta), left)
+    return corrections
+
+
+def _temperature(solved: Solution, side: Side) -> float:
+    """Temperature of a guide at the greatest friction, K; 20 degC where it is not known."""
+    temperature = hottest(solved, side).value
+    return ROOM if np.isnan(temperature) else temperature
+
+
+def _at_least_force(solved: Solution, sweep: SpeedSweep) -> Correction:
+    """Correction by surge and elastic stem alone, at the speeds with the least contact forces."""
+    cycle = next(each for each in solved.cycles if each.machine.spring.preload == sweep.preload)
+
+    def at(force: Array) -> tuple[float, SweptForces]:
+        speed = float(sweep.crank_speed[int(np.argmin(force))]) / cycle.machine.gear_ratio
+        return speed, swept_forces(cycle.machine, solved.contour, cycle.loads.rubbing, speed)
+
+    rigid_speed, rigid = at(sweep.contact_force_min)
+    elastic_speed, elastic = at(sweep.elastic_force_min)
+    none = Correction.none(rigid.surge.size)
+    return replace(
+        none,
+        swept_surge=rigid.surge,
+        elastic=elastic.elastic,
+        swept_speed=rigid_speed * none.contact,
+        elastic_speed=elastic_speed * none.contact,
+    )
+
+
+def _of_cycle(cycle: Cycle, swept: Correction, left: Sequence[tuple[float, float]]) -> Correction:
+    """Results of a cycle over closed forms (n,), and the surge at its speed.
+
+    Parameters
+    ----------
+    swept : Correction   of the speed range
+    left : pairs         shares of pressure limit and line load of the guides; see `softening`
+    """
+    guides, contact, machine = cycle.guides, cycle.contact, cycle.machine
+    worst, friction = cycle.parts.friction.greatest, machine.friction.greatest
+    line_a, line_b = guides.line_pressure_max_a, guides.line_pressure_max_b
+    surge, contour = cycle.parts.surge_force, cycle.contour.require_roller()
+    path_speed, _ = contour.pitch.speed_and_curvature(cycle.theta)
+    rolling = rolling_share(path_speed, contour.roller_radius)
+    return replace(
+        swept,
         contact=_ratio(contact.p0, contact.p0_hertz),
-        guide_a=_ratio(guides.bearing_load_a, guides.statics_a),
-        guide_b=_ratio(guides.bearing_load_b, guides.statics_b),
+        guide_a=_ratio(guides.bearing_load_a, guides.statics_a) / left[0][0],
+        guide_b=_ratio(guides.bearing_load_b, guides.statics_b) / left[1][0],
         rubbing_a=_ratio(guides.rubbing_load_a, guides.statics_a, _RUBBING),
         rubbing_b=_ratio(guides.rubbing_load_b, guides.statics_b, _RUBBING),
         jam=_ratio(worst.jam_index, worst.jam_index_statics),
+        edge_a=_ratio(line_a * machine.guides.a.length, guides.statics_a) / left[0][1],
+        edge_b=_ratio(line_b * machine.guides.b.length, guides.statics_b) / left[1][1],
+        hot_a=_ratio(worst.friction_force_a, friction[0] * worst.reaction_a, _RUBBING),
+        hot_b=_ratio(worst.friction_force_b, friction[1] * worst.reaction_b, _RUBBING),
+        surge=np.zeros(cycle.theta.size) if surge is None else surge,
+        rolling=np.full(cycle.theta.size, np.mean(np.abs(rolling))),
         least_lift=np.full(cycle.theta.size, cycle.contour.pitch.lift.lowest.value),
     )
 
@@ -270,11 +334,9 @@ def _ratio(solved: Array, closed: Array, least: float = _LOADED) -> Array:
     return np.where(loaded, solved, 1.0) / np.where(loaded, closed, 1.0)
 
 
-def _utilisation(
-    problem: Problem, design: Design, corrections: Sequence[Correction]
-) -> Mapping[str, float]:
-    """Utilisation of each limit by a design under the corrections of each scenario."""
-    search = _search(problem, design, corrections)
+def _utilisation(problem: Problem, design: Design) -> Mapping[str, float]:
+    """Utilisation of each limit of a problem by a design."""
+    search = Search(replace(problem, seed=design.coefficients))
     return search.state(design.coefficients, design.variables).utilisation
 
 

@@ -143,7 +143,7 @@ def _loss(at: Turning) -> Mean:
     """Work of the friction of guides and roller bearing over a turn."""
     ratings, force = at.ratings, at.force
     guides = (force.axial - force.spring - force.inertia) * at.jet.slope
-    drag = ratings.bearing_drag + ratings.bearing_friction_arm * force.normal
+    drag = 0.0 if ratings.drag is None else ratings.drag.bearing_torque(force.normal)
     rolling = drag * magnitude(rolling_share(at.path.speed, ratings.roller_radius))
     return Mean(FULL_TURN / at.scale.energy * (guides + rolling))
 

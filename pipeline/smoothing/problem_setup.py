@@ -1,14 +1,17 @@
-"""Synthesis problem of a case: limits, load cases, tolerance corners, free variables."""
+"""Synthesis problem of a case, with tolerance corners; problems with other rollers."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 
 from camwright.geometry.errors import InputError
+from camwright.pipeline.case.cards.catalogue import catalogue_of
+from camwright.pipeline.case.cards.substitution import with_roller
 from camwright.pipeline.case.case import Case
 from camwright.pipeline.case.limits import OVERSPEED
 from camwright.pipeline.case.load_case_torque import engine_torque
@@ -45,9 +48,11 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
     smoothing = case.smoothing
     if "preload" in smoothing.free and any(s.preload is not None for s in case.load_cases):
         raise InputError("smoothing.free", "preload", "a preload common to all load cases")
+    states = machines(case)
+    first = {each.spring.preload: each.load_case for each in reversed(states)}
     scenarios = [
-        scenario
-        for each in machines(case)
+        replace(scenario, swept=each.load_case == first[each.spring.preload])
+        for each in states
         for scenario in _scenarios(case, each, torques.get(each.load_case))
     ]
     if smoothing.robust_weight > 0:
@@ -81,6 +86,34 @@ def problem_of(case: Case, torques: Mapping[str, Torque]) -> Problem:
     )
 
 
+def roller_problems(
+    case: Case, torques: Mapping[str, Torque], original: Problem
+) -> Iterator[tuple[str, Problem]]:
+    """Name and problem of each roller that fits into the case, the smallest first.
+
+    Parameters
+    ----------
+    original : Problem   of the case; its corrections are applied to the alternatives
+
+    Raises
+    ------
+    InputError
+        If cards in the folder of the case cannot be read.
+    """
+    folder = _folder(case)
+    rollers = catalogue_of(folder).rollers
+    corrections = {item.name: item.correction for item in original.scenarios}
+    for name in sorted(rollers, key=lambda name: (rollers[name].outer_diameter, rollers[name].C0)):
+        try:
+            problem = problem_of(with_roller(case, name, rollers[name], folder), torques)
+        except InputError:  # too large for bore or guides
+            continue
+        scenarios = tuple(
+            replace(item, correction=corrections[item.name]) for item in problem.scenarios
+        )
+        yield name, replace(problem, scenarios=scenarios)
+
+
 def _objective(case: Case) -> Objective:
     """Terms of the weights of the smoothing; harmonics are of the crank, per turn."""
     smoothing, ratio = case.smoothing, case.mechanism.gear_ratio
@@ -99,6 +132,7 @@ def _scenarios(case: Case, machine: Machine, torque: Torque | None) -> list[Scen
         cam_speed=machine.cam_speed,
         torque=values - values.mean(),
         mass=machine.mass,
+        spring_mass=machine.spring_mass,
         guide_spacing=machine.guides.spacing,
         overhang=machine.overhang_at_max_lift,
         friction_a=friction.nominal[0],
@@ -142,6 +176,8 @@ def _robust(case: Case, state: LoadCase, nominal: Scenario) -> list[Scenario]:
                 weight=nominal.weight * smoothing.robust_weight,
                 torque_reduction=None,
                 duty=None if nominal.duty is None else 0.0,
+                nominal=False,
+                swept=False,
             )
         )
     return scenarios
@@ -178,8 +214,16 @@ def _corners(case: Case, nominal: Scenario, friction: FrictionRange) -> list[Sce
         )
         for shift in (-late, late)
     ]
-    return corners
+    return [replace(each, nominal=False) for each in corners]
 
 
 def _ends(tolerance: float) -> list[float]:
     return [1.0 - tolerance, 1.0 + tolerance]
+
+
+def _folder(case: Case) -> Path | None:
+    """Folder of the case file and its cards; None for a case built in Python."""
+    try:
+        return case.path("")
+    except InputError:
+        return None

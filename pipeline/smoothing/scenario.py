@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from camwright.geometry.arrays import FULL_TURN, Array, readonly, uniform_turn
 from camwright.pipeline.case.limits import AnyLimit
+from camwright.pipeline.checks.key_strength import KeywayRoot
+from camwright.pipeline.contact.traction import Drag
 
 Value = float | Array
 
@@ -26,6 +29,15 @@ class DesignVariables:
     phase: float = 0.0
 
 
+class ModifiedLife(NamedTuple):
+    """Roller bearing: C, N; e_C P_u, N; viscosity, m2/s; pitch diameter of the balls, m."""
+
+    rating: float
+    cleanliness_load: float
+    viscosity: float
+    circle: float
+
+
 @dataclass(frozen=True)
 class Ratings:
     """Limits and fixed dimensions of a synthesis, SI; a limit of None is not kept.
@@ -41,16 +53,31 @@ class Ratings:
     contact_modulus : float    E*, Pa
     crown_radius : float       of the roller, m; None: straight
     overspeed : float          cam speed at which the contact force margin is kept, rad/s
+    fastest : float            cam speed up to which the contact force margin is kept with surge
+                               and elastic stem, rad/s
     jump_speed : float         cam speed below which the follower does not jump, rad/s
     normal_force : float       least of the limits on the normal force, N; normal_force_by is the
                                check it comes from, force_safety its factor on the static rating
     dynamic_rating : float     C of the roller bearing, N
-    bearing_drag : float       torque of the roller bearing without load, N m
-    bearing_friction_arm : float   its torque per normal force, m
     life_force_cubed : float   limit of the mean of N^3 |n| over the turn, N^3 rad/s
     roller_spin : float        rad/s
     guide_pressure, guide_pv, guide_area : pairs   of guides A and B, Pa, Pa m/s, m^2; pressures as
-                               stated, where the check takes them at the temperature of the guide
+                               stated at 20 degC
+    guide_wear_pv : pair       PV value of the greatest wear depth in the target life, Pa m/s
+    guide_edge_load : pair     line load at the yield strength of the bush at 20 degC, N/m
+    guide_power : pair         mean friction power at the greatest temperature, W; guide_power_by is
+                               the check it comes from
+    guide_slope : pair         lift per cam angle at the greatest sliding speed, m/rad
+    guide_length : pair        m
+    guide_gap : float          m; guide_mouth: end of guide A over the roller centre at maximum
+                               lift, m
+    friction : float           of the roller on the cam; drag: of the roller
+    waves : two floats         amplitude and length of the waves of the contour, m
+    cam_torque : float         least of the limits on the cam torque, N m; tooth_torque: with
+                               shaft_drag, N m; *_by is the check it comes from
+    keyway : KeywayRoot
+    modified : ModifiedLife    modified_rate: limit of the mean of |n| / (a_ISO (C/P)^3), rad/s
+    roller_spin_least : float  mean speed of the roller at the least viscosity ratio, rad/s
     """
 
     roller_radius: float
@@ -64,18 +91,37 @@ class Ratings:
     contact_modulus: float = 1.0
     crown_radius: float | None = None
     overspeed: float | None = None
+    fastest: float | None = None
     jump_speed: float | None = None
     normal_force: float | None = None
     normal_force_by: str = "roller_static"
     force_safety: float = 1.0
     dynamic_rating: float | None = None
-    bearing_drag: float = 0.0
-    bearing_friction_arm: float = 0.0
     life_force_cubed: float | None = None
     roller_spin: float | None = None
     guide_pressure: tuple[float | None, float | None] = (None, None)
     guide_pv: tuple[float | None, float | None] = (None, None)
+    guide_wear_pv: tuple[float | None, float | None] = (None, None)
     guide_area: tuple[float, float] = (1.0, 1.0)
+    guide_edge_load: tuple[float | None, float | None] = (None, None)
+    guide_power: tuple[float | None, float | None] = (None, None)
+    guide_power_by: tuple[str, str] = ("guide_temperature_A", "guide_temperature_B")
+    guide_slope: tuple[float | None, float | None] = (None, None)
+    guide_length: tuple[float, float] = (1.0, 1.0)
+    guide_gap: float | None = None
+    guide_mouth: float = 0.0
+    friction: float | None = None
+    drag: Drag | None = None
+    waves: tuple[float, float] | None = None
+    cam_torque: float | None = None
+    cam_torque_by: str = "key_pressure"
+    tooth_torque: float | None = None
+    tooth_torque_by: str = "gear_bending"
+    shaft_drag: float = 0.0
+    keyway: KeywayRoot | None = None
+    modified: ModifiedLife | None = None
+    modified_rate: float | None = None
+    roller_spin_least: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +134,17 @@ class Correction:
 
     Parameters
     ----------
-    least_lift : array   minimum lift, m, of the base of the contact force margin; one value
+    guide_a, guide_b : array    of the bearing loads, over the share of the pressure limit left at
+                                the temperature of the guide
+    edge_a, edge_b : array      greatest over mean line load of the guides, over the share of the
+                                greatest line load left at the temperature
+    hot_a, hot_b : array        normal loads of the guides at maximum friction
+    surge : array               force of the surge at the speed of the load case, N
+    swept_surge, elastic : array   change of the spring force, N, by the surge, and with an elastic
+                                stem, at the speeds with the least contact force
+    swept_speed, elastic_speed : array   those speeds of the cam, rad/s, one value; 0: not known
+    rolling : array             mean spin of the roller over cam speed, one value; 0: not known
+    least_lift : array          minimum lift, m, of the base of the contact force margin; one value
     """
 
     contact: Array
@@ -97,13 +153,27 @@ class Correction:
     rubbing_a: Array
     rubbing_b: Array
     jam: Array
+    edge_a: Array
+    edge_b: Array
+    hot_a: Array
+    hot_b: Array
+    surge: Array
+    swept_surge: Array
+    elastic: Array
+    swept_speed: Array
+    elastic_speed: Array
+    rolling: Array
     least_lift: Array
 
     @classmethod
     def none(cls, count: int) -> Correction:
         """A correction without effect at so many cam angles."""
         one, zero = readonly(np.ones(count)), readonly(np.zeros(count))
-        return cls(one, one, one, one, one, one, least_lift=zero)
+        return cls(
+            contact=one, guide_a=one, guide_b=one, rubbing_a=one, rubbing_b=one, jam=one,
+            edge_a=one, edge_b=one, hot_a=one, hot_b=one, surge=zero, swept_surge=zero,
+            elastic=zero, swept_speed=zero, elastic_speed=zero, rolling=zero, least_lift=zero,
+        )  # fmt: skip
 
     def towards(self, other: Correction, share: float) -> Correction:
         """Linear interpolation to another correction, at the angles of that one."""
@@ -139,10 +209,14 @@ class Scenario:
     weight : float           of its ripple in the objective; 0: limits only
     torque_reduction : float   required of its torque ripple; None: none is required
     duty : float             share of the operating time; None: not known
-    mass, viscous_damping, guide_spacing, overhang : float   of the follower, SI
+    mass, viscous_damping, guide_spacing, overhang : float   of the follower, SI; spring_mass: of
+                             the mass, that of the spring
     friction_a, friction_b : float
     friction_worst : two floats   maximum friction of guides A and B; None: not known
     rate_factor, preload_factor : float   spring of the scenario over the nominal spring
+    nominal : bool           False: a tolerance corner or an end of a range of operation
+    swept : bool             limits over the speed range hold in it: those of the first load case
+                             of each preload
     correction : Correction
     """
 
@@ -161,6 +235,9 @@ class Scenario:
     torque_reduction: float | None = None
     duty: Value | None = None
     friction_worst: tuple[Value, Value] | None = None
+    spring_mass: Value = 0.0
+    nominal: Value = True
+    swept: Value = True
     correction: Correction = field(default_factory=lambda: Correction.none(8))
 
     def torque_at(self, phase: float) -> tuple[Array, Array]:
@@ -198,6 +275,9 @@ def stacked(scenarios: Sequence[Scenario], theta: Array) -> Scenario:
         viscous_damping=_column(each.viscous_damping for each in scenarios),
         rate_factor=_column(each.rate_factor for each in scenarios),
         preload_factor=_column(each.preload_factor for each in scenarios),
+        spring_mass=_column(each.spring_mass for each in scenarios),
+        nominal=_column(each.nominal for each in scenarios),
+        swept=_column(each.swept for each in scenarios),
         duty=None if None in duties else _column(each for each in duties if each is not None),
         friction_worst=greatest,
         correction=Correction(
@@ -227,6 +307,9 @@ def taken(stack: Scenario, take: Callable[[Array], Array]) -> Scenario:
         viscous_damping=of(stack.viscous_damping),
         rate_factor=of(stack.rate_factor),
         preload_factor=of(stack.preload_factor),
+        spring_mass=of(stack.spring_mass),
+        nominal=of(stack.nominal),
+        swept=of(stack.swept),
         duty=None if stack.duty is None else of(stack.duty),
         friction_worst=None if worst is None else (of(worst[0]), of(worst[1])),
         correction=Correction(

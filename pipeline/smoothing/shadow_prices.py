@@ -19,6 +19,7 @@ from camwright.pipeline.engine.torque import Torque
 from camwright.pipeline.smoothing.bounds import Bound, bounds_of
 from camwright.pipeline.smoothing.problem_setup import problem_of
 from camwright.pipeline.smoothing.sampled_problem import Search
+from camwright.pipeline.smoothing.scenario import Ratings
 from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Problem
 
 BINDING = 2e-3  # of a limit: a constraint this near to its reserve is active
@@ -117,8 +118,9 @@ def machine_prices(
     The price is the decrease of the crank-torque ripple (std, N m) per unit more of the number, to
     first order and at a new optimum: the derivative of the Lagrangian at the optimum, by a
     difference quotient. With costs or a jerk weight it is that of their sum, the objective. A
-    greater roller keeps the base radius. The finite-element corrections are constant; a number that
-    is free in the synthesis has no price, nor is one below `FLOOR` listed.
+    greater roller keeps the base radius. The finite-element corrections are constant, as are limits
+    that follow from the solved cam; a number that is free in the synthesis has no price, nor is one
+    below `FLOOR` listed.
 
     Parameters
     ----------
@@ -136,11 +138,14 @@ def machine_prices(
         return []
     before, of = _before(problem), objective(design, problem)
     freed = {name: getattr(design.variables, name) for name in problem.freed}
+    stated = problem_of(case, torques).ratings
 
     def level(changed: Case) -> float:
         """Lagrangian and jerk term of a changed case at the optimum and its free variables."""
         other = problem_like(problem, changed, torques)
-        other = replace(other, variables=replace(other.variables, **freed))
+        ratings = _with_solved_limits(other.ratings, stated, problem.ratings)
+        variables = replace(other.variables, **freed)
+        other = replace(other, ratings=ratings, variables=variables)
         jerk = Search(other).state(design.coefficients, other.variables).jerk
         return lagrangian.at(other, other.variables) + jerk
 
@@ -179,6 +184,17 @@ def _changed(number: MachineNumber, case: Case) -> tuple[Case, float]:
         return number.increased(case, step), _STEP
     except InputError:
         return number.increased(case, -step), -_STEP
+
+
+def _with_solved_limits(ratings: Ratings, stated: Ratings, solved: Ratings) -> Ratings:
+    """Ratings with the limits that a solved cam has changed from those stated in its case."""
+    if solved.travel != stated.travel:
+        ratings = replace(ratings, travel=solved.travel)
+    if solved.pressure != stated.pressure:
+        ratings = replace(ratings, pressure=solved.pressure)
+    if solved.normal_force != stated.normal_force:
+        ratings = replace(ratings, normal_force=solved.normal_force)
+    return ratings
 
 
 def problem_like(problem: Problem, case: Case, torques: Mapping[str, Torque]) -> Problem:

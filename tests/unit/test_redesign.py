@@ -20,8 +20,7 @@ from camwright.pipeline.case.cards.substitution import AS_GIVEN, Choice, travel_
 from camwright.pipeline.case.case_file import parse_case, read_case
 from camwright.pipeline.case.limits import CAM_RADIUS
 from camwright.pipeline.case.load_case_torque import engine_torques
-from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.smoothing.roller_alternatives import roller_problems
+from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 from camwright.pipeline.studies.redesign import point_store, redesign_study
 from camwright.pipeline.studies.redesign.design_point import Point, Rough
 from camwright.pipeline.studies.redesign.pareto_front import front, thinned

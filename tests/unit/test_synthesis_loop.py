@@ -1,5 +1,7 @@
 """What the trials of a synthesis take over from finite elements, and when they end."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_check import made_check
@@ -22,7 +24,7 @@ from camwright.pipeline.smoothing.synthesis_problem import RESERVE, Design, Prob
 def comparison(ripple_shift=0.0, converged=True, **shifts):
     """A comparison whose shifts end at 1 of their limit."""
     changes = (LimitShift(name, 1.0 - change, 1.0) for name, change in shifts.items())
-    return Comparison((), (), tuple(changes), ripple_shift, converged)
+    return Comparison((), (), rated(roller_radius=0.01), tuple(changes), ripple_shift, converged)
 
 
 def test_first_corrections_are_taken_over_whole():
@@ -86,7 +88,8 @@ def check(demand, lift_can_help=True, name="x") -> Check:
 )
 def test_trials_end_where_no_used_limit_shifts(before, after, ends):
     still = LimitShift("jump", 0.9, 0.9)
-    made = Comparison((), (), (still, LimitShift("travel", before, after)), 0.0)
+    shifts = (still, LimitShift("travel", before, after))
+    made = Comparison((), (), rated(roller_radius=0.01), shifts, 0.0)
     assert made.settled is ends
     assert made.agree is (abs(after - before) < SETTLED or after < 0.5)
 
@@ -130,21 +133,27 @@ def test_next_trial_starts_from_the_design_with_the_mean_of_two_cams_that_altern
     problem = Problem((running,), ratings, variables, coefficients=12, points=12)
     energy = 0.3 + 0.2 * np.cos(2 * np.pi * np.arange(12) / 12)
     design = Design(energy, variables, 0.5, 0.0, {}, {}, {}, 3, 0.0)
-    low, high = (Correction(*np.full((7, 12), level)) for level in (1.2, 1.4))
+    none = Correction.none(12)
+    low, high = (replace(none, guide_a=np.full(12, level)) for level in (1.2, 1.4))
+    tighter = replace(ratings, guide_pressure=(0.9e4, None))
     after = corrected(
         problem,
         design,
-        [Comparison((low,), (high,), (), 0.0), Comparison((high,), (low,), (), 0.0)],
+        [
+            Comparison((low,), (high,), ratings, (), 0.0),
+            Comparison((high,), (low,), tighter, (), 0.0),
+        ],
     )
+    assert after.ratings is tighter
     assert after.seed is design.coefficients
     np.testing.assert_allclose(after.scenarios[0].correction.guide_a, 1.3, rtol=1e-6)
 
 
 def test_part_of_the_way_from_one_correction_to_another():
-    coarse, fine = Correction.none(8), Correction(*np.full((7, 12), 1.4))
+    coarse, fine = Correction.none(8), replace(Correction.none(12), jam=np.full(12, 1.4))
     half = coarse.towards(fine, 0.5)
     assert half.contact.shape == (12,)
-    np.testing.assert_allclose(half.jam, 1.2)
+    np.testing.assert_allclose(half.jam, 1.2, rtol=1e-12)
     assert coarse.towards(fine, 1.0) is fine
 
 

@@ -12,8 +12,7 @@ from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.infeasibility import infeasibility
-from camwright.pipeline.smoothing.problem_setup import problem_of
-from camwright.pipeline.smoothing.roller_alternatives import roller_problems
+from camwright.pipeline.smoothing.problem_setup import problem_of, roller_problems
 from camwright.pipeline.smoothing.scenario import DesignVariables, Scenario
 from camwright.pipeline.smoothing.synthesis_problem import Problem
 

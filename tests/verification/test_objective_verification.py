@@ -16,6 +16,7 @@ from camwright.geometry.pitch_curve import PitchCurve
 from camwright.pipeline.case.case_file import read_case
 from camwright.pipeline.case.load_case_torque import engine_torques
 from camwright.pipeline.contact.tiers import Tier
+from camwright.pipeline.contact.traction import Drag
 from camwright.pipeline.cycle.solution import solution
 from camwright.pipeline.smoothing.constrained_synthesis import synthesise
 from camwright.pipeline.smoothing.constraints import Jet, Mean, lift_jet
@@ -64,15 +65,16 @@ def solved(case):
 def cost_by_scenario(case, solved, objective=EVERY_COST):
     """Costs of the solved cam in each load case, guides as its cycles solve them."""
     problem = problem_of(case, engine_torques(case))
-    pitch, one, found = solved.contour.pitch, np.ones(POSITIONS), {}
+    pitch, found = solved.contour.pitch, {}
     jet = Jet(*pitch.lift.derivatives(uniform_turn(POSITIONS), 3))
     for cycle, item in zip(solved.cycles, problem.scenarios, strict=True):
         guides = cycle.guides
-        rubbing = (
-            np.abs(guides.rubbing_load_a / guides.statics_a),
-            np.abs(guides.rubbing_load_b / guides.statics_b),
+        correction = replace(
+            Correction.none(POSITIONS),
+            rubbing_a=np.abs(guides.rubbing_load_a / guides.statics_a),
+            rubbing_b=np.abs(guides.rubbing_load_b / guides.statics_b),
         )
-        scenario = replace(item, correction=Correction(one, one, one, *rubbing, one, 0.0 * one))
+        scenario = replace(item, correction=correction)
         found[item.name] = costs(
             objective, problem.scale, problem.ratings, scenario, item.weight, jet,
             pitch.lift.highest.value, problem.variables,
@@ -163,8 +165,8 @@ def small(friction, weights, **changes):
         "idle", 78.5, torque, 0.2, 0.08, 0.038, friction, friction, viscous_damping=3.0 * friction,
     )  # fmt: skip
     limits = rated(
-        roller_radius=0.008, pressure_angle=np.pi / 6, travel=0.01, bearing_drag=2e-3,
-        bearing_friction_arm=1e-5,
+        roller_radius=0.008, pressure_angle=np.pi / 6, travel=0.01,
+        drag=Drag(0.0, 0.1, 2e-3, 2e-3, 5e-3),
     )  # fmt: skip
     return Problem(
         (running,), limits, DesignVariables(24.2e3, 242.0, 0.05), coefficients=24, points=120,

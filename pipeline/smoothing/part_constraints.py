@@ -1,0 +1,255 @@
+"""Constraints of the parts: guides, roller bearing, spring over its speeds, cam seat, gear.
+
+As in `constraints`. What finite elements, the surge or the heat of a solved cam add is in the
+`Correction` of its scenario, held while the search runs.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.geometry.arrays import Array
+from camwright.geometry.pitch_curve import magnitude
+from camwright.pipeline.base.units import factor
+from camwright.pipeline.case.limits import CONTACT_FORCE_MARGIN, KEYWAY_SAFETY, WAVINESS
+from camwright.pipeline.checks import demands
+from camwright.pipeline.checks.roller_bearing import STANDSTILL
+from camwright.pipeline.contact.traction import rolling_demand
+from camwright.pipeline.follower import bearing_life
+from camwright.pipeline.follower.roller_motion import (
+    BALL_LIFE_EXPONENT,
+    path_speed_slope,
+    rolling_share,
+)
+from camwright.pipeline.smoothing.cam_state import Constraint, Loads, Mean, Shape
+from camwright.pipeline.smoothing.scenario import Value
+
+_LEAST_FORCE = 1.0  # N, of a force that damages a bearing
+_MARGIN = 0.2  # of the least spring force, where the case keeps no contact force margin
+_FAR = -10.0  # utilisation in a scenario to which a limit does not apply
+_AMPLE = 100.0  # times the least mean speed, of a roller at rest, which needs no film
+
+Side = Literal["A", "B"]
+
+
+def _over_normal_force(at: Loads, needed: Array) -> Array:
+    """Needed over present normal force (n,); 1 plus the shortfall below the contact force margin.
+
+    The quotient alone has a pole where the search passes through a loss of contact.
+    """
+    margin = at.ratings.limits.get(CONTACT_FORCE_MARGIN, _MARGIN)
+    normal, least = at.force.normal, margin * at.least_spring
+    scale: Array = np.where(np.real(normal) > np.real(np.asarray(least)), normal, least)
+    return 1.0 + (needed - normal) / scale
+
+
+def _guide_speed(side: Side) -> Constraint[Shape]:
+    place = "AB".index(side)
+    return Constraint(
+        f"guide_speed_{side}",
+        lambda ratings: ratings.guide_slope[place],
+        lambda cam, limit: magnitude(cam.jet.slope) / limit,
+    )
+
+
+def _where(applies: Value, use: Array) -> Array:
+    """Utilisation in the scenarios to which a limit applies, far from it in the others."""
+    return np.where(np.asarray(applies) != 0.0, use, _FAR + 0.0 * use)
+
+
+def _running(at: Loads) -> Value:
+    """1 in a load case that counts for a life, 0 in one without a share of the duty."""
+    return 1.0 if at.scenario.duty is None else np.sign(at.scenario.duty)
+
+
+def _guide_gap(at: Loads, limit: float) -> Array:
+    """Over the roller radius; of the cam alone, as the gap of the roller is that of the case."""
+    path, ratings = at.path, at.ratings
+    inset = ratings.roller_radius / path.speed
+    radius = demands.contour_radius(path.along, path.across, ratings.offset, inset)
+    space = path.across - at.jet.lift + at.highest + ratings.guide_mouth - radius
+    use = 1.0 + (limit - space) / ratings.roller_radius
+    return _where(np.multiply(at.scenario.swept, at.scenario.nominal), use)
+
+
+def _guide_edge_pressure(side: Side) -> Constraint[Loads]:
+    """Line load over that at the yield strength of the bush at its temperature."""
+    place = "AB".index(side)
+
+    def utilisation(at: Loads, limit: float) -> Array:
+        fix = at.scenario.correction
+        peak = at.side * at.force.lever[place] * (fix.edge_a, fix.edge_b)[place]
+        return magnitude(peak) / (at.ratings.guide_length[place] * limit)
+
+    return Constraint(
+        f"guide_edge_pressure_{side}", lambda ratings: ratings.guide_edge_load[place], utilisation
+    )
+
+
+def _guide_heat(side: Side) -> Constraint[Loads]:
+    """Mean friction power at the greatest friction over that at the greatest temperature."""
+    place = "AB".index(side)
+
+    def utilisation(at: Loads, limit: float) -> Mean | None:
+        friction = at.scenario.friction_worst
+        if friction is None:
+            return None
+        fix = at.scenario.correction
+        lever_a, lever_b = at.force.lever
+        tangent, rising = magnitude(at.path.tangent), np.sign(np.real(at.jet.slope))
+        jam = (friction[0] * lever_a + friction[1] * lever_b) * fix.jam * tangent
+        axial = at.force.axial * at.force.share / (1.0 - rising * jam)
+        rubbing = (
+            friction[place]
+            * at.force.lever[place]
+            * (fix.hot_a, fix.hot_b)[place]
+            * tangent
+            * axial
+        )
+        return Mean(magnitude(rubbing * at.velocity) / limit)
+
+    return Constraint(
+        f"guide_temperature_{side}", lambda ratings: ratings.guide_power[place], utilisation
+    )
+
+
+def _guide_wear(side: Side) -> Constraint[Loads]:
+    """Mean PV value over that of the greatest wear depth."""
+    place = "AB".index(side)
+
+    def utilisation(at: Loads, limit: float) -> Mean:
+        load = at.side * at.force.rub[place]
+        pv = demands.guide_pv(load, at.velocity, at.ratings.guide_area[place])
+        return Mean(_running(at) * pv / limit)
+
+    return Constraint(
+        f"guide_wear_{side}", lambda ratings: ratings.guide_wear_pv[place], utilisation
+    )
+
+
+def _traction_demand(at: Loads, friction: float) -> Array | None:
+    if at.ratings.drag is None:
+        return None
+    jet, path, radius = at.jet, at.path, at.ratings.roller_radius
+    rate = path_speed_slope(path.along, path.across, jet.slope, jet.bend, path.speed)
+    acceleration = at.scenario.cam_speed**2 * rate / radius
+    force = np.where(np.real(at.force.normal) > 0.0, at.force.normal, 0.0 * at.force.normal)
+    demand = rolling_demand(at.ratings.drag, force, at.spin, acceleration, radius)
+    return _over_normal_force(at, magnitude(demand) / friction)
+
+
+def _profile_waviness(at: Loads, limit: float) -> Array | None:
+    if at.ratings.waves is None:
+        return None
+    amplitude, length = at.ratings.waves
+    bend = at.ratings.roller_radius * at.path.curvature
+    speed = at.scenario.cam_speed * at.path.speed * (1.0 - bend)
+    inertia = demands.waviness_force(at.scenario.mass, amplitude, speed, length)
+    return _over_normal_force(at, inertia / limit)
+
+
+def _swept_force(at: Loads, limit: float) -> Array | None:
+    """At the speed with the least force of the solved cam, with its surge; first the fastest."""
+    fastest, scenario = at.ratings.fastest, at.scenario
+    if fastest is None:
+        return None
+    fix = scenario.correction
+    speed = np.where(fix.swept_speed > 0.0, fix.swept_speed, fastest)
+    push = at.force.spring + fix.swept_surge
+    push = push + (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
+    push = push + scenario.viscous_damping * speed * at.jet.slope
+    normal = push / at.force.share * np.sqrt(1.0 + at.path.tangent**2)
+    return _where(scenario.swept, 1.0 + limit - normal / at.least_spring)
+
+
+def _elastic_contact(at: Loads, limit: float) -> Array | None:
+    """As `_swept_force`, without friction, with the change by the elastic stem."""
+    fastest, scenario = at.ratings.fastest, at.scenario
+    if fastest is None:
+        return None
+    fix = scenario.correction
+    speed = np.where(fix.elastic_speed > 0.0, fix.elastic_speed, fastest)
+    inertia = (scenario.mass - scenario.spring_mass) * speed**2 * at.jet.bend
+    push = demands.force_left(at.force.spring + fix.elastic, inertia, at.least_spring)
+    return _where(scenario.swept, 1.0 + limit - push)
+
+
+def _keyway_root(at: Loads, limit: float) -> Array | None:
+    keyway = at.ratings.keyway
+    if keyway is None:
+        return None
+    height = at.path.across - at.jet.lift + at.scenario.correction.least_lift
+    least = np.sqrt(height**2 + at.ratings.offset**2) - at.ratings.roller_radius
+    wall = least - keyway.held_radius
+    wall = np.where(np.real(wall) < keyway.thick, wall, keyway.thick)
+    return keyway.used_by(magnitude(at.torque), magnitude(at.force.normal), wall) * limit
+
+
+def _mean_spin(at: Loads) -> tuple[Array, NDArray[np.bool_]]:
+    """Mean speed of the roller, rad/s, at least that of standstill; whether it turns.
+
+    That of the solved cam; before, of a roller on the prime circle.
+    """
+    rolling, ratings = at.scenario.correction.rolling, at.ratings
+    prime = np.sqrt((at.path.across - at.jet.lift) ** 2 + ratings.offset**2)
+    share = np.where(rolling > 0.0, rolling, rolling_share(prime, ratings.roller_radius))
+    mean, least = at.scenario.cam_speed * share, STANDSTILL * factor("rpm")
+    turns = np.real(mean) >= least
+    return np.where(turns, mean, least), turns
+
+
+def _modified_life(at: Loads, limit: float) -> Mean | None:
+    """Of 1/L = sum q_i/(a1 a_ISO (C/P_i)^3), kappa at the mean speed of the roller."""
+    bearing = at.ratings.modified
+    if bearing is None:
+        return None
+    force = np.where(np.real(at.force.surged) > _LEAST_FORCE, at.force.surged, _LEAST_FORCE)
+    speed, turns = _mean_spin(at)
+    rated = bearing_life.rated_viscosity(speed / factor("rpm"), bearing.circle)
+    kappa, least = bearing.viscosity / rated, bearing_life.LEAST_VISCOSITY_RATIO
+    kappa = np.where(np.real(kappa) > least, kappa, least)
+    used = bearing_life.life_used(force, bearing.rating, bearing.cleanliness_load, kappa)
+    terms = _running(at) * turns * used * magnitude(at.spin)
+    return Mean(terms / limit, 1.0 / BALL_LIFE_EXPONENT)
+
+
+def _lubrication(at: Loads, limit: float) -> Mean:
+    """Least mean speed of the roller over its mean speed; no film is necessary at rest."""
+    spin = magnitude(at.spin)
+    _, turns = _mean_spin(at)
+    return Mean(np.where(turns, spin / limit, _AMPLE + 0.0 * spin), -1.0)
+
+
+PART_SHAPE: tuple[Constraint[Shape], ...] = (_guide_speed("A"), _guide_speed("B"))
+"""Limits of the parts on the shape of the cam."""
+
+PARTS: tuple[Constraint[Loads], ...] = (
+    Constraint("guide_gap", lambda ratings: ratings.guide_gap, _guide_gap),
+    _guide_edge_pressure("A"),
+    _guide_edge_pressure("B"),
+    _guide_heat("A"),
+    _guide_heat("B"),
+    _guide_wear("A"),
+    _guide_wear("B"),
+    Constraint("traction_demand", lambda ratings: ratings.friction, _traction_demand),
+    Constraint("profile_waviness", WAVINESS, _profile_waviness),
+    Constraint("contact_over_speed", CONTACT_FORCE_MARGIN, _swept_force),
+    Constraint("elastic_contact", CONTACT_FORCE_MARGIN, _elastic_contact),
+    Constraint(
+        "key_pressure",
+        lambda ratings: ratings.cam_torque,
+        lambda at, limit: magnitude(at.torque) / limit,
+    ),
+    Constraint(
+        "gear_bending",
+        lambda ratings: ratings.tooth_torque,
+        lambda at, limit: magnitude(at.torque + at.ratings.shaft_drag) / limit,
+    ),
+    Constraint("keyway_root", KEYWAY_SAFETY, _keyway_root),
+    Constraint("roller_modified_life", lambda ratings: ratings.modified_rate, _modified_life),
+    Constraint("bearing_lubrication", lambda ratings: ratings.roller_spin_least, _lubrication),
+)
+"""Limits of the parts on the loads of the cam in one scenario."""
